@@ -1,0 +1,3 @@
+//! Arguments -> exit code: parses, runs, maps errors.
+
+fn main() {}

@@ -1,0 +1,49 @@
+//! Bytes -> Mesh: what a model is once it is read and placed.
+
+use serde::Serialize;
+
+/// The triangles of one file as read: vertices welded where they are bit-equal,
+/// triangles without area dropped. Coordinates are the file's own numbers.
+#[derive(Debug, Clone, Default)]
+pub struct RawMesh {
+    /// Vertices, in the order of their first use.
+    pub vertices: Vec<[f32; 3]>,
+    /// Triangles as indices into `vertices`, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// What reading met.
+    pub report: MeshReport,
+}
+
+/// The models as they lie on the bed, on the integer grid: x and y relative to
+/// the middle of the layout, z from the bed upwards. Triangles of all models
+/// and copies in one list.
+#[derive(Debug, Clone, Default)]
+pub struct Mesh {
+    /// Vertices in grid units.
+    pub vertices: Vec<[i32; 3]>,
+    /// Triangles as indices into `vertices`, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// What a model file held and what was found in it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct MeshReport {
+    /// The file as the user named it.
+    pub file: String,
+    /// `binary` or `ascii`.
+    pub format: &'static str,
+    /// Triangles kept.
+    pub triangles: usize,
+    /// Distinct vertices.
+    pub vertices: usize,
+    /// Triangles without area that were dropped.
+    pub degenerate: usize,
+    /// Edges without exactly two oppositely wound faces.
+    pub open_edges: usize,
+    /// Bytes after the last triangle.
+    pub trailing_bytes: u64,
+    /// Size x, y, z as placed (scaled and turned), mm.
+    pub size_mm: [f64; 3],
+    /// Volume as placed, mm³ (signed sum over the triangles).
+    pub volume_mm3: f64,
+}

@@ -1,0 +1,5 @@
+//! Profile names, files and overrides -> Settings, each value with its origin.
+
+mod settings;
+
+pub use settings::*;

@@ -1,0 +1,86 @@
+//! Findings that do not stop a run: each says the fact, the likely cause and what to do.
+
+use serde::Serialize;
+use std::fmt;
+
+/// A finding. Printed one a line on stderr, listed in the report; with
+/// `--strict` any of them makes the exit code 1.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "code", rename_all = "kebab-case")]
+pub enum Warning {
+    /// Triangles without area were dropped.
+    DegenerateTriangles {
+        /// The model's file.
+        file: String,
+        /// How many.
+        count: usize,
+    },
+    /// Mesh edges that do not have exactly two oppositely wound faces.
+    OpenMesh {
+        /// The model's file.
+        file: String,
+        /// How many such edges.
+        edges: usize,
+    },
+    /// Contours that did not close on some layers and were closed by a straight line.
+    OpenContours {
+        /// On how many layers.
+        layers: usize,
+        /// The longest such line, mm.
+        longest_gap_mm: f64,
+    },
+    /// Places too thin for one line, which are not printed.
+    ThinPlaces {
+        /// On how many layers.
+        layers: usize,
+        /// The area left out, mm², summed over the layers.
+        area_mm2: f64,
+    },
+    /// Bytes after the last triangle of a binary STL.
+    TrailingBytes {
+        /// The model's file.
+        file: String,
+        /// How many.
+        count: u64,
+    },
+    /// A model so small that its unit is probably not the one assumed.
+    TinyModel {
+        /// The model's file.
+        file: String,
+        /// Its largest side as placed, mm.
+        size_mm: f64,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::DegenerateTriangles { file, count } => {
+                write!(f, "{file}: {count} triangles without area were dropped")
+            }
+            Self::OpenMesh { file, edges } => write!(
+                f,
+                "{file}: the mesh is not closed ({edges} edges without exactly two faces); \
+                 check the print or mend the model"
+            ),
+            Self::OpenContours { layers, longest_gap_mm } => write!(
+                f,
+                "contours did not close on {layers} layers and were closed by straight lines \
+                 of up to {longest_gap_mm:.3} mm; mend the model"
+            ),
+            Self::ThinPlaces { layers, area_mm2 } => write!(
+                f,
+                "{area_mm2:.1} mm² on {layers} layers are thinner than one line and are not \
+                 printed; use a smaller line width"
+            ),
+            Self::TrailingBytes { file, count } => {
+                write!(f, "{file}: {count} bytes after the last triangle were ignored")
+            }
+            Self::TinyModel { file, size_mm } => write!(
+                f,
+                "{file}: the model is only {size_mm:.3} mm large; if its unit is not mm, \
+                 use --unit or --scale"
+            ),
+        }
+    }
+}
