@@ -47,3 +47,38 @@ pub struct MeshReport {
     /// Volume as placed, mm³ (signed sum over the triangles).
     pub volume_mm3: f64,
 }
+
+/// How models are laid on the bed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placement {
+    /// The unit of the files' numbers.
+    pub unit: Unit,
+    /// Factor on every length.
+    pub scale: f64,
+    /// Turns about x, then y, then z, degrees, counter-clockwise seen against the axis.
+    pub rotate: [f64; 3],
+    /// Where the middle of the layout goes, in the machine's coordinates, mm; the bed's middle if `None`.
+    pub at: Option<[f64; 2]>,
+    /// How many times each model is printed.
+    pub copies: u32,
+}
+
+/// The unit of an STL file's numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unit {
+    /// Millimetres.
+    Mm,
+    /// Inches of 25.4 mm.
+    Inch,
+}
+
+/// The space a printer has, as placement needs it, mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bed {
+    /// Lowest x and y, in the machine's coordinates.
+    pub min: [f64; 2],
+    /// Highest x and y.
+    pub max: [f64; 2],
+    /// Highest z.
+    pub height: f64,
+}
