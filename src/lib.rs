@@ -1,17 +1,41 @@
 //! Slices STL models into G-code for FDM printers, with dual injection: walls
 //! and skins at the fine layer height, sparse infill on one layer of each pair
 //! with twice the material.
+//!
+//! The modules in the order of the way an STL takes; [`slice`] shows it whole:
+//!
+//! - [`mesh`]: bytes -> triangles, welded and laid on the bed
+//! - [`mod@slice`]: triangles -> layers of closed contours
+//! - [`region`]: layers -> walls, and spans of skin, sparse infill and support
+//! - [`plan`]: regions -> paths in order, with travels
+//! - [`gcode`]: paths -> text
+//!
+//! Beside the way: [`geom`] and [`units`] (plane geometry on the integer grid),
+//! [`profile`] (settings), [`report`], [`progress`], [`warning`] and [`error`].
+//! The command line is the binary's own.
 
 pub mod error;
+pub mod gcode;
 pub mod geom;
 pub mod mesh;
+pub mod plan;
 pub mod profile;
 pub mod progress;
+pub mod region;
 pub mod report;
+pub mod slice;
 pub mod units;
 pub mod warning;
 
+use error::{Error, Result};
+use gcode::template::PrintFacts;
+use geom::Point;
+use rayon::prelude::*;
 use std::path::PathBuf;
+use units::to_units;
+
+/// Name and version of this program.
+pub const NAME: &str = concat!("slicer ", env!("CARGO_PKG_VERSION"));
 
 /// One run: which models become which file, and how.
 #[derive(Debug, Clone)]
@@ -36,7 +60,89 @@ pub fn slice(
     job: &Job,
     out: &mut dyn std::io::Write,
     progress: &progress::Progress,
-) -> error::Result<report::Report> {
-    let _ = (job, out, progress);
-    Ok(report::Report::default())
+) -> Result<report::Report> {
+    let settings = &job.settings;
+    let bed = bed(&settings.machine);
+    let models = job.models.iter().map(|file| mesh::stl::load(file)).collect::<Result<_>>()?;
+    let placed = mesh::transform::place(models, &job.placement, &bed)?;
+
+    let heights = heights(settings, &placed.mesh);
+    let facts = print_facts(&placed, heights);
+    if heights.count == 0 {
+        let height = placed.size_mm[2];
+        return Err(Error::Unprintable(format!(
+            "nothing to print: {height:.3} mm is less than half a layer high; \
+             use thinner layers, --scale or --unit"
+        )));
+    }
+    progress.set_total(heights.count);
+    let tolerance = to_units(settings.tolerance);
+    let slicer = slice::Slicer::new(&placed.mesh, &placed.adjacency, heights, tolerance);
+
+    let params = region::Params::new(settings);
+    let support = region::support::SupportParams::new(settings);
+    let on_bed = bed_corners(&bed, placed.offset);
+    let supports = support.map(|s| region::support::supports(&slicer, &s, on_bed));
+    let plan = plan::PlanParams::new(settings, &params, support);
+
+    let mut tally = report::Tally::default();
+    let mut writer = gcode::Writer::new(out, &job.output, settings, facts, placed.offset)?;
+    let mut at: Option<Point> = None;
+    let mut window =
+        region::window::Window::new(&slicer, &params, &settings.dual, supports.unwrap_or_default());
+    while let Some(regions) = window.next() {
+        let pieces: Vec<plan::Pieces> = regions.par_iter().map(|r| plan::pieces(r, &plan)).collect();
+        // Where a layer ends decides how the next is best begun: one after the other.
+        let mut ordered = Vec::with_capacity(regions.len());
+        for (region, pieces) in regions.iter().zip(pieces) {
+            let paths = plan::order::order(pieces, region.layer.height, at.unwrap_or_default(), &plan);
+            let end = paths.last().map(plan::Path::end).or(at);
+            ordered.push((region, std::mem::replace(&mut at, end), paths));
+            tally.layer(region);
+        }
+        let toolpaths: Vec<plan::Toolpath> = ordered
+            .into_par_iter()
+            .map(|(region, at, paths)| plan::toolpath(region, paths, at, &plan))
+            .collect();
+        writer.layers(&toolpaths)?;
+        progress.add(regions.len());
+    }
+    let pairs = window.pair_totals();
+    let usage = writer.finish()?;
+    report::report(job, &placed, heights, &usage, pairs, &tally)
+}
+
+/// What the start and end blocks may want to know.
+fn print_facts(placed: &mesh::transform::Placed, heights: slice::Heights) -> PrintFacts {
+    let half = [placed.size_mm[0] / 2.0, placed.size_mm[1] / 2.0];
+    let [x, y] = placed.offset;
+    PrintFacts {
+        layers: heights.count,
+        min: [x - half[0], y - half[1]],
+        max: [x + half[0], y + half[1]],
+        height: units::to_mm(heights.top(heights.count.saturating_sub(1))),
+    }
+}
+
+/// The space that the machine has.
+fn bed(machine: &profile::Machine) -> mesh::Bed {
+    let size = [machine.bed_width, machine.bed_depth];
+    let min = match machine.origin {
+        profile::Origin::Centre => size.map(|side| -side / 2.0),
+        profile::Origin::FrontLeft => [0.0, 0.0],
+    };
+    let max = [min[0] + size[0], min[1] + size[1]];
+    mesh::Bed { min, max, height: machine.bed_height }
+}
+
+/// The bed's corners as seen from the middle of the layout, grid units.
+fn bed_corners(bed: &mesh::Bed, offset: [f64; 2]) -> (Point, Point) {
+    let corner = |at: [f64; 2]| Point { x: to_units(at[0] - offset[0]), y: to_units(at[1] - offset[1]) };
+    (corner(bed.min), corner(bed.max))
+}
+
+/// The layers that a mesh is cut into.
+fn heights(settings: &profile::Settings, mesh: &mesh::Mesh) -> slice::Heights {
+    let top = mesh.vertices.iter().map(|v| v[2]).max().unwrap_or(0);
+    slice::Heights::new(to_units(settings.first_layer_height), to_units(settings.layer_height), top)
 }

@@ -1,6 +1,16 @@
 //! Report: what a run found and made, as versioned JSON (`--report`) and as a three-line summary.
 
+use crate::Job;
+use crate::error::{Error, Result};
+use crate::gcode::write::{Usage, filament_area};
 use crate::mesh::MeshReport;
+use crate::mesh::transform::Placed;
+use crate::plan::Role;
+use crate::profile::{DualMode, Settings};
+use crate::region::Region;
+use crate::region::window::PairTotals;
+use crate::slice::Heights;
+use crate::units::{Coord, UNITS_PER_MM, to_mm};
 use crate::warning::Warning;
 use serde::Serialize;
 
@@ -95,4 +105,118 @@ pub struct DualReport {
     pub thin_length_mm: f64,
     /// Volume of the pairs' lines over that of the same lines printed thin on both layers.
     pub volume_ratio: f64,
+}
+
+/// Thin places of a layer below this are corners, not shape, mm².
+const LEAST_THIN_MM2: f64 = 2.0;
+
+/// What the layers of a print add up to, beside what is extruded.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Tally {
+    open_layers: usize,
+    longest_gap: Coord,
+    thin_layers: usize,
+    thin_mm2: f64,
+}
+
+impl Tally {
+    /// Counts one layer in.
+    pub fn layer(&mut self, region: &Region) {
+        if region.layer.closed_gap > 0 {
+            self.open_layers += 1;
+            self.longest_gap = self.longest_gap.max(region.layer.closed_gap);
+        }
+        if region.thin_mm2 > LEAST_THIN_MM2 {
+            self.thin_layers += 1;
+            self.thin_mm2 += region.thin_mm2;
+        }
+    }
+
+    fn warnings(self) -> impl Iterator<Item = Warning> {
+        let open = (self.open_layers > 0).then(|| Warning::OpenContours {
+            layers: self.open_layers,
+            longest_gap_mm: to_mm(self.longest_gap),
+        });
+        let thin = (self.thin_layers > 0)
+            .then_some(Warning::ThinPlaces { layers: self.thin_layers, area_mm2: self.thin_mm2 });
+        open.into_iter().chain(thin)
+    }
+}
+
+/// The report of a run.
+///
+/// # Errors
+/// [`Error::Unprintable`] if nothing is extruded at all.
+pub fn report(
+    job: &Job,
+    placed: &Placed,
+    heights: Heights,
+    usage: &Usage,
+    pairs: PairTotals,
+    tally: &Tally,
+) -> Result<Report> {
+    let settings = &job.settings;
+    let filament_mm = usage.filament();
+    if filament_mm <= 0.0 {
+        return Err(Error::Unprintable(format!(
+            "nothing to print: everything is thinner than a line of {} mm; use a smaller \
+             --line-width or --scale",
+            settings.line_width
+        )));
+    }
+    let volume_cm3 = filament_mm * filament_area(settings) / 1000.0;
+    Ok(Report {
+        schema: SCHEMA,
+        slicer: crate::NAME.to_owned(),
+        profile: job.profile.clone(),
+        models: placed.reports.clone(),
+        size_mm: placed.size_mm,
+        layers: LayersReport {
+            count: heights.count,
+            first_height_mm: to_mm(heights.first),
+            height_mm: to_mm(heights.other),
+            top_mm: to_mm(heights.top(heights.count - 1)),
+        },
+        roles: roles(usage, settings),
+        travel: TravelReport {
+            count: usage.travels,
+            length_mm: usage.travel_length,
+            retractions: usage.retractions,
+        },
+        filament: FilamentReport {
+            length_mm: filament_mm,
+            volume_cm3,
+            weight_g: volume_cm3 * settings.filament.density,
+        },
+        dual: (settings.dual.mode != DualMode::Off).then(|| dual(pairs)),
+        warnings: placed.warnings.iter().cloned().chain(tally.warnings()).collect(),
+    })
+}
+
+fn roles(usage: &Usage, settings: &Settings) -> Vec<RoleReport> {
+    Role::ALL
+        .iter()
+        .zip(&usage.roles)
+        .map(|(role, used)| RoleReport {
+            role: role.name(),
+            length_mm: used.length,
+            filament_mm: used.filament,
+            volume_mm3: used.filament * filament_area(settings),
+        })
+        .collect()
+}
+
+fn dual(pairs: PairTotals) -> DualReport {
+    let mm = |units: i64| units as f64 / UNITS_PER_MM;
+    DualReport {
+        pairs: pairs.pairs,
+        thick_pairs: pairs.thick_pairs,
+        thick_length_mm: mm(pairs.thick),
+        thin_length_mm: mm(pairs.thin),
+        volume_ratio: if pairs.plain == 0 {
+            1.0
+        } else {
+            mm(2 * pairs.thick + pairs.thin) / mm(pairs.plain)
+        },
+    }
 }

@@ -1,4 +1,8 @@
-//! Plane geometry on the integer grid: points, contours and spans.
+//! Plane geometry on the integer grid: points, contours, spans, frames and polygon offsets.
+
+pub mod frame;
+pub mod polygon;
+pub mod spans;
 
 use crate::units::Coord;
 
@@ -11,6 +15,37 @@ pub struct Point {
     pub y: Coord,
 }
 
+impl Point {
+    /// The squared distance to `other`, grid units².
+    #[must_use]
+    pub fn distance2(self, other: Self) -> i64 {
+        let dx = i64::from(self.x) - i64::from(other.x);
+        let dy = i64::from(self.y) - i64::from(other.y);
+        dx * dx + dy * dy
+    }
+
+    /// The distance to `other`, grid units.
+    #[must_use]
+    pub fn distance(self, other: Self) -> f64 {
+        (self.distance2(other) as f64).sqrt()
+    }
+}
+
 /// A closed polygon: counter-clockwise around solid, clockwise around a hole;
 /// the last point is joined to the first, which is not repeated.
 pub type Contour = Vec<Point>;
+
+/// Twice the signed area of a closed polygon, grid units²: positive where it
+/// runs counter-clockwise. Summed relative to its first point.
+#[must_use]
+pub fn double_area(contour: &[Point]) -> i128 {
+    let Some(o) = contour.first() else { return 0 };
+    let from = |p: &Point| (i64::from(p.x) - i64::from(o.x), i64::from(p.y) - i64::from(o.y));
+    contour
+        .windows(2)
+        .map(|w| {
+            let ((ax, ay), (bx, by)) = (from(&w[0]), from(&w[1]));
+            i128::from(ax * by - ay * bx)
+        })
+        .sum()
+}

@@ -1,0 +1,399 @@
+//! Toolpath -> text: the G-code of one layer, independent of all others but for where it begins.
+
+use super::dialect::Dialect;
+use super::number::{push_fixed, push_integer, thousandths};
+use crate::geom::Point;
+use crate::plan::{Path, Role, Toolpath};
+use crate::profile::{ExtrusionModel, Settings};
+use crate::units::{Coord, to_mm, to_units};
+use std::f64::consts::PI;
+use std::io::Write as _;
+
+/// Widths that differ by less are not worth an annotation (0.01 mm).
+const LEAST_WIDTH_CHANGE: Coord = 100;
+
+/// What was extruded in one role: path and filament, mm.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Used {
+    /// Length of path, mm.
+    pub length: f64,
+    /// Filament, mm.
+    pub filament: f64,
+}
+
+/// What a layer, or a print, moves and uses.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Usage {
+    /// By role, in the order of [`Role::ALL`].
+    pub roles: [Used; 6],
+    /// Travels.
+    pub travels: usize,
+    /// Their length, mm.
+    pub travel_length: f64,
+    /// How many of them retract.
+    pub retractions: usize,
+}
+
+impl Usage {
+    /// Filament in all, mm.
+    #[must_use]
+    pub fn filament(&self) -> f64 {
+        self.roles.iter().map(|r| r.filament).sum()
+    }
+
+    /// Adds another layer's usage.
+    pub fn add(&mut self, other: &Self) {
+        for (mine, theirs) in self.roles.iter_mut().zip(&other.roles) {
+            mine.length += theirs.length;
+            mine.filament += theirs.filament;
+        }
+        self.travels += other.travels;
+        self.travel_length += other.travel_length;
+        self.retractions += other.retractions;
+    }
+}
+
+/// Where the machine stands when a layer begins.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Start {
+    /// Where the nozzle is, if known.
+    pub at: Option<Point>,
+    /// Filament used so far, mm.
+    pub e: f64,
+    /// Layers done and in all, for the progress.
+    pub done: (usize, usize),
+}
+
+/// The numbers that writing needs.
+#[derive(Debug, Clone)]
+pub struct WriteParams {
+    dialect: Dialect,
+    relative_e: bool,
+    /// Where the layout's middle goes on the machine, grid units.
+    offset: [i64; 2],
+    /// mm of filament for each mm of path, mm of width and mm of height, by role.
+    rates: [f64; 6],
+    feeds: [f64; 6],
+    first_layer: f64,
+    travel_feed: f64,
+    z_feed: f64,
+    retract: f64,
+    retract_feed: f64,
+    hop: Coord,
+    fan: f64,
+    fan_from_layer: usize,
+    tool: u32,
+}
+
+impl WriteParams {
+    /// The numbers that `settings` mean for writing; `offset` is the layout's middle, mm.
+    #[must_use]
+    pub fn new(settings: &Settings, offset: [f64; 2]) -> Self {
+        let (x, s) = (&settings.extrusion, &settings.speed);
+        let rate = |factor: f64| match x.model {
+            ExtrusionModel::Area => x.multiplier / filament_area(settings),
+            ExtrusionModel::Factor => x.multiplier * factor / (x.factor_width * x.factor_height),
+        };
+        let (wall, infill) = (rate(x.wall_factor), rate(x.infill_factor));
+        Self {
+            dialect: Dialect::new(settings.machine.dialect),
+            relative_e: settings.machine.relative_e,
+            offset: offset.map(|mm| i64::from(to_units(mm))),
+            rates: [wall, wall, rate(x.skin_factor), infill, infill, rate(x.support_factor)],
+            feeds: [s.wall, s.wall, s.skin, s.infill, s.thick_infill, s.support],
+            first_layer: s.first_layer / 100.0,
+            travel_feed: s.travel,
+            z_feed: s.z,
+            retract: settings.retraction.length,
+            retract_feed: settings.retraction.feed,
+            hop: to_units(settings.retraction.z_hop),
+            fan: settings.filament.fan,
+            fan_from_layer: settings.filament.fan_from_layer as usize,
+            tool: settings.machine.tool,
+        }
+    }
+
+    /// Filament for a stretch of path, mm.
+    fn filament(&self, role: Role, length_mm: f64, width: f64, height: Coord) -> f64 {
+        self.rates[role as usize] * length_mm * (width / crate::units::UNITS_PER_MM) * to_mm(height)
+    }
+
+    /// What a layer will use when it starts at `at`.
+    #[must_use]
+    pub fn usage(&self, layer: &Toolpath, mut at: Option<Point>) -> Usage {
+        let mut usage = Usage::default();
+        for step in &layer.steps {
+            if at != Some(step.path.start()) {
+                usage.travels += 1;
+                usage.travel_length +=
+                    at.map_or(0.0, |p| p.distance(step.path.start())) / crate::units::UNITS_PER_MM;
+            }
+            usage.retractions += usize::from(step.retract);
+            let used = &mut usage.roles[step.path.role as usize];
+            for (_, _, length, width) in step.path.segments() {
+                let length = length / crate::units::UNITS_PER_MM;
+                used.length += length;
+                used.filament += self.filament(step.path.role, length, width, step.path.height);
+            }
+            at = Some(step.path.end());
+        }
+        usage
+    }
+
+    /// The text of one layer.
+    #[must_use]
+    pub fn layer(&self, layer: &Toolpath, start: &Start) -> Vec<u8> {
+        let mut text = Text::new(self, start);
+        text.begin(layer, start);
+        for step in &layer.steps {
+            if step.retract {
+                text.retract();
+                text.hop(layer.z + self.hop);
+            }
+            text.lift(layer.z, step.retract);
+            text.travel(step.path.start());
+            text.hop_down(layer.z);
+            if step.retract {
+                text.unretract();
+            }
+            text.path(&step.path, layer);
+        }
+        text.out
+    }
+
+    /// The last pull before the end block, at filament used `e`.
+    #[must_use]
+    pub fn finish(&self, start: &Start) -> Vec<u8> {
+        let mut text = Text::new(self, start);
+        if self.retract > 0.0 {
+            text.retract();
+        }
+        text.out
+    }
+
+    /// What says that the print is done, where the end block does not.
+    #[must_use]
+    pub fn done(&self) -> String {
+        if self.dialect.says_done() { self.dialect.progress(100) + "\n" } else { String::new() }
+    }
+
+    /// The annotation of a role, in the words that viewers know.
+    fn type_name(role: Role) -> &'static str {
+        match role {
+            Role::OuterWall => "External perimeter",
+            Role::InnerWall => "Perimeter",
+            Role::Skin => "Solid infill",
+            Role::Infill | Role::ThickInfill => "Internal infill",
+            Role::Support => "Support material",
+        }
+    }
+}
+
+/// The cross-section of the filament, mm².
+#[must_use]
+pub fn filament_area(settings: &Settings) -> f64 {
+    PI * settings.filament.diameter * settings.filament.diameter / 4.0
+}
+
+/// A layer's text in the making, with the words that stay in force.
+struct Text<'a> {
+    params: &'a WriteParams,
+    out: Vec<u8>,
+    /// Filament used, mm.
+    e: f64,
+    /// E as last written, 10⁻⁵ mm.
+    written_e: i64,
+    x: Option<i64>,
+    y: Option<i64>,
+    z: Option<Coord>,
+    feed: Option<u64>,
+    role: Option<Role>,
+    width: Coord,
+    height: Coord,
+}
+
+impl<'a> Text<'a> {
+    fn new(params: &'a WriteParams, start: &Start) -> Self {
+        let e = if params.dialect.restarts_e() { 0.0 } else { start.e };
+        let mut text = Self {
+            params,
+            out: Vec::new(),
+            e,
+            written_e: ticks(e),
+            x: None,
+            y: None,
+            z: None,
+            feed: None,
+            role: None,
+            width: 0,
+            height: 0,
+        };
+        if let Some(at) = start.at {
+            let [x, y] = text.place(at);
+            (text.x, text.y) = (Some(x), Some(y));
+        }
+        text
+    }
+
+    /// Annotations, progress, fan and E at the beginning of a layer.
+    fn begin(&mut self, layer: &Toolpath, start: &Start) {
+        self.line(";LAYER_CHANGE");
+        self.annotate(";Z:", layer.z);
+        self.annotate(";HEIGHT:", layer.height);
+        let (done, total) = start.done;
+        let percent = |layers: usize| 100 * layers / total.max(1);
+        if done == 0 || percent(done) != percent(done - 1) {
+            let words = self.params.dialect.progress(percent(done));
+            self.line(&words);
+        }
+        let from = self.params.fan_from_layer.max(1) - 1;
+        let fan = self.params.fan;
+        if fan > 0.0 && layer.layer == from {
+            let words = self.params.dialect.fan(fan, self.params.tool);
+            self.line(&words);
+        }
+        if self.params.dialect.restarts_e() && !self.params.relative_e {
+            self.line("G92 E0");
+        }
+        self.height = layer.height;
+    }
+
+    /// Up to the layer's own height; `lifted` moves have been made by [`Self::hop`].
+    fn lift(&mut self, z: Coord, retracted: bool) {
+        if self.z.is_none() && !(retracted && self.params.hop > 0) {
+            self.move_z(z);
+        }
+    }
+
+    fn hop(&mut self, z: Coord) {
+        if self.params.hop > 0 {
+            self.move_z(z);
+        }
+    }
+
+    fn hop_down(&mut self, z: Coord) {
+        if self.z != Some(z) {
+            self.move_z(z);
+        }
+    }
+
+    fn move_z(&mut self, z: Coord) {
+        self.out.extend_from_slice(b"G1 Z");
+        push_fixed(&mut self.out, thousandths(to_mm(z)), 3);
+        self.z = Some(z);
+        self.end_move(self.params.z_feed);
+    }
+
+    fn travel(&mut self, to: Point) {
+        if self.go(to) {
+            self.end_move(self.params.travel_feed);
+        }
+    }
+
+    fn retract(&mut self) {
+        self.pull(-self.params.retract);
+    }
+
+    fn unretract(&mut self) {
+        self.pull(self.params.retract);
+    }
+
+    fn pull(&mut self, by: f64) {
+        self.out.extend_from_slice(b"G1");
+        self.e += by;
+        self.push_e();
+        self.end_move(self.params.retract_feed);
+    }
+
+    fn path(&mut self, path: &Path, layer: &Toolpath) {
+        let slow = if layer.layer == 0 { self.params.first_layer } else { 1.0 };
+        let feed = self.params.feeds[path.role as usize] * slow;
+        if self.role != Some(path.role) {
+            self.role = Some(path.role);
+            self.out.extend_from_slice(b";TYPE:");
+            self.line(WriteParams::type_name(path.role));
+            self.width = 0;
+        }
+        if self.height != path.height {
+            self.height = path.height;
+            self.annotate(";HEIGHT:", path.height);
+        }
+        for (_, to, length, width) in path.segments() {
+            let rounded = width.round() as Coord;
+            if (rounded - self.width).abs() >= LEAST_WIDTH_CHANGE {
+                self.width = rounded;
+                self.annotate(";WIDTH:", rounded);
+            }
+            let length = length / crate::units::UNITS_PER_MM;
+            self.e += self.params.filament(path.role, length, width, path.height);
+            if self.go(to) {
+                self.push_e();
+                self.end_move(feed);
+            }
+        }
+    }
+
+    /// Where a point is on the machine, thousandths of a mm.
+    fn place(&self, p: Point) -> [i64; 2] {
+        let [x, y] = self.params.offset;
+        // Ten units are a thousandth; half away from zero is not needed, only the same everywhere.
+        [(i64::from(p.x) + x + 5).div_euclid(10), (i64::from(p.y) + y + 5).div_euclid(10)]
+    }
+
+    /// Begins a move to `to` with the words that change; says no if none does.
+    fn go(&mut self, to: Point) -> bool {
+        let [x, y] = self.place(to);
+        if self.x == Some(x) && self.y == Some(y) {
+            return false;
+        }
+        self.out.extend_from_slice(b"G1");
+        if self.x != Some(x) {
+            self.x = Some(x);
+            self.out.extend_from_slice(b" X");
+            push_fixed(&mut self.out, x, 3);
+        }
+        if self.y != Some(y) {
+            self.y = Some(y);
+            self.out.extend_from_slice(b" Y");
+            push_fixed(&mut self.out, y, 3);
+        }
+        true
+    }
+
+    /// Writes E so that roundings never add up: what is written is always the
+    /// rounded sum, or the difference of two rounded sums.
+    fn push_e(&mut self) {
+        let now = ticks(self.e);
+        let value = if self.params.relative_e { now - self.written_e } else { now };
+        self.written_e = now;
+        self.out.extend_from_slice(b" E");
+        push_fixed(&mut self.out, value, 5);
+    }
+
+    /// Ends a move with its feed (mm/min), if that changes.
+    fn end_move(&mut self, feed: f64) {
+        let feed = feed.round().max(1.0) as u64;
+        if self.feed != Some(feed) {
+            self.feed = Some(feed);
+            self.out.extend_from_slice(b" F");
+            push_integer(&mut self.out, feed);
+        }
+        self.out.push(b'\n');
+    }
+
+    fn annotate(&mut self, tag: &str, units: Coord) {
+        self.out.extend_from_slice(tag.as_bytes());
+        push_fixed(&mut self.out, thousandths(to_mm(units)), 3);
+        self.out.push(b'\n');
+    }
+
+    fn line(&mut self, text: &str) {
+        // Writing to a vector cannot fail.
+        let _ = writeln!(self.out, "{text}");
+    }
+}
+
+/// mm of filament in 10⁻⁵ mm.
+fn ticks(mm: f64) -> i64 {
+    (mm * 100_000.0).round() as i64
+}

@@ -1,0 +1,82 @@
+//! Point -> (u, v): the frame of a raster direction, in which raster lines run along u at constant v.
+
+use super::Point;
+use crate::units::Coord;
+
+/// A turn of the plane that lays the raster lines level. Exact for multiples of 90°.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    cos: f64,
+    sin: f64,
+}
+
+impl Frame {
+    /// The frame of lines at `degrees` counter-clockwise from the x axis.
+    ///
+    /// Sine and cosine come from `libm`, whose results do not depend on the platform.
+    #[must_use]
+    pub fn new(degrees: f64) -> Self {
+        let turn = degrees.rem_euclid(360.0);
+        let quarter = (turn / 90.0).floor();
+        let rest = (turn - quarter * 90.0).to_radians();
+        let (sin, cos) = (libm::sin(rest), libm::cos(rest));
+        let (cos, sin) = match quarter as i32 {
+            0 => (cos, sin),
+            1 => (-sin, cos),
+            2 => (-cos, -sin),
+            _ => (sin, -cos),
+        };
+        Self { cos, sin }
+    }
+
+    /// From the bed to the frame: `u` along the lines, `v` across, both as a [`Point`].
+    #[must_use]
+    pub fn enter(&self, p: Point) -> Point {
+        self.turn(p, -self.sin)
+    }
+
+    /// From the frame to the bed.
+    #[must_use]
+    pub fn leave(&self, p: Point) -> Point {
+        self.turn(p, self.sin)
+    }
+
+    fn turn(&self, p: Point, sin: f64) -> Point {
+        let (x, y) = (f64::from(p.x), f64::from(p.y));
+        Point {
+            x: (x * self.cos - y * sin).round() as Coord,
+            y: (x * sin + y * self.cos).round() as Coord,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quarter_turns_are_exact() {
+        let p = Point { x: 1_234_567, y: -7_654_321 };
+        assert_eq!(Frame::new(0.0).enter(p), p);
+        assert_eq!(Frame::new(90.0).enter(p), Point { x: p.y, y: -p.x });
+        assert_eq!(Frame::new(-90.0).enter(p), Point { x: -p.y, y: p.x });
+        assert_eq!(Frame::new(540.0).enter(p), Point { x: -p.x, y: -p.y });
+    }
+
+    #[test]
+    fn leaving_undoes_entering() {
+        for degrees in [0.0, 17.0, 45.0, 90.0, 120.0, 300.0] {
+            let frame = Frame::new(degrees);
+            let p = Point { x: 1_000_003, y: -2_000_001 };
+            let q = frame.leave(frame.enter(p));
+            assert!((p.x - q.x).abs() <= 1 && (p.y - q.y).abs() <= 1, "{degrees}: {q:?}");
+        }
+    }
+
+    #[test]
+    fn lines_at_an_angle_become_level() {
+        let frame = Frame::new(45.0);
+        let p = frame.enter(Point { x: 10_000, y: 10_000 });
+        assert_eq!(p, Point { x: 14_142, y: 0 });
+    }
+}

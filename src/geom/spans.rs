@@ -1,0 +1,321 @@
+//! Spans -> Spans: the 1-D booleans that take the place of polygon clipping.
+//!
+//! A span is a half-open stretch `[start, end)` of a raster line. A *row* is
+//! what one raster line holds: spans sorted, disjoint, not touching, never
+//! empty. [`Rows`] keeps the rows of one layer in one arena.
+
+use crate::units::Coord;
+
+/// A stretch of a raster line, `start < end`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct Span {
+    /// Where it begins, along the line.
+    pub start: Coord,
+    /// Where it ends, along the line.
+    pub end: Coord,
+}
+
+impl Span {
+    /// The span from `start` to `end`, or none if that would be empty.
+    #[must_use]
+    pub fn new(start: Coord, end: Coord) -> Option<Self> {
+        (start < end).then_some(Self { start, end })
+    }
+
+    /// Its length in grid units.
+    #[must_use]
+    pub fn len(self) -> i64 {
+        i64::from(self.end) - i64::from(self.start)
+    }
+
+    /// Never: spans are not empty. Here because `len` is.
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        false
+    }
+
+    /// Whether two spans share more than an end.
+    #[must_use]
+    pub fn overlaps(self, other: Self) -> bool {
+        self.start < other.end && other.start < self.end
+    }
+}
+
+/// Appends `span` to a row that ends at or before its start, joining what touches.
+fn push(row: &mut Vec<Span>, base: usize, span: Span) {
+    match row[base..].last_mut() {
+        Some(last) if last.end >= span.start => last.end = last.end.max(span.end),
+        _ => row.push(span),
+    }
+}
+
+/// Appends `a ∩ b` to `out`.
+pub fn intersect(a: &[Span], b: &[Span], out: &mut Vec<Span>) {
+    let (mut i, mut j) = (0, 0);
+    while let (Some(p), Some(q)) = (a.get(i), b.get(j)) {
+        out.extend(Span::new(p.start.max(q.start), p.end.min(q.end)));
+        if p.end <= q.end {
+            i += 1;
+        } else {
+            j += 1;
+        }
+    }
+}
+
+/// Appends `a − b` to `out`.
+pub fn subtract(a: &[Span], b: &[Span], out: &mut Vec<Span>) {
+    let mut j = 0;
+    for span in a {
+        let mut start = span.start;
+        while b.get(j).is_some_and(|q| q.end <= start) {
+            j += 1;
+        }
+        let mut k = j;
+        while let Some(q) = b.get(k).filter(|q| q.start < span.end) {
+            out.extend(Span::new(start, q.start));
+            start = start.max(q.end);
+            k += 1;
+        }
+        out.extend(Span::new(start, span.end));
+    }
+}
+
+/// Appends the union of `spans`, which may overlap and come in any order; sorts them.
+pub fn merge(spans: &mut [Span], out: &mut Vec<Span>) {
+    spans.sort_unstable();
+    let base = out.len();
+    for &span in spans.iter() {
+        push(out, base, span);
+    }
+}
+
+/// The summed length of a row in grid units.
+#[must_use]
+pub fn total(row: &[Span]) -> i64 {
+    row.iter().map(|span| span.len()).sum()
+}
+
+/// The rows of one layer in one direction: row `j` lies at `j` times the pitch.
+/// Rows outside the stored range are empty.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Rows {
+    first: i32,
+    /// `ends[k]` is where row `first + k` ends in `spans`.
+    ends: Vec<u32>,
+    spans: Vec<Span>,
+}
+
+impl Default for Rows {
+    fn default() -> Self {
+        Self::starting_at(0)
+    }
+}
+
+impl Rows {
+    /// No rows yet; the first one pushed will have index `first`.
+    #[must_use]
+    pub fn starting_at(first: i32) -> Self {
+        Self { first, ends: Vec::new(), spans: Vec::new() }
+    }
+
+    /// Appends the next row: `fill` appends its spans, sorted and disjoint.
+    pub fn push_row(&mut self, fill: impl FnOnce(&mut Vec<Span>)) {
+        fill(&mut self.spans);
+        let end = u32::try_from(self.spans.len()).unwrap_or(u32::MAX);
+        self.ends.push(end);
+    }
+
+    /// The indices of the stored rows.
+    #[must_use]
+    pub fn range(&self) -> std::ops::Range<i32> {
+        let count = i32::try_from(self.ends.len()).unwrap_or(i32::MAX);
+        self.first..self.first.saturating_add(count)
+    }
+
+    /// The spans of row `j`.
+    #[must_use]
+    pub fn row(&self, j: i32) -> &[Span] {
+        let Some(k) = j.checked_sub(self.first).and_then(|k| usize::try_from(k).ok()) else {
+            return &[];
+        };
+        let Some(&end) = self.ends.get(k) else { return &[] };
+        let start = if k == 0 { 0 } else { self.ends[k - 1] };
+        &self.spans[start as usize..end as usize]
+    }
+
+    /// All spans with the index of their row.
+    pub fn iter(&self) -> impl Iterator<Item = (i32, &[Span])> {
+        self.range().map(|j| (j, self.row(j)))
+    }
+
+    /// Whether there is no span at all.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.spans.is_empty()
+    }
+
+    /// The summed length of all spans in grid units.
+    #[must_use]
+    pub fn total(&self) -> i64 {
+        total(&self.spans)
+    }
+
+    /// A set of rows made row by row from two others, over the rows that `self` has.
+    #[must_use]
+    pub fn combine(&self, other: &Self, op: impl Fn(&[Span], &[Span], &mut Vec<Span>)) -> Self {
+        let mut out = Self::starting_at(self.first);
+        for (j, row) in self.iter() {
+            out.push_row(|spans| op(row, other.row(j), spans));
+        }
+        out
+    }
+
+    /// These rows without those of `other`.
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Self {
+        self.combine(other, subtract)
+    }
+
+    /// What these rows and those of `other` share.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        self.combine(other, intersect)
+    }
+
+    /// What these rows or those of `other` have.
+    #[must_use]
+    pub fn or(&self, other: &Self) -> Self {
+        if self.ends.is_empty() {
+            return other.clone();
+        }
+        if other.ends.is_empty() {
+            return self.clone();
+        }
+        let (a, b) = (self.range(), other.range());
+        let mut out = Self::starting_at(a.start.min(b.start));
+        let mut both = Vec::new();
+        for j in a.start.min(b.start)..a.end.max(b.end) {
+            both.clear();
+            both.extend_from_slice(self.row(j));
+            both.extend_from_slice(other.row(j));
+            out.push_row(|spans| merge(&mut both, spans));
+        }
+        out
+    }
+
+    /// The rows whose spans `keep` says yes to.
+    #[must_use]
+    pub fn filter(&self, keep: impl Fn(i32, Span) -> bool) -> Self {
+        let mut out = Self::starting_at(self.first);
+        for (j, row) in self.iter() {
+            out.push_row(|spans| spans.extend(row.iter().copied().filter(|&s| keep(j, s))));
+        }
+        out
+    }
+
+    /// Grown by `radius` in all directions, as far as rows `pitch` apart can tell:
+    /// a span grows by the half chord that the circle around it has on each row
+    /// within reach.
+    #[must_use]
+    pub fn dilate(&self, radius: Coord, pitch: Coord) -> Self {
+        if radius <= 0 || self.spans.is_empty() {
+            return self.clone();
+        }
+        let reach = radius / pitch;
+        let chords: Vec<Coord> = (0..=reach).map(|m| half_chord(radius, m * pitch)).collect();
+        let rows = self.range();
+        let mut out = Self::starting_at(rows.start - reach);
+        let mut grown = Vec::new();
+        for j in rows.start - reach..rows.end + reach {
+            grown.clear();
+            for m in -reach..=reach {
+                let by = chords[m.unsigned_abs() as usize];
+                grown.extend(
+                    self.row(j + m).iter().map(|s| Span { start: s.start - by, end: s.end + by }),
+                );
+            }
+            out.push_row(|spans| merge(&mut grown, spans));
+        }
+        out
+    }
+}
+
+/// Half the chord of a circle at distance `d` from its centre, rounded down.
+fn half_chord(radius: Coord, d: Coord) -> Coord {
+    let (r, d) = (f64::from(radius), f64::from(d));
+    (r * r - d * d).max(0.0).sqrt() as Coord
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const SIZE: i32 = 64;
+
+    fn row(mask: u64) -> Vec<Span> {
+        let mut spans = Vec::new();
+        let mut cells: Vec<Span> = (0..SIZE)
+            .filter(|i| mask >> i & 1 == 1)
+            .map(|i| Span { start: i, end: i + 1 })
+            .collect();
+        merge(&mut cells, &mut spans);
+        spans
+    }
+
+    fn mask(row: &[Span]) -> u64 {
+        row.iter().flat_map(|s| s.start..s.end).fold(0, |m, i| m | 1 << i)
+    }
+
+    fn is_row(row: &[Span]) -> bool {
+        row.iter().all(|s| s.start < s.end) && row.windows(2).all(|w| w[0].end < w[1].start)
+    }
+
+    proptest! {
+        #[test]
+        fn booleans_are_those_of_bitmaps(a: u64, b: u64) {
+            let (ra, rb) = (row(a), row(b));
+            let mut out = Vec::new();
+            intersect(&ra, &rb, &mut out);
+            prop_assert_eq!(mask(&out), a & b);
+            prop_assert!(is_row(&out));
+            out.clear();
+            subtract(&ra, &rb, &mut out);
+            prop_assert_eq!(mask(&out), a & !b);
+            prop_assert!(is_row(&out));
+            out.clear();
+            merge(&mut [ra, rb].concat(), &mut out);
+            prop_assert_eq!(mask(&out), a | b);
+            prop_assert!(is_row(&out));
+            prop_assert_eq!(total(&out), i64::from((a | b).count_ones()));
+        }
+
+        #[test]
+        fn rows_combine_row_by_row(a in prop::collection::vec(any::<u64>(), 0..6),
+                                   b in prop::collection::vec(any::<u64>(), 0..6),
+                                   shift in -4i32..4) {
+            let make = |first: i32, masks: &[u64]| {
+                let mut rows = Rows::starting_at(first);
+                for m in masks { rows.push_row(|out| out.extend(row(*m))); }
+                rows
+            };
+            let (ra, rb) = (make(0, &a), make(shift, &b));
+            for j in -8..16 {
+                let (ma, mb) = (mask(ra.row(j)), mask(rb.row(j)));
+                prop_assert_eq!(mask(ra.or(&rb).row(j)), ma | mb);
+                prop_assert_eq!(mask(ra.and(&rb).row(j)), ma & mb);
+                prop_assert_eq!(mask(ra.minus(&rb).row(j)), ma & !mb);
+            }
+        }
+    }
+
+    #[test]
+    fn dilation_reaches_like_a_circle() {
+        let mut rows = Rows::starting_at(0);
+        rows.push_row(|out| out.push(Span { start: 0, end: 100 }));
+        let grown = rows.dilate(50, 40);
+        assert_eq!(grown.range(), -1..2);
+        assert_eq!(grown.row(0), [Span { start: -50, end: 150 }]);
+        assert_eq!(grown.row(1), [Span { start: -30, end: 130 }]);
+    }
+}

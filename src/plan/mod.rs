@@ -1,0 +1,227 @@
+//! Regions -> Toolpaths: what the nozzle does on each layer, in order.
+//!
+//! Guaranteed to the next stage: every path lies inside its region, paths are
+//! in the order of printing, and each says whether the travel to it retracts.
+
+pub mod link;
+pub mod order;
+pub mod travel;
+
+use crate::geom::Point;
+use crate::profile::{RetractWhen, Seam, Settings, WallOrder};
+use crate::region::raster::Raster;
+use crate::region::support::SupportParams;
+use crate::region::{Params, Region};
+use crate::slice::Layer;
+use crate::units::{Coord, to_units};
+
+/// What a path is printed for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Role {
+    /// The outermost wall.
+    OuterWall,
+    /// Walls inside it.
+    InnerWall,
+    /// Solid lines at tops and bottoms.
+    Skin,
+    /// Sparse infill of one layer's height.
+    Infill,
+    /// Sparse infill of a pair's height.
+    ThickInfill,
+    /// Support.
+    Support,
+}
+
+impl Role {
+    /// All roles, in the order of reports.
+    pub const ALL: [Self; 6] = [
+        Self::OuterWall,
+        Self::InnerWall,
+        Self::Skin,
+        Self::Infill,
+        Self::ThickInfill,
+        Self::Support,
+    ];
+
+    /// Its name in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::OuterWall => "outer wall",
+            Self::InnerWall => "inner wall",
+            Self::Skin => "skin",
+            Self::Infill => "infill",
+            Self::ThickInfill => "thick infill",
+            Self::Support => "support",
+        }
+    }
+}
+
+/// A point of a path, on the bed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PathPoint {
+    /// Where.
+    pub at: Point,
+    /// Width of the bead here, grid units; a bead changes its width evenly between two points.
+    pub width: Coord,
+}
+
+/// A bead laid in one go.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Path {
+    /// What it is for.
+    pub role: Role,
+    /// Its points; a closed path repeats its first at the end.
+    pub points: Vec<PathPoint>,
+    /// Height of the bead, grid units.
+    pub height: Coord,
+}
+
+impl Path {
+    /// A closed wall that starts and ends at the vertex `from`.
+    fn closed(role: Role, contour: &[Point], from: usize, width: Coord, height: Coord) -> Self {
+        let n = contour.len();
+        let points =
+            (0..=n).map(|k| PathPoint { at: contour[(from + k) % n], width }).collect();
+        Self { role, points, height }
+    }
+
+    /// Where it begins.
+    #[must_use]
+    pub fn start(&self) -> Point {
+        self.points.first().map(|p| p.at).unwrap_or_default()
+    }
+
+    /// Where it ends.
+    #[must_use]
+    pub fn end(&self) -> Point {
+        self.points.last().map(|p| p.at).unwrap_or_default()
+    }
+
+    /// Each segment: its two ends, its length and its mean width, grid units.
+    pub fn segments(&self) -> impl Iterator<Item = (Point, Point, f64, f64)> {
+        self.points.windows(2).map(|w| {
+            let width = (f64::from(w[0].width) + f64::from(w[1].width)) / 2.0;
+            (w[0].at, w[1].at, w[0].at.distance(w[1].at), width)
+        })
+    }
+}
+
+/// A path and how the nozzle gets to it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Step {
+    /// The filament is pulled back on the way.
+    pub retract: bool,
+    /// The path.
+    pub path: Path,
+}
+
+/// All that is printed on one layer, in order.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Toolpath {
+    /// The layer, counted from 0.
+    pub layer: usize,
+    /// Top of the layer above the bed, grid units.
+    pub z: Coord,
+    /// Height of the layer, grid units.
+    pub height: Coord,
+    /// What is printed.
+    pub steps: Vec<Step>,
+}
+
+impl Toolpath {
+    /// Where the layer ends, if anything is printed on it.
+    #[must_use]
+    pub fn end(&self) -> Option<Point> {
+        self.steps.last().map(|s| s.path.end())
+    }
+}
+
+/// The numbers that this stage needs.
+#[derive(Debug, Clone)]
+pub struct PlanParams {
+    line_width: Coord,
+    outer_first: bool,
+    seam_rear: bool,
+    retract_always: bool,
+    min_travel: Coord,
+    retracts: bool,
+    rasters: Vec<Raster>,
+    support: Option<SupportParams>,
+}
+
+impl PlanParams {
+    /// The numbers that `settings` mean for this stage.
+    #[must_use]
+    pub fn new(settings: &Settings, region: &Params, support: Option<SupportParams>) -> Self {
+        Self {
+            line_width: region.line_width,
+            outer_first: settings.wall_order == WallOrder::OuterFirst,
+            seam_rear: settings.seam == Seam::Rear,
+            retract_always: settings.retraction.when == RetractWhen::Always,
+            min_travel: to_units(settings.retraction.min_travel),
+            retracts: settings.retraction.length > 0.0,
+            rasters: region.rasters.clone(),
+            support,
+        }
+    }
+}
+
+/// The paths of one layer, not yet in order.
+#[derive(Debug, Default)]
+pub struct Pieces {
+    /// What is printed inside each outer contour.
+    pub islands: Vec<order::Island>,
+    /// Support; which end comes first is still free.
+    pub support: Vec<Path>,
+}
+
+/// The paths of a region, linked into chains. Independent of all other layers.
+#[must_use]
+pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
+    let mut chains: Vec<Path> = Vec::new();
+    let height = region.layer.height;
+    let mut add = |role, height, raster: Raster, links: Vec<link::Chain>| {
+        chains.extend(links.into_iter().map(|chain| Path {
+            role,
+            height,
+            points: chain
+                .into_iter()
+                .map(|p| PathPoint {
+                    at: raster.frame.leave(Point { x: p.u, y: p.v }),
+                    width: p.width,
+                })
+                .collect(),
+        }));
+    };
+    let skin = &region.skin;
+    let raster = params.rasters[skin.raster];
+    add(Role::Skin, height, raster, link::skin(&skin.lines, raster.pitch, params.line_width));
+    add(Role::Skin, height, raster, skin.slivers.clone());
+    for infill in &region.infill {
+        let raster = params.rasters[infill.comb.raster];
+        let (role, height) = if infill.thick {
+            (Role::ThickInfill, 2 * height)
+        } else {
+            (Role::Infill, height)
+        };
+        let chains = link::comb(&infill.rows, infill.comb.stride, raster.pitch, params.line_width);
+        add(role, height, raster, chains);
+    }
+    if let Some(support) = &params.support {
+        let raster = support.raster;
+        let chains = link::comb(&region.support, support.stride, raster.pitch, params.line_width);
+        add(Role::Support, height, raster, chains);
+    }
+    let support = chains.extract_if(.., |c| c.role == Role::Support).collect();
+    let islands = order::islands(region.walls.clone(), chains, &region.layer.contours);
+    Pieces { islands, support }
+}
+
+/// The toolpath of a layer whose paths are in order; the nozzle comes from `at`.
+#[must_use]
+pub fn toolpath(region: &Region, paths: Vec<Path>, at: Option<Point>, params: &PlanParams) -> Toolpath {
+    let Layer { index, z, height, .. } = region.layer;
+    let steps = travel::steps(paths, &region.layer.contours, at, params);
+    Toolpath { layer: index, z, height, steps }
+}

@@ -1,0 +1,105 @@
+//! Ordered paths -> Steps: which travels pull the filament back.
+//!
+//! A travel inside the part may ooze unseen; one that crosses an outer wall
+//! draws a string on the outside. So travels that cross a contour of the layer,
+//! and those outside of it, retract.
+
+use super::{Path, PlanParams, Step};
+use crate::geom::{Contour, Point};
+use crate::units::Coord;
+
+/// Bands that the edges of a layer are sorted into, at most.
+const MOST_BANDS: usize = 256;
+
+/// Adds to each path whether the travel to it retracts, starting from `at`.
+#[must_use]
+pub fn steps(
+    paths: Vec<Path>,
+    contours: &[Contour],
+    mut at: Option<Point>,
+    params: &PlanParams,
+) -> Vec<Step> {
+    let crossings = Crossings::new(contours);
+    let least = i64::from(params.min_travel).pow(2);
+    paths
+        .into_iter()
+        .map(|path| {
+            let to = path.start();
+            let retract = params.retracts
+                && at.is_none_or(|from| {
+                    from != to
+                        && from.distance2(to) >= least
+                        && (params.retract_always || crossings.leaves(from, to))
+                });
+            at = Some(path.end());
+            Step { retract, path }
+        })
+        .collect()
+}
+
+/// A layer's edges in bands of y, to find those that a travel may cross.
+struct Crossings {
+    low: Coord,
+    band: Coord,
+    bands: Vec<Vec<(Point, Point)>>,
+}
+
+impl Crossings {
+    fn new(contours: &[Contour]) -> Self {
+        let edges = || {
+            contours.iter().flat_map(|c| c.iter().copied().zip(c.iter().copied().cycle().skip(1)))
+        };
+        let low = edges().map(|(a, _)| a.y).min().unwrap_or(0);
+        let high = edges().map(|(a, _)| a.y).max().unwrap_or(0);
+        let count = edges().count().div_ceil(4).clamp(1, MOST_BANDS);
+        let band = (high - low) / count as Coord + 1;
+        let mut bands = vec![Vec::new(); count];
+        for (a, b) in edges() {
+            for k in (a.y.min(b.y) - low) / band..=(a.y.max(b.y) - low) / band {
+                bands[k as usize].push((a, b));
+            }
+        }
+        Self { low, band, bands }
+    }
+
+    /// Whether the way from `a` to `b` crosses an edge or lies outside.
+    fn leaves(&self, a: Point, b: Point) -> bool {
+        let last = self.bands.len() as Coord - 1;
+        let band = |y: Coord| ((y - self.low).max(0) / self.band).min(last) as usize;
+        let touched = &self.bands[band(a.y.min(b.y))..=band(a.y.max(b.y))];
+        touched.iter().flatten().any(|&(p, q)| meet(a, b, p, q)) || !self.holds(a)
+    }
+
+    /// Whether `p` is inside the contours, which do not overlap.
+    fn holds(&self, p: Point) -> bool {
+        let Ok(k) = usize::try_from((p.y - self.low).div_euclid(self.band)) else { return false };
+        let Some(edges) = self.bands.get(k) else { return false };
+        let right = edges.iter().filter(|(a, b)| {
+            let (low, high) = if a.y < b.y { (*a, *b) } else { (*b, *a) };
+            low.y < p.y && p.y <= high.y && side(low, high, p) > 0
+        });
+        right.count() % 2 == 1
+    }
+}
+
+/// Twice the area of the triangle a b c: positive if `c` is left of a–b.
+fn side(a: Point, b: Point, c: Point) -> i64 {
+    let (abx, aby) = (i64::from(b.x) - i64::from(a.x), i64::from(b.y) - i64::from(a.y));
+    let (acx, acy) = (i64::from(c.x) - i64::from(a.x), i64::from(c.y) - i64::from(a.y));
+    abx * acy - aby * acx
+}
+
+/// Whether segments a–b and p–q share a point.
+fn meet(a: Point, b: Point, p: Point, q: Point) -> bool {
+    let (x1, x2) = (a.x.min(b.x), a.x.max(b.x));
+    if p.x.max(q.x) < x1 || p.x.min(q.x) > x2 {
+        return false;
+    }
+    let (y1, y2) = (a.y.min(b.y), a.y.max(b.y));
+    if p.y.max(q.y) < y1 || p.y.min(q.y) > y2 {
+        return false;
+    }
+    let (p_side, q_side) = (side(a, b, p).signum(), side(a, b, q).signum());
+    let (a_side, b_side) = (side(p, q, a).signum(), side(p, q, b).signum());
+    p_side * q_side <= 0 && a_side * b_side <= 0
+}

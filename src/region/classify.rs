@@ -1,0 +1,83 @@
+//! Neighbouring layers' rows -> Areas: which stretch of each raster line is skin, which sparse infill.
+//!
+//! With `n` skin layers a place is sparse infill where all of the `n` layers
+//! below and above cover it, else skin. A neighbour covers with its walls: it
+//! counts up to the middle of its outer wall, so that a steep slope, which the
+//! neighbours' walls close already, gets no thin ring of skin.
+
+use super::{Params, Prepared};
+use crate::geom::spans::{Rows, Span, intersect};
+use crate::units::Coord;
+
+/// Skin shorter than this along its line is noise of the contours, not shape (50 µm).
+const LEAST_SKIN: Coord = 500;
+
+/// Skin and sparse infill of one layer on one raster: disjoint, together the layer's fill rows.
+#[derive(Debug, Clone, Default)]
+pub struct Areas {
+    /// Solid lines.
+    pub skin: Rows,
+    /// Sparse lines.
+    pub infill: Rows,
+}
+
+/// Divides layer `k` of `layers` on raster `r`. `layers(k)` is `None` outside the part.
+#[must_use]
+pub fn areas<'a>(
+    k: usize,
+    r: usize,
+    layers: &impl Fn(usize) -> Option<&'a Prepared>,
+    params: &Params,
+) -> Areas {
+    let Some(fill) = layers(k).map(|p| &p.rows[r].fill) else { return Areas::default() };
+    let covered = covered(fill, k, r, layers, params);
+    let exposed = fill.minus(&covered).filter(|_, span| span.len() >= i64::from(LEAST_SKIN));
+    let pitch = params.rasters[r].pitch;
+    let skin = fill.and(&exposed.dilate(params.reach, pitch));
+    let infill = fill.minus(&skin);
+    bridge_gaps(fill, skin, infill, 2 * params.line_width)
+}
+
+/// Where all neighbours within the skins' reach cover `fill`.
+fn covered<'a>(
+    fill: &Rows,
+    k: usize,
+    r: usize,
+    layers: &impl Fn(usize) -> Option<&'a Prepared>,
+    params: &Params,
+) -> Rows {
+    let below = (1..=params.bottom_skins).map(|n| k.checked_sub(n).and_then(layers));
+    let above = (1..=params.top_skins).map(|n| layers(k + n));
+    let neighbours: Option<Vec<&Rows>> =
+        below.chain(above).map(|p| p.map(|p| &p.rows[r].cover)).collect();
+    let mut out = Rows::starting_at(fill.range().start);
+    let (mut now, mut next) = (Vec::<Span>::new(), Vec::new());
+    for (j, row) in fill.iter() {
+        now.clear();
+        if let Some(neighbours) = &neighbours {
+            now.extend_from_slice(row);
+            for cover in neighbours {
+                next.clear();
+                intersect(&now, cover.row(j), &mut next);
+                std::mem::swap(&mut now, &mut next);
+            }
+        }
+        out.push_row(|spans| spans.extend_from_slice(&now));
+    }
+    out
+}
+
+/// Gives infill shorter than `least` between two pieces of skin to the skin: such
+/// a hole would cost more turns than it saves material.
+fn bridge_gaps(fill: &Rows, skin: Rows, infill: Rows, least: Coord) -> Areas {
+    let is_gap = |j: i32, span: Span| {
+        span.len() < i64::from(least)
+            && skin.row(j).iter().any(|s| s.end == span.start)
+            && skin.row(j).iter().any(|s| s.start == span.end)
+    };
+    if !infill.iter().any(|(j, row)| row.iter().any(|&s| is_gap(j, s))) {
+        return Areas { skin, infill };
+    }
+    let infill = infill.filter(|j, span| !is_gap(j, span));
+    Areas { skin: fill.minus(&infill), infill }
+}

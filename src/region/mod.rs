@@ -1,0 +1,216 @@
+//! Layers -> Regions: walls, and the spans of skin, sparse infill and support on raster lines.
+//!
+//! Everything but the walls comes from one pass over raster lines: each layer's
+//! contours are laid under the lines of every raster once ([`Prepared`]), and
+//! each layer then combines its own spans with its neighbours' by 1-D booleans
+//! ([`classify`]). Guaranteed to the next stage: skin and sparse infill of a
+//! layer are disjoint and together its inset; rows are sorted, disjoint, never
+//! empty.
+
+pub mod classify;
+pub mod close;
+pub mod dual;
+pub mod raster;
+pub mod support;
+pub mod walls;
+pub mod window;
+
+use crate::geom::frame::Frame;
+use crate::geom::spans::Rows;
+use crate::profile::{Pattern, Settings};
+use crate::slice::Layer;
+use crate::units::{Coord, to_units};
+use close::Line;
+use raster::{Raster, Scan};
+use walls::Wall;
+
+/// The numbers that this stage needs, in grid units.
+#[derive(Debug, Clone)]
+pub struct Params {
+    /// Width of a line and distance of solid lines.
+    pub line_width: Coord,
+    /// Number of walls.
+    pub walls: u32,
+    /// Distance of the outer wall's middle from the contour.
+    pub outer_inset: Coord,
+    /// Distance of the ends of skin and infill lines from the contour.
+    pub fill_inset: Coord,
+    /// How far inside its contour a neighbouring layer counts as covering this
+    /// one: at the middle of its outer wall.
+    pub cover_inset: Coord,
+    /// How far lines reach into the innermost wall.
+    pub overlap: Coord,
+    /// Solid layers at the top.
+    pub top_skins: usize,
+    /// Solid layers at the bottom.
+    pub bottom_skins: usize,
+    /// How far skins reach under or over the infill.
+    pub reach: Coord,
+    /// All rasters in use; the first two carry the skins of even and odd layers.
+    pub rasters: Vec<Raster>,
+    /// The rasters of the sparse infill, for each layer (or pair) in turn. Empty: no infill.
+    pub infill: Vec<Vec<Comb>>,
+}
+
+/// Every `stride`-th line of a raster.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Comb {
+    /// Index in [`Params::rasters`].
+    pub raster: usize,
+    /// Lines with an index divisible by this are printed.
+    pub stride: i32,
+}
+
+impl Params {
+    /// The numbers that `settings` mean for this stage.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        let w = settings.line_width;
+        let outer = settings.outer_wall_inset;
+        let from_contour = outer + f64::from(settings.walls) - settings.infill_overlap;
+        let fill_inset = if settings.walls == 0 { 0.5 - settings.infill_overlap } else { from_contour };
+        let skin = |turn: f64| Raster { frame: Frame::new(settings.angle + turn), pitch: to_units(w) };
+        let mut params = Self {
+            line_width: to_units(w),
+            walls: settings.walls,
+            outer_inset: to_units(outer * w),
+            fill_inset: to_units(fill_inset * w),
+            cover_inset: to_units(outer.min(fill_inset) * w),
+            overlap: to_units(settings.infill_overlap * w),
+            top_skins: settings.top_skins() as usize,
+            bottom_skins: settings.bottom_skins() as usize,
+            reach: to_units(settings.skin_reach),
+            rasters: vec![skin(0.0), skin(90.0)],
+            infill: Vec::new(),
+        };
+        params.add_infill(settings);
+        params
+    }
+
+    /// Lays out the lines of the infill pattern.
+    fn add_infill(&mut self, settings: &Settings) {
+        if settings.infill <= 0.0 {
+            return;
+        }
+        let spacing = settings.line_width * 100.0 / settings.infill;
+        let turns: &[&[f64]] = match settings.pattern {
+            Pattern::Rectilinear => &[&[0.0], &[90.0]],
+            Pattern::Aligned => &[&[0.0]],
+            Pattern::Grid => &[&[0.0, 90.0]],
+            Pattern::Triangles => &[&[0.0, 60.0, 120.0]],
+        };
+        for set in turns {
+            let spacing = spacing * set.len() as f64;
+            let combs =
+                set.iter().map(|turn| self.comb(settings.angle + turn, to_units(spacing))).collect();
+            self.infill.push(combs);
+        }
+    }
+
+    /// Lines `spacing` apart as a comb over fine lines no further apart than a
+    /// line is wide: the skin's own where the spacing is a multiple of theirs.
+    fn comb(&mut self, degrees: f64, spacing: Coord) -> Comb {
+        let stride = (spacing + self.line_width - 1) / self.line_width;
+        let raster = Raster { frame: Frame::new(degrees), pitch: (spacing + stride / 2) / stride };
+        let known = self.rasters.iter().position(|r| *r == raster);
+        let index = known.unwrap_or_else(|| {
+            self.rasters.push(raster);
+            self.rasters.len() - 1
+        });
+        Comb { raster: index, stride }
+    }
+
+    /// The raster of the skin of layer `k`, and the one across it.
+    #[must_use]
+    pub fn skin_rasters(&self, k: usize) -> (usize, usize) {
+        (k % 2, 1 - k % 2)
+    }
+}
+
+/// A layer with all that it and its neighbours will ask of its contours.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The layer.
+    pub layer: Layer,
+    /// Its walls.
+    pub walls: Vec<Wall>,
+    /// For each raster: where skin and infill may go, and where this layer covers its neighbours.
+    pub rows: Vec<PreparedRows>,
+}
+
+/// One raster's rows of a layer.
+#[derive(Debug)]
+pub struct PreparedRows {
+    /// Where lines of skin or infill may run.
+    pub fill: Rows,
+    /// Where this layer covers its neighbours: with its walls.
+    pub cover: Rows,
+}
+
+impl Prepared {
+    /// Makes the walls of `layer` and lays it under every raster.
+    #[must_use]
+    pub fn new(layer: Layer, params: &Params) -> Self {
+        let walls = walls::walls(&layer.contours, params);
+        let rows = params
+            .rasters
+            .iter()
+            .map(|&raster| {
+                let scan = Scan::new(&layer.contours, raster);
+                PreparedRows {
+                    fill: scan.inset(params.fill_inset),
+                    cover: scan.inset(params.cover_inset),
+                }
+            })
+            .collect();
+        Self { layer, walls, rows }
+    }
+}
+
+/// What is to be printed on one layer.
+#[derive(Debug)]
+pub struct Region {
+    /// The layer.
+    pub layer: Layer,
+    /// Its walls.
+    pub walls: Vec<Wall>,
+    /// Its skin: the raster and the lines, closed up to the walls.
+    pub skin: Skin,
+    /// Its sparse infill.
+    pub infill: Vec<Infill>,
+    /// Its support, on the support raster.
+    pub support: Rows,
+    /// Area too thin for a wall, which is not printed, mm².
+    pub thin_mm2: f64,
+}
+
+/// The skin of one layer.
+#[derive(Debug, Default)]
+pub struct Skin {
+    /// Index of its raster in [`Params::rasters`].
+    pub raster: usize,
+    /// Its lines, row by row; bent and widened along walls.
+    pub lines: Vec<Line>,
+    /// Beads along strips too thin for a line.
+    pub slivers: Vec<Vec<close::LinePoint>>,
+}
+
+/// Infill lines of one layer in one direction.
+#[derive(Debug, Clone)]
+pub struct Infill {
+    /// Which lines of which raster.
+    pub comb: Comb,
+    /// The region on every line of the raster; only those of the comb are printed.
+    pub rows: Rows,
+    /// Printed for this and the layer below, with twice the material.
+    pub thick: bool,
+}
+
+impl Infill {
+    /// The length of the lines to be printed, grid units.
+    #[must_use]
+    pub fn length(&self) -> i64 {
+        let printed = |j: i32| j.rem_euclid(self.comb.stride) == 0;
+        self.rows.iter().filter(|(j, _)| printed(*j)).map(|(_, row)| crate::geom::spans::total(row)).sum()
+    }
+}

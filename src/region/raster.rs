@@ -1,0 +1,272 @@
+//! Contours -> Rows: the inside of a layer on raster lines, grown or shrunk by an exact distance.
+//!
+//! A raster line at `v` meets an edge that has one end below it and one at or
+//! above it ("on the line counts as above"), so that a vertex on the line is
+//! never counted twice and every closed contour gives a balanced set of
+//! crossings. Inside is where the winding number is not zero.
+//!
+//! The points within a distance `r` of an edge form a capsule; a line cuts it
+//! in one chord. Inside spans without the chords of all near edges are the
+//! Euclidean inset, inside spans and chords together the outset: no polygon
+//! offset is needed.
+
+use crate::geom::frame::Frame;
+use crate::geom::spans::{Rows, Span, merge, subtract};
+use crate::geom::{Contour, Point};
+use crate::units::Coord;
+
+/// A set of raster lines: row `j` runs at `v = j · pitch` in `frame`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Raster {
+    /// The lines' direction.
+    pub frame: Frame,
+    /// Distance between neighbouring lines, grid units, > 0.
+    pub pitch: Coord,
+}
+
+impl Raster {
+    /// The rows `j` with `low < j · pitch <= high` (on the line counts as above).
+    fn rows(&self, low: Coord, high: Coord) -> std::ops::Range<i32> {
+        low.div_euclid(self.pitch) + 1..high.div_euclid(self.pitch) + 1
+    }
+}
+
+/// A layer's contours as one raster sees them: in its frame, with the crossings
+/// of every row already found, ready for insets and outsets.
+#[derive(Debug)]
+pub struct Scan {
+    raster: Raster,
+    contours: Vec<Contour>,
+    inside: Rows,
+}
+
+impl Scan {
+    /// Lays `contours` (closed, outside counter-clockwise) under the lines of `raster`.
+    #[must_use]
+    pub fn new(contours: &[Contour], raster: Raster) -> Self {
+        let contours: Vec<Contour> = contours
+            .iter()
+            .map(|c| c.iter().map(|&p| raster.frame.enter(p)).collect())
+            .collect();
+        let inside = inside(&contours, raster);
+        Self { raster, contours, inside }
+    }
+
+    /// Where the lines are inside the contours.
+    #[must_use]
+    pub fn inside(&self) -> &Rows {
+        &self.inside
+    }
+
+    /// Where the lines are inside and at least `distance` from every contour.
+    #[must_use]
+    pub fn inset(&self, distance: Coord) -> Rows {
+        if distance <= 0 {
+            return self.inside.clone();
+        }
+        let mut chords = chords(&self.contours, self.raster, distance);
+        let mut covered = Vec::new();
+        let mut out = Rows::starting_at(self.inside.range().start);
+        for (j, row) in self.inside.iter() {
+            covered.clear();
+            merge(chords.row(j), &mut covered);
+            out.push_row(|spans| subtract(row, &covered, spans));
+        }
+        out
+    }
+
+    /// Where the lines are inside or at most `distance` from a contour.
+    #[must_use]
+    pub fn outset(&self, distance: Coord) -> Rows {
+        if distance <= 0 {
+            return self.inside.clone();
+        }
+        let mut chords = chords(&self.contours, self.raster, distance);
+        let mut both = Vec::new();
+        let mut out = Rows::starting_at(chords.first);
+        for j in chords.range() {
+            both.clear();
+            both.extend_from_slice(self.inside.row(j));
+            both.extend_from_slice(chords.row(j));
+            out.push_row(|spans| merge(&mut both, spans));
+        }
+        out
+    }
+}
+
+/// Lowest and highest `v` of the contours.
+fn extent(contours: &[Contour]) -> Option<(Coord, Coord)> {
+    let mut all = contours.iter().flatten().map(|p| p.y);
+    let first = all.next()?;
+    Some(all.fold((first, first), |(low, high), v| (low.min(v), high.max(v))))
+}
+
+/// The edges of a closed polygon.
+fn edges(contour: &Contour) -> impl Iterator<Item = (Point, Point)> {
+    contour.iter().copied().zip(contour.iter().copied().cycle().skip(1))
+}
+
+/// Where a line at `v` crosses the edge between `low` and `high`, `low.y < v <= high.y`,
+/// rounded to the nearest unit in a way that does not depend on the edge's direction.
+fn crossing(low: Point, high: Point, v: Coord) -> Coord {
+    let run = i64::from(high.x) - i64::from(low.x);
+    let rise = i64::from(high.y) - i64::from(low.y);
+    let up = i64::from(v) - i64::from(low.y);
+    low.x + (2 * run * up + rise).div_euclid(2 * rise) as Coord
+}
+
+/// Items in rows, filled in any order: counted first, then placed, then read by row.
+struct Buckets<T> {
+    first: i32,
+    /// Where each row begins in `items`; one more than there are rows.
+    starts: Vec<u32>,
+    items: Vec<T>,
+}
+
+impl<T: Copy + Default> Buckets<T> {
+    /// Sorts `found` into rows `range` by counting.
+    fn new(range: std::ops::Range<i32>, found: &[(i32, T)]) -> Self {
+        let first = range.start;
+        let index = |j: i32| (j - first) as usize;
+        let mut next = vec![0_u32; range.len() + 1];
+        for &(j, _) in found {
+            next[index(j) + 1] += 1;
+        }
+        for k in 1..next.len() {
+            next[k] += next[k - 1];
+        }
+        let starts = next.clone();
+        let mut items = vec![T::default(); found.len()];
+        for &(j, item) in found {
+            items[next[index(j)] as usize] = item;
+            next[index(j)] += 1;
+        }
+        Self { first, starts, items }
+    }
+
+    fn range(&self) -> std::ops::Range<i32> {
+        self.first..self.first + (self.starts.len() as i32 - 1)
+    }
+
+    fn row(&mut self, j: i32) -> &mut [T] {
+        if !self.range().contains(&j) {
+            return &mut [];
+        }
+        let k = (j - self.first) as usize;
+        &mut self.items[self.starts[k] as usize..self.starts[k + 1] as usize]
+    }
+}
+
+/// A crossing: where, and by how much the winding number changes to its right.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Crossing {
+    u: Coord,
+    winding: i32,
+}
+
+/// The spans of each row with a winding number other than zero.
+fn inside(contours: &[Contour], raster: Raster) -> Rows {
+    let Some((low, high)) = extent(contours) else { return Rows::default() };
+    let range = raster.rows(low, high);
+    let mut found = Vec::new();
+    for (p, q) in contours.iter().flat_map(edges) {
+        // An edge that falls has the solid on its right: entering, seen along u.
+        let (low, high, winding) = if p.y < q.y { (p, q, -1) } else { (q, p, 1) };
+        for j in raster.rows(low.y, high.y) {
+            found.push((j, Crossing { u: crossing(low, high, j * raster.pitch), winding }));
+        }
+    }
+    let mut crossings = Buckets::new(range.clone(), &found);
+    let mut rows = Rows::starting_at(range.start);
+    for j in range {
+        let row = crossings.row(j);
+        row.sort_unstable();
+        rows.push_row(|out| wound(row, out));
+    }
+    rows
+}
+
+/// Appends the spans between sorted crossings where the winding number is not zero.
+fn wound(crossings: &[Crossing], out: &mut Vec<Span>) {
+    let base = out.len();
+    let mut winding = 0;
+    let mut start = 0;
+    for c in crossings {
+        if winding == 0 {
+            start = c.u;
+        }
+        winding += c.winding;
+        if winding == 0 {
+            match out[base..].last_mut() {
+                Some(last) if last.end >= start => last.end = last.end.max(c.u),
+                _ => out.extend(Span::new(start, c.u)),
+            }
+        }
+    }
+}
+
+/// The chords that the rows cut from the capsules of radius `r` around all edges.
+fn chords(contours: &[Contour], raster: Raster, r: Coord) -> Buckets<Span> {
+    let Some((low, high)) = extent(contours) else { return Buckets::new(0..0, &[]) };
+    let mut found = Vec::new();
+    for (p, q) in contours.iter().flat_map(edges) {
+        let capsule = Capsule::new(p, q, r);
+        for j in raster.rows(p.y.min(q.y) - r, p.y.max(q.y) + r) {
+            found.extend(capsule.chord(j * raster.pitch).map(|chord| (j, chord)));
+        }
+    }
+    Buckets::new(raster.rows(low - r, high + r), &found)
+}
+
+/// All points within `r` of the edge from `low` to `high` (`low.y <= high.y`).
+struct Capsule {
+    low: Point,
+    high: Point,
+    r: f64,
+    /// Run per rise; 0 for a level edge.
+    slope: f64,
+    /// Distance along u from the edge's line to its parallel at distance `r`.
+    shift: f64,
+    /// How much lower the left flank ends than the edge (the right flank: higher).
+    lift: f64,
+}
+
+impl Capsule {
+    fn new(p: Point, q: Point, r: Coord) -> Self {
+        let (low, high) = if p.y <= q.y { (p, q) } else { (q, p) };
+        let run = f64::from(high.x) - f64::from(low.x);
+        let rise = f64::from(high.y) - f64::from(low.y);
+        let length = (run * run + rise * rise).sqrt();
+        let r = f64::from(r);
+        let (slope, shift) = if rise > 0.0 { (run / rise, r * length / rise) } else { (0.0, 0.0) };
+        let lift = if length > 0.0 { r * run / length } else { 0.0 };
+        Self { low, high, r, slope, shift, lift }
+    }
+
+    /// The chord at `v`, none where rounding leaves nothing of it.
+    fn chord(&self, v: Coord) -> Option<Span> {
+        let (start, end) = (-self.flank(v, -1.0), self.flank(v, 1.0));
+        Span::new(start.round() as Coord, end.round() as Coord)
+    }
+
+    /// How far the capsule reaches at `v` towards `side` (+1 right, −1 left),
+    /// measured in that direction. The flank is a straight line between the
+    /// feet of the two end circles' tangents and a circle beyond.
+    fn flank(&self, v: Coord, side: f64) -> f64 {
+        let (low_u, high_u) = (side * f64::from(self.low.x), side * f64::from(self.high.x));
+        let (low_v, high_v) = (f64::from(self.low.y), f64::from(self.high.y));
+        let v = f64::from(v);
+        let circle = |u: f64, at: f64| u + (self.r * self.r - (v - at) * (v - at)).max(0.0).sqrt();
+        if low_v == high_v {
+            return circle(low_u.max(high_u), low_v);
+        }
+        let drop = side * self.lift;
+        if v < low_v - drop {
+            circle(low_u, low_v)
+        } else if v > high_v - drop {
+            circle(high_u, high_v)
+        } else {
+            low_u + side * (v - low_v) * self.slope + self.shift
+        }
+    }
+}

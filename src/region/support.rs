@@ -1,0 +1,202 @@
+//! Layers, from the top down -> Rows: where support stands under overhangs.
+//!
+//! An overhang is what reaches further out over the layer below than the
+//! threshold angle allows. It is grown by the outset and goes down layer by
+//! layer, keeping its distance from the part, until it reaches the bed or the part:
+//! `S(k) = (O(k+1+gap) ∪ S(k+1)) − outset(L(k))`.
+
+use super::raster::{Raster, Scan};
+use crate::geom::Point;
+use crate::geom::frame::Frame;
+use crate::geom::spans::{Rows, Span};
+use crate::profile::{Settings, SupportBase};
+use crate::slice::{Layer, Slicer};
+use crate::units::{Coord, to_units};
+use rayon::prelude::*;
+use std::collections::VecDeque;
+
+/// Overhangs and supports shorter than this along their line are left out (50 µm and
+/// one line width): noise, and blobs.
+const LEAST_OVERHANG: Coord = 500;
+
+/// The numbers of support, in grid units.
+#[derive(Debug, Clone, Copy)]
+pub struct SupportParams {
+    /// The lines: fine enough to see every overhang; every `stride`-th is printed.
+    pub raster: Raster,
+    /// See `raster`.
+    pub stride: i32,
+    /// How far a layer may reach over the one below without support.
+    lean: Coord,
+    outset: Coord,
+    xy_distance: Coord,
+    /// Layers left open above and below support.
+    gap: usize,
+    bed_only: bool,
+    least: Coord,
+}
+
+impl SupportParams {
+    /// The numbers that `settings` mean for support; none if there is to be none.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Option<Self> {
+        let support = &settings.support;
+        let (w, spacing) = (to_units(settings.line_width), to_units(support.spacing));
+        let stride = ((spacing + w - 1) / w).max(1);
+        let angle = support.threshold_angle.to_radians();
+        let lean = if support.threshold_angle >= 90.0 {
+            0.0
+        } else {
+            settings.layer_height * libm::cos(angle) / libm::sin(angle)
+        };
+        support.enabled.then(|| Self {
+            raster: Raster { frame: Frame::new(settings.angle), pitch: (spacing + stride / 2) / stride },
+            stride,
+            lean: to_units(lean.min(1000.0)),
+            outset: to_units(support.outset),
+            xy_distance: to_units(support.xy_distance),
+            gap: (support.z_distance / settings.layer_height).round() as usize,
+            bed_only: support.stands_on == SupportBase::Bed,
+            least: w,
+        })
+    }
+}
+
+/// One layer as support sees it.
+struct Seen {
+    index: usize,
+    inside: Rows,
+    /// The part with the distance support keeps from it.
+    near: Rows,
+    /// What the layer may carry above it.
+    carries: Rows,
+}
+
+impl Seen {
+    fn new(layer: &Layer, params: &SupportParams) -> Self {
+        let scan = Scan::new(&layer.contours, params.raster);
+        Self {
+            index: layer.index,
+            inside: scan.inside().clone(),
+            near: scan.outset(params.xy_distance),
+            carries: scan.outset(params.lean),
+        }
+    }
+}
+
+/// The support of every layer, by index; rows that are not printed are empty.
+/// `within` is the bed, as the corners of a rectangle around the origin.
+#[must_use]
+pub fn supports(slicer: &Slicer<'_>, params: &SupportParams, within: (Point, Point)) -> Vec<Rows> {
+    let count = slicer.heights().count;
+    let mut columns = vec![Rows::default(); count];
+    let mut window = Window::default();
+    for block in (0..slicer.blocks()).rev() {
+        let mut seen: Vec<Seen> =
+            slicer.block(block).par_iter().map(|layer| Seen::new(layer, params)).collect();
+        while let Some(layer) = seen.pop() {
+            window.push(layer, params, &mut columns);
+        }
+    }
+    window.flush(params, &mut columns);
+    if params.bed_only {
+        keep_to_bed(slicer, params, &mut columns);
+    }
+    let bed = Bed::new(within, params.raster);
+    columns.par_iter().map(|rows| printed(rows, params, &bed)).collect()
+}
+
+/// The layers around the one whose support is being made, from the top down.
+#[derive(Default)]
+struct Window {
+    /// Highest first.
+    layers: VecDeque<Seen>,
+    /// Overhangs grown, waiting for the layer `gap` below them, highest first.
+    overhangs: VecDeque<Rows>,
+    /// Support of the layer above.
+    above: Rows,
+    /// Layers done.
+    done: usize,
+}
+
+impl Window {
+    /// Takes the next layer down and makes the support of the one `gap` layers above it.
+    fn push(&mut self, layer: Seen, params: &SupportParams, out: &mut [Rows]) {
+        if let Some(over) = self.layers.back() {
+            let hanging = over
+                .inside
+                .minus(&layer.carries)
+                .filter(|_, s| s.len() >= i64::from(LEAST_OVERHANG));
+            self.overhangs.push_back(hanging.dilate(params.outset, params.raster.pitch));
+        }
+        self.layers.push_back(layer);
+        if self.layers.len() > params.gap {
+            let at = self.layers.len() - 1 - params.gap;
+            self.support(at, params, out);
+        }
+        // A layer is needed until the one `gap` below it is done.
+        if self.layers.len() > 2 * params.gap + 1 {
+            self.layers.pop_front();
+            self.done -= 1;
+        }
+    }
+
+    /// Makes the support of the lowest layers, which have fewer than `gap` below them.
+    fn flush(&mut self, params: &SupportParams, out: &mut [Rows]) {
+        while self.done < self.layers.len() {
+            self.support(self.done, params, out);
+        }
+    }
+
+    /// Makes the support of the layer at `at` in the window.
+    fn support(&mut self, at: usize, params: &SupportParams, out: &mut [Rows]) {
+        let layer = &self.layers[at];
+        // The overhang of layer k + 1 + gap begins at layer k.
+        let begins = out.len() > layer.index + 1 + params.gap;
+        let new = if begins { self.overhangs.pop_front().unwrap_or_default() } else { Rows::default() };
+        let mut rows = self.above.or(&new).minus(&layer.near);
+        let around = at.saturating_sub(params.gap)..(at + params.gap + 1).min(self.layers.len());
+        for other in around.filter(|&n| n != at) {
+            rows = rows.minus(&self.layers[other].inside);
+        }
+        out[layer.index] = rows.clone();
+        self.above = rows;
+        self.done = at + 1;
+    }
+}
+
+/// Takes away what stands on the part: everything above any layer below.
+fn keep_to_bed(slicer: &Slicer<'_>, params: &SupportParams, columns: &mut [Rows]) {
+    let mut shadow = Rows::default();
+    for block in 0..slicer.blocks() {
+        let layers = slicer.block(block);
+        let near: Vec<Rows> = layers
+            .par_iter()
+            .map(|l| Scan::new(&l.contours, params.raster).outset(params.xy_distance))
+            .collect();
+        for (layer, near) in layers.iter().zip(&near) {
+            columns[layer.index] = columns[layer.index].minus(&shadow);
+            shadow = shadow.or(near);
+        }
+    }
+}
+
+/// The bed in the frame of a raster: a convex polygon.
+struct Bed {
+    rows: Rows,
+}
+
+impl Bed {
+    fn new((low, high): (Point, Point), raster: Raster) -> Self {
+        let corners = vec![low, Point { x: high.x, y: low.y }, high, Point { x: low.x, y: high.y }];
+        Self { rows: Scan::new(&[corners], raster).inside().clone() }
+    }
+}
+
+/// The rows that are printed, on the bed, without what is shorter than a line is wide.
+fn printed(rows: &Rows, params: &SupportParams, bed: &Bed) -> Rows {
+    let is_printed = |j: i32, s: Span| {
+        j.rem_euclid(params.stride) == 0 && s.len() >= i64::from(params.least)
+    };
+    rows.and(&bed.rows).filter(is_printed)
+}

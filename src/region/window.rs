@@ -1,0 +1,213 @@
+//! Slicer -> Regions, batch by batch: the rolling window of layers that need each other.
+//!
+//! A layer is divided into skin and infill once the layers above that its top
+//! skins look at are there, and is forgotten once no layer above looks at it:
+//! memory holds a block and a few layers, whatever the height of the print.
+
+use super::classify::{Areas, areas};
+use super::close::{Crossed, close};
+use super::dual::{self, LayerAreas, PairStats};
+use super::{Infill, walls, Params, Prepared, Region, Skin};
+use crate::geom::spans::Rows;
+use crate::profile::Dual;
+use crate::slice::Slicer;
+use rayon::prelude::*;
+use std::collections::VecDeque;
+
+/// Makes the regions of a print in batches, from the bed upwards.
+#[derive(Debug)]
+pub struct Window<'a> {
+    slicer: &'a Slicer<'a>,
+    params: &'a Params,
+    dual: &'a Dual,
+    /// Support by layer; empty if there is none.
+    supports: Vec<Rows>,
+    /// The next block to be sliced.
+    block: usize,
+    layers: VecDeque<Prepared>,
+    /// Index of the first layer in the window.
+    first: usize,
+    /// Layers handed on so far.
+    done: usize,
+    stats: PairTotals,
+}
+
+/// [`PairStats`] summed over the print; lengths in grid units.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct PairTotals {
+    /// Pairs that have infill.
+    pub pairs: usize,
+    /// Of these, pairs with thick lines.
+    pub thick_pairs: usize,
+    /// Length of thick lines.
+    pub thick: i64,
+    /// Length of thin lines beside them.
+    pub thin: i64,
+    /// Length of both layers' lines without dual.
+    pub plain: i64,
+}
+
+impl PairTotals {
+    fn add(&mut self, pair: PairStats) {
+        self.pairs += usize::from(pair.filled);
+        self.thick_pairs += usize::from(pair.thick > 0);
+        self.thick += pair.thick;
+        self.thin += pair.thin;
+        self.plain += pair.plain;
+    }
+}
+
+/// What classification finds for one layer, before it takes its walls along.
+struct Filling {
+    skin: Skin,
+    infill: Vec<Infill>,
+}
+
+impl<'a> Window<'a> {
+    /// A window at the bed. `supports` holds the support of every layer, or nothing.
+    #[must_use]
+    pub fn new(
+        slicer: &'a Slicer<'a>,
+        params: &'a Params,
+        dual: &'a Dual,
+        supports: Vec<Rows>,
+    ) -> Self {
+        Self {
+            slicer,
+            params,
+            dual,
+            supports,
+            block: 0,
+            layers: VecDeque::new(),
+            first: 0,
+            done: 0,
+            stats: PairTotals::default(),
+        }
+    }
+
+    /// What dual injection did so far.
+    #[must_use]
+    pub fn pair_totals(&self) -> PairTotals {
+        self.stats
+    }
+
+    /// Slices and prepares the next block.
+    fn load(&mut self) {
+        let layers = self.slicer.block(self.block);
+        self.block += 1;
+        let prepared: Vec<Prepared> =
+            layers.into_par_iter().map(|layer| Prepared::new(layer, self.params)).collect();
+        self.layers.extend(prepared);
+    }
+
+    /// One more than the last layer that has all it needs; even unless the print ends.
+    fn ready(&self) -> usize {
+        let known = self.first + self.layers.len();
+        if self.block == self.slicer.blocks() {
+            return known;
+        }
+        known.saturating_sub(self.params.top_skins.max(1)) / 2 * 2
+    }
+
+    fn layer(&self, k: usize) -> Option<&Prepared> {
+        k.checked_sub(self.first).and_then(|k| self.layers.get(k))
+    }
+
+    /// Divides the layers of a pair (or the single last layer).
+    fn fill(&self, lower: usize, upper: Option<usize>) -> (Vec<Filling>, PairStats) {
+        let count = self.slicer.heights().count;
+        let Some(upper) = upper.filter(|_| dual::is_pair(lower, count, self.dual.mode)) else {
+            let each = |k| {
+                let areas = self.areas(k, dual::plain_combs(k, self.params).iter().map(|c| c.raster));
+                let infill = dual::plain(k, &areas, self.params);
+                Filling { skin: self.skin(k, &areas), infill }
+            };
+            return ([Some(lower), upper].into_iter().flatten().map(each).collect(), PairStats::default());
+        };
+        let combs = dual::pair_combs(lower / 2, self.dual, self.params);
+        let below = self.areas(lower, combs.iter().map(|c| c.raster));
+        let above = self.areas(upper, combs.iter().map(|c| c.raster));
+        let (infill, stats) = dual::pair(lower / 2, &below, &above, self.dual, self.params);
+        let fillings = [(lower, below), (upper, above)]
+            .iter()
+            .zip(infill)
+            .map(|((k, areas), infill)| Filling { skin: self.skin(*k, areas), infill })
+            .collect();
+        (fillings, stats)
+    }
+
+    /// The areas of layer `k` on both skin rasters and on those that `more` names.
+    fn areas(&self, k: usize, more: impl Iterator<Item = usize>) -> LayerAreas {
+        let mut out: LayerAreas = vec![None; self.params.rasters.len()];
+        for r in [0, 1].into_iter().chain(more) {
+            if out[r].is_none() {
+                out[r] = Some(areas(k, r, &|k| self.layer(k), self.params));
+            }
+        }
+        out
+    }
+
+    /// The skin of layer `k`, closed up to the walls.
+    fn skin(&self, k: usize, areas: &LayerAreas) -> Skin {
+        let (along, across) = self.params.skin_rasters(k);
+        let none = Areas::default();
+        let of = |r: usize| areas[r].as_ref().unwrap_or(&none);
+        let Some(layer) = self.layer(k) else { return Skin::default() };
+        let crossed = Crossed {
+            skin: &of(along).skin,
+            columns: &of(across).skin,
+            fill_columns: &layer.rows[across].fill,
+            left_turn: along == 0,
+        };
+        let (lines, slivers) = close(&crossed, self.params);
+        Skin { raster: along, lines, slivers }
+    }
+
+    /// The regions of the layers that `fillings` were made for, in order.
+    fn hand_on(&mut self, fillings: Vec<Filling>) -> Vec<Region> {
+        let mut regions = Vec::with_capacity(fillings.len());
+        for Filling { skin, infill } in fillings {
+            let support = self.supports.get_mut(self.done).map(std::mem::take).unwrap_or_default();
+            let prepared = &mut self.layers[self.done - self.first];
+            // Neighbours look at the rows only.
+            let (walls, contours) =
+                (std::mem::take(&mut prepared.walls), std::mem::take(&mut prepared.layer.contours));
+            let layer = crate::slice::Layer { contours, ..prepared.layer.clone() };
+            let inset = self.params.outer_inset;
+            let thin_mm2 =
+                if inset > 0 { walls::thin_area(&layer.contours, &walls, inset) } else { 0.0 };
+            regions.push(Region { layer, walls, skin, infill, support, thin_mm2 });
+            self.done += 1;
+        }
+        while self.first + self.params.bottom_skins < self.done {
+            self.layers.pop_front();
+            self.first += 1;
+        }
+        regions
+    }
+}
+
+impl Iterator for Window<'_> {
+    type Item = Vec<Region>;
+
+    fn next(&mut self) -> Option<Vec<Region>> {
+        while self.block < self.slicer.blocks() && self.ready() <= self.done {
+            self.load();
+        }
+        let ready = self.ready();
+        if ready <= self.done {
+            return None;
+        }
+        let pairs: Vec<usize> = (self.done..ready).step_by(2).collect();
+        let filled: Vec<_> = pairs
+            .par_iter()
+            .map(|&lower| self.fill(lower, Some(lower + 1).filter(|&k| k < ready)))
+            .collect();
+        let mut fillings = Vec::with_capacity(ready - self.done);
+        for (layers, stats) in filled {
+            self.stats.add(stats);
+            fillings.extend(layers);
+        }
+        Some(self.hand_on(fillings))
+    }
+}

@@ -1,0 +1,239 @@
+//! Mesh -> Layers: triangles bucketed by the planes they cross, segments chained by mesh edge.
+//!
+//! Each triangle gives at most one segment a plane, from the edge where its
+//! boundary goes down through the plane to the edge where it goes up, which is
+//! the direction z × normal: solid on the left. The segment goes on in the
+//! triangle across that edge, so chaining is a walk over the mesh's adjacency
+//! and never compares distances. Bucketing after Minetto, Volpato, Stolfi,
+//! Gregori and da Silva, "An optimal algorithm for 3D triangle mesh slicing",
+//! Computer-Aided Design 92 (2017): linear in triangles and segments.
+
+use super::simplify::{canonical, simplify};
+use super::{Heights, Layer};
+use crate::geom::{Contour, Point, polygon};
+use crate::mesh::Mesh;
+use crate::mesh::edges::{Adjacency, NONE, parts};
+use crate::units::Coord;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Layers cut together. A block's triangles are looked up at once; the memory
+/// in use grows with a block, not with the print.
+const BLOCK: usize = 64;
+
+/// A mesh made ready to be cut into blocks of layers, in any order.
+#[derive(Debug)]
+pub struct Slicer<'a> {
+    mesh: &'a Mesh,
+    adjacency: &'a Adjacency,
+    heights: Heights,
+    tolerance: Coord,
+    /// Where each block's triangles begin in `triangles`; one more than there are blocks.
+    starts: Vec<usize>,
+    /// Triangles by the blocks they reach into.
+    triangles: Vec<u32>,
+}
+
+impl<'a> Slicer<'a> {
+    /// Buckets the triangles of `mesh`. Contours will be simplified within `tolerance` grid units.
+    #[must_use]
+    pub fn new(
+        mesh: &'a Mesh,
+        adjacency: &'a Adjacency,
+        heights: Heights,
+        tolerance: Coord,
+    ) -> Self {
+        let blocks = heights.count.div_ceil(BLOCK);
+        let reach = |t: &[u32; 3]| -> Range<usize> {
+            let layers = crossed(mesh, heights, t);
+            if layers.is_empty() { 0..0 } else { layers.start / BLOCK..(layers.end - 1) / BLOCK + 1 }
+        };
+        let mut starts = vec![0; blocks + 1];
+        for t in &mesh.triangles {
+            for b in reach(t) {
+                starts[b + 1] += 1;
+            }
+        }
+        for b in 0..blocks {
+            starts[b + 1] += starts[b];
+        }
+        let mut next = starts.clone();
+        let mut triangles = vec![0; starts[blocks]];
+        for (index, t) in (0_u32..).zip(&mesh.triangles) {
+            for b in reach(t) {
+                triangles[next[b]] = index;
+                next[b] += 1;
+            }
+        }
+        Self { mesh, adjacency, heights, tolerance, starts, triangles }
+    }
+
+    /// The heights that the mesh is cut at.
+    #[must_use]
+    pub fn heights(&self) -> Heights {
+        self.heights
+    }
+
+    /// The number of blocks.
+    #[must_use]
+    pub fn blocks(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// The layers of block `b`, from the lowest to the highest.
+    #[must_use]
+    pub fn block(&self, b: usize) -> Vec<Layer> {
+        let layers = b * BLOCK..((b + 1) * BLOCK).min(self.heights.count);
+        let mut buckets = vec![Vec::new(); layers.len()];
+        for &t in &self.triangles[self.starts[b]..self.starts[b + 1]] {
+            let crossed = crossed(self.mesh, self.heights, &self.mesh.triangles[t as usize]);
+            for k in crossed.start.max(layers.start)..crossed.end.min(layers.end) {
+                buckets[k - layers.start].push(t);
+            }
+        }
+        let done = || vec![0; self.mesh.triangles.len()];
+        layers
+            .into_par_iter()
+            .zip(buckets)
+            .with_min_len(BLOCK / 8)
+            .map_init(done, |done, (k, triangles)| self.layer(k, &triangles, done))
+            .collect()
+    }
+
+    /// Layer `k`, cut from the triangles that cross its plane. `done` marks triangles by layer.
+    fn layer(&self, k: usize, triangles: &[u32], done: &mut [u32]) -> Layer {
+        let walk = Walk {
+            mesh: self.mesh,
+            adjacency: self.adjacency,
+            plane: self.heights.plane(k),
+            mark: u32::try_from(k + 1).unwrap_or(u32::MAX),
+        };
+        let (mut contours, open) = walk.chains(triangles, done);
+        let closed_gap = close(open, &mut contours);
+        let mut contours: Vec<Contour> = contours
+            .into_iter()
+            .map(|c| simplify(&canonical(c), self.tolerance))
+            .filter(|c| c.len() >= 3)
+            .collect();
+        // The order of the triangles must not show: sort before the union.
+        contours.sort_unstable();
+        let contours = polygon::union(&contours);
+        Layer { index: k, z: self.heights.top(k), height: self.heights.height(k), contours, closed_gap }
+    }
+}
+
+/// The layers whose planes a triangle crosses.
+fn crossed(mesh: &Mesh, heights: Heights, triangle: &[u32; 3]) -> Range<usize> {
+    let z = triangle.map(|v| mesh.vertices[v as usize][2]);
+    heights.crossing(z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]))
+}
+
+/// One plane's walk from triangle to triangle.
+struct Walk<'a> {
+    mesh: &'a Mesh,
+    adjacency: &'a Adjacency,
+    plane: Coord,
+    mark: u32,
+}
+
+impl Walk<'_> {
+    /// The closed contours, and the open chains that gaps in the mesh leave.
+    fn chains(&self, triangles: &[u32], done: &mut [u32]) -> (Vec<Contour>, Vec<Contour>) {
+        let (mut closed, mut open) = (Vec::new(), Vec::new());
+        // Chains that begin at a gap first: a walk from their middle would cut them in two.
+        for &t in triangles {
+            let entry = self.edge(t, false);
+            if self.adjacency.neighbour[t as usize][entry] == NONE && done[t as usize] != self.mark {
+                let mut chain = vec![self.crossing(t, entry)];
+                self.follow(t, done, &mut chain);
+                open.push(chain);
+            }
+        }
+        for &t in triangles {
+            if done[t as usize] != self.mark {
+                let mut chain = Vec::new();
+                self.follow(t, done, &mut chain);
+                closed.push(chain);
+            }
+        }
+        (closed, open)
+    }
+
+    /// Walks from triangle `t` until the chain closes or a gap ends it.
+    fn follow(&self, mut t: u32, done: &mut [u32], chain: &mut Contour) {
+        while done[t as usize] != self.mark {
+            done[t as usize] = self.mark;
+            let exit = self.edge(t, true);
+            chain.push(self.crossing(t, exit));
+            match self.adjacency.neighbour[t as usize][exit] {
+                NONE => return,
+                half => t = parts(half).0 as u32,
+            }
+        }
+    }
+
+    /// The edge of `t` whose direction goes up (or down) through the plane.
+    fn edge(&self, t: u32, up: bool) -> usize {
+        let above = self.mesh.triangles[t as usize].map(|v| self.height(v) >= self.plane);
+        (0..3).find(|&e| above[(e + 1) % 3] == up && above[e] != up).unwrap_or(0)
+    }
+
+    fn height(&self, vertex: u32) -> Coord {
+        self.mesh.vertices[vertex as usize][2]
+    }
+
+    /// Where edge `e` of `t` meets the plane, rounded to the nearest unit; the same from both sides.
+    fn crossing(&self, t: u32, e: usize) -> Point {
+        let corners = self.mesh.triangles[t as usize];
+        let a = self.mesh.vertices[corners[e] as usize];
+        let b = self.mesh.vertices[corners[(e + 1) % 3] as usize];
+        let (low, high) = if a[2] < b[2] { (a, b) } else { (b, a) };
+        let up = i64::from(self.plane) - i64::from(low[2]);
+        let rise = i64::from(high[2]) - i64::from(low[2]);
+        let along = |axis: usize| {
+            let run = i64::from(high[axis]) - i64::from(low[axis]);
+            low[axis] + (2 * run * up + rise).div_euclid(2 * rise) as Coord
+        };
+        Point { x: along(0), y: along(1) }
+    }
+}
+
+/// Closes open chains: each end goes on in the chain that begins nearest, by a
+/// straight line. Returns the longest such line.
+///
+/// The pairs are taken from the shortest gap on, ties by coordinates, so that the
+/// result does not depend on the order of the triangles.
+fn close(mut open: Vec<Contour>, closed: &mut Vec<Contour>) -> Coord {
+    open.sort_unstable();
+    let ends: Vec<(Point, Point)> =
+        open.iter().filter_map(|c| Some((*c.first()?, *c.last()?))).collect();
+    let mut gaps: Vec<(i64, usize, usize)> = Vec::new();
+    for (i, (_, end)) in ends.iter().enumerate() {
+        for (j, (start, _)) in ends.iter().enumerate() {
+            gaps.push((end.distance2(*start), i, j));
+        }
+    }
+    gaps.sort_unstable();
+    let mut next = vec![None; open.len()];
+    let mut taken = vec![false; open.len()];
+    let mut longest = 0;
+    for (gap2, i, j) in gaps {
+        if next[i].is_none() && !taken[j] {
+            next[i] = Some(j);
+            taken[j] = true;
+            longest = longest.max(gap2);
+        }
+    }
+    for first in 0..open.len() {
+        let mut contour = Vec::new();
+        let mut at = first;
+        while let Some(following) = next[at].take() {
+            contour.append(&mut open[at]);
+            at = following;
+        }
+        if !contour.is_empty() {
+            closed.push(contour);
+        }
+    }
+    (longest as f64).sqrt() as Coord
+}

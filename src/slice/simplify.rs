@@ -1,0 +1,163 @@
+//! Contour -> Contour: fewer vertices within a tolerance, from a canonical start.
+//!
+//! From each kept vertex a cone of directions is narrowed by every vertex that
+//! is passed: a line within the cone passes all of them within the tolerance.
+//! The first vertex outside the cone ends the line at the one before it. Linear
+//! in the vertices (Imai & Iri 1986 and Sklansky & Gonzalez 1980 describe cones
+//! of this kind).
+
+use crate::geom::{Contour, Point};
+use crate::units::Coord;
+
+/// Turns `contour` so that it starts at its lexicographically smallest vertex
+/// (ties are decided by the vertices that follow), without repeated vertices:
+/// the same loop gives the same list wherever its tracing began.
+#[must_use]
+pub(super) fn canonical(mut contour: Contour) -> Contour {
+    contour.dedup();
+    while contour.len() > 1 && contour.first() == contour.last() {
+        contour.pop();
+    }
+    let n = contour.len();
+    let least = (0..n).min_by(|&a, &b| {
+        let from = |s: usize| (0..n).map(move |k| (s + k) % n);
+        from(a).map(|k| contour[k]).cmp(from(b).map(|k| contour[k]))
+    });
+    contour.rotate_left(least.unwrap_or(0));
+    contour
+}
+
+/// Leaves out vertices of a canonical contour so that no vertex lies further than
+/// `tolerance` (grid units) from the line that replaces it. Contours that collapse
+/// come back with fewer than three vertices.
+#[must_use]
+pub(super) fn simplify(contour: &[Point], tolerance: Coord) -> Contour {
+    let Some(&first) = contour.first() else { return Vec::new() };
+    let mut kept = vec![first];
+    let mut anchor = first;
+    let mut cone = Cone::open();
+    let mut last = first;
+    for &p in contour[1..].iter().chain([&first]) {
+        if !cone.admits(anchor, p) {
+            kept.push(last);
+            anchor = last;
+            cone = Cone::open();
+        }
+        cone.narrow(anchor, p, f64::from(tolerance));
+        last = p;
+    }
+    kept
+}
+
+/// Directions from an anchor, between `right` and `left` (counter-clockwise); `None` is all.
+struct Cone {
+    bounds: Option<([f64; 2], [f64; 2])>,
+    /// How far out the vertices passed so far reach: a line must not turn back before them.
+    reach2: f64,
+}
+
+impl Cone {
+    fn open() -> Self {
+        Self { bounds: None, reach2: 0.0 }
+    }
+
+    /// Whether a line from `anchor` to `p` passes all vertices so far.
+    fn admits(&self, anchor: Point, p: Point) -> bool {
+        let d = difference(anchor, p);
+        let within = self.bounds.is_none_or(|(right, left)| {
+            cross(right, d) >= 0.0 && cross(d, left) >= 0.0 && dot(right, d) > 0.0
+        });
+        within && dot(d, d) >= self.reach2
+    }
+
+    /// Keeps only the directions that pass `p` within `tolerance`.
+    fn narrow(&mut self, anchor: Point, p: Point, tolerance: f64) {
+        let d = difference(anchor, p);
+        let length2 = dot(d, d);
+        self.reach2 = self.reach2.max(length2);
+        if length2 <= tolerance * tolerance {
+            return;
+        }
+        // The tangents from the anchor to the circle of radius `tolerance` around p.
+        let along = (length2 - tolerance * tolerance).sqrt();
+        let right = [d[0] * along + d[1] * tolerance, d[1] * along - d[0] * tolerance];
+        let left = [d[0] * along - d[1] * tolerance, d[1] * along + d[0] * tolerance];
+        self.bounds = Some(match self.bounds {
+            None => (right, left),
+            Some((r, l)) => (
+                if cross(r, right) > 0.0 { right } else { r },
+                if cross(left, l) > 0.0 { left } else { l },
+            ),
+        });
+    }
+}
+
+fn difference(a: Point, b: Point) -> [f64; 2] {
+    [f64::from(b.x) - f64::from(a.x), f64::from(b.y) - f64::from(a.y)]
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn points(list: &[(i32, i32)]) -> Contour {
+        list.iter().map(|&(x, y)| Point { x, y }).collect()
+    }
+
+    /// Distance of `p` from the segment a–b.
+    fn distance(p: Point, a: Point, b: Point) -> f64 {
+        let (d, e) = (difference(a, b), difference(a, p));
+        let t = if dot(d, d) > 0.0 { (dot(d, e) / dot(d, d)).clamp(0.0, 1.0) } else { 0.0 };
+        let off = [e[0] - t * d[0], e[1] - t * d[1]];
+        dot(off, off).sqrt()
+    }
+
+    #[test]
+    fn vertices_on_straight_edges_go() {
+        let square = points(&[(0, 0), (500, 0), (1000, 0), (1000, 1000), (400, 1000), (0, 1000)]);
+        let simple = simplify(&square, 10);
+        assert_eq!(simple, points(&[(0, 0), (1000, 0), (1000, 1000), (0, 1000)]));
+    }
+
+    #[test]
+    fn spikes_stay() {
+        let spike = points(&[(0, 0), (5000, 0), (9000, 1), (5000, 2), (5000, 4000), (0, 4000)]);
+        assert!(simplify(&spike, 10).contains(&Point { x: 9000, y: 1 }));
+    }
+
+    proptest! {
+        #[test]
+        fn no_vertex_is_further_away_than_the_tolerance(
+            list in prop::collection::vec((-2000i32..2000, -2000i32..2000), 3..40),
+            tolerance in 1i32..400,
+        ) {
+            let contour = canonical(points(&list));
+            let simple = simplify(&contour, tolerance);
+            for &p in &contour {
+                let nearest = (0..simple.len())
+                    .map(|k| distance(p, simple[k], simple[(k + 1) % simple.len()]))
+                    .fold(f64::MAX, f64::min);
+                prop_assert!(nearest <= f64::from(tolerance) + 1e-6, "{nearest}");
+            }
+        }
+
+        #[test]
+        fn a_loop_is_the_same_wherever_it_starts(
+            list in prop::collection::vec((-9i32..9, -9i32..9), 3..12), turn in 0usize..12,
+        ) {
+            let mut turned = points(&list);
+            let by = turn % turned.len();
+            turned.rotate_left(by);
+            prop_assert_eq!(canonical(points(&list)), canonical(turned));
+        }
+    }
+}
