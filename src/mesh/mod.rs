@@ -1,9 +1,19 @@
 //! Bytes -> Mesh: what a model is once it is read and placed.
 
+pub mod stl;
+
+mod ascii;
+mod sniff;
+mod weld;
+
 use serde::Serialize;
 
 /// The triangles of one file as read: vertices welded where they are bit-equal,
-/// triangles without area dropped. Coordinates are the file's own numbers.
+/// triangles with two equal corners dropped. Every vertex is used by a triangle.
+/// Coordinates are the file's own numbers, in the file's unit.
+///
+/// Triangles with three different corners on one line stay: they have no area,
+/// but taking them out would open the mesh.
 #[derive(Debug, Clone, Default)]
 pub struct RawMesh {
     /// Vertices, in the order of their first use.
@@ -36,10 +46,12 @@ pub struct MeshReport {
     pub triangles: usize,
     /// Distinct vertices.
     pub vertices: usize,
-    /// Triangles without area that were dropped.
+    /// Triangles with two equal corners that were dropped.
     pub degenerate: usize,
-    /// Edges without exactly two oppositely wound faces.
+    /// Sides of triangles that no oppositely wound neighbour continues; 0 for a closed mesh.
     pub open_edges: usize,
+    /// Edges of four or more faces that pair off; the mesh is closed there all the same.
+    pub non_manifold_edges: usize,
     /// Bytes after the last triangle.
     pub trailing_bytes: u64,
     /// Size x, y, z as placed (scaled and turned), mm.
