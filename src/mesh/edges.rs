@@ -1,0 +1,230 @@
+//! Triangles -> Adjacency: finds the triangle on the other side of every edge.
+
+/// No half-edge: what [`Adjacency::neighbour`] says at an open edge.
+pub const NONE: u32 = u32::MAX;
+
+/// Which half-edge continues which. A half-edge is side `edge` of `triangle`,
+/// from corner `edge` to corner `(edge + 1) % 3`, and its number is
+/// `triangle * 4 + edge`; see [`half_edge`].
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Adjacency {
+    /// For each side of each triangle the half-edge of the same two vertices
+    /// in the opposite direction, or [`NONE`]. Always mutual.
+    pub neighbour: Vec<[u32; 3]>,
+    /// Half-edges without a neighbour; 0 means that the mesh is closed.
+    pub unpaired: usize,
+    /// Edges with more than two half-edges, all of them paired.
+    pub non_manifold: usize,
+}
+
+/// The number of side `edge` (0 to 2) of `triangle`.
+#[must_use]
+#[expect(clippy::cast_possible_truncation, reason = "fewer than 2^30 triangles, see adjacency")]
+pub fn half_edge(triangle: usize, edge: usize) -> u32 {
+    (triangle * 4 + edge) as u32
+}
+
+/// Triangle and side of a half-edge that is not [`NONE`].
+#[must_use]
+pub fn parts(half_edge: u32) -> (usize, usize) {
+    ((half_edge >> 2) as usize, (half_edge & 3) as usize)
+}
+
+/// Pairs the half-edges of fewer than 2³⁰ `triangles` over `vertices`.
+///
+/// Half-edges are bucketed by their lower vertex (a counting sort), then
+/// sorted by the other one within the few of a bucket: linear time. Where an
+/// edge has more than two half-edges, those of each direction are put in the
+/// order of the coordinates of their triangles' third corners and paired in
+/// that order, so that the order of the triangles does not matter. An edge
+/// from a vertex to itself has no neighbour.
+///
+/// # Panics
+/// If a triangle names a vertex that is not there.
+#[must_use]
+pub fn adjacency(vertices: &[[i32; 3]], triangles: &[[u32; 3]]) -> Adjacency {
+    let (mut entries, ends) = bucketed(vertices.len(), triangles);
+    let mut result =
+        Adjacency { neighbour: vec![[NONE; 3]; triangles.len()], unpaired: 0, non_manifold: 0 };
+    let mut start = 0;
+    for (low, end) in ends.into_iter().enumerate() {
+        let bucket = &mut entries[start..end as usize];
+        start = end as usize;
+        bucket.sort_unstable();
+        for edge in bucket.chunk_by(|a, b| a >> 32 == b >> 32) {
+            pair(edge, low, vertices, triangles, &mut result);
+        }
+    }
+    result
+}
+
+/// All half-edges as `higher vertex << 32 | half-edge`, grouped by their lower
+/// vertex, and for each vertex where its group ends.
+fn bucketed(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u64>, Vec<u32>) {
+    let mut next = vec![0_u32; vertices];
+    for corners in triangles {
+        for edge in 0..3 {
+            next[ends_of(corners, edge).0 as usize] += 1;
+        }
+    }
+    let mut sum = 0;
+    for slot in &mut next {
+        let count = *slot;
+        *slot = sum;
+        sum += count;
+    }
+    let mut entries = vec![0_u64; triangles.len() * 3];
+    for (triangle, corners) in triangles.iter().enumerate() {
+        for edge in 0..3 {
+            let (low, high) = ends_of(corners, edge);
+            let slot = &mut next[low as usize];
+            entries[*slot as usize] = u64::from(high) << 32 | u64::from(half_edge(triangle, edge));
+            *slot += 1;
+        }
+    }
+    (entries, next)
+}
+
+/// Lower and higher vertex of a side.
+fn ends_of(corners: &[u32; 3], edge: usize) -> (u32, u32) {
+    let (a, b) = (corners[edge], corners[(edge + 1) % 3]);
+    (a.min(b), a.max(b))
+}
+
+/// The half-edge in the lower half of an entry.
+#[expect(clippy::cast_possible_truncation, reason = "the lower half is wanted")]
+fn number(entry: u64) -> u32 {
+    entry as u32
+}
+
+/// Pairs the half-edges of one edge, whose lower vertex is `low`.
+fn pair(
+    edge: &[u64],
+    low: usize,
+    vertices: &[[i32; 3]],
+    triangles: &[[u32; 3]],
+    result: &mut Adjacency,
+) {
+    let upwards = |half: u32| {
+        let (triangle, edge) = parts(half);
+        triangles[triangle][edge] as usize == low
+    };
+    if let &[a, b] = edge {
+        let (a, b) = (number(a), number(b));
+        if upwards(a) != upwards(b) {
+            join(a, b, result);
+            return;
+        }
+    }
+    if edge[0] >> 32 == low as u64 {
+        result.unpaired += edge.len();
+        return;
+    }
+    let (mut up, mut down): (Vec<u32>, Vec<u32>) =
+        edge.iter().map(|&entry| number(entry)).partition(|&half| upwards(half));
+    for side in [&mut up, &mut down] {
+        side.sort_unstable_by_key(|&half| {
+            let (triangle, edge) = parts(half);
+            (vertices[triangles[triangle][(edge + 2) % 3] as usize], half)
+        });
+    }
+    for (&a, &b) in up.iter().zip(&down) {
+        join(a, b, result);
+    }
+    result.unpaired += up.len().abs_diff(down.len());
+    result.non_manifold += usize::from(up.len() == down.len());
+}
+
+fn join(a: u32, b: u32, result: &mut Adjacency) {
+    for (from, to) in [(a, b), (b, a)] {
+        let (triangle, edge) = parts(from);
+        result.neighbour[triangle][edge] = to;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    const CORNERS: [[i32; 3]; 6] =
+        [[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9], [-9, -9, 1], [-9, -9, -9]];
+
+    fn check_mutual(triangles: &[[u32; 3]], result: &Adjacency) {
+        for (triangle, sides) in result.neighbour.iter().enumerate() {
+            for (edge, &other) in sides.iter().enumerate().filter(|(_, other)| **other != NONE) {
+                let (u, f) = parts(other);
+                assert_eq!(result.neighbour[u][f], half_edge(triangle, edge));
+                assert_eq!(triangles[triangle][edge], triangles[u][(f + 1) % 3]);
+                assert_eq!(triangles[triangle][(edge + 1) % 3], triangles[u][f]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_tetrahedron_is_closed() {
+        let result = adjacency(&CORNERS, &TETRAHEDRON);
+        assert_eq!((result.unpaired, result.non_manifold), (0, 0));
+        check_mutual(&TETRAHEDRON, &result);
+        assert_eq!(result.neighbour[0], [half_edge(3, 0), half_edge(2, 0), half_edge(1, 0)]);
+    }
+
+    #[test]
+    fn a_missing_face_leaves_three_sides_open() {
+        let result = adjacency(&CORNERS, &TETRAHEDRON[1..]);
+        assert_eq!((result.unpaired, result.non_manifold), (3, 0));
+        check_mutual(&TETRAHEDRON[1..], &result);
+    }
+
+    #[test]
+    fn a_face_wound_the_wrong_way_has_no_neighbours() {
+        let mut triangles = TETRAHEDRON;
+        triangles[2].reverse();
+        let result = adjacency(&CORNERS, &triangles);
+        assert_eq!((result.unpaired, result.neighbour[2]), (6, [NONE; 3]));
+        check_mutual(&triangles, &result);
+    }
+
+    /// Two tetrahedra that share the edge from vertex 0 to vertex 3.
+    fn siamese() -> Vec<[u32; 3]> {
+        let mut triangles = TETRAHEDRON.to_vec();
+        triangles.extend(TETRAHEDRON.map(|corners| corners.map(|v| [0, 4, 5, 3][v as usize])));
+        triangles
+    }
+
+    #[test]
+    fn an_edge_of_four_faces_is_closed_whatever_the_order_of_the_faces() {
+        let triangles = siamese();
+        let first = adjacency(&CORNERS, &triangles);
+        assert_eq!((first.unpaired, first.non_manifold), (0, 1));
+        check_mutual(&triangles, &first);
+        let partner = |triangles: &[[u32; 3]], result: &Adjacency, at: usize| {
+            result.neighbour[at].map(|half| triangles[parts(half).0])
+        };
+        let mut turned = triangles.clone();
+        turned.reverse();
+        let second = adjacency(&CORNERS, &turned);
+        for at in 0..triangles.len() {
+            let other = triangles.len() - 1 - at;
+            assert_eq!(partner(&triangles, &first, at), partner(&turned, &second, other));
+        }
+    }
+
+    #[test]
+    fn a_fin_stays_open_alone() {
+        let mut triangles = TETRAHEDRON.to_vec();
+        triangles.push([0, 3, 5]);
+        let result = adjacency(&CORNERS, &triangles);
+        assert_eq!((result.unpaired, result.non_manifold), (3, 0));
+        check_mutual(&triangles, &result);
+    }
+
+    #[test]
+    fn a_side_without_length_has_no_neighbour() {
+        let triangles = [[0, 0, 1], [0, 0, 1]];
+        let result = adjacency(&CORNERS, &triangles);
+        assert_eq!(result.neighbour[0][0], NONE);
+        assert_eq!(result.unpaired, 2);
+        check_mutual(&triangles, &result);
+    }
+}
