@@ -8,18 +8,18 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "code", rename_all = "kebab-case")]
 pub enum Warning {
-    /// Triangles without area were dropped.
+    /// Triangles with two equal corners were dropped.
     DegenerateTriangles {
         /// The model's file.
         file: String,
         /// How many.
         count: usize,
     },
-    /// Mesh edges that do not have exactly two oppositely wound faces.
+    /// Sides of triangles that no oppositely wound neighbour continues.
     OpenMesh {
         /// The model's file.
         file: String,
-        /// How many such edges.
+        /// How many such sides.
         edges: usize,
     },
     /// Contours that did not close on some layers and were closed by a straight line.
@@ -56,12 +56,12 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::DegenerateTriangles { file, count } => {
-                write!(f, "{file}: {count} triangles without area were dropped")
+                write!(f, "{file}: {count} triangles with two equal corners were dropped")
             }
             Self::OpenMesh { file, edges } => write!(
                 f,
-                "{file}: the mesh is not closed ({edges} edges without exactly two faces); \
-                 check the print or mend the model"
+                "{file}: the mesh is not closed ({edges} edges have no matching \
+                 neighbour); check the print or mend the model"
             ),
             Self::OpenContours { layers, longest_gap_mm } => write!(
                 f,

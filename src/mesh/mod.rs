@@ -2,8 +2,12 @@
 
 pub mod edges;
 pub mod stl;
+pub mod transform;
 
 mod ascii;
+mod fit;
+mod layout;
+mod measure;
 mod sniff;
 mod weld;
 

@@ -1,0 +1,124 @@
+//! Boxes -> positions: lays models out on one bed in shelves.
+
+use crate::units::{Coord, to_units};
+
+/// Distance between the bounding boxes of neighbouring models, mm.
+pub const GAP_MM: f64 = 5.0;
+
+/// At most so many shelf widths are tried.
+const TRIALS: usize = 100;
+
+/// Where the boxes lie, in grid units.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Layout {
+    /// The middle of each box, in the order given; the layout's middle is 0, 0 (to one unit).
+    pub(crate) middles: Vec<[Coord; 2]>,
+    /// Size of the whole.
+    pub(crate) size: [i64; 2],
+}
+
+/// Lays `boxes` (width and depth, even numbers of units) in rows of models of
+/// like depth, [`GAP_MM`] apart, deepest first. Of the row widths that fit the
+/// bed the one is taken that leaves most of the bed free around the whole.
+/// `None` if nothing fits.
+///
+/// Shelf packing by decreasing depth: Coffman, Garey, Johnson and Tarjan 1980
+/// (next-fit decreasing height).
+pub(crate) fn shelves(boxes: &[[i64; 2]], bed: [i64; 2]) -> Option<Layout> {
+    let gap = i64::from(to_units(GAP_MM));
+    let room = |[width, depth]: [i64; 2]| i128::from(width + gap) * i128::from(depth + gap);
+    if boxes.iter().map(|&size| room(size)).sum::<i128>() > room(bed) {
+        return None;
+    }
+    let mut order: Vec<usize> = (0..boxes.len()).collect();
+    order.sort_by_key(|&i| (-boxes[i][1], -boxes[i][0], i));
+    let mut best: Option<(i64, Layout)> = None;
+    let mut row = -gap;
+    for (tried, &i) in order.iter().enumerate() {
+        row += boxes[i][0] + gap;
+        if tried % boxes.len().div_ceil(TRIALS) != 0 && tried + 1 != boxes.len() {
+            continue;
+        }
+        let layout = fill(boxes, &order, row.min(bed[0]), gap);
+        // How much of the bed the whole takes, along the side where it is scarcer.
+        let use_of = (layout.size[0] * bed[1]).max(layout.size[1] * bed[0]);
+        let fits = layout.size[0] <= bed[0] && layout.size[1] <= bed[1];
+        if fits && best.as_ref().is_none_or(|(least, _)| use_of < *least) {
+            best = Some((use_of, layout));
+        }
+    }
+    best.map(|(_, layout)| layout)
+}
+
+/// Fills rows of at most `width` (or one box) in the given order.
+#[expect(clippy::cast_possible_truncation, reason = "a layout that fits the bed fits Coord")]
+fn fill(boxes: &[[i64; 2]], order: &[usize], width: i64, gap: i64) -> Layout {
+    let mut corners = vec![[0; 2]; boxes.len()];
+    let (mut x, mut y, mut depth) = (0, 0, 0);
+    let mut size = [0; 2];
+    for &i in order {
+        if x > 0 && x + boxes[i][0] > width {
+            y += depth + gap;
+            (x, depth) = (0, 0);
+        }
+        corners[i] = [x, y];
+        depth = depth.max(boxes[i][1]);
+        size = [size[0].max(x + boxes[i][0]), size[1].max(y + boxes[i][1])];
+        x += boxes[i][0] + gap;
+    }
+    let middle =
+        |i: usize, axis: usize| (corners[i][axis] + boxes[i][axis] / 2 - size[axis] / 2) as Coord;
+    Layout { middles: (0..boxes.len()).map(|i| [middle(i, 0), middle(i, 1)]).collect(), size }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GAP: i64 = 50_000;
+
+    fn check(boxes: &[[i64; 2]], layout: &Layout) {
+        for (i, a) in boxes.iter().enumerate() {
+            for (axis, side) in a.iter().enumerate() {
+                let middle = i64::from(layout.middles[i][axis]);
+                assert!(middle.abs() + side / 2 <= layout.size[axis] / 2 + 1);
+            }
+            for (j, b) in boxes.iter().enumerate().skip(i + 1) {
+                let apart = |axis: usize| {
+                    let distance = layout.middles[i][axis] - layout.middles[j][axis];
+                    i64::from(distance).abs() - (a[axis] + b[axis]) / 2
+                };
+                assert!(apart(0).max(apart(1)) >= GAP, "{i} and {j}");
+            }
+        }
+    }
+
+    #[test]
+    fn one_box_lies_in_the_middle() {
+        let layout = shelves(&[[400, 202]], [1000, 1000]).unwrap();
+        assert_eq!(layout, Layout { middles: vec![[0, 0]], size: [400, 202] });
+    }
+
+    #[test]
+    fn boxes_keep_apart() {
+        let boxes: Vec<[i64; 2]> =
+            (0..37).map(|i| [100_000 + 2 * (i * 7919 % 90_000), 50_000 + i * 4000]).collect();
+        let layout = shelves(&boxes, [2_200_000, 2_200_000]).unwrap();
+        check(&boxes, &layout);
+    }
+
+    #[test]
+    fn nine_squares_make_a_square() {
+        let layout = shelves(&[[200_000, 200_000]; 9], [2_200_000, 2_200_000]).unwrap();
+        check(&[[200_000, 200_000]; 9], &layout);
+        assert_eq!(layout.size, [700_000, 700_000]);
+    }
+
+    #[test]
+    fn a_full_bed_is_filled_and_no_more() {
+        let bed = [1_100_000, 1_100_000];
+        assert!(shelves(&[[525_000, 525_000]; 4], bed).is_some());
+        assert!(shelves(&[[525_000, 525_000]; 5], bed).is_none());
+        assert!(shelves(&[[525_002, 525_000]; 4], bed).is_none());
+    }
+}

@@ -1,0 +1,397 @@
+//! RawMesh -> Mesh: scales, turns, drops to the bed, lays out, and rounds to the integer grid.
+
+use super::edges::{self, Adjacency};
+use super::fit::{check_placement, check_size, offset, sides};
+use super::layout::{Layout, shelves};
+use super::measure::{has_area, volume_mm3};
+use super::weld::MAX_TRIANGLES;
+use super::{Bed, Mesh, MeshReport, Placement, RawMesh, Unit};
+use crate::error::{Error, Result};
+use crate::units::{MAX_COORDINATE_MM, to_units};
+use crate::warning::Warning;
+use nalgebra::{Matrix3, Vector3};
+
+pub use super::layout::GAP_MM;
+
+/// Models whose largest side is below this are suspected of another unit, mm.
+pub const TINY_MM: f64 = 1.0;
+
+/// The models as they lie on the bed, and what was found on the way.
+#[derive(Debug, Clone, Default)]
+pub struct Placed {
+    /// All models and copies; x and y from the middle of the layout, z from the bed.
+    pub mesh: Mesh,
+    /// Which half-edge of `mesh` continues which.
+    pub adjacency: Adjacency,
+    /// One for each model, in the order given; copies are not counted.
+    pub reports: Vec<MeshReport>,
+    /// Where the layout's middle is, in the machine's coordinates, mm.
+    pub offset: [f64; 2],
+    /// Size of the whole layout, mm.
+    pub size_mm: [f64; 3],
+    /// Findings.
+    pub warnings: Vec<Warning>,
+}
+
+/// One model on the grid, its bounding box's middle at x = y = 0.
+struct Part {
+    mesh: Mesh,
+    adjacency: Adjacency,
+    /// Width, depth and height, grid units. The first two are even.
+    size: [i64; 3],
+}
+
+/// Lays `models` on the `bed`.
+///
+/// Order: unit and scale; turns about x, then y, then z; down to the bed; the
+/// middle of the bounding box to the middle. Only then coordinates are rounded
+/// to the grid, so that shifted and mirrored files give equal and mirrored
+/// meshes as far as their numbers allow. Several models and copies are laid
+/// out in rows, [`GAP_MM`] apart. Corners that fall on one grid point stay
+/// different vertices, so that what was closed is closed.
+///
+/// # Errors
+/// [`Error::Usage`] for a scale, turn or count that is none; [`Error::Input`]
+/// for a flat model; [`Error::Unprintable`] for what is larger than the bed or
+/// is pushed off it. Sizes in messages are mm.
+pub fn place(models: Vec<RawMesh>, placement: &Placement, bed: &Bed) -> Result<Placed> {
+    check_placement(placement)?;
+    let turn = rotation(placement.rotate);
+    let mut placed = Placed::default();
+    let mut parts = Vec::with_capacity(models.len());
+    for mut model in models {
+        let part = part(&mut model, &turn, placement, bed)?;
+        let report = report(model.report, &part)?;
+        warn(&report, &mut placed.warnings);
+        placed.reports.push(report);
+        parts.push(part);
+    }
+    let layout = lay_out(&parts, placement, bed)?;
+    let height = parts.iter().map(|part| part.size[2]).max().unwrap_or(0);
+    placed.size_mm = [layout.size[0], layout.size[1], height].map(length);
+    placed.offset = offset(placement, bed, placed.size_mm)?;
+    let copies = placement.copies as usize;
+    join(parts, &layout, copies, &mut placed);
+    Ok(placed)
+}
+
+/// The turns about x, then y, then z by `degrees`, as one matrix.
+fn rotation(degrees: [f64; 3]) -> Matrix3<f64> {
+    let [(sx, cx), (sy, cy), (sz, cz)] = degrees.map(sin_cos);
+    let x = Matrix3::new(1.0, 0.0, 0.0, 0.0, cx, -sx, 0.0, sx, cx);
+    let y = Matrix3::new(cy, 0.0, sy, 0.0, 1.0, 0.0, -sy, 0.0, cy);
+    let z = Matrix3::new(cz, -sz, 0.0, sz, cz, 0.0, 0.0, 0.0, 1.0);
+    z * y * x
+}
+
+/// Sine and cosine, exact for quarter turns, and by `libm` otherwise, because
+/// the system's differ from one platform to the next.
+fn sin_cos(degrees: f64) -> (f64, f64) {
+    let turn = degrees.rem_euclid(360.0);
+    let quarters = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)];
+    let exact = [0.0, 90.0, 180.0, 270.0].iter().position(|&quarter| quarter == turn);
+    exact.map_or_else(|| libm::sincos(turn.to_radians()), |quarter| quarters[quarter])
+}
+
+/// Brings one model onto the grid and takes its triangles.
+fn part(
+    model: &mut RawMesh,
+    turn: &Matrix3<f64>,
+    placement: &Placement,
+    bed: &Bed,
+) -> Result<Part> {
+    let unit = match placement.unit {
+        Unit::Mm => 1.0,
+        Unit::Inch => 25.4,
+    };
+    let factor = unit * placement.scale;
+    let points: Vec<Vector3<f64>> = model
+        .vertices
+        .iter()
+        .map(|corner| turn * (Vector3::from(corner.map(f64::from)) * factor))
+        .collect();
+    let first = points.first().copied().unwrap_or_default();
+    let (low, high) =
+        points.iter().fold((first, first), |(low, high), point| (low.inf(point), high.sup(point)));
+    check_size((high - low).into(), &model.report.file, placement, bed)?;
+    // In this order, so that a mirrored model gives exactly the mirrored middle.
+    let zero = Vector3::new((low.x + high.x) / 2.0, (low.y + high.y) / 2.0, low.z);
+    let on_grid = |point: &Vector3<f64>| <[f64; 3]>::from(point - zero).map(to_units);
+    let mesh = Mesh {
+        vertices: points.iter().map(on_grid).collect(),
+        triangles: std::mem::take(&mut model.triangles),
+    };
+    let adjacency = edges::adjacency(&mesh.vertices, &mesh.triangles);
+    // The middle of the box is at 0, so that both sides round alike.
+    let half = to_units_of(&(high - zero));
+    Ok(Part { mesh, adjacency, size: [2 * half[0], 2 * half[1], half[2]] })
+}
+
+fn to_units_of(point: &Vector3<f64>) -> [i64; 3] {
+    <[f64; 3]>::from(*point).map(|mm| i64::from(to_units(mm)))
+}
+
+/// Completes the report of a model and refuses one that encloses nothing.
+fn report(read: MeshReport, part: &Part) -> Result<MeshReport> {
+    let flat = |what: &str| {
+        let size = sides(&part.size.map(length));
+        let advice = "check the model, --unit and --scale";
+        Err(Error::input(&read.file, format!("{what} ({size} mm), nothing to print; {advice}")))
+    };
+    if part.mesh.triangles.len() < 4 {
+        return flat("fewer than four triangles enclose no body");
+    }
+    if part.size[2] == 0 {
+        return flat("the model has no height");
+    }
+    if part.size[0] == 0 || part.size[1] == 0 || !has_area(&part.mesh) {
+        return flat("the model is flat and has no area in any layer");
+    }
+    Ok(MeshReport {
+        open_edges: part.adjacency.unpaired,
+        non_manifold_edges: part.adjacency.non_manifold,
+        size_mm: part.size.map(length),
+        volume_mm3: volume_mm3(&part.mesh),
+        ..read
+    })
+}
+
+#[expect(clippy::cast_precision_loss, reason = "lengths are far below 2^53 units")]
+fn length(units: i64) -> f64 {
+    units as f64 / crate::units::UNITS_PER_MM
+}
+
+fn warn(report: &MeshReport, warnings: &mut Vec<Warning>) {
+    let file = &report.file;
+    if report.trailing_bytes > 0 {
+        let count = report.trailing_bytes;
+        warnings.push(Warning::TrailingBytes { file: file.clone(), count });
+    }
+    if report.degenerate > 0 {
+        let count = report.degenerate;
+        warnings.push(Warning::DegenerateTriangles { file: file.clone(), count });
+    }
+    if report.open_edges > 0 {
+        warnings.push(Warning::OpenMesh { file: file.clone(), edges: report.open_edges });
+    }
+    let size_mm = report.size_mm.into_iter().fold(0.0, f64::max);
+    if size_mm < TINY_MM {
+        warnings.push(Warning::TinyModel { file: file.clone(), size_mm });
+    }
+}
+
+/// Positions of all copies, model by model.
+fn lay_out(parts: &[Part], placement: &Placement, bed: &Bed) -> Result<Layout> {
+    let copies = placement.copies as usize;
+    let bodies = parts.len().saturating_mul(copies);
+    let space = [bed.max[0] - bed.min[0], bed.max[1] - bed.min[1]];
+    let full = || {
+        Error::Unprintable(format!(
+            "{bodies} models with gaps of {GAP_MM} mm do not fit the bed of {} mm; print fewer at once",
+            sides(&space)
+        ))
+    };
+    let triangles: usize = parts.iter().map(|part| part.mesh.triangles.len()).sum();
+    if triangles.saturating_mul(copies) > MAX_TRIANGLES {
+        return Err(Error::Unprintable(format!(
+            "{bodies} models have more than {MAX_TRIANGLES} triangles; print fewer at once"
+        )));
+    }
+    let boxes: Vec<[i64; 2]> = parts
+        .iter()
+        .flat_map(|part| std::iter::repeat_n([part.size[0], part.size[1]], copies))
+        .collect();
+    if boxes.is_empty() {
+        return Err(Error::Usage("no model is given".to_owned()));
+    }
+    // Half a unit more for what was just rounded up.
+    let bed = space.map(|side| i64::from(to_units(side.min(MAX_COORDINATE_MM))) + 1);
+    shelves(&boxes, bed).ok_or_else(full)
+}
+
+/// Puts all copies into one mesh.
+#[expect(clippy::cast_possible_truncation, reason = "lay_out has checked the number of triangles")]
+fn join(parts: Vec<Part>, layout: &Layout, copies: usize, placed: &mut Placed) {
+    if let (1, [[0, 0]]) = (parts.len(), &layout.middles[..]) {
+        if let Some(part) = parts.into_iter().next() {
+            (placed.mesh, placed.adjacency) = (part.mesh, part.adjacency);
+        }
+        return;
+    }
+    let Placed { mesh, adjacency, .. } = placed;
+    for (i, &[x, y]) in layout.middles.iter().enumerate() {
+        let part = &parts[i / copies];
+        let vertex = mesh.vertices.len() as u32;
+        let half = edges::half_edge(mesh.triangles.len(), 0);
+        let moved = |&[px, py, pz]: &[i32; 3]| [px + x, py + y, pz];
+        mesh.vertices.extend(part.mesh.vertices.iter().map(moved));
+        let corners = part.mesh.triangles.iter();
+        mesh.triangles.extend(corners.map(|corners| corners.map(|corner| corner + vertex)));
+        let shifted = |other: u32| {
+            if other == edges::NONE { other } else { other + half }
+        };
+        let sides = part.adjacency.neighbour.iter();
+        adjacency.neighbour.extend(sides.map(|sides| sides.map(shifted)));
+        adjacency.unpaired += part.adjacency.unpaired;
+        adjacency.non_manifold += part.adjacency.non_manifold;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BED: Bed = Bed { min: [-100.0, -50.0], max: [100.0, 50.0], height: 80.0 };
+    const PLAIN: Placement =
+        Placement { unit: Unit::Mm, scale: 1.0, rotate: [0.0; 3], at: None, copies: 1 };
+
+    /// A tetrahedron with right angles at `at`.
+    fn corner(at: [f32; 3], size: [f32; 3]) -> RawMesh {
+        let [x, y, z] = at;
+        let [a, b, c] = size;
+        let vertices = vec![at, [x + a, y, z], [x, y + b, z], [x, y, z + c]];
+        let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        let report = MeshReport { file: "x.stl".to_owned(), ..MeshReport::default() };
+        RawMesh { vertices, triangles, report }
+    }
+
+    fn one(model: RawMesh, placement: &Placement) -> Placed {
+        place(vec![model], placement, &BED).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    fn refusal(model: RawMesh, placement: &Placement) -> String {
+        let error = place(vec![model], placement, &BED).expect_err("must be refused");
+        let text = error.to_string();
+        assert!(!text.contains('\n') && error.exit_code() > 1, "{text}");
+        text
+    }
+
+    #[test]
+    fn a_model_is_centred_and_stands_on_the_bed() {
+        let placed = one(corner([7.0, -3.0, -5.5], [20.0, 10.0, 5.0]), &PLAIN);
+        assert_eq!(placed.mesh.vertices[0], [-100_000, -50_000, 0]);
+        assert_eq!(placed.mesh.vertices[3], [-100_000, -50_000, 50_000]);
+        assert_eq!((placed.offset, placed.size_mm), ([0.0, 0.0], [20.0, 10.0, 5.0]));
+        let report = &placed.reports[0];
+        assert_eq!((report.size_mm, report.open_edges), ([20.0, 10.0, 5.0], 0));
+        assert!((report.volume_mm3 - 1000.0 / 6.0).abs() < 1e-9);
+        assert!(placed.warnings.is_empty());
+    }
+
+    #[test]
+    fn shifted_and_mirrored_models_give_equal_and_mirrored_meshes() {
+        let model = corner([0.0; 3], [10.125, 3.5, 2.75]);
+        let plain = one(model.clone(), &PLAIN).mesh.vertices;
+        assert_eq!(
+            one(corner([64.0, -32.0, 5.0], [10.125, 3.5, 2.75]), &PLAIN).mesh.vertices,
+            plain
+        );
+        let mut mirrored = model;
+        for [x, y, _] in &mut mirrored.vertices {
+            (*x, *y) = (-*x, -*y);
+        }
+        let expected: Vec<_> = plain.iter().map(|&[x, y, z]| [-x, -y, z]).collect();
+        assert_eq!(one(mirrored, &PLAIN).mesh.vertices, expected);
+    }
+
+    #[test]
+    fn turns_go_about_x_then_y_then_z_and_are_exact_by_quarters() {
+        let turned =
+            |rotate| one(corner([0.0; 3], [20.0, 10.0, 6.0]), &Placement { rotate, ..PLAIN });
+        assert_eq!(turned([90.0, 0.0, 0.0]).size_mm, [20.0, 6.0, 10.0]);
+        assert_eq!(turned([90.0, 0.0, -270.0]).size_mm, [6.0, 20.0, 10.0]);
+        let vertices = turned([90.0, 90.0, 0.0]).mesh.vertices;
+        // x -> x -> -z; y -> z -> x; z -> -y -> -y.
+        assert_eq!(vertices[1][2], 0);
+        assert_eq!(vertices[0][2], 200_000);
+        assert_eq!(vertices[2][0] - vertices[0][0], 100_000);
+        assert_eq!(vertices[3][1] - vertices[0][1], -60_000);
+        let volume = turned([31.0, -7.0, 200.5]).reports[0].volume_mm3;
+        assert!((volume - 200.0).abs() < 0.01, "{volume}");
+    }
+
+    #[test]
+    fn unit_and_scale_multiply() {
+        let placement = Placement { unit: Unit::Inch, scale: 0.5, ..PLAIN };
+        assert_eq!(one(corner([0.0; 3], [1.0, 2.0, 3.0]), &placement).size_mm, [12.7, 25.4, 38.1]);
+    }
+
+    #[test]
+    fn copies_are_separate_closed_bodies() {
+        let models = vec![corner([0.0; 3], [20.0, 10.0, 5.0]), corner([0.0; 3], [8.0, 8.0, 9.0])];
+        let placement = Placement { copies: 3, ..PLAIN };
+        let placed = place(models, &placement, &BED).unwrap();
+        assert_eq!((placed.mesh.triangles.len(), placed.mesh.vertices.len()), (24, 24));
+        assert_eq!((placed.reports.len(), placed.size_mm[2]), (2, 9.0));
+        assert_eq!(
+            placed.adjacency,
+            edges::adjacency(&placed.mesh.vertices, &placed.mesh.triangles)
+        );
+        for axis in 0..2 {
+            let all = placed.mesh.vertices.iter().map(|vertex| vertex[axis]);
+            let (low, high) = (all.clone().min().unwrap(), all.max().unwrap());
+            assert!((low + high).abs() <= 1, "{low} {high}");
+            assert_eq!(length(i64::from(high - low)), placed.size_mm[axis]);
+        }
+    }
+
+    #[test]
+    fn a_place_is_taken_or_refused_with_the_side() {
+        let model = || corner([0.0; 3], [20.0, 10.0, 5.0]);
+        let at = |x, y| Placement { at: Some([x, y]), ..PLAIN };
+        assert_eq!(one(model(), &at(90.0, -45.0)).offset, [90.0, -45.0]);
+        let text = refusal(model(), &at(90.5, -47.0));
+        assert!(text.contains("0.5 mm at the right and 2 mm at the front"), "{text}");
+        assert!(text.contains("20 × 10 mm"), "{text}");
+    }
+
+    #[test]
+    fn what_is_too_large_is_refused_with_a_scale_that_fits() {
+        let text = refusal(corner([0.0; 3], [300.0, 10.0, 5.0]), &PLAIN);
+        assert!(text.contains("300 × 10 × 5 mm") && text.contains("--scale 0.666 "), "{text}");
+        assert!(refusal(corner([0.0; 3], [9.0, 9.0, 81.0]), &PLAIN).contains("higher"));
+        assert!(refusal(corner([0.0; 3], [1e9, 1e9, 1e9]), &PLAIN).contains("1.0e9"));
+        let huge = Placement { scale: 1e300, ..PLAIN };
+        assert!(refusal(corner([0.0; 3], [1e9, 1e9, 1e9]), &huge).contains("at most 1e9"));
+        let many = Placement { copies: u32::MAX, ..PLAIN };
+        assert!(refusal(corner([0.0; 3], [9.0, 9.0, 9.0]), &many).contains("fewer"));
+        assert!(
+            refusal(corner([0.0; 3], [99.0, 9.0, 9.0]), &Placement { copies: 9, ..PLAIN })
+                .contains("9 models with gaps")
+        );
+        assert_eq!(one(corner([0.0; 3], [200.0, 100.0, 80.0]), &PLAIN).offset, [0.0, 0.0]);
+    }
+
+    #[test]
+    fn what_is_flat_is_refused() {
+        assert!(refusal(corner([0.0; 3], [9.0, 9.0, 0.0]), &PLAIN).contains("no height"));
+        assert!(refusal(corner([0.0; 3], [0.0, 9.0, 9.0]), &PLAIN).contains("no area"));
+        let mut line = corner([0.0; 3], [9.0; 3]);
+        line.vertices = vec![[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]];
+        assert!(refusal(line, &PLAIN).contains("no area"));
+        assert!(
+            refusal(corner([0.0; 3], [9.0; 3]), &Placement { scale: 0.0, ..PLAIN })
+                .contains("--scale")
+        );
+    }
+
+    #[test]
+    fn findings_become_warnings() {
+        let mut model = corner([0.0; 3], [0.5, 0.25, 0.125]);
+        model.triangles.push([0, 1, 2]);
+        model.triangles.push([0, 1, 3]);
+        (model.report.degenerate, model.report.trailing_bytes) = (2, 3);
+        let placed = one(model, &PLAIN);
+        let file = || "x.stl".to_owned();
+        assert_eq!(placed.reports[0].open_edges, 6);
+        assert_eq!(
+            placed.warnings,
+            [
+                Warning::TrailingBytes { file: file(), count: 3 },
+                Warning::DegenerateTriangles { file: file(), count: 2 },
+                Warning::OpenMesh { file: file(), edges: 6 },
+                Warning::TinyModel { file: file(), size_mm: 0.5 },
+            ]
+        );
+    }
+}
