@@ -7,12 +7,17 @@ use crate::units::MAX_COORDINATE_MM;
 /// Half a grid unit: differences below it are rounding, mm.
 const HALF_UNIT_MM: f64 = 0.000_05;
 
-/// Refuses numbers that are none.
+/// Largest factor: keeps the largest coordinate of a file far from overflow.
+const MAX_SCALE: f64 = 1e9;
+
+/// Refuses numbers that make no sense.
 pub(crate) fn check_placement(placement: &Placement) -> Result<()> {
     let Placement { scale, rotate, at, copies, .. } = *placement;
     let finite = rotate.iter().chain(at.iter().flatten()).all(|number| number.is_finite());
-    if !(scale > 0.0 && scale.is_finite()) {
-        return Err(Error::Usage(format!("--scale {scale}: must be a number above 0")));
+    if !(scale > 0.0 && scale <= MAX_SCALE) {
+        return Err(Error::Usage(format!(
+            "--scale {scale}: must be above 0 and at most {MAX_SCALE:e}"
+        )));
     }
     if !finite {
         return Err(Error::Usage("--rotate and --at take finite numbers".to_owned()));
@@ -41,9 +46,13 @@ pub(crate) fn check_size(
     // Rounded down to three digits, so that the advice does fit.
     let digits = libm::pow(10.0, 2.0 - libm::floor(libm::log10(scale)));
     let scale = libm::floor(scale * digits) / digits;
+    let advice = if scale > 0.0 && digits.is_finite() {
+        format!("use --scale {scale} or less, or turn it with --rotate")
+    } else {
+        "check the model and --scale".to_owned()
+    };
     Err(Error::Unprintable(format!(
-        "{file}: the model is {} mm and so {what} than the print volume of {} mm; \
-         use --scale {scale} or less, or turn it with --rotate",
+        "{file}: the model is {} mm and so {what} than the print volume of {} mm; {advice}",
         sides(&size),
         sides(&space)
     )))
@@ -74,7 +83,9 @@ pub(crate) fn offset(placement: &Placement, bed: &Bed, size: [f64; 3]) -> Result
         let high = at[axis] + size[axis] / 2.0 - bed.max[axis];
         for (over, name) in [low, high].into_iter().zip(names[axis]) {
             if over > 2.0 * HALF_UNIT_MM {
-                beyond.push(format!("{} mm at the {name}", number((over * 100.0).ceil() / 100.0)));
+                // Rounded up, but not for the noise of the subtraction.
+                let over = (over * 100.0 - 1e-6).ceil() / 100.0;
+                beyond.push(format!("{} mm at the {name}", number(over)));
             }
         }
     }

@@ -79,9 +79,9 @@ mod tests {
 
     fn check(boxes: &[[i64; 2]], layout: &Layout) {
         for (i, a) in boxes.iter().enumerate() {
-            for axis in 0..2 {
+            for (axis, side) in a.iter().enumerate() {
                 let middle = i64::from(layout.middles[i][axis]);
-                assert!(middle.abs() + a[axis] / 2 <= layout.size[axis] / 2 + 1);
+                assert!(middle.abs() + side / 2 <= layout.size[axis] / 2 + 1);
             }
             for (j, b) in boxes.iter().enumerate().skip(i + 1) {
                 let apart = |axis: usize| {

@@ -59,8 +59,8 @@ pub fn place(models: Vec<RawMesh>, placement: &Placement, bed: &Bed) -> Result<P
     let turn = rotation(placement.rotate);
     let mut placed = Placed::default();
     let mut parts = Vec::with_capacity(models.len());
-    for model in models {
-        let part = part(&model, &turn, placement, bed)?;
+    for mut model in models {
+        let part = part(&mut model, &turn, placement, bed)?;
         let report = report(model.report, &part)?;
         warn(&report, &mut placed.warnings);
         placed.reports.push(report);
@@ -93,8 +93,13 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
     exact.map_or_else(|| libm::sincos(turn.to_radians()), |quarter| quarters[quarter])
 }
 
-/// Brings one model onto the grid.
-fn part(model: &RawMesh, turn: &Matrix3<f64>, placement: &Placement, bed: &Bed) -> Result<Part> {
+/// Brings one model onto the grid and takes its triangles.
+fn part(
+    model: &mut RawMesh,
+    turn: &Matrix3<f64>,
+    placement: &Placement,
+    bed: &Bed,
+) -> Result<Part> {
     let unit = match placement.unit {
         Unit::Mm => 1.0,
         Unit::Inch => 25.4,
@@ -112,8 +117,10 @@ fn part(model: &RawMesh, turn: &Matrix3<f64>, placement: &Placement, bed: &Bed) 
     // In this order, so that a mirrored model gives exactly the mirrored middle.
     let zero = Vector3::new((low.x + high.x) / 2.0, (low.y + high.y) / 2.0, low.z);
     let on_grid = |point: &Vector3<f64>| <[f64; 3]>::from(point - zero).map(to_units);
-    let mesh =
-        Mesh { vertices: points.iter().map(on_grid).collect(), triangles: model.triangles.clone() };
+    let mesh = Mesh {
+        vertices: points.iter().map(on_grid).collect(),
+        triangles: std::mem::take(&mut model.triangles),
+    };
     let adjacency = edges::adjacency(&mesh.vertices, &mesh.triangles);
     // The middle of the box is at 0, so that both sides round alike.
     let half = to_units_of(&(high - zero));
@@ -345,7 +352,7 @@ mod tests {
         assert!(refusal(corner([0.0; 3], [9.0, 9.0, 81.0]), &PLAIN).contains("higher"));
         assert!(refusal(corner([0.0; 3], [1e9, 1e9, 1e9]), &PLAIN).contains("1.0e9"));
         let huge = Placement { scale: 1e300, ..PLAIN };
-        assert!(refusal(corner([0.0; 3], [1e9, 1e9, 1e9]), &huge).contains("larger"));
+        assert!(refusal(corner([0.0; 3], [1e9, 1e9, 1e9]), &huge).contains("at most 1e9"));
         let many = Placement { copies: u32::MAX, ..PLAIN };
         assert!(refusal(corner([0.0; 3], [9.0, 9.0, 9.0]), &many).contains("fewer"));
         assert!(

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 /// Most triangles a mesh may have: half-edges are numbered `triangle * 4 + edge` in 32 bits.
 pub(crate) const MAX_TRIANGLES: usize = (1 << 30) - 1;
 
-/// The bits of a corner. A pair, because it hashes faster than an array.
+/// The bits of a corner, packed.
 type Key = (u64, u32);
 
 /// Collects triangles into a [`RawMesh`]. The map is only looked up, never

@@ -55,7 +55,7 @@ pub fn skin(lines: &[Line], pitch: Coord, width: Coord) -> Vec<Chain> {
     let join = |from: &LinePoint, to: &LinePoint, _: (i32, i32), _: Side| {
         ((from.u - to.u).abs() <= LONGEST_SOLID_JOIN * width).then(Vec::new)
     };
-    link(rows, 1, join)
+    link(rows, 1, pitch, join)
 }
 
 /// Chains of every `stride`-th line of a sparse region; `pitch` is the distance of its rows.
@@ -73,7 +73,7 @@ pub fn comb(region: &Rows, stride: i32, pitch: Coord, width: Coord) -> Vec<Chain
             .then(Vec::new)
             .or_else(|| edge_join(region, from, to, (a, b), side, pitch, width))
     };
-    link(rows, stride, join)
+    link(rows, stride, stride * pitch, join)
 }
 
 fn straight(span: Span, v: Coord, width: Coord) -> Vec<LinePoint> {
@@ -155,10 +155,12 @@ impl Open {
     }
 }
 
-/// Joins lines of rows `stride` apart. `join` gives the points between two ends, or none.
+/// Joins lines of rows `stride` apart that lie beside each other or at most `slack`
+/// apart along the lines. `join` gives the points between two ends, or none.
 fn link(
     rows: impl Iterator<Item = (i32, Vec<Piece>)>,
     stride: i32,
+    slack: Coord,
     join: impl Fn(&LinePoint, &LinePoint, (i32, i32), Side) -> Option<Vec<LinePoint>>,
 ) -> Vec<Chain> {
     let mut done = Vec::new();
@@ -171,7 +173,7 @@ fn link(
         let mut pieces: Vec<Option<Piece>> = pieces.into_iter().map(Some).collect();
         let mut growing = Vec::with_capacity(pieces.len());
         for mut chain in open.drain(..) {
-            match next(&chain, &pieces, |from, to, side| join(from, to, (last_row, j), side)) {
+            match next(&chain, &pieces, slack, |from, to, side| join(from, to, (last_row, j), side)) {
                 Some((k, side, points)) => {
                     if let Some(piece) = pieces[k].take() {
                         chain.extend(side, points, piece);
@@ -199,11 +201,13 @@ fn link(
 fn next(
     chain: &Open,
     pieces: &[Option<Piece>],
+    slack: Coord,
     join: impl Fn(&LinePoint, &LinePoint, Side) -> Option<Vec<LinePoint>>,
 ) -> Option<(usize, Side, Vec<LinePoint>)> {
+    let near = Span { start: chain.span.start - slack, end: chain.span.end + slack };
     let beside = || {
         pieces.iter().enumerate().filter_map(|(k, piece)| {
-            piece.as_ref().filter(|p| p.span.overlaps(chain.span)).map(|p| (k, p))
+            piece.as_ref().filter(|p| p.span.overlaps(near)).map(|p| (k, p))
         })
     };
     chain.sides().iter().find_map(|&side| {

@@ -20,6 +20,10 @@ const WIDEST: f64 = 1.75;
 /// Strips narrower than this stay open (20 µm): half of what positioning can tell.
 const LEAST_STRIP: Coord = 200;
 
+/// Strips that fewer columns in a row tell of stay open: at an edge that steep the
+/// lines' round ends leave little.
+const LEAST_COLUMNS: usize = 3;
+
 /// Changes of width or place below this are not worth a corner in a line (20 µm).
 const LEAST_BEND: f64 = 200.0;
 
@@ -166,8 +170,17 @@ impl Strips {
 fn bend(row: i32, span: Span, strips: &[Strip], params: &Params) -> Vec<LinePoint> {
     let from = strips.partition_point(|s| s.u <= span.start);
     let to = strips.partition_point(|s| s.u < span.end);
-    let Some(known) = strips.get(from..to).filter(|s| !s.is_empty()) else { return Vec::new() };
-    let samples = samples(known, span, params.line_width);
+    let known = strips.get(from..to).unwrap_or_default();
+    let long: Vec<Strip> = known
+        .chunk_by(|a, b| b.u - a.u <= params.line_width)
+        .filter(|run| run.len() >= LEAST_COLUMNS)
+        .flatten()
+        .copied()
+        .collect();
+    if long.is_empty() {
+        return Vec::new();
+    }
+    let samples = samples(&long, span, params.line_width);
     let mut kept = vec![0];
     keep_bends(&samples, 0, samples.len() - 1, &mut kept);
     kept.push(samples.len() - 1);
@@ -265,5 +278,5 @@ fn slivers(thin: Vec<Extent>, params: &Params) -> Vec<Vec<LinePoint>> {
             None => beads.push((extent, vec![point])),
         }
     }
-    beads.into_iter().map(|(_, bead)| bead).filter(|bead| bead.len() > 1).collect()
+    beads.into_iter().map(|(_, bead)| bead).filter(|bead| bead.len() >= LEAST_COLUMNS).collect()
 }
