@@ -5,7 +5,8 @@
 //! lines between show it. Lines that cannot be joined begin a new chain.
 
 use crate::geom::spans::{Rows, Span};
-use crate::region::close::{Line, LinePoint};
+use crate::region::Params;
+use crate::region::close::{self, Joined, Line, LinePoint};
 use crate::units::Coord;
 
 /// Lines joined end to end, in the frame of their raster.
@@ -18,13 +19,6 @@ const LONGEST_SOLID_JOIN: Coord = 2;
 /// Lines shorter than this are left out (50 µm): the bead's round end covers them.
 const LEAST_LINE: i64 = 500;
 
-/// A line of a row, as linking sees it.
-#[derive(Debug, Clone)]
-struct Piece {
-    span: Span,
-    points: Vec<LinePoint>,
-}
-
 /// Which end of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
@@ -36,183 +30,184 @@ impl Side {
     fn other(self) -> Self {
         if self == Self::Left { Self::Right } else { Self::Left }
     }
+
+    /// The end of `span` on this side.
+    fn of(self, span: Span) -> Coord {
+        if self == Self::Left { span.start } else { span.end }
+    }
 }
 
-/// Chains of skin lines; `pitch` is the distance of rows.
+/// A line of a zig-zag.
+#[derive(Debug)]
+struct Link {
+    /// The points between the line before and this one.
+    join: Vec<LinePoint>,
+    row: i32,
+    /// Which of its row's lines, among those given to [`link`].
+    index: usize,
+    span: Span,
+    /// Where it is entered. Of a line without a neighbour either end will do.
+    from: Side,
+}
+
+/// Chains of skin lines, closed up to the walls; `pitch` is the distance of rows.
 #[must_use]
-pub fn skin(lines: &[Line], pitch: Coord, width: Coord) -> Vec<Chain> {
-    let rows = lines.chunk_by(|a, b| a.row == b.row).map(|row| {
-        let pieces = row.iter().filter(|l| l.span.len() >= LEAST_LINE).map(|line| Piece {
-            span: line.span,
-            points: if line.bend.is_empty() {
-                straight(line.span, line.row * pitch, width)
-            } else {
-                line.bend.clone()
-            },
-        });
-        (row[0].row, pieces.collect())
-    });
-    let join = |from: &LinePoint, to: &LinePoint, _: (i32, i32), _: Side| {
-        ((from.u - to.u).abs() <= LONGEST_SOLID_JOIN * width).then(Vec::new)
+pub fn skin(lines: &[Line], params: &Params) -> Vec<Chain> {
+    let pitch = params.line_width;
+    let rows: Vec<&[Line]> = lines.chunk_by(|a, b| a.row == b.row).collect();
+    let spans = rows.iter().map(|row| (row[0].row, row.iter().map(|line| line.span).collect()));
+    let join = |from: (Coord, i32), to: (Coord, i32), _: Side| {
+        ((from.0 - to.0).abs() <= LONGEST_SOLID_JOIN * pitch).then(Vec::new)
     };
-    link(rows, 1, pitch, join)
+    let first = rows.first().map_or(0, |row| row[0].row);
+    let line = |row: i32, index: usize| {
+        // Rows come in order, but rows without skin are left out.
+        let k = rows.partition_point(|r| r[0].row < row.max(first));
+        &rows[k][index]
+    };
+    link(spans, 1, pitch, join)
+        .into_iter()
+        .map(|zigzag| {
+            let mut chain = Vec::new();
+            for (k, link) in zigzag.iter().enumerate() {
+                let mut joined = Joined::default();
+                if k > 0 {
+                    joined.below(link.from == Side::Left);
+                }
+                if k + 1 < zigzag.len() {
+                    joined.above(link.from == Side::Right);
+                }
+                let mut points = close::points(line(link.row, link.index), joined, params);
+                if link.from == Side::Right {
+                    points.reverse();
+                }
+                chain.extend(points);
+            }
+            chain
+        })
+        .collect()
 }
 
 /// Chains of every `stride`-th line of a sparse region; `pitch` is the distance of its rows.
 #[must_use]
 pub fn comb(region: &Rows, stride: i32, pitch: Coord, width: Coord) -> Vec<Chain> {
-    let rows = region.iter().filter(|(j, _)| j.rem_euclid(stride) == 0).map(|(j, row)| {
-        let pieces = row.iter().filter(|s| s.len() >= LEAST_LINE).map(|&span| Piece {
-            span,
-            points: straight(span, j * pitch, width),
-        });
-        (j, pieces.collect())
-    });
-    let join = |from: &LinePoint, to: &LinePoint, (a, b): (i32, i32), side: Side| {
-        straight_join(region, from, to, a, b)
-            .then(Vec::new)
-            .or_else(|| edge_join(region, from, to, (a, b), side, pitch, width))
+    let printed = region.iter().filter(|(j, _)| j.rem_euclid(stride) == 0);
+    let rows = printed.map(|(j, row)| (j, row.to_vec()));
+    let edges = Edges { region, pitch, width };
+    let join = |from: (Coord, i32), to: (Coord, i32), side: Side| {
+        edges.straight(from, to).then(Vec::new).or_else(|| edges.along(from, to, side))
     };
     link(rows, stride, stride * pitch, join)
+        .into_iter()
+        .map(|zigzag| {
+            let mut chain = Vec::new();
+            for link in zigzag {
+                chain.extend(link.join);
+                let v = link.row * pitch;
+                let end = |side: Side| LinePoint { u: side.of(link.span), v, width };
+                chain.extend([end(link.from), end(link.from.other())]);
+            }
+            chain
+        })
+        .collect()
 }
 
-fn straight(span: Span, v: Coord, width: Coord) -> Vec<LinePoint> {
-    vec![LinePoint { u: span.start, v, width }, LinePoint { u: span.end, v, width }]
-}
-
-/// Whether the straight join between rows `a` and `b` is inside `region` on every row between.
-fn straight_join(region: &Rows, from: &LinePoint, to: &LinePoint, a: i32, b: i32) -> bool {
-    let run = i64::from(to.u) - i64::from(from.u);
-    (a + 1..b).all(|j| {
-        let u = from.u + (run * i64::from(j - a) / i64::from(b - a)) as Coord;
-        region.row(j).iter().any(|s| s.start <= u && u <= s.end)
-    })
-}
-
-/// The points of a join along the region's edge, if it has one edge from row `a` to row `b`.
-fn edge_join(
-    region: &Rows,
-    from: &LinePoint,
-    to: &LinePoint,
-    (a, b): (i32, i32),
-    side: Side,
+/// The edges of a sparse region, as its fine rows show them. Ends are given as `(u, row)`.
+struct Edges<'a> {
+    region: &'a Rows,
     pitch: Coord,
     width: Coord,
-) -> Option<Vec<LinePoint>> {
-    // Along an edge flatter than this a join would be longer than a travel is worth.
-    let step = 2 * pitch;
-    let mut at = from.u;
-    let mut points = Vec::new();
-    for j in a + 1..b {
-        let end = |s: &Span| if side == Side::Right { s.end } else { s.start };
-        let ends = region.row(j).iter().map(end);
-        at = ends.filter(|u| (u - at).abs() <= step).min_by_key(|u| ((u - at).abs(), *u))?;
-        points.push(LinePoint { u: at, v: j * pitch, width });
-    }
-    ((to.u - at).abs() <= step).then_some(points)
 }
 
-/// A chain that can still grow.
-struct Open {
-    chain: Chain,
-    /// The line it ended with.
-    span: Span,
-    /// The end that it goes on from; unknown as long as it has one line only.
-    side: Option<Side>,
-}
-
-impl Open {
-    /// The sides it can go on from.
-    fn sides(&self) -> &'static [Side] {
-        match self.side {
-            None => &[Side::Right, Side::Left],
-            Some(Side::Right) => &[Side::Right],
-            Some(Side::Left) => &[Side::Left],
-        }
+impl Edges<'_> {
+    /// Whether the straight join is inside the region on every row between.
+    fn straight(&self, (u, a): (Coord, i32), (to, b): (Coord, i32)) -> bool {
+        let run = i64::from(to) - i64::from(u);
+        (a + 1..b).all(|j| {
+            let u = u + (run * i64::from(j - a) / i64::from(b - a)) as Coord;
+            self.region.row(j).iter().any(|s| s.start <= u && u <= s.end)
+        })
     }
 
-    /// The point at `side` of its last line.
-    fn end(&self, side: Side) -> LinePoint {
-        match (self.side, side) {
-            (None, Side::Left) => self.chain[0],
-            _ => self.chain[self.chain.len() - 1],
+    /// The points of a join along the region's edge, if one edge leads there.
+    fn along(
+        &self,
+        (u, a): (Coord, i32),
+        (to, b): (Coord, i32),
+        side: Side,
+    ) -> Option<Vec<LinePoint>> {
+        // Along an edge flatter than this a join would be longer than a travel is worth.
+        let step = 2 * self.pitch;
+        let mut at = u;
+        let mut points = Vec::new();
+        for j in a + 1..b {
+            let ends = self.region.row(j).iter().map(|&s| side.of(s));
+            at = ends.filter(|u| (u - at).abs() <= step).min_by_key(|u| ((u - at).abs(), *u))?;
+            points.push(LinePoint { u: at, v: j * self.pitch, width: self.width });
         }
-    }
-
-    /// Goes on from `side` over `join` along `piece`.
-    fn extend(&mut self, side: Side, join: Vec<LinePoint>, piece: Piece) {
-        if self.side.is_none() && side == Side::Left {
-            self.chain.reverse();
-        }
-        self.chain.extend(join);
-        let mut points = piece.points;
-        if side == Side::Right {
-            points.reverse();
-        }
-        self.chain.extend(points);
-        self.span = piece.span;
-        self.side = Some(side.other());
+        ((to - at).abs() <= step).then_some(points)
     }
 }
 
 /// Joins lines of rows `stride` apart that lie beside each other or at most `slack`
-/// apart along the lines. `join` gives the points between two ends, or none.
+/// apart along the lines. `join` gives the points between two ends, given as
+/// `(u, row)`, or none if they cannot be joined.
 fn link(
-    rows: impl Iterator<Item = (i32, Vec<Piece>)>,
+    rows: impl Iterator<Item = (i32, Vec<Span>)>,
     stride: i32,
     slack: Coord,
-    join: impl Fn(&LinePoint, &LinePoint, (i32, i32), Side) -> Option<Vec<LinePoint>>,
-) -> Vec<Chain> {
-    let mut done = Vec::new();
-    let mut open: Vec<Open> = Vec::new();
-    let mut last_row = i32::MIN;
-    for (j, pieces) in rows {
-        if last_row.checked_add(stride) != Some(j) {
-            done.extend(open.drain(..).map(|o| o.chain));
+    join: impl Fn((Coord, i32), (Coord, i32), Side) -> Option<Vec<LinePoint>>,
+) -> Vec<Vec<Link>> {
+    let mut done: Vec<Vec<Link>> = Vec::new();
+    let mut open: Vec<Vec<Link>> = Vec::new();
+    for (row, spans) in rows {
+        if open.first().and_then(|c| c.last()).is_some_and(|l| l.row + stride != row) {
+            done.append(&mut open);
         }
-        let mut pieces: Vec<Option<Piece>> = pieces.into_iter().map(Some).collect();
-        let mut growing = Vec::with_capacity(pieces.len());
+        let mut free: Vec<Option<Span>> =
+            spans.into_iter().map(|s| Some(s).filter(|s| s.len() >= LEAST_LINE)).collect();
+        let mut growing = Vec::with_capacity(free.len());
         for mut chain in open.drain(..) {
-            match next(&chain, &pieces, slack, |from, to, side| join(from, to, (last_row, j), side)) {
-                Some((k, side, points)) => {
-                    if let Some(piece) = pieces[k].take() {
-                        chain.extend(side, points, piece);
-                    }
-                    growing.push((k, chain));
-                }
-                None => done.push(chain.chain),
+            match extend(&mut chain, row, &mut free, slack, &join) {
+                Some(index) => growing.push((index, chain)),
+                None => done.push(chain),
             }
         }
-        for (k, piece) in pieces.into_iter().enumerate() {
-            if let Some(Piece { span, points }) = piece {
-                growing.push((k, Open { chain: points, span, side: None }));
-            }
+        for (index, span) in free.into_iter().enumerate() {
+            let link = |span| Link { join: Vec::new(), row, index, span, from: Side::Left };
+            growing.extend(span.map(|span| (index, vec![link(span)])));
         }
-        growing.sort_by_key(|(k, _)| *k);
+        growing.sort_by_key(|(index, _)| *index);
         open.extend(growing.into_iter().map(|(_, chain)| chain));
-        last_row = j;
     }
-    done.extend(open.into_iter().map(|o| o.chain));
+    done.append(&mut open);
     done
 }
 
-/// The line that `chain` goes on with: of those that lie beside its last line the
-/// outermost on the side it ended, if it can be joined.
-fn next(
-    chain: &Open,
-    pieces: &[Option<Piece>],
+/// Goes on with `chain` in a line of `row`: of those that are free and near its last
+/// line the outermost on the side it ended. Says which, if it could be joined.
+fn extend(
+    chain: &mut Vec<Link>,
+    row: i32,
+    free: &mut [Option<Span>],
     slack: Coord,
-    join: impl Fn(&LinePoint, &LinePoint, Side) -> Option<Vec<LinePoint>>,
-) -> Option<(usize, Side, Vec<LinePoint>)> {
-    let near = Span { start: chain.span.start - slack, end: chain.span.end + slack };
-    let beside = || {
-        pieces.iter().enumerate().filter_map(|(k, piece)| {
-            piece.as_ref().filter(|p| p.span.overlaps(near)).map(|p| (k, p))
-        })
-    };
-    chain.sides().iter().find_map(|&side| {
-        let (k, piece) = if side == Side::Right { beside().last() } else { beside().next() }?;
-        let to = if side == Side::Right { piece.points.last() } else { piece.points.first() }?;
-        join(&chain.end(side), to, side).map(|points| (k, side, points))
-    })
+    join: &impl Fn((Coord, i32), (Coord, i32), Side) -> Option<Vec<LinePoint>>,
+) -> Option<usize> {
+    let alone = chain.len() == 1;
+    let last = chain.last_mut()?;
+    let near = Span { start: last.span.start - slack, end: last.span.end + slack };
+    let sides = if alone { vec![Side::Right, Side::Left] } else { vec![last.from.other()] };
+    let (index, side, span, points) = sides.into_iter().find_map(|side| {
+        let mut beside = free
+            .iter()
+            .enumerate()
+            .filter_map(|(k, s)| s.filter(|s| s.overlaps(near)).map(|s| (k, s)));
+        let (index, span) = if side == Side::Right { beside.last() } else { beside.next() }?;
+        let points = join((side.of(last.span), last.row), (side.of(span), row), side)?;
+        Some((index, side, span, points))
+    })?;
+    free[index] = None;
+    last.from = side.other();
+    chain.push(Link { join: points, row, index, span, from: side });
+    Some(index)
 }

@@ -140,13 +140,12 @@ impl Toolpath {
 /// The numbers that this stage needs.
 #[derive(Debug, Clone)]
 pub struct PlanParams {
-    line_width: Coord,
     outer_first: bool,
     seam_rear: bool,
     retract_always: bool,
     min_travel: Coord,
     retracts: bool,
-    rasters: Vec<Raster>,
+    region: Params,
     support: Option<SupportParams>,
 }
 
@@ -155,13 +154,12 @@ impl PlanParams {
     #[must_use]
     pub fn new(settings: &Settings, region: &Params, support: Option<SupportParams>) -> Self {
         Self {
-            line_width: region.line_width,
             outer_first: settings.wall_order == WallOrder::OuterFirst,
             seam_rear: settings.seam == Seam::Rear,
             retract_always: settings.retraction.when == RetractWhen::Always,
             min_travel: to_units(settings.retraction.min_travel),
             retracts: settings.retraction.length > 0.0,
-            rasters: region.rasters.clone(),
+            region: region.clone(),
             support,
         }
     }
@@ -195,22 +193,22 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
         }));
     };
     let skin = &region.skin;
-    let raster = params.rasters[skin.raster];
-    add(Role::Skin, height, raster, link::skin(&skin.lines, raster.pitch, params.line_width));
+    let raster = params.region.rasters[skin.raster];
+    add(Role::Skin, height, raster, link::skin(&skin.lines, &params.region));
     add(Role::Skin, height, raster, skin.slivers.clone());
     for infill in &region.infill {
-        let raster = params.rasters[infill.comb.raster];
+        let raster = params.region.rasters[infill.comb.raster];
         let (role, height) = if infill.thick {
             (Role::ThickInfill, 2 * height)
         } else {
             (Role::Infill, height)
         };
-        let chains = link::comb(&infill.rows, infill.comb.stride, raster.pitch, params.line_width);
+        let chains = link::comb(&infill.rows, infill.comb.stride, raster.pitch, params.region.line_width);
         add(role, height, raster, chains);
     }
     if let Some(support) = &params.support {
         let raster = support.raster;
-        let chains = link::comb(&region.support, support.stride, raster.pitch, params.line_width);
+        let chains = link::comb(&region.support, support.stride, raster.pitch, params.region.line_width);
         add(Role::Support, height, raster, chains);
     }
     let support = chains.extract_if(.., |c| c.role == Role::Support).collect();

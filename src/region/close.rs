@@ -20,9 +20,11 @@ const WIDEST: f64 = 1.75;
 /// Strips narrower than this stay open (20 µm): half of what positioning can tell.
 const LEAST_STRIP: Coord = 200;
 
-/// Strips that fewer columns in a row tell of stay open: at an edge that steep the
-/// lines' round ends leave little.
-const LEAST_COLUMNS: usize = 3;
+/// A join between two lines covers the strips this many line widths from their ends.
+const SHORT_STRIP: Coord = 3;
+
+/// Beads along thin strips that fewer columns in a row tell of are left out.
+const LEAST_COLUMNS: usize = 2;
 
 /// Changes of width or place below this are not worth a corner in a line (20 µm).
 const LEAST_BEND: f64 = 200.0;
@@ -39,22 +41,45 @@ pub struct LinePoint {
 }
 
 /// What is printed of one span of a row.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Line {
     /// Index of the row.
     pub row: i32,
     /// The span.
     pub span: Span,
-    /// Its points from `span.start` to `span.end`; empty for a straight line of nominal width.
-    pub bend: Vec<LinePoint>,
+    /// Open strips beside it, in the order of u.
+    pub strips: Vec<Strip>,
 }
 
-/// How wide the strips above and below a line are at one column.
+/// How wide the strips above and below a line are at one column, grid units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Strip {
-    u: Coord,
-    above: f64,
-    below: f64,
+pub struct Strip {
+    /// The column.
+    pub u: Coord,
+    /// Towards the next row.
+    pub above: f64,
+    /// Towards the row before.
+    pub below: f64,
+}
+
+/// The ends of a line that are joined to another line: the join covers the short
+/// strip there. Each as (at the left end, at the right end).
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Joined {
+    above: (bool, bool),
+    below: (bool, bool),
+}
+
+impl Joined {
+    /// Joined to a line of the row before, at the left end or at the right.
+    pub fn below(&mut self, left: bool) {
+        self.below = (left, !left);
+    }
+
+    /// Joined to a line of the next row, at the left end or at the right.
+    pub fn above(&mut self, left: bool) {
+        self.above = (left, !left);
+    }
 }
 
 /// A layer's skin on its own raster and on the one across.
@@ -100,7 +125,7 @@ pub fn close(crossed: &Crossed<'_>, params: &Params) -> (Vec<Line>, Vec<Vec<Line
         .skin
         .iter()
         .flat_map(|(row, spans)| spans.iter().map(move |&span| (row, span)))
-        .map(|(row, span)| Line { row, span, bend: bend(row, span, strips.of(row), params) })
+        .map(|(row, span)| Line { row, span, strips: strips.beside(row, span) })
         .collect();
     (lines, slivers(thin, params))
 }
@@ -126,8 +151,13 @@ impl Strips {
         Self { first: range.start, rows: vec![Vec::new(); range.len()] }
     }
 
-    fn of(&self, row: i32) -> &[Strip] {
-        usize::try_from(row - self.first).ok().and_then(|k| self.rows.get(k)).map_or(&[], |s| s)
+    /// The strips beside `span` of `row`.
+    fn beside(&self, row: i32, span: Span) -> Vec<Strip> {
+        let row = usize::try_from(row - self.first).ok().and_then(|k| self.rows.get(k));
+        let strips = row.map_or(&[] as &[Strip], |s| s);
+        let from = strips.partition_point(|s| s.u <= span.start);
+        let to = strips.partition_point(|s| s.u < span.end);
+        strips.get(from..to).unwrap_or_default().to_vec()
     }
 
     /// Notes the strips above the highest and below the lowest line within `extent`;
@@ -166,21 +196,13 @@ impl Strips {
     }
 }
 
-/// The points of a line that fills the strips beside it; none if there are no strips.
-fn bend(row: i32, span: Span, strips: &[Strip], params: &Params) -> Vec<LinePoint> {
-    let from = strips.partition_point(|s| s.u <= span.start);
-    let to = strips.partition_point(|s| s.u < span.end);
-    let known = strips.get(from..to).unwrap_or_default();
-    let long: Vec<Strip> = known
-        .chunk_by(|a, b| b.u - a.u <= params.line_width)
-        .filter(|run| run.len() >= LEAST_COLUMNS)
-        .flatten()
-        .copied()
-        .collect();
-    if long.is_empty() {
-        return Vec::new();
-    }
-    let samples = samples(&long, span, params.line_width);
+/// The points of `line` from left to right, moved and widened to fill the strips
+/// beside it.
+#[must_use]
+pub fn points(line: &Line, joined: Joined, params: &Params) -> Vec<LinePoint> {
+    let Line { row, span, .. } = *line;
+    let strips = open_strips(line, joined, params.line_width);
+    let samples = samples(&strips, span, params.line_width);
     let mut kept = vec![0];
     keep_bends(&samples, 0, samples.len() - 1, &mut kept);
     kept.push(samples.len() - 1);
@@ -200,12 +222,31 @@ fn bend(row: i32, span: Span, strips: &[Strip], params: &Params) -> Vec<LinePoin
         .collect()
 }
 
+/// The strips beside a line that no join covers.
+fn open_strips(line: &Line, joined: Joined, pitch: Coord) -> Vec<Strip> {
+    let mut strips = line.strips.clone();
+    let near_left = line.span.start + SHORT_STRIP * pitch;
+    let near_right = line.span.end - SHORT_STRIP * pitch;
+    for strip in &mut strips {
+        let (left, right) = (strip.u < near_left, strip.u > near_right);
+        if left && joined.above.0 || right && joined.above.1 {
+            strip.above = 0.0;
+        }
+        if left && joined.below.0 || right && joined.below.1 {
+            strip.below = 0.0;
+        }
+    }
+    strips
+}
+
 /// The strips along a whole span: nothing where no column tells of one, and at
 /// the span's ends what the last two columns lead one to expect.
 fn samples(known: &[Strip], span: Span, pitch: Coord) -> Vec<Strip> {
     let none = |u| Strip { u, above: 0.0, below: 0.0 };
+    let (Some(&first), Some(&last)) = (known.first(), known.last()) else {
+        return vec![none(span.start), none(span.end)];
+    };
     let mut out = Vec::with_capacity(known.len() + 4);
-    let (first, last) = (known[0], known[known.len() - 1]);
     if first.u - pitch > span.start {
         out.extend([none(span.start), none(first.u - pitch)]);
     } else {
