@@ -3,6 +3,7 @@
 //! with twice the material.
 
 pub mod error;
+pub mod gcode;
 pub mod geom;
 pub mod mesh;
 pub mod profile;

@@ -1,5 +1,13 @@
 //! Profile names, files and overrides -> Settings, each value with its origin.
 
+mod check;
+pub mod keys;
+mod load;
+mod parse;
 mod settings;
+mod show;
+pub(crate) mod suggest;
 
+pub use load::{DEFAULT, Override, Profile, ValueOrigin, builtin_names, load};
 pub use settings::*;
+pub use show::{document, dump};

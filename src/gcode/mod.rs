@@ -1,0 +1,3 @@
+//! Toolpaths -> G-code text.
+
+pub mod template;

@@ -1,0 +1,158 @@
+//! Start and end blocks + values -> text: fills in `{placeholders}`.
+
+use crate::error::{Error, Result};
+use crate::profile::{Settings, suggest};
+
+/// What a block may want to know of the print itself.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PrintFacts {
+    /// Number of layers.
+    pub layers: usize,
+    /// Lowest x and y that is printed, in the machine's coordinates, mm.
+    pub min: [f64; 2],
+    /// Highest x and y that is printed, in the machine's coordinates, mm.
+    pub max: [f64; 2],
+    /// Top of the last layer, mm.
+    pub height: f64,
+}
+
+/// How far the nozzle may be lifted off the finished print, mm.
+const PARK_LIFT_MM: f64 = 10.0;
+
+/// All placeholders with their values. Lengths in mm, temperatures in °C,
+/// acceleration in mm/s²; numbers never have an exponent, because GPX reads
+/// that as an E word.
+#[must_use]
+pub fn values(settings: &Settings, print: &PrintFacts) -> Vec<(&'static str, String)> {
+    let machine = &settings.machine;
+    let park = (print.height + PARK_LIFT_MM).min(machine.bed_height);
+    vec![
+        ("temperature", number(settings.filament.temperature)),
+        ("bed_temperature", number(settings.filament.bed_temperature)),
+        ("tool", machine.tool.to_string()),
+        ("bed_width", number(machine.bed_width)),
+        ("bed_depth", number(machine.bed_depth)),
+        ("bed_height", number(machine.bed_height)),
+        ("acceleration", number(machine.acceleration)),
+        ("e_mode", if machine.relative_e { "M83" } else { "M82" }.to_owned()),
+        ("nozzle", number(machine.nozzle)),
+        ("layer_height", number(settings.layer_height)),
+        ("first_layer_height", number(settings.first_layer_height)),
+        ("filament", settings.filament.name.clone()),
+        ("filament_diameter", number(settings.filament.diameter)),
+        ("layers", print.layers.to_string()),
+        ("min_x", fixed(print.min[0])),
+        ("min_y", fixed(print.min[1])),
+        ("max_x", fixed(print.max[0])),
+        ("max_y", fixed(print.max[1])),
+        ("height", fixed(print.height)),
+        ("park_z", fixed(park)),
+    ]
+}
+
+/// Fills `block` in: `{name}` becomes its value, `{{` and `}}` become braces.
+/// `name` is the block's key, for messages.
+///
+/// # Errors
+/// [`Error::Config`] for an unknown placeholder or a single brace.
+pub fn render(name: &str, block: &str, values: &[(&str, String)]) -> Result<String> {
+    let mut text = String::with_capacity(block.len());
+    for (index, line) in block.split_inclusive('\n').enumerate() {
+        render_line(line, values, &mut text)
+            .map_err(|why| Error::Config(format!("{name}, line {} of it: {why}", index + 1)))?;
+    }
+    Ok(text)
+}
+
+fn render_line(
+    line: &str,
+    values: &[(&str, String)],
+    text: &mut String,
+) -> std::result::Result<(), String> {
+    let mut rest = line;
+    while let Some(at) = rest.find(['{', '}']) {
+        text.push_str(&rest[..at]);
+        let brace = &rest[at..=at];
+        rest = &rest[at + 1..];
+        if let Some(after) = rest.strip_prefix(brace) {
+            text.push_str(brace);
+            rest = after;
+            continue;
+        }
+        if brace == "}" {
+            return Err("a single `}`; write `}}` for a brace".to_owned());
+        }
+        let Some((name, after)) = rest.split_once('}') else {
+            return Err("a `{` is not closed; write `{{` for a brace".to_owned());
+        };
+        let found = values.iter().find(|(known, _)| *known == name);
+        let (_, value) = found.ok_or_else(|| unknown(name, values))?;
+        text.push_str(value);
+        rest = after;
+    }
+    text.push_str(rest);
+    Ok(())
+}
+
+fn unknown(name: &str, values: &[(&str, String)]) -> String {
+    let names = || values.iter().map(|(known, _)| *known);
+    let name = name.trim();
+    suggest::nearest(name, names()).map_or_else(
+        || {
+            let all: Vec<_> = names().collect();
+            format!("unknown placeholder {{{name}}}; known are {}", all.join(", "))
+        },
+        |near| format!("unknown placeholder {{{name}}}; did you mean {{{near}}}?"),
+    )
+}
+
+/// Shortest decimal text; Rust's `Display` for `f64` has no exponents.
+fn number(value: f64) -> String {
+    value.to_string()
+}
+
+/// Three decimals, and no minus before a zero.
+fn fixed(value: f64) -> String {
+    let text = format!("{value:.3}");
+    if text == "-0.000" { "0.000".to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> Vec<(&'static str, String)> {
+        vec![("temperature", "220".to_owned()), ("tool", "1".to_owned())]
+    }
+
+    #[test]
+    fn placeholders_are_filled_in() {
+        let text = render("b", "M104 S{temperature} T{tool}\n{{x}} ;}}\n", &sample()).unwrap();
+        assert_eq!(text, "M104 S220 T1\n{x} ;}\n");
+    }
+
+    #[test]
+    fn unknown_placeholders_are_named_with_block_and_line() {
+        let error = render("machine.end", "G21\nM104 S{temprature}", &sample()).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "machine.end, line 2 of it: unknown placeholder {temprature}; \
+             did you mean {temperature}?"
+        );
+        let error = render("b", "{zzzzzz}", &sample()).unwrap_err().to_string();
+        assert!(error.ends_with("known are temperature, tool"), "{error}");
+    }
+
+    #[test]
+    fn single_braces_are_refused() {
+        assert!(render("b", "a } b", &sample()).is_err());
+        assert!(render("b", "a {tool", &sample()).is_err());
+    }
+
+    #[test]
+    fn tiny_numbers_have_no_exponent_and_zero_no_sign() {
+        assert_eq!(number(0.000_000_1), "0.0000001");
+        assert_eq!(fixed(-0.000_01), "0.000");
+        assert_eq!(fixed(-12.5), "-12.500");
+    }
+}

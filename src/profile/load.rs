@@ -1,0 +1,263 @@
+//! Profile name or file + overrides -> Profile: merges the layers and remembers where each value is from.
+
+use super::keys::{self, Kind};
+use super::{Settings, check, parse, suggest};
+use crate::error::{Error, Result};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use toml::Value;
+
+/// Name of the profile that is used where none is asked for.
+pub const DEFAULT: &str = "zcube-dual";
+
+/// The shipped profiles: name and text.
+const BUILTIN: &[(&str, &str)] = &[
+    ("zcube-dual", include_str!("../../profiles/zcube-dual.toml")),
+    ("replicator", include_str!("../../profiles/replicator.toml")),
+    ("thesis", include_str!("../../profiles/thesis.toml")),
+    ("generic-marlin", include_str!("../../profiles/generic-marlin.toml")),
+    ("generic-klipper", include_str!("../../profiles/generic-klipper.toml")),
+    ("witbox-1", include_str!("../../profiles/witbox-1.toml")),
+];
+
+/// Settings and where they come from.
+#[derive(Debug, Clone)]
+pub struct Profile {
+    /// All effective settings, checked.
+    pub settings: Settings,
+    /// For each dotted key that is set, what set it last.
+    pub origins: BTreeMap<String, ValueOrigin>,
+    /// Built-in name, or name of the file without its folder, so that an
+    /// output that quotes it does not depend on where the file lay.
+    pub name: String,
+}
+
+/// What gave a setting its value. Displays as the start of an error message.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ValueOrigin {
+    /// A line of a profile.
+    File {
+        /// The file as the user named it, or the name of a built-in profile.
+        name: String,
+        /// Line, from 1.
+        line: usize,
+    },
+    /// `--set`.
+    Set,
+    /// A flag of its own, such as `--layer-height`.
+    Flag(&'static str),
+}
+
+impl fmt::Display for ValueOrigin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File { name, line } => write!(f, "{name}:{line}"),
+            Self::Set => f.write_str("--set"),
+            Self::Flag(flag) => f.write_str(flag),
+        }
+    }
+}
+
+/// A value given on the command line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Override {
+    /// Dotted key.
+    pub key: String,
+    /// TOML value, or bare text where it is none.
+    pub value: String,
+    /// For messages.
+    pub origin: ValueOrigin,
+}
+
+/// Names of the shipped profiles, [`DEFAULT`] first.
+pub fn builtin_names() -> impl Iterator<Item = &'static str> {
+    BUILTIN.iter().map(|(name, _)| *name)
+}
+
+/// Loads a profile, lays `overrides` over it in their order, and checks the result.
+///
+/// A name with a path separator or the ending `.toml` is a file, any other the
+/// name of a shipped profile.
+///
+/// # Errors
+/// [`Error::Config`] in one line that starts with the file and line or the flag:
+/// unreadable file, unknown profile, cyclic `inherits`, TOML syntax, unknown
+/// key, wrong type, out of range, a key without value, values that cannot print
+/// together, blocks that cannot be filled in.
+pub fn load(name_or_path: &str, overrides: &[Override]) -> Result<Profile> {
+    let mut merged = Merged::new();
+    let layer = Layer::find(name_or_path, None).map_err(Error::Config)?;
+    let name = layer.name.clone();
+    merge_layer(layer, &mut Vec::new(), &mut merged)?;
+    for given in overrides {
+        merge_override(given, &mut merged)?;
+    }
+    let settings = build(name_or_path, &merged)?;
+    let origins = merged.into_iter().map(|(key, (_, origin))| (key, origin)).collect();
+    check::together(&settings, &origins)?;
+    Ok(Profile { settings, origins, name })
+}
+
+/// Key -> value and origin.
+type Merged = BTreeMap<String, (Value, ValueOrigin)>;
+
+/// One profile text before it is read.
+struct Layer {
+    /// See [`Profile::name`].
+    name: String,
+    /// For messages: the path as the user wrote it.
+    shown: String,
+    /// `None` for a shipped profile.
+    path: Option<PathBuf>,
+    /// What tells two layers apart, whatever way they were named.
+    identity: PathBuf,
+}
+
+impl Layer {
+    /// The profile called `wanted`; relative files are looked for in `folder`.
+    fn find(wanted: &str, folder: Option<&Path>) -> std::result::Result<Self, String> {
+        if is_file_name(wanted) {
+            let path = folder.map_or_else(|| PathBuf::from(wanted), |dir| dir.join(wanted));
+            let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+            let identity = std::fs::canonicalize(&path).unwrap_or_else(|_| path.clone());
+            return Ok(Self {
+                name: name.unwrap_or_else(|| wanted.to_owned()),
+                shown: path.display().to_string(),
+                path: Some(path),
+                identity,
+            });
+        }
+        if builtin_names().any(|name| name == wanted) {
+            let name = wanted.to_owned();
+            return Ok(Self { shown: name.clone(), path: None, identity: wanted.into(), name });
+        }
+        let names: Vec<_> = builtin_names().collect();
+        Err(format!(
+            "unknown profile `{}`{} Known are {}; name a file with its ending .toml",
+            wanted.escape_debug(),
+            match suggest::did_you_mean(wanted, builtin_names()) {
+                hint if hint.is_empty() => ".".to_owned(),
+                hint => hint,
+            },
+            names.join(", ")
+        ))
+    }
+
+    fn text(&self) -> Result<String> {
+        let Some(path) = &self.path else {
+            let text = BUILTIN.iter().find(|(name, _)| *name == self.name);
+            return Ok(text.map_or_else(String::new, |(_, text)| (*text).to_owned()));
+        };
+        std::fs::read_to_string(path).map_err(|error| {
+            let shown = &self.shown;
+            Error::Config(format!("{shown}: cannot read this profile: {error}; check the path"))
+        })
+    }
+}
+
+fn is_file_name(name: &str) -> bool {
+    name.contains(['/', std::path::MAIN_SEPARATOR])
+        || Path::new(name).extension().is_some_and(|ending| ending == "toml")
+}
+
+/// Merges what `layer` inherits, then its own values. `chain` holds the layers being read.
+fn merge_layer(layer: Layer, chain: &mut Vec<Layer>, merged: &mut Merged) -> Result<()> {
+    let text = layer.text()?;
+    let entries = parse::document(&layer.shown, &text)?;
+    let shown = layer.shown.clone();
+    let folder = layer.path.as_ref().and_then(|path| path.parent()).map(Path::to_owned);
+    chain.push(layer);
+    if let Some(entry) = entries.iter().find(|entry| entry.key == "inherits") {
+        let place = format!("{shown}:{}", entry.line);
+        let parent = inherited(entry, folder.as_deref())
+            .map_err(|why| Error::Config(format!("{place}: inherits: {why}")))?;
+        if let Some(start) = chain.iter().position(|one| one.identity == parent.identity) {
+            let names = chain[start..].iter().chain([&parent]).map(|one| one.shown.as_str());
+            let names: Vec<_> = names.collect();
+            return Err(Error::Config(format!(
+                "{place}: inherits goes round in a circle: {}; remove it from one of them",
+                names.join(" -> ")
+            )));
+        }
+        merge_layer(parent, chain, merged)?;
+    }
+    chain.pop();
+    for entry in entries.into_iter().filter(|entry| entry.key != "inherits") {
+        let origin = ValueOrigin::File { name: shown.clone(), line: entry.line };
+        insert(&entry.key, entry.value, origin, merged)?;
+    }
+    Ok(())
+}
+
+fn inherited(entry: &parse::Entry, folder: Option<&Path>) -> std::result::Result<Layer, String> {
+    let Value::String(wanted) = &entry.value else {
+        return Err("must be the name of a profile or a file, in quotes".to_owned());
+    };
+    Layer::find(wanted, folder)
+}
+
+fn merge_override(given: &Override, merged: &mut Merged) -> Result<()> {
+    let takes_text = keys::find(&given.key)
+        .is_some_and(|key| matches!(key.kind, Kind::Text | Kind::Block | Kind::Word(_)));
+    let value = match parse::value(&given.value) {
+        // `--set filament.name=2024` means the text, whatever else TOML makes of it.
+        value if takes_text && !value.is_str() => Value::String(given.value.clone()),
+        value => value,
+    };
+    insert(&given.key, value, given.origin.clone(), merged)
+}
+
+fn insert(key: &str, value: Value, origin: ValueOrigin, merged: &mut Merged) -> Result<()> {
+    let Some(known) = keys::find(key) else {
+        return Err(Error::Config(format!("{origin}: {}", unknown_key(key))));
+    };
+    let value = known
+        .check(value)
+        .map_err(|why| Error::Config(format!("{origin}: {} {}", known.name, why.trim_end())))?;
+    merged.insert(key.to_owned(), (value, origin));
+    Ok(())
+}
+
+fn unknown_key(key: &str) -> String {
+    let table = format!("{key}.");
+    let inside: Vec<_> =
+        keys::KEYS.iter().map(|one| one.name).filter(|name| name.starts_with(&table)).collect();
+    if !inside.is_empty() {
+        return format!("`{key}` is a table, not a value; set one of {}", inside.join(", "));
+    }
+    let names = keys::KEYS.iter().map(|one| one.name);
+    let hint = suggest::did_you_mean(key, names);
+    let more = if hint.is_empty() { "; `slicer profile show` lists all keys" } else { "" };
+    format!("unknown key `{}`{hint}{more}", key.escape_debug())
+}
+
+/// Nests the dotted keys again and makes the typed value of them.
+fn build(shown: &str, merged: &Merged) -> Result<Settings> {
+    if let Some(key) = keys::KEYS.iter().find(|k| !k.optional && !merged.contains_key(k.name)) {
+        return Err(Error::Config(format!(
+            "{shown}: `{}` has no value; set it, or begin the file with inherits = \"{DEFAULT}\"",
+            key.name
+        )));
+    }
+    let mut root = toml::Table::new();
+    for (key, (value, _)) in merged {
+        match key.split_once('.') {
+            None => {
+                root.insert(key.clone(), value.clone());
+            }
+            Some((table, name)) => {
+                let inner = root.entry(table).or_insert_with(|| Value::Table(toml::Table::new()));
+                if let Value::Table(inner) = inner {
+                    inner.insert(name.to_owned(), value.clone());
+                }
+            }
+        }
+    }
+    // Every value has been checked against the table of keys, which a test
+    // holds against the type: this can only fail if the two have parted.
+    Settings::deserialize(root).map_err(|error| {
+        Error::Config(format!("{shown}: {}", error.message().replace('\n', ", ")))
+    })
+}

@@ -1,0 +1,106 @@
+//! TOML text -> entries: each value under its dotted key, with the line it stands on.
+
+use crate::error::{Error, Result};
+use toml::Value;
+use toml::de::{DeTable, DeValue};
+
+/// One `key = value` of a profile.
+#[derive(Debug)]
+pub(super) struct Entry {
+    /// Dotted key.
+    pub(super) key: String,
+    /// The value; a list or a date where the file has one, which no key takes.
+    pub(super) value: Value,
+    /// Line of the key, from 1.
+    pub(super) line: usize,
+}
+
+/// Entries of one file in the order of their lines.
+///
+/// # Errors
+/// TOML syntax, as `FILE:LINE: …`.
+pub(super) fn document(file: &str, text: &str) -> Result<Vec<Entry>> {
+    let table = DeTable::parse(text).map_err(|error| {
+        let line = error.span().map_or(1, |span| line_of(text, span.start));
+        let reason = error.message().replace('\n', ", ");
+        Error::Config(format!("{file}:{line}: this is no valid TOML: {reason}; mend the line"))
+    })?;
+    let mut entries = Vec::new();
+    flatten(table.get_ref(), "", text, &mut entries);
+    // The table is sorted by name; the first error to report is the first in the file.
+    entries.sort_by(|a, b| a.line.cmp(&b.line).then_with(|| a.key.cmp(&b.key)));
+    Ok(entries)
+}
+
+/// One value as `--set` has it: TOML, or else the text itself.
+pub(super) fn value(text: &str) -> Value {
+    DeValue::parse(text)
+        .map_or_else(|_| Value::String(text.to_owned()), |value| scalar(value.get_ref()))
+}
+
+fn flatten(table: &DeTable<'_>, prefix: &str, text: &str, entries: &mut Vec<Entry>) {
+    for (name, value) in table {
+        let key = format!("{prefix}{}", name.get_ref());
+        if let DeValue::Table(inner) = value.get_ref() {
+            // An empty table of an unknown name must not pass unseen.
+            if inner.is_empty() {
+                let line = line_of(text, name.span().start);
+                entries.push(Entry { key, value: Value::Table(toml::Table::new()), line });
+            } else {
+                flatten(inner, &format!("{key}."), text, entries);
+            }
+        } else {
+            let line = line_of(text, name.span().start);
+            entries.push(Entry { key, value: scalar(value.get_ref()), line });
+        }
+    }
+}
+
+fn scalar(value: &DeValue<'_>) -> Value {
+    match value {
+        DeValue::String(text) => Value::String(text.to_string()),
+        DeValue::Boolean(on) => Value::Boolean(*on),
+        DeValue::Datetime(date) => Value::Datetime(*date),
+        DeValue::Array(_) => Value::Array(Vec::new()),
+        DeValue::Table(_) => Value::Table(toml::Table::new()),
+        // A whole number beyond 64 bits is out of every range; as a float it is refused as such.
+        DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix())
+            .map_or(Value::Float(f64::NAN), Value::Integer),
+        DeValue::Float(number) => Value::Float(number.as_str().parse().unwrap_or(f64::NAN)),
+    }
+}
+
+fn line_of(text: &str, offset: usize) -> usize {
+    text.bytes().take(offset).filter(|byte| *byte == b'\n').count() + 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_dotted_and_know_their_lines() {
+        let text = "walls = 2\n\n[speed]\n# comment\nwall = 1_200\n[support]\nenabled = true\n";
+        let entries = document("f", text).unwrap();
+        let found: Vec<_> = entries.iter().map(|e| (e.key.as_str(), e.line)).collect();
+        assert_eq!(found, [("walls", 1), ("speed.wall", 5), ("support.enabled", 7)]);
+        assert_eq!(entries[1].value, Value::Integer(1200));
+    }
+
+    #[test]
+    fn syntax_errors_name_file_and_line_in_one_line() {
+        let error = document("a.toml", "walls = 2\nskin_layers = \n").unwrap_err().to_string();
+        assert!(error.starts_with("a.toml:2: "), "{error}");
+        assert!(!error.contains('\n'));
+    }
+
+    #[test]
+    fn bare_words_are_texts() {
+        assert_eq!(value("pair"), Value::String("pair".into()));
+        assert_eq!(value("\"pair\""), Value::String("pair".into()));
+        assert_eq!(value("0.25"), Value::Float(0.25));
+        assert_eq!(value("0x10"), Value::Integer(16));
+        assert_eq!(value("true"), Value::Boolean(true));
+        assert_eq!(value(""), Value::String(String::new()));
+    }
+}
