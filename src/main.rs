@@ -1,3 +1,9 @@
-//! Arguments -> exit code: parses, runs, maps errors.
+//! Arguments -> exit code: hands the command line to `cli` and returns what it says.
 
-fn main() {}
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    ExitCode::from(cli::run(std::env::args_os()))
+}

@@ -17,7 +17,10 @@ const NOT_DUMPED: &[&str] = &["description", "machine.start", "machine.end"];
 pub fn dump(settings: &Settings) -> Vec<(String, String)> {
     let mut lines = all(settings);
     lines.retain(|(key, _)| !NOT_DUMPED.contains(&key.name));
-    lines.into_iter().map(|(key, value)| (key.name.to_owned(), one_line(&value))).collect()
+    lines
+        .into_iter()
+        .map(|(key, value)| (key.name.to_owned(), one_line(&value)))
+        .collect()
 }
 
 /// The whole profile as a TOML file that gives the same settings again, each
@@ -36,10 +39,17 @@ pub fn document(profile: &Profile, explain: bool) -> String {
         if explain {
             push(&mut text, format_args!("# {}\n", key.comment()));
         }
-        let value = if key.kind == Kind::Block { block(&value) } else { one_line(&value) };
+        let value = if key.kind == Kind::Block {
+            block(&value)
+        } else {
+            one_line(&value)
+        };
         push(&mut text, format_args!("{name} = {value}"));
         if let Some(origin) = profile.origins.get(key.name) {
-            push(&mut text, format_args!("  # {}", printable(&origin.to_string())));
+            push(
+                &mut text,
+                format_args!("  # {}", printable(&origin.to_string())),
+            );
         }
         text.push('\n');
     }
@@ -72,7 +82,9 @@ fn one_line(value: &Value) -> String {
 
 /// A JSON string is a TOML basic string too, but for U+007F, which TOML wants escaped.
 fn quoted(text: &str) -> String {
-    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
+    serde_json::Value::from(text)
+        .to_string()
+        .replace('\u{7f}', "\\u007f")
 }
 
 /// A block on lines of its own where TOML can hold it literally.
@@ -91,10 +103,103 @@ fn block(value: &Value) -> String {
 
 /// A comment must not end its line early: control characters of a file name are replaced.
 fn printable(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+    text.chars()
+        .map(|c| if c.is_control() { '?' } else { c })
+        .collect()
 }
 
 fn push(text: &mut String, part: std::fmt::Arguments<'_>) {
     // Writing into a String cannot fail.
     let _ = text.write_fmt(part);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::{builtin_names, keys, load};
+    use std::collections::BTreeSet;
+
+    fn leaves(prefix: &str, value: &Value, found: &mut BTreeSet<String>) {
+        let Value::Table(table) = value else {
+            found.insert(prefix.to_owned());
+            return;
+        };
+        for (name, value) in table {
+            let dot = if prefix.is_empty() { "" } else { "." };
+            leaves(&format!("{prefix}{dot}{name}"), value, found);
+        }
+    }
+
+    #[test]
+    fn the_table_of_keys_and_the_type_agree() {
+        let mut settings = load("zcube-dual", &[]).unwrap().settings;
+        settings.top_skin_layers = Some(1);
+        settings.bottom_skin_layers = Some(1);
+        let mut typed = BTreeSet::new();
+        leaves("", &Value::try_from(&settings).unwrap(), &mut typed);
+        let listed: BTreeSet<_> = keys::KEYS.iter().map(|key| key.name.to_owned()).collect();
+        assert_eq!(typed, listed);
+    }
+
+    #[test]
+    fn words_in_the_table_are_those_of_the_types() {
+        for key in KEYS {
+            let Kind::Word(words) = key.kind else {
+                continue;
+            };
+            for word in words {
+                let given = crate::profile::Override {
+                    key: key.name.to_owned(),
+                    value: (*word).to_owned(),
+                    origin: crate::profile::ValueOrigin::Set,
+                };
+                let settings = load("zcube-dual", &[given]).unwrap().settings;
+                let shown = dump(&settings)
+                    .into_iter()
+                    .find(|(name, _)| name == key.name);
+                assert_eq!(shown.unwrap().1, format!("\"{word}\""));
+            }
+        }
+    }
+
+    #[test]
+    fn a_shown_profile_gives_the_same_settings_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shown.toml");
+        for name in builtin_names() {
+            for explain in [false, true] {
+                let profile = load(name, &[]).unwrap();
+                std::fs::write(&path, document(&profile, explain)).unwrap();
+                let again = load(path.to_str().unwrap(), &[]).unwrap();
+                assert_eq!(again.settings, profile.settings, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn dumped_lines_are_short_whatever_the_names_hold() {
+        let mut settings = load("zcube-dual", &[]).unwrap().settings;
+        settings.filament.name = "\"".repeat(keys::MAX_TEXT);
+        settings.machine.name = "\u{1f600}".repeat(keys::MAX_TEXT);
+        let lines = dump(&settings);
+        assert!(
+            lines
+                .iter()
+                .all(|(key, value)| key.len() + value.len() < 900)
+        );
+        assert!(lines.iter().all(|(_, value)| !value.contains('\n')));
+        assert!(
+            !lines
+                .iter()
+                .any(|(key, _)| NOT_DUMPED.contains(&key.as_str()))
+        );
+    }
+
+    #[test]
+    fn texts_are_quoted_as_toml_wants_it() {
+        let text = "a\"b\\c\u{7f}\té";
+        let line = format!("x = {}", quoted(text));
+        let table: toml::Table = toml::from_str(&line).unwrap();
+        assert_eq!(table["x"].as_str(), Some(text));
+    }
 }

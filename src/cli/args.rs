@@ -1,0 +1,358 @@
+//! Words of the command line -> Arguments: every flag, its help, and the settings it stands for.
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand};
+use slicer::error::{Error, Result};
+use slicer::mesh::{Placement, Unit};
+use slicer::profile::keys::{self, Kind};
+use slicer::profile::{DEFAULT, Override, ValueOrigin};
+use std::path::PathBuf;
+
+const EXAMPLES: &str = "\
+Examples:
+  slicer part.stl -o part.gcode
+  slicer part.stl --dual --infill 25 -o part.gcode
+  slicer part.stl -p generic-marlin --set filament.temperature=205 -o part.gcode
+  slicer part.stl -p ./mine.toml --copies 4 --report part.json -o part.gcode
+  slicer - -o - < part.stl > part.gcode
+  slicer profile show generic-marlin > mine.toml
+
+A model whose file is named like a subcommand is given as ./profile.";
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  done
+  1  not done: there were warnings, and --strict was given
+  2  wrong arguments, profile or setting
+  3  a model cannot be read, does not fit, or leaves nothing to print
+  4  an output cannot be written
+Only the product goes to standard output, everything else to standard error.
+A run that fails leaves no file behind.";
+
+/// Slices STL models into G-code
+///
+/// Slices STL models into G-code for FDM printers: fine walls and skins, and
+/// with --dual the sparse infill of each pair of layers printed at once, twice
+/// as thick.
+#[derive(Debug, Parser)]
+#[command(
+    name = "slicer",
+    version,
+    after_help = "`slicer --help` says more, with examples and exit codes.",
+    after_long_help = format!("{EXAMPLES}\n\n{EXIT_CODES}"),
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
+    disable_help_subcommand = true,
+    arg_required_else_help = true,
+    override_usage = "slicer [OPTIONS] <INPUT>... -o <OUT>\n       slicer <COMMAND>",
+    max_term_width = 100
+)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+    #[command(flatten)]
+    pub(crate) slice: SliceArgs,
+}
+
+/// What else there is to do than slicing.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// List, show and check profiles
+    #[command(subcommand)]
+    Profile(ProfileCommand),
+    /// Print completions for a shell
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page
+    Man,
+}
+
+/// What to do with profiles.
+#[derive(Debug, Subcommand)]
+pub(crate) enum ProfileCommand {
+    /// List the built-in profiles
+    List,
+    /// Print all settings of a profile as TOML, each with where it comes from
+    Show {
+        /// Built-in name or file
+        #[arg(default_value = DEFAULT)]
+        name: String,
+        /// Change a setting (repeatable)
+        #[arg(long, value_name = "KEY=VALUE")]
+        set: Vec<String>,
+        /// Say what each key means, too
+        #[arg(short, long)]
+        verbose: bool,
+    },
+    /// Check a profile file and say what is wrong
+    Check {
+        /// Built-in name or file
+        #[arg(value_name = "FILE")]
+        name: String,
+    },
+}
+
+/// Arguments of slicing.
+#[derive(Debug, Args)]
+pub(crate) struct SliceArgs {
+    /// STL files, binary or ASCII; `-` reads standard input
+    #[arg(value_name = "INPUT", required = true)]
+    pub(crate) inputs: Vec<String>,
+    /// G-code file to write; `-` writes standard output
+    #[arg(short, long, value_name = "OUT", required = true)]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Built-in profile, or a file if it has a `/` or ends in .toml
+    #[arg(short, long, value_name = "NAME", default_value = DEFAULT, help_heading = "Settings")]
+    pub(crate) profile: String,
+    /// Change any setting of the profile, such as speed.wall=1500 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
+    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) settings: SettingArgs,
+
+    #[command(flatten)]
+    pub(crate) place: PlaceArgs,
+
+    /// Write a report as JSON; `-` writes standard output
+    #[arg(long, value_name = "FILE", help_heading = "Running")]
+    pub(crate) report: Option<PathBuf>,
+    /// Fail where there are warnings, and write nothing
+    #[arg(long, help_heading = "Running")]
+    pub(crate) strict: bool,
+    /// Threads to use; the output never depends on it [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Running")]
+    pub(crate) threads: Option<u16>,
+    /// Show only warnings and errors
+    #[arg(short, long, conflicts_with = "verbose", help_heading = "Running")]
+    pub(crate) quiet: bool,
+    /// Show the settings with their origins, and lengths by role
+    #[arg(short, long, help_heading = "Running")]
+    pub(crate) verbose: bool,
+}
+
+/// Flags that stand for settings. Their values are checked with the profile's,
+/// so that the messages are the same.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Settings")]
+pub(crate) struct SettingArgs {
+    /// Print infill on one layer of each pair, twice as thick
+    #[arg(long)]
+    dual: bool,
+    /// Height of a layer, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    layer_height: Option<String>,
+    /// Height of the first layer, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    first_layer_height: Option<String>,
+    /// Width of a line, mm
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    line_width: Option<String>,
+    /// Number of walls
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    walls: Option<String>,
+    /// Solid layers at the top and at the bottom
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    skin_layers: Option<String>,
+    /// Density of the sparse infill, %
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
+    infill: Option<String>,
+    /// Pattern of the sparse infill
+    #[arg(long, value_parser = PossibleValuesParser::new(words("pattern")))]
+    pattern: Option<String>,
+    /// Print support under overhangs
+    #[arg(long)]
+    support: bool,
+    /// Temperature of the nozzle, °C
+    #[arg(long, value_name = "CELSIUS", allow_negative_numbers = true)]
+    temperature: Option<String>,
+}
+
+/// How the models are laid on the bed.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Placing")]
+pub(crate) struct PlaceArgs {
+    /// Make the models larger or smaller by this factor
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = factor, allow_negative_numbers = true)]
+    scale: f64,
+    /// Turn the models about x, then y, then z, degrees
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", value_parser = numbers::<3>, allow_hyphen_values = true)]
+    rotate: [f64; 3],
+    /// Put the middle of the layout here, mm [default: middle of the bed]
+    #[arg(long, value_name = "X,Y", value_parser = numbers::<2>, allow_hyphen_values = true)]
+    at: Option<[f64; 2]>,
+    /// Unit of the models' numbers
+    #[arg(long, default_value = "mm", value_parser = ["mm", "inch"])]
+    unit: String,
+    /// Print each model this often
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    copies: u32,
+}
+
+impl PlaceArgs {
+    /// As the mesh stage takes it.
+    pub(crate) fn placement(&self) -> Placement {
+        Placement {
+            unit: if self.unit == "inch" {
+                Unit::Inch
+            } else {
+                Unit::Mm
+            },
+            scale: self.scale,
+            rotate: self.rotate,
+            at: self.at,
+            copies: self.copies,
+        }
+    }
+}
+
+impl SettingArgs {
+    /// The settings these flags give.
+    pub(crate) fn overrides(&self) -> Vec<Override> {
+        let switched = |on: bool, value: &str| on.then(|| value.to_owned());
+        let given = [
+            ("--dual", "dual.mode", switched(self.dual, "pair")),
+            ("--layer-height", "layer_height", self.layer_height.clone()),
+            (
+                "--first-layer-height",
+                "first_layer_height",
+                self.first_layer_height.clone(),
+            ),
+            ("--line-width", "line_width", self.line_width.clone()),
+            ("--walls", "walls", self.walls.clone()),
+            ("--skin-layers", "skin_layers", self.skin_layers.clone()),
+            // A profile may tell top and bottom apart; the flag means both.
+            ("--skin-layers", "top_skin_layers", self.skin_layers.clone()),
+            (
+                "--skin-layers",
+                "bottom_skin_layers",
+                self.skin_layers.clone(),
+            ),
+            ("--infill", "infill", self.infill.clone()),
+            ("--pattern", "pattern", self.pattern.clone()),
+            (
+                "--support",
+                "support.enabled",
+                switched(self.support, "true"),
+            ),
+            (
+                "--temperature",
+                "filament.temperature",
+                self.temperature.clone(),
+            ),
+        ];
+        given
+            .into_iter()
+            .filter_map(|(flag, key, value)| {
+                let origin = ValueOrigin::Flag(flag);
+                Some(Override {
+                    key: key.to_owned(),
+                    value: value?,
+                    origin,
+                })
+            })
+            .collect()
+    }
+}
+
+/// The overrides that `--set` gives.
+///
+/// # Errors
+/// [`Error::Usage`] for a word without `=`.
+pub(crate) fn set_overrides(words: &[String]) -> Result<Vec<Override>> {
+    let one = |word: &String| {
+        let (key, value) = word.split_once('=').ok_or_else(|| {
+            let word = word.escape_debug();
+            Error::Usage(format!(
+                "--set {word}: there is no `=`; write --set KEY=VALUE"
+            ))
+        })?;
+        Ok(Override {
+            key: key.trim().to_owned(),
+            value: value.trim().to_owned(),
+            origin: ValueOrigin::Set,
+        })
+    };
+    words.iter().map(one).collect()
+}
+
+fn words(key: &str) -> &'static [&'static str] {
+    match keys::find(key).map(|key| key.kind) {
+        Some(Kind::Word(words)) => words,
+        _ => &[],
+    }
+}
+
+fn factor(text: &str) -> std::result::Result<f64, String> {
+    let value: f64 = text
+        .parse()
+        .map_err(|_| "it must be a number, such as 0.5".to_owned())?;
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err("it must be more than 0".to_owned())
+    }
+}
+
+fn numbers<const N: usize>(text: &str) -> std::result::Result<[f64; N], String> {
+    let wrong = || format!("it must be {N} numbers with commas between them");
+    let parsed: Vec<f64> = text
+        .split(',')
+        .map(|part| {
+            part.trim()
+                .parse()
+                .ok()
+                .filter(|number: &f64| number.is_finite())
+        })
+        .collect::<Option<_>>()
+        .ok_or_else(wrong)?;
+    parsed.try_into().map_err(|_| wrong())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn skin_layers_win_over_top_and_bottom_of_a_profile() {
+        let words = ["slicer", "a.stl", "-o", "b", "--skin-layers", "4"];
+        let arguments = Arguments::try_parse_from(words).unwrap();
+        let overrides = arguments.slice.settings.overrides();
+        let keys: Vec<_> = overrides.iter().map(|one| one.key.as_str()).collect();
+        assert_eq!(
+            keys,
+            ["skin_layers", "top_skin_layers", "bottom_skin_layers"]
+        );
+    }
+
+    #[test]
+    fn negative_turns_and_places_are_no_flags() {
+        let words = [
+            "slicer",
+            "a.stl",
+            "-o",
+            "b",
+            "--rotate",
+            "-90,0,0.5",
+            "--at",
+            "-3,4",
+        ];
+        let placement = Arguments::try_parse_from(words)
+            .unwrap()
+            .slice
+            .place
+            .placement();
+        assert_eq!(placement.rotate, [-90.0, 0.0, 0.5]);
+        assert_eq!(placement.at, Some([-3.0, 4.0]));
+        assert!(numbers::<2>("1,2,3").is_err());
+        assert!(numbers::<2>("1,nan").is_err());
+    }
+}

@@ -1,0 +1,194 @@
+//! Arguments -> products and exit code: the only place that prints.
+
+mod args;
+mod output;
+mod progress;
+mod summary;
+mod usage;
+
+use args::{Arguments, Command, ProfileCommand, SliceArgs};
+use clap::{CommandFactory as _, Parser as _};
+use output::Sink;
+use slicer::Job;
+use slicer::error::{Error, Result};
+use slicer::profile::{self, Profile};
+use slicer::progress::Progress;
+use slicer::report::Report;
+use std::ffi::OsString;
+use std::io::Write as _;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Exit code of a run that `--strict` turned down.
+const STRICT: u8 = 1;
+
+/// Runs the program with these arguments, the program's name first, and
+/// returns the process's exit code.
+pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
+    let arguments = match Arguments::try_parse_from(words) {
+        Ok(arguments) => arguments,
+        Err(error) => return refused(&error),
+    };
+    let done = match &arguments.command {
+        None => slice(&arguments.slice),
+        Some(command) => other(command).map(|()| 0),
+    };
+    done.unwrap_or_else(|error| {
+        // Who stops reading our output has had enough of it: no failure.
+        if output::is_closed_stdout(&error) {
+            return 0;
+        }
+        say(&format!("error: {error}\n"));
+        error.exit_code()
+    })
+}
+
+/// What clap has to say: help and version are products, the rest is one line.
+fn refused(error: &clap::Error) -> u8 {
+    use clap::error::ErrorKind::{
+        DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion,
+    };
+    let text = error.render();
+    match error.kind() {
+        DisplayHelp | DisplayVersion => match output::print(&text.to_string()) {
+            Ok(()) => 0,
+            Err(error) if output::is_closed_stdout(&error) => 0,
+            Err(error) => error.exit_code(),
+        },
+        DisplayHelpOnMissingArgumentOrSubcommand => {
+            say(&text.to_string());
+            2
+        }
+        _ => {
+            say(&format!("error: {}\n", usage::one_line(&text.to_string())));
+            2
+        }
+    }
+}
+
+/// Text for people. There is nowhere left to report that it cannot be written.
+fn say(text: &str) {
+    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+}
+
+fn slice(args: &SliceArgs) -> Result<u8> {
+    let started = Instant::now();
+    let Some(out) = args.output.as_deref() else {
+        return Err(Error::Usage("no output; give one with -o".to_owned()));
+    };
+    usage::check(args, out)?;
+    let profile = load(args)?;
+    if args.verbose {
+        say(&summary::settings(&profile));
+    }
+    let mut sink = Sink::open(out)?;
+    let report_sink = args
+        .report
+        .as_deref()
+        .map(|path| Ok((path, Sink::open(path)?)));
+    let report_sink = report_sink.transpose()?;
+
+    let report = work(args, out, profile, &mut sink)?;
+    for warning in &report.warnings {
+        say(&format!("warning: {warning}\n"));
+    }
+    if args.strict && !report.warnings.is_empty() {
+        let count = report.warnings.len();
+        let plural = if count == 1 { "warning" } else { "warnings" };
+        say(&format!(
+            "error: {count} {plural} with --strict; nothing was written\n"
+        ));
+        return Ok(STRICT);
+    }
+    // The report is written before the G-code is put in place, so that a full
+    // disk leaves neither.
+    let report_sink = report_sink.map(|(path, sink)| write_report(path, sink, &report));
+    let report_sink = report_sink.transpose()?;
+    sink.commit()?;
+    report_sink.map_or(Ok(()), Sink::commit)?;
+    if args.verbose {
+        say(&summary::roles(&report));
+    }
+    if !args.quiet {
+        say(&summary::summary(&report, started.elapsed()));
+    }
+    Ok(0)
+}
+
+fn load(args: &SliceArgs) -> Result<Profile> {
+    let mut overrides = args::set_overrides(&args.set)?;
+    overrides.extend(args.settings.overrides());
+    profile::load(&args.profile, &overrides)
+}
+
+/// The pipeline itself, in a pool of the threads asked for, under a progress bar.
+fn work(args: &SliceArgs, out: &Path, profile: Profile, sink: &mut Sink) -> Result<Report> {
+    let job = Job {
+        models: args.inputs.clone(),
+        placement: args.place.placement(),
+        settings: profile.settings,
+        profile: profile.name,
+        output: out.to_owned(),
+    };
+    let progress = Arc::new(Progress::default());
+    let _meter = progress::Meter::start(&progress, !args.quiet);
+    let Some(threads) = args.threads else {
+        return slicer::slice(&job, sink, &progress);
+    };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(usize::from(threads))
+        .build()
+        .map_err(|error| Error::Usage(format!("--threads {threads}: {error}; use fewer")))?;
+    pool.install(|| slicer::slice(&job, sink, &progress))
+}
+
+fn write_report(path: &Path, mut sink: Sink, report: &Report) -> Result<Sink> {
+    let failed = |source| output::failed(path, "cannot write", source);
+    let mut text = serde_json::to_string_pretty(report).map_err(|error| failed(error.into()))?;
+    text.push('\n');
+    sink.write_all(text.as_bytes())
+        .and_then(|()| sink.flush())
+        .map_err(failed)?;
+    Ok(sink)
+}
+
+fn other(command: &Command) -> Result<()> {
+    let text = match command {
+        Command::Profile(ProfileCommand::List) => list()?,
+        Command::Profile(ProfileCommand::Show { name, set, verbose }) => {
+            let profile = profile::load(name, &args::set_overrides(set)?)?;
+            profile::document(&profile, *verbose)
+        }
+        Command::Profile(ProfileCommand::Check { name }) => {
+            // A bare name that is a file here is meant as one: a check is about a file.
+            let bare = !name.contains('/') && !name.ends_with(".toml");
+            let built_in = profile::builtin_names().any(|known| known == name);
+            let file = bare && !built_in && Path::new(name).is_file();
+            profile::load(&if file { format!("./{name}") } else { name.clone() }, &[])?;
+            format!("{name}: good\n")
+        }
+        Command::Completions { shell } => {
+            let mut text = Vec::new();
+            clap_complete::generate(*shell, &mut Arguments::command(), "slicer", &mut text);
+            String::from_utf8_lossy(&text).into_owned()
+        }
+        Command::Man => {
+            let mut text = Vec::new();
+            clap_mangen::Man::new(Arguments::command())
+                .render(&mut text)
+                .map_err(|source| output::failed(Path::new("-"), "cannot write", source))?;
+            String::from_utf8_lossy(&text).into_owned()
+        }
+    };
+    output::print(&text)
+}
+
+fn list() -> Result<String> {
+    let mut text = String::new();
+    for name in profile::builtin_names() {
+        let profile = profile::load(name, &[])?;
+        text.push_str(&format!("{name:<16} {}\n", profile.settings.description));
+    }
+    Ok(text)
+}

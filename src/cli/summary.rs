@@ -1,0 +1,118 @@
+//! Report -> lines for people: the three-line summary, and more with -v.
+
+use slicer::profile::{Profile, dump};
+use slicer::report::Report;
+use std::time::Duration;
+
+/// What was made, in three lines.
+pub(crate) fn summary(report: &Report, took: Duration) -> String {
+    let [x, y, z] = report.size_mm;
+    let layers = &report.layers;
+    let filament = &report.filament;
+    let dual = report.dual.as_ref().map_or_else(String::new, |dual| {
+        format!(
+            "; {} of {} pairs of layers with thick infill",
+            dual.thick_pairs, dual.pairs
+        )
+    });
+    format!(
+        "{} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm\n\
+         filament {:.0} mm, {:.2} cm³, {:.1} g{}\n\
+         sliced in {:.2} s{dual}\n",
+        layers.count,
+        layers.height_mm,
+        filament.length_mm,
+        filament.volume_cm3,
+        filament.weight_g,
+        shares(report),
+        took.as_secs_f64(),
+    )
+}
+
+/// How the filament is shared out, such as ` (outer wall 30 %, skin 70 %)`.
+fn shares(report: &Report) -> String {
+    let total: f64 = report.roles.iter().map(|role| role.filament_mm).sum();
+    if total <= 0.0 {
+        return String::new();
+    }
+    let used = report.roles.iter().filter(|role| role.filament_mm > 0.0);
+    let parts: Vec<_> = used
+        .map(|role| format!("{} {:.0} %", role.role, 100.0 * role.filament_mm / total))
+        .collect();
+    format!(" ({})", parts.join(", "))
+}
+
+/// Lengths and filament by role, and the travels.
+pub(crate) fn roles(report: &Report) -> String {
+    let mut lines: Vec<_> = report
+        .roles
+        .iter()
+        .map(|role| {
+            format!(
+                "{:<13} {:>12.0} mm of path {:>10.1} mm of filament",
+                role.role, role.length_mm, role.filament_mm
+            )
+        })
+        .collect();
+    let travel = &report.travel;
+    lines.push(format!(
+        "{:<13} {:>12.0} mm of path in {} moves, {} with retraction",
+        "travel", travel.length_mm, travel.count, travel.retractions
+    ));
+    lines.join("\n") + "\n"
+}
+
+/// All settings with their origins, one a line.
+pub(crate) fn settings(profile: &Profile) -> String {
+    let line = |(key, value): (String, String)| {
+        let origin = profile.origins.get(&key);
+        let origin = origin.map_or_else(String::new, |origin| format!("  ({origin})"));
+        format!("{key} = {value}{origin}\n")
+    };
+    dump(&profile.settings).into_iter().map(line).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use slicer::report::{DualReport, FilamentReport, LayersReport, RoleReport};
+
+    #[test]
+    fn three_lines_say_it_all() {
+        let role = |role, filament_mm| RoleReport {
+            role,
+            filament_mm,
+            ..RoleReport::default()
+        };
+        let report = Report {
+            size_mm: [40.0, 30.0, 20.0],
+            layers: LayersReport {
+                count: 100,
+                height_mm: 0.2,
+                ..LayersReport::default()
+            },
+            roles: vec![
+                role("outer wall", 30.0),
+                role("skin", 0.0),
+                role("thick infill", 90.0),
+            ],
+            filament: FilamentReport {
+                length_mm: 120.0,
+                volume_cm3: 0.289,
+                weight_g: 0.36,
+            },
+            dual: Some(DualReport {
+                pairs: 47,
+                thick_pairs: 46,
+                ..DualReport::default()
+            }),
+            ..Report::default()
+        };
+        assert_eq!(
+            summary(&report, Duration::from_millis(1230)),
+            "100 layers of 0.2 mm, 40.0 x 30.0 x 20.0 mm\n\
+             filament 120 mm, 0.29 cm³, 0.4 g (outer wall 25 %, thick infill 75 %)\n\
+             sliced in 1.23 s; 46 of 47 pairs of layers with thick infill\n"
+        );
+    }
+}

@@ -1,0 +1,98 @@
+//! Arguments -> verdict: combinations that clap cannot know, and its errors on one line.
+
+use super::args::SliceArgs;
+use super::output::is_stdout;
+use slicer::error::{Error, Result};
+use std::path::Path;
+
+/// Checks that no two arguments mean the same file.
+///
+/// # Errors
+/// [`Error::Usage`].
+pub(super) fn check(args: &SliceArgs, out: &Path) -> Result<()> {
+    if args.inputs.iter().filter(|input| *input == "-").count() > 1 {
+        return refuse("`-` is given twice; standard input holds one model");
+    }
+    let report = args.report.as_deref();
+    if is_stdout(out) && report.is_some_and(is_stdout) {
+        return refuse("G-code and report cannot both go to standard output; name a file for one");
+    }
+    let same = |a: &Path, b: &Path| !is_stdout(a) && !is_stdout(b) && is_same_file(a, b);
+    if report.is_some_and(|report| same(report, out)) {
+        return refuse("-o and --report name the same file; name two");
+    }
+    for product in std::iter::once(out).chain(report) {
+        let read = args
+            .inputs
+            .iter()
+            .map(String::as_str)
+            .chain([args.profile.as_str()]);
+        if let Some(name) = read.into_iter().find(|name| same(product, Path::new(name))) {
+            return refuse(&format!(
+                "the output would replace {name}; choose another name for it"
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn refuse(why: &str) -> Result<()> {
+    Err(Error::Usage(why.to_owned()))
+}
+
+/// Devices may well be named twice, only files are compared.
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    if a == b {
+        return !a.starts_with("/dev");
+    }
+    match (std::fs::canonicalize(a), std::fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b && a.is_file(),
+        _ => false,
+    }
+}
+
+/// clap's message without its usage block: what is wrong, its tip, and where to find more.
+pub(super) fn one_line(text: &str) -> String {
+    let mut parts: Vec<String> = Vec::new();
+    let lines = text.lines().take_while(|line| !line.starts_with("Usage:"));
+    for line in lines.map(str::trim).filter(|line| !line.is_empty()) {
+        let line = line.trim_start_matches("error: ");
+        match (parts.last_mut(), line.strip_prefix("tip: ")) {
+            (Some(last), None) if last.ends_with(':') => {
+                last.push(' ');
+                last.push_str(line);
+            }
+            (Some(last), None) if !line.starts_with('[') => {
+                last.push_str(", ");
+                last.push_str(line);
+            }
+            (_, tip) => parts.push(tip.unwrap_or(line).to_owned()),
+        }
+    }
+    parts.retain(|part| !part.starts_with("For more information"));
+    parts.push("see `slicer --help`".to_owned());
+    parts.join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clap_errors_become_one_line() {
+        let text = "error: unexpected argument '--wals' found\n\n  tip: a similar argument exists: \
+                    '--walls'\n\nUsage: slicer\n\nFor more information, try '--help'.\n";
+        assert_eq!(
+            one_line(text),
+            "unexpected argument '--wals' found; a similar argument exists: '--walls'; \
+             see `slicer --help`"
+        );
+        let text = "error: the following required arguments were not provided:\n  --output <OUT>\n  \
+                    <INPUT>...\n\nUsage: slicer\n";
+        assert_eq!(
+            one_line(text),
+            "the following required arguments were not provided: --output <OUT>, <INPUT>...; \
+             see `slicer --help`"
+        );
+    }
+}
