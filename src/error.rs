@@ -44,10 +44,7 @@ pub enum Error {
 impl Error {
     /// Shorthand for [`Error::Input`].
     pub fn input(file: &str, reason: impl Into<String>) -> Self {
-        Self::Input {
-            file: file.to_owned(),
-            reason: reason.into(),
-        }
+        Self::Input { file: file.to_owned(), reason: reason.into() }
     }
 
     /// The documented process exit code: 2 usage or configuration, 3 input, 4 output.

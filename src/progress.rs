@@ -22,9 +22,6 @@ impl Progress {
 
     /// Layers finished and layers in all (0 while unknown).
     pub fn get(&self) -> (usize, usize) {
-        (
-            self.done.load(Ordering::Relaxed),
-            self.total.load(Ordering::Relaxed),
-        )
+        (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed))
     }
 }

@@ -17,10 +17,7 @@ pub const MAX_COORDINATE_MM: f64 = 10_000.0;
 
 /// Millimetres to the nearest grid unit (halves away from zero).
 #[must_use]
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "rounded and within MAX_COORDINATE_MM"
-)]
+#[expect(clippy::cast_possible_truncation, reason = "rounded and within MAX_COORDINATE_MM")]
 pub fn to_units(mm: f64) -> Coord {
     (mm * UNITS_PER_MM).round() as Coord
 }

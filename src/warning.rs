@@ -63,10 +63,7 @@ impl fmt::Display for Warning {
                 "{file}: the mesh is not closed ({edges} edges without exactly two faces); \
                  check the print or mend the model"
             ),
-            Self::OpenContours {
-                layers,
-                longest_gap_mm,
-            } => write!(
+            Self::OpenContours { layers, longest_gap_mm } => write!(
                 f,
                 "contours did not close on {layers} layers and were closed by straight lines \
                  of up to {longest_gap_mm:.3} mm; mend the model"
@@ -77,10 +74,7 @@ impl fmt::Display for Warning {
                  printed; use a smaller line width"
             ),
             Self::TrailingBytes { file, count } => {
-                write!(
-                    f,
-                    "{file}: {count} bytes after the last triangle were ignored"
-                )
+                write!(f, "{file}: {count} bytes after the last triangle were ignored")
             }
             Self::TinyModel { file, size_mm } => write!(
                 f,

@@ -1,5 +1,7 @@
 //! Command lines -> exit codes, streams and files, as a user or a script sees them.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
 use assert_cmd::Command;
 use predicates::prelude::*;
 use std::fs;
@@ -14,19 +16,14 @@ fn slicer(folder: &TempDir) -> Command {
 
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(
-        folder.path().join("part.stl"),
-        "solid part\nendsolid part\n",
-    )
-    .unwrap();
+    fs::write(folder.path().join("part.stl"), "solid part\nendsolid part\n").unwrap();
     folder
 }
 
 fn files(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<_> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
+    let mut names: Vec<_> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
 }
@@ -49,77 +46,27 @@ fn fails(folder: &TempDir, words: &[&str], code: i32, says: &str) {
 #[test]
 fn wrong_flags_are_one_line_with_a_tip() {
     let folder = folder();
-    fails(
-        &folder,
-        &["part.stl", "-o", "a", "--wals", "2"],
-        2,
-        "'--walls'",
-    );
+    fails(&folder, &["part.stl", "-o", "a", "--wals", "2"], 2, "'--walls'");
     fails(&folder, &["part.stl"], 2, "--output <OUT>");
     fails(&folder, &["-o", "a"], 2, "<INPUT>");
-    fails(
-        &folder,
-        &["part.stl", "-o", "a", "--pattern", "gird"],
-        2,
-        "grid",
-    );
-    fails(
-        &folder,
-        &["part.stl", "-o", "a", "--scale", "0"],
-        2,
-        "more than 0",
-    );
-    fails(
-        &folder,
-        &["part.stl", "-o", "a", "--rotate", "1,2"],
-        2,
-        "3 numbers",
-    );
-    fails(
-        &folder,
-        &["part.stl", "-o", "a", "-q", "-v"],
-        2,
-        "cannot be used with",
-    );
-    fails(
-        &folder,
-        &["part.stl", "-o", "a", "--threads", "0"],
-        2,
-        "--threads",
-    );
+    fails(&folder, &["part.stl", "-o", "a", "--pattern", "gird"], 2, "grid");
+    fails(&folder, &["part.stl", "-o", "a", "--scale", "0"], 2, "more than 0");
+    fails(&folder, &["part.stl", "-o", "a", "--rotate", "1,2"], 2, "3 numbers");
+    fails(&folder, &["part.stl", "-o", "a", "-q", "-v"], 2, "cannot be used with");
+    fails(&folder, &["part.stl", "-o", "a", "--threads", "0"], 2, "--threads");
 }
 
 #[test]
 fn wrong_settings_name_the_flag() {
     let folder = folder();
     let run = |words: &[&str], says| {
-        fails(
-            &folder,
-            &[&["part.stl", "-o", "a"], words].concat(),
-            2,
-            says,
-        );
+        fails(&folder, &[&["part.stl", "-o", "a"], words].concat(), 2, says);
     };
-    run(
-        &["--layer-height", "-1"],
-        "--layer-height: layer_height = -1 is out of range",
-    );
-    run(
-        &["--layer-height", "x"],
-        "--layer-height: layer_height is the text `x`",
-    );
-    run(
-        &["--layer-height", "0.5"],
-        "--layer-height: layer_height = 0.5 mm is more than",
-    );
-    run(
-        &["--dual", "--layer-height", "0.3"],
-        "thick infill taller than machine.nozzle",
-    );
-    run(
-        &["--set", "wals=2"],
-        "--set: unknown key `wals`; did you mean `walls`?",
-    );
+    run(&["--layer-height", "-1"], "--layer-height: layer_height = -1 is out of range");
+    run(&["--layer-height", "x"], "--layer-height: layer_height is the text `x`");
+    run(&["--layer-height", "0.5"], "--layer-height: layer_height = 0.5 mm is more than");
+    run(&["--dual", "--layer-height", "0.3"], "thick infill taller than machine.nozzle");
+    run(&["--set", "wals=2"], "--set: unknown key `wals`; did you mean `walls`?");
     run(&["--set", "walls"], "there is no `=`");
     run(&["-p", "generic"], "unknown profile `generic`");
     run(&["-p", "mine.toml"], "mine.toml: cannot read this profile");
@@ -130,12 +77,7 @@ fn wrong_profiles_name_file_and_line() {
     let folder = folder();
     let profile = |text: &str| fs::write(folder.path().join("mine.toml"), text).unwrap();
     let run = |says| {
-        fails(
-            &folder,
-            &["part.stl", "-o", "a", "-p", "mine.toml"],
-            2,
-            says,
-        );
+        fails(&folder, &["part.stl", "-o", "a", "-p", "mine.toml"], 2, says);
         fails(&folder, &["profile", "check", "mine.toml"], 2, says);
     };
     profile("inherits = \"zcube-dual\"\n\n[speed]\nwal = 1\n");
@@ -156,12 +98,7 @@ fn wrong_profiles_name_file_and_line() {
 fn outputs_that_cannot_be_written_are_told_before_the_work() {
     let folder = folder();
     fs::create_dir(folder.path().join("dir")).unwrap();
-    fails(
-        &folder,
-        &["part.stl", "-o", "no/a.gcode"],
-        4,
-        "there is no directory no; create it",
-    );
+    fails(&folder, &["part.stl", "-o", "no/a.gcode"], 4, "there is no directory no; create it");
     fails(&folder, &["part.stl", "-o", "dir"], 4, "it is a directory");
     let words = ["part.stl", "-o", "a.gcode", "--report", "no/a.json"];
     fails(&folder, &words, 4, "there is no directory no; create it");
@@ -170,40 +107,16 @@ fn outputs_that_cannot_be_written_are_told_before_the_work() {
 #[test]
 fn no_two_arguments_may_mean_the_same_file() {
     let folder = folder();
-    fails(
-        &folder,
-        &["part.stl", "-o", "-", "--report", "-"],
-        2,
-        "standard output",
-    );
-    fails(
-        &folder,
-        &["part.stl", "-o", "./part.stl"],
-        2,
-        "would replace part.stl",
-    );
-    fails(
-        &folder,
-        &["part.stl", "-o", "a", "--report", "a"],
-        2,
-        "the same file",
-    );
-    fails(
-        &folder,
-        &["-", "-", "-o", "a"],
-        2,
-        "standard input holds one model",
-    );
+    fails(&folder, &["part.stl", "-o", "-", "--report", "-"], 2, "standard output");
+    fails(&folder, &["part.stl", "-o", "./part.stl"], 2, "would replace part.stl");
+    fails(&folder, &["part.stl", "-o", "a", "--report", "a"], 2, "the same file");
+    fails(&folder, &["-", "-", "-o", "a"], 2, "standard input holds one model");
 }
 
 #[test]
 fn a_run_alone_shows_short_help_and_fails() {
     let folder = folder();
-    slicer(&folder)
-        .assert()
-        .code(2)
-        .stdout("")
-        .stderr(predicate::str::contains("--output"));
+    slicer(&folder).assert().code(2).stdout("").stderr(predicate::str::contains("--output"));
 }
 
 #[test]
@@ -244,11 +157,7 @@ fn profiles_are_listed_shown_and_checked() {
 #[test]
 fn completions_and_the_manual_are_printed() {
     let folder = folder();
-    for words in [
-        &["completions", "bash"][..],
-        &["completions", "fish"],
-        &["man"],
-    ] {
+    for words in [&["completions", "bash"][..], &["completions", "fish"], &["man"]] {
         slicer(&folder)
             .args(words)
             .assert()
@@ -267,14 +176,8 @@ fn a_closed_pipe_is_no_failure() {
     let folder = folder();
     // `true` never reads, so the pipe is closed under the long text.
     let program = assert_cmd::cargo::cargo_bin!("slicer");
-    let script = format!(
-        "{{ sleep 0.2; '{}' profile show; echo $? >&2; }} | true",
-        program.display()
-    );
+    let script =
+        format!("{{ sleep 0.2; '{}' profile show; echo $? >&2; }} | true", program.display());
     let mut shell = Command::new("sh");
-    shell
-        .args(["-c", &script])
-        .current_dir(folder.path())
-        .assert()
-        .stderr("0\n");
+    shell.args(["-c", &script]).current_dir(folder.path()).assert().stderr("0\n");
 }

@@ -195,11 +195,7 @@ impl PlaceArgs {
     /// As the mesh stage takes it.
     pub(crate) fn placement(&self) -> Placement {
         Placement {
-            unit: if self.unit == "inch" {
-                Unit::Inch
-            } else {
-                Unit::Mm
-            },
+            unit: if self.unit == "inch" { Unit::Inch } else { Unit::Mm },
             scale: self.scale,
             rotate: self.rotate,
             at: self.at,
@@ -215,43 +211,23 @@ impl SettingArgs {
         let given = [
             ("--dual", "dual.mode", switched(self.dual, "pair")),
             ("--layer-height", "layer_height", self.layer_height.clone()),
-            (
-                "--first-layer-height",
-                "first_layer_height",
-                self.first_layer_height.clone(),
-            ),
+            ("--first-layer-height", "first_layer_height", self.first_layer_height.clone()),
             ("--line-width", "line_width", self.line_width.clone()),
             ("--walls", "walls", self.walls.clone()),
             ("--skin-layers", "skin_layers", self.skin_layers.clone()),
             // A profile may tell top and bottom apart; the flag means both.
             ("--skin-layers", "top_skin_layers", self.skin_layers.clone()),
-            (
-                "--skin-layers",
-                "bottom_skin_layers",
-                self.skin_layers.clone(),
-            ),
+            ("--skin-layers", "bottom_skin_layers", self.skin_layers.clone()),
             ("--infill", "infill", self.infill.clone()),
             ("--pattern", "pattern", self.pattern.clone()),
-            (
-                "--support",
-                "support.enabled",
-                switched(self.support, "true"),
-            ),
-            (
-                "--temperature",
-                "filament.temperature",
-                self.temperature.clone(),
-            ),
+            ("--support", "support.enabled", switched(self.support, "true")),
+            ("--temperature", "filament.temperature", self.temperature.clone()),
         ];
         given
             .into_iter()
             .filter_map(|(flag, key, value)| {
                 let origin = ValueOrigin::Flag(flag);
-                Some(Override {
-                    key: key.to_owned(),
-                    value: value?,
-                    origin,
-                })
+                Some(Override { key: key.to_owned(), value: value?, origin })
             })
             .collect()
     }
@@ -265,9 +241,7 @@ pub(crate) fn set_overrides(words: &[String]) -> Result<Vec<Override>> {
     let one = |word: &String| {
         let (key, value) = word.split_once('=').ok_or_else(|| {
             let word = word.escape_debug();
-            Error::Usage(format!(
-                "--set {word}: there is no `=`; write --set KEY=VALUE"
-            ))
+            Error::Usage(format!("--set {word}: there is no `=`; write --set KEY=VALUE"))
         })?;
         Ok(Override {
             key: key.trim().to_owned(),
@@ -286,9 +260,7 @@ fn words(key: &str) -> &'static [&'static str] {
 }
 
 fn factor(text: &str) -> std::result::Result<f64, String> {
-    let value: f64 = text
-        .parse()
-        .map_err(|_| "it must be a number, such as 0.5".to_owned())?;
+    let value: f64 = text.parse().map_err(|_| "it must be a number, such as 0.5".to_owned())?;
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
@@ -300,12 +272,7 @@ fn numbers<const N: usize>(text: &str) -> std::result::Result<[f64; N], String> 
     let wrong = || format!("it must be {N} numbers with commas between them");
     let parsed: Vec<f64> = text
         .split(',')
-        .map(|part| {
-            part.trim()
-                .parse()
-                .ok()
-                .filter(|number: &f64| number.is_finite())
-        })
+        .map(|part| part.trim().parse().ok().filter(|number: &f64| number.is_finite()))
         .collect::<Option<_>>()
         .ok_or_else(wrong)?;
     parsed.try_into().map_err(|_| wrong())
@@ -327,29 +294,13 @@ mod tests {
         let arguments = Arguments::try_parse_from(words).unwrap();
         let overrides = arguments.slice.settings.overrides();
         let keys: Vec<_> = overrides.iter().map(|one| one.key.as_str()).collect();
-        assert_eq!(
-            keys,
-            ["skin_layers", "top_skin_layers", "bottom_skin_layers"]
-        );
+        assert_eq!(keys, ["skin_layers", "top_skin_layers", "bottom_skin_layers"]);
     }
 
     #[test]
     fn negative_turns_and_places_are_no_flags() {
-        let words = [
-            "slicer",
-            "a.stl",
-            "-o",
-            "b",
-            "--rotate",
-            "-90,0,0.5",
-            "--at",
-            "-3,4",
-        ];
-        let placement = Arguments::try_parse_from(words)
-            .unwrap()
-            .slice
-            .place
-            .placement();
+        let words = ["slicer", "a.stl", "-o", "b", "--rotate", "-90,0,0.5", "--at", "-3,4"];
+        let placement = Arguments::try_parse_from(words).unwrap().slice.place.placement();
         assert_eq!(placement.rotate, [-90.0, 0.0, 0.5]);
         assert_eq!(placement.at, Some([-3.0, 4.0]));
         assert!(numbers::<2>("1,2,3").is_err());

@@ -83,10 +83,7 @@ fn slice(args: &SliceArgs) -> Result<u8> {
         say(&summary::settings(&profile));
     }
     let mut sink = Sink::open(out)?;
-    let report_sink = args
-        .report
-        .as_deref()
-        .map(|path| Ok((path, Sink::open(path)?)));
+    let report_sink = args.report.as_deref().map(|path| Ok((path, Sink::open(path)?)));
     let report_sink = report_sink.transpose()?;
 
     let report = work(args, out, profile, &mut sink)?;
@@ -96,9 +93,7 @@ fn slice(args: &SliceArgs) -> Result<u8> {
     if args.strict && !report.warnings.is_empty() {
         let count = report.warnings.len();
         let plural = if count == 1 { "warning" } else { "warnings" };
-        say(&format!(
-            "error: {count} {plural} with --strict; nothing was written\n"
-        ));
+        say(&format!("error: {count} {plural} with --strict; nothing was written\n"));
         return Ok(STRICT);
     }
     // The report is written before the G-code is put in place, so that a full
@@ -147,9 +142,7 @@ fn write_report(path: &Path, mut sink: Sink, report: &Report) -> Result<Sink> {
     let failed = |source| output::failed(path, "cannot write", source);
     let mut text = serde_json::to_string_pretty(report).map_err(|error| failed(error.into()))?;
     text.push('\n');
-    sink.write_all(text.as_bytes())
-        .and_then(|()| sink.flush())
-        .map_err(failed)?;
+    sink.write_all(text.as_bytes()).and_then(|()| sink.flush()).map_err(failed)?;
     Ok(sink)
 }
 

@@ -37,10 +37,7 @@ impl Sink {
             open_target(name)
         };
         let target = target.map_err(|source| failed(name, "cannot open for writing", source))?;
-        Ok(Self {
-            name: name.to_owned(),
-            target,
-        })
+        Ok(Self { name: name.to_owned(), target })
     }
 
     /// Makes what was written the output.
@@ -104,11 +101,7 @@ pub(crate) fn print(text: &str) -> Result<()> {
 
 /// An output's failure, `action` being what was tried.
 pub(crate) fn failed(name: &Path, action: &'static str, source: io::Error) -> Error {
-    Error::Output {
-        file: name.to_owned(),
-        action,
-        source,
-    }
+    Error::Output { file: name.to_owned(), action, source }
 }
 
 fn open_target(name: &Path) -> io::Result<Target> {
@@ -116,12 +109,12 @@ fn open_target(name: &Path) -> io::Result<Target> {
     let device = name.starts_with("/dev");
     match fs::metadata(name) {
         Ok(data) if data.is_dir() => Err(told("it is a directory; name a file in it")),
-        Ok(data) if device || !data.is_file() => Ok(Target::Direct(BufWriter::new(
-            OpenOptions::new().write(true).open(name)?,
-        ))),
-        Ok(data) if data.permissions().readonly() => Err(told(
-            "the file is write-protected; remove it or choose another name",
-        )),
+        Ok(data) if device || !data.is_file() => {
+            Ok(Target::Direct(BufWriter::new(OpenOptions::new().write(true).open(name)?)))
+        }
+        Ok(data) if data.permissions().readonly() => {
+            Err(told("the file is write-protected; remove it or choose another name"))
+        }
         // The end of the links, so that a link stays one.
         Ok(_) => beside(fs::canonicalize(name)?),
         Err(_) => beside(end_of_links(name)?),
@@ -137,9 +130,7 @@ fn end_of_links(name: &Path) -> io::Result<PathBuf> {
         let Ok(next) = fs::read_link(&path) else {
             return Ok(path);
         };
-        path = path
-            .parent()
-            .map_or_else(|| next.clone(), |folder| folder.join(&next));
+        path = path.parent().map_or_else(|| next.clone(), |folder| folder.join(&next));
     }
     Err(told("the link leads to itself; remove it"))
 }
@@ -153,10 +144,7 @@ fn beside(path: PathBuf) -> io::Result<Target> {
         return Err(told("this names no file"));
     }
     if !folder.is_dir() {
-        return Err(told(&format!(
-            "there is no directory {}; create it",
-            folder.display()
-        )));
+        return Err(told(&format!("there is no directory {}; create it", folder.display())));
     }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".slicer-").suffix(".part");
@@ -178,9 +166,8 @@ mod tests {
 
     fn names(folder: &Path) -> Vec<String> {
         let entries = fs::read_dir(folder).unwrap();
-        let mut names: Vec<_> = entries
-            .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
-            .collect();
+        let mut names: Vec<_> =
+            entries.map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
         names.sort();
         names
     }
@@ -213,13 +200,8 @@ mod tests {
     fn directories_and_missing_folders_are_refused() {
         let folder = tempfile::tempdir().unwrap();
         let error = Sink::open(folder.path()).unwrap_err().to_string();
-        assert!(
-            error.ends_with("it is a directory; name a file in it"),
-            "{error}"
-        );
-        let error = Sink::open(&folder.path().join("no/a.gcode"))
-            .unwrap_err()
-            .to_string();
+        assert!(error.ends_with("it is a directory; name a file in it"), "{error}");
+        let error = Sink::open(&folder.path().join("no/a.gcode")).unwrap_err().to_string();
         assert!(error.contains("there is no directory"), "{error}");
     }
 

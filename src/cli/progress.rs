@@ -23,10 +23,7 @@ impl Meter {
     /// Starts drawing `progress`, if standard error is a terminal and `wanted`.
     pub(crate) fn start(progress: &Arc<Progress>, wanted: bool) -> Self {
         if !wanted || !std::io::stderr().is_terminal() {
-            return Self {
-                stop: None,
-                thread: None,
-            };
+            return Self { stop: None, thread: None };
         }
         let (stop, stopped) = mpsc::channel::<()>();
         let progress = Arc::clone(progress);
@@ -45,10 +42,7 @@ impl Meter {
             }
             bar.finish_and_clear();
         });
-        Self {
-            stop: Some(stop),
-            thread: Some(thread),
-        }
+        Self { stop: Some(stop), thread: Some(thread) }
     }
 }
 

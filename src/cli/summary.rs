@@ -10,10 +10,7 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
     let layers = &report.layers;
     let filament = &report.filament;
     let dual = report.dual.as_ref().map_or_else(String::new, |dual| {
-        format!(
-            "; {} of {} pairs of layers with thick infill",
-            dual.thick_pairs, dual.pairs
-        )
+        format!("; {} of {} pairs of layers with thick infill", dual.thick_pairs, dual.pairs)
     });
     format!(
         "{} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm\n\
@@ -79,33 +76,13 @@ mod tests {
 
     #[test]
     fn three_lines_say_it_all() {
-        let role = |role, filament_mm| RoleReport {
-            role,
-            filament_mm,
-            ..RoleReport::default()
-        };
+        let role = |role, filament_mm| RoleReport { role, filament_mm, ..RoleReport::default() };
         let report = Report {
             size_mm: [40.0, 30.0, 20.0],
-            layers: LayersReport {
-                count: 100,
-                height_mm: 0.2,
-                ..LayersReport::default()
-            },
-            roles: vec![
-                role("outer wall", 30.0),
-                role("skin", 0.0),
-                role("thick infill", 90.0),
-            ],
-            filament: FilamentReport {
-                length_mm: 120.0,
-                volume_cm3: 0.289,
-                weight_g: 0.36,
-            },
-            dual: Some(DualReport {
-                pairs: 47,
-                thick_pairs: 46,
-                ..DualReport::default()
-            }),
+            layers: LayersReport { count: 100, height_mm: 0.2, ..LayersReport::default() },
+            roles: vec![role("outer wall", 30.0), role("skin", 0.0), role("thick infill", 90.0)],
+            filament: FilamentReport { length_mm: 120.0, volume_cm3: 0.289, weight_g: 0.36 },
+            dual: Some(DualReport { pairs: 47, thick_pairs: 46, ..DualReport::default() }),
             ..Report::default()
         };
         assert_eq!(

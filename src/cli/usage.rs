@@ -22,15 +22,9 @@ pub(super) fn check(args: &SliceArgs, out: &Path) -> Result<()> {
         return refuse("-o and --report name the same file; name two");
     }
     for product in std::iter::once(out).chain(report) {
-        let read = args
-            .inputs
-            .iter()
-            .map(String::as_str)
-            .chain([args.profile.as_str()]);
+        let read = args.inputs.iter().map(String::as_str).chain([args.profile.as_str()]);
         if let Some(name) = read.into_iter().find(|name| same(product, Path::new(name))) {
-            return refuse(&format!(
-                "the output would replace {name}; choose another name for it"
-            ));
+            return refuse(&format!("the output would replace {name}; choose another name for it"));
         }
     }
     Ok(())
@@ -54,7 +48,8 @@ fn is_same_file(a: &Path, b: &Path) -> bool {
 /// clap's message without its usage block: what is wrong, its tip, and where to find more.
 pub(super) fn one_line(text: &str) -> String {
     let mut parts: Vec<String> = Vec::new();
-    let lines = text.lines().take_while(|line| !line.starts_with("Usage:"));
+    let over = |line: &str| line.starts_with("Usage:") || line.starts_with("For more information");
+    let lines = text.lines().take_while(|line| !over(line));
     for line in lines.map(str::trim).filter(|line| !line.is_empty()) {
         let line = line.trim_start_matches("error: ");
         match (parts.last_mut(), line.strip_prefix("tip: ")) {
@@ -69,7 +64,6 @@ pub(super) fn one_line(text: &str) -> String {
             (_, tip) => parts.push(tip.unwrap_or(line).to_owned()),
         }
     }
-    parts.retain(|part| !part.starts_with("For more information"));
     parts.push("see `slicer --help`".to_owned());
     parts.join("; ")
 }
@@ -86,6 +80,12 @@ mod tests {
             one_line(text),
             "unexpected argument '--wals' found; a similar argument exists: '--walls'; \
              see `slicer --help`"
+        );
+        let text = "error: invalid value 'a' for '--b'\n  [possible values: c]\n\nFor more \
+                    information, try '--help'.\n";
+        assert_eq!(
+            one_line(text),
+            "invalid value 'a' for '--b'; [possible values: c]; see `slicer --help`"
         );
         let text = "error: the following required arguments were not provided:\n  --output <OUT>\n  \
                     <INPUT>...\n\nUsage: slicer\n";

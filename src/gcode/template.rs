@@ -34,10 +34,7 @@ pub fn values(settings: &Settings, print: &PrintFacts) -> Vec<(&'static str, Str
         ("bed_depth", number(machine.bed_depth)),
         ("bed_height", number(machine.bed_height)),
         ("acceleration", number(machine.acceleration)),
-        (
-            "e_mode",
-            if machine.relative_e { "M83" } else { "M82" }.to_owned(),
-        ),
+        ("e_mode", if machine.relative_e { "M83" } else { "M82" }.to_owned()),
         ("nozzle", number(machine.nozzle)),
         ("layer_height", number(settings.layer_height)),
         ("first_layer_height", number(settings.first_layer_height)),
@@ -103,10 +100,7 @@ fn unknown(name: &str, values: &[(&str, String)]) -> String {
     suggest::nearest(name, names()).map_or_else(
         || {
             let all: Vec<_> = names().collect();
-            format!(
-                "unknown placeholder {{{name}}}; known are {}",
-                all.join(", ")
-            )
+            format!("unknown placeholder {{{name}}}; known are {}", all.join(", "))
         },
         |near| format!("unknown placeholder {{{name}}}; did you mean {{{near}}}?"),
     )
@@ -120,11 +114,7 @@ fn number(value: f64) -> String {
 /// Three decimals, and no minus before a zero.
 fn fixed(value: f64) -> String {
     let text = format!("{value:.3}");
-    if text == "-0.000" {
-        "0.000".to_owned()
-    } else {
-        text
-    }
+    if text == "-0.000" { "0.000".to_owned() } else { text }
 }
 
 #[cfg(test)]

@@ -42,10 +42,7 @@ impl Blame<'_> {
             ValueOrigin::Set => 1,
             ValueOrigin::File { .. } => 2,
         };
-        let origin = keys
-            .iter()
-            .filter_map(|key| self.origins.get(*key))
-            .min_by_key(rank);
+        let origin = keys.iter().filter_map(|key| self.origins.get(*key)).min_by_key(rank);
         Error::Config(origin.map_or_else(|| why.to_owned(), |origin| format!("{origin}: {why}")))
     }
 }
@@ -87,10 +84,7 @@ fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
 fn blocks(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
     let values = template::values(settings, &PrintFacts::default());
     let machine = &settings.machine;
-    for (key, block) in [
-        ("machine.start", &machine.start),
-        ("machine.end", &machine.end),
-    ] {
+    for (key, block) in [("machine.start", &machine.start), ("machine.end", &machine.end)] {
         let text = template::render(key, block, &values)
             .map_err(|error| blame.error(&[key], &error.to_string()))?;
         if machine.dialect == DialectName::Makerbot {
@@ -105,9 +99,7 @@ fn blocks(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
         );
         return Err(blame.error(&["filament.bed_temperature", "machine.start"], &why));
     }
-    let says_relative = ["M83", "{e_mode}"]
-        .iter()
-        .any(|code| machine.start.contains(code));
+    let says_relative = ["M83", "{e_mode}"].iter().any(|code| machine.start.contains(code));
     if machine.relative_e && !says_relative {
         let why = "machine.relative_e = true, but machine.start contains neither M83 nor {e_mode}; \
                    put {e_mode} on a line of its own";
@@ -118,10 +110,7 @@ fn blocks(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
 
 fn no_host_codes(key: &str, text: &str) -> std::result::Result<(), String> {
     for (index, line) in text.lines().enumerate() {
-        let code = line
-            .split([';', '('])
-            .next()
-            .and_then(|code| code.split_whitespace().next());
+        let code = line.split([';', '(']).next().and_then(|code| code.split_whitespace().next());
         if let Some(code) = code.filter(|code| NOT_FOR_MAKERBOT.contains(code)) {
             return Err(format!(
                 "{key}, line {} of it: {code} must not be in a file for GPX, which drops it or \

@@ -55,13 +55,7 @@ const fn number(
     max: f64,
     doc: &'static str,
 ) -> Key {
-    Key {
-        name,
-        kind: Kind::Number { min, max },
-        unit,
-        doc,
-        optional: false,
-    }
+    Key { name, kind: Kind::Number { min, max }, unit, doc, optional: false }
 }
 
 const fn count(
@@ -71,40 +65,19 @@ const fn count(
     max: u32,
     doc: &'static str,
 ) -> Key {
-    Key {
-        name,
-        kind: Kind::Count { min, max },
-        unit,
-        doc,
-        optional: false,
-    }
+    Key { name, kind: Kind::Count { min, max }, unit, doc, optional: false }
 }
 
 const fn word(name: &'static str, words: &'static [&'static str], doc: &'static str) -> Key {
-    Key {
-        name,
-        kind: Kind::Word(words),
-        unit: "",
-        doc,
-        optional: false,
-    }
+    Key { name, kind: Kind::Word(words), unit: "", doc, optional: false }
 }
 
 const fn plain(name: &'static str, kind: Kind, doc: &'static str) -> Key {
-    Key {
-        name,
-        kind,
-        unit: "",
-        doc,
-        optional: false,
-    }
+    Key { name, kind, unit: "", doc, optional: false }
 }
 
 const fn optional(key: Key) -> Key {
-    Key {
-        optional: true,
-        ..key
-    }
+    Key { optional: true, ..key }
 }
 
 /// All keys, in the order in which they are shown and written.
@@ -241,11 +214,7 @@ impl Key {
             (Kind::Text, Value::String(text)) => self.one_line(text),
             (Kind::Switch, Value::Boolean(on)) => Ok(Value::Boolean(on)),
             (Kind::Block, Value::String(text)) => Ok(Value::String(text)),
-            (_, other) => Err(format!(
-                "is {}; it must be {}",
-                described(&other),
-                self.expected()
-            )),
+            (_, other) => Err(format!("is {}; it must be {}", described(&other), self.expected())),
         }
     }
 
@@ -259,11 +228,7 @@ impl Key {
     }
 
     fn out_of_range(&self, value: &str) -> String {
-        format!(
-            "= {value} is out of range; it must be {} {}",
-            self.allowed(),
-            self.unit
-        )
+        format!("= {value} is out of range; it must be {} {}", self.allowed(), self.unit)
     }
 
     fn one_of(&self, words: &[&'static str], word: String) -> Result<Value, String> {
@@ -271,11 +236,7 @@ impl Key {
             return Ok(Value::String(word));
         }
         let hint = super::suggest::did_you_mean(&word, words.iter().copied());
-        Err(format!(
-            "= `{}` is unknown{hint}; it must be {}",
-            word.escape_debug(),
-            self.allowed()
-        ))
+        Err(format!("= `{}` is unknown{hint}; it must be {}", word.escape_debug(), self.allowed()))
     }
 
     fn one_line(&self, text: String) -> Result<Value, String> {
@@ -314,11 +275,7 @@ mod tests {
     #[test]
     fn names_are_unique() {
         for (i, key) in KEYS.iter().enumerate() {
-            assert!(
-                KEYS[..i].iter().all(|other| other.name != key.name),
-                "{}",
-                key.name
-            );
+            assert!(KEYS[..i].iter().all(|other| other.name != key.name), "{}", key.name);
         }
     }
 
@@ -327,29 +284,19 @@ mod tests {
         let key = find("infill").unwrap();
         assert_eq!(key.check(Value::Integer(0)), Ok(Value::Float(0.0)));
         assert_eq!(key.check(Value::Float(100.0)), Ok(Value::Float(100.0)));
-        assert!(
-            key.check(Value::Float(100.1))
-                .unwrap_err()
-                .contains("0 to 100 %")
-        );
+        assert!(key.check(Value::Float(100.1)).unwrap_err().contains("0 to 100 %"));
         assert!(key.check(Value::Float(f64::NAN)).is_err());
     }
 
     #[test]
     fn a_count_takes_no_fraction() {
         let error = find("walls").unwrap().check(Value::Float(1.5)).unwrap_err();
-        assert_eq!(
-            error,
-            "is the number 1.5; it must be a whole number, 0 to 100"
-        );
+        assert_eq!(error, "is the number 1.5; it must be a whole number, 0 to 100");
     }
 
     #[test]
     fn an_unknown_word_gets_a_suggestion() {
-        let error = find("seam")
-            .unwrap()
-            .check(Value::String("reer".into()))
-            .unwrap_err();
+        let error = find("seam").unwrap().check(Value::String("reer".into())).unwrap_err();
         assert!(error.contains("did you mean `rear`?"), "{error}");
     }
 

@@ -17,14 +17,8 @@ const BUILTIN: &[(&str, &str)] = &[
     ("zcube-dual", include_str!("../../profiles/zcube-dual.toml")),
     ("replicator", include_str!("../../profiles/replicator.toml")),
     ("thesis", include_str!("../../profiles/thesis.toml")),
-    (
-        "generic-marlin",
-        include_str!("../../profiles/generic-marlin.toml"),
-    ),
-    (
-        "generic-klipper",
-        include_str!("../../profiles/generic-klipper.toml"),
-    ),
+    ("generic-marlin", include_str!("../../profiles/generic-marlin.toml")),
+    ("generic-klipper", include_str!("../../profiles/generic-klipper.toml")),
     ("witbox-1", include_str!("../../profiles/witbox-1.toml")),
 ];
 
@@ -101,16 +95,9 @@ pub fn load(name_or_path: &str, overrides: &[Override]) -> Result<Profile> {
         merge_override(given, &mut merged)?;
     }
     let settings = build(name_or_path, &merged)?;
-    let origins = merged
-        .into_iter()
-        .map(|(key, (_, origin))| (key, origin))
-        .collect();
+    let origins = merged.into_iter().map(|(key, (_, origin))| (key, origin)).collect();
     check::together(&settings, &origins)?;
-    Ok(Profile {
-        settings,
-        origins,
-        name,
-    })
+    Ok(Profile { settings, origins, name })
 }
 
 /// Key -> value and origin.
@@ -133,9 +120,7 @@ impl Layer {
     fn find(wanted: &str, folder: Option<&Path>) -> std::result::Result<Self, String> {
         if is_file_name(wanted) {
             let path = folder.map_or_else(|| PathBuf::from(wanted), |dir| dir.join(wanted));
-            let name = path
-                .file_name()
-                .map(|name| name.to_string_lossy().into_owned());
+            let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
             let identity = std::fs::canonicalize(&path).unwrap_or_else(|_| path.clone());
             return Ok(Self {
                 name: name.unwrap_or_else(|| wanted.to_owned()),
@@ -146,12 +131,7 @@ impl Layer {
         }
         if builtin_names().any(|name| name == wanted) {
             let name = wanted.to_owned();
-            return Ok(Self {
-                shown: name.clone(),
-                path: None,
-                identity: wanted.into(),
-                name,
-            });
+            return Ok(Self { shown: name.clone(), path: None, identity: wanted.into(), name });
         }
         let names: Vec<_> = builtin_names().collect();
         Err(format!(
@@ -173,18 +153,14 @@ impl Layer {
         };
         std::fs::read_to_string(path).map_err(|error| {
             let shown = &self.shown;
-            Error::Config(format!(
-                "{shown}: cannot read this profile: {error}; check the path"
-            ))
+            Error::Config(format!("{shown}: cannot read this profile: {error}; check the path"))
         })
     }
 }
 
 fn is_file_name(name: &str) -> bool {
     name.contains(['/', std::path::MAIN_SEPARATOR])
-        || Path::new(name)
-            .extension()
-            .is_some_and(|ending| ending == "toml")
+        || Path::new(name).extension().is_some_and(|ending| ending == "toml")
 }
 
 /// Merges what `layer` inherits, then its own values. `chain` holds the layers being read.
@@ -192,21 +168,14 @@ fn merge_layer(layer: Layer, chain: &mut Vec<Layer>, merged: &mut Merged) -> Res
     let text = layer.text()?;
     let entries = parse::document(&layer.shown, &text)?;
     let shown = layer.shown.clone();
-    let folder = layer
-        .path
-        .as_ref()
-        .and_then(|path| path.parent())
-        .map(Path::to_owned);
+    let folder = layer.path.as_ref().and_then(|path| path.parent()).map(Path::to_owned);
     chain.push(layer);
     if let Some(entry) = entries.iter().find(|entry| entry.key == "inherits") {
         let place = format!("{shown}:{}", entry.line);
         let parent = inherited(entry, folder.as_deref())
             .map_err(|why| Error::Config(format!("{place}: inherits: {why}")))?;
         if let Some(start) = chain.iter().position(|one| one.identity == parent.identity) {
-            let names = chain[start..]
-                .iter()
-                .chain([&parent])
-                .map(|one| one.shown.as_str());
+            let names = chain[start..].iter().chain([&parent]).map(|one| one.shown.as_str());
             let names: Vec<_> = names.collect();
             return Err(Error::Config(format!(
                 "{place}: inherits goes round in a circle: {}; remove it from one of them",
@@ -217,10 +186,7 @@ fn merge_layer(layer: Layer, chain: &mut Vec<Layer>, merged: &mut Merged) -> Res
     }
     chain.pop();
     for entry in entries.into_iter().filter(|entry| entry.key != "inherits") {
-        let origin = ValueOrigin::File {
-            name: shown.clone(),
-            line: entry.line,
-        };
+        let origin = ValueOrigin::File { name: shown.clone(), line: entry.line };
         insert(&entry.key, entry.value, origin, merged)?;
     }
     Ok(())
@@ -257,33 +223,20 @@ fn insert(key: &str, value: Value, origin: ValueOrigin, merged: &mut Merged) -> 
 
 fn unknown_key(key: &str) -> String {
     let table = format!("{key}.");
-    let inside: Vec<_> = keys::KEYS
-        .iter()
-        .map(|one| one.name)
-        .filter(|name| name.starts_with(&table))
-        .collect();
+    let inside: Vec<_> =
+        keys::KEYS.iter().map(|one| one.name).filter(|name| name.starts_with(&table)).collect();
     if !inside.is_empty() {
-        return format!(
-            "`{key}` is a table, not a value; set one of {}",
-            inside.join(", ")
-        );
+        return format!("`{key}` is a table, not a value; set one of {}", inside.join(", "));
     }
     let names = keys::KEYS.iter().map(|one| one.name);
     let hint = suggest::did_you_mean(key, names);
-    let more = if hint.is_empty() {
-        "; `slicer profile show` lists all keys"
-    } else {
-        ""
-    };
+    let more = if hint.is_empty() { "; `slicer profile show` lists all keys" } else { "" };
     format!("unknown key `{}`{hint}{more}", key.escape_debug())
 }
 
 /// Nests the dotted keys again and makes the typed value of them.
 fn build(shown: &str, merged: &Merged) -> Result<Settings> {
-    if let Some(key) = keys::KEYS
-        .iter()
-        .find(|k| !k.optional && !merged.contains_key(k.name))
-    {
+    if let Some(key) = keys::KEYS.iter().find(|k| !k.optional && !merged.contains_key(k.name)) {
         return Err(Error::Config(format!(
             "{shown}: `{}` has no value; set it, or begin the file with inherits = \"{DEFAULT}\"",
             key.name
@@ -296,9 +249,7 @@ fn build(shown: &str, merged: &Merged) -> Result<Settings> {
                 root.insert(key.clone(), value.clone());
             }
             Some((table, name)) => {
-                let inner = root
-                    .entry(table)
-                    .or_insert_with(|| Value::Table(toml::Table::new()));
+                let inner = root.entry(table).or_insert_with(|| Value::Table(toml::Table::new()));
                 if let Value::Table(inner) = inner {
                     inner.insert(name.to_owned(), value.clone());
                 }
@@ -318,11 +269,7 @@ mod tests {
     use std::fs;
 
     fn set(key: &str, value: &str) -> Override {
-        Override {
-            key: key.to_owned(),
-            value: value.to_owned(),
-            origin: ValueOrigin::Set,
-        }
+        Override { key: key.to_owned(), value: value.to_owned(), origin: ValueOrigin::Set }
     }
 
     fn refused(overrides: &[Override]) -> String {
@@ -351,12 +298,7 @@ mod tests {
                 let back = if key.kind == Kind::Block { 2 } else { 1 };
                 let line = lines[entry.line - back];
                 let comment = line.rsplit_once("# ").map(|(_, comment)| comment);
-                assert_eq!(
-                    comment,
-                    Some(key.comment().as_str()),
-                    "{name}:{}",
-                    entry.line
-                );
+                assert_eq!(comment, Some(key.comment().as_str()), "{name}:{}", entry.line);
             }
         }
     }
@@ -370,16 +312,8 @@ mod tests {
         let end = 1.0 + settings.outer_wall_inset - settings.infill_overlap;
         assert!((end * settings.line_width - 0.3).abs() < 1e-9);
         // Inherited values keep the place they are written at.
-        assert!(
-            thesis.origins["speed.wall"]
-                .to_string()
-                .starts_with("zcube-dual:")
-        );
-        assert!(
-            thesis.origins["dual.mode"]
-                .to_string()
-                .starts_with("thesis:")
-        );
+        assert!(thesis.origins["speed.wall"].to_string().starts_with("zcube-dual:"));
+        assert!(thesis.origins["dual.mode"].to_string().starts_with("thesis:"));
     }
 
     #[test]
@@ -389,12 +323,7 @@ mod tests {
             value: "5".to_owned(),
             origin: ValueOrigin::Flag("--walls"),
         };
-        let given = [
-            set("walls", "4"),
-            flag,
-            set("dual.mode", "pair"),
-            set("machine.name", "7"),
-        ];
+        let given = [set("walls", "4"), flag, set("dual.mode", "pair"), set("machine.name", "7")];
         let profile = load(DEFAULT, &given).unwrap();
         assert_eq!(profile.settings.walls, 5);
         assert_eq!(profile.settings.machine.name, "7");
@@ -410,52 +339,20 @@ mod tests {
                 "1",
                 "--set: unknown key `layer_heigth`; did you mean `layer_height`?",
             ),
-            (
-                "speed",
-                "1",
-                "--set: `speed` is a table, not a value; set one of speed.wall,",
-            ),
-            (
-                "walls",
-                "101",
-                "--set: walls = 101 is out of range; it must be 0 to 100 walls",
-            ),
-            (
-                "infill",
-                "x",
-                "--set: infill is the text `x`; it must be a number, 0 to 100 %",
-            ),
-            (
-                "seam",
-                "reer",
-                "--set: seam = `reer` is unknown; did you mean `rear`?",
-            ),
-            (
-                "layer_height",
-                "0.41",
-                "--set: layer_height = 0.41 mm is more than machine.nozzle",
-            ),
-            (
-                "line_width",
-                "0.15",
-                "--set: line_width = 0.15 mm is too little",
-            ),
+            ("speed", "1", "--set: `speed` is a table, not a value; set one of speed.wall,"),
+            ("walls", "101", "--set: walls = 101 is out of range; it must be 0 to 100 walls"),
+            ("infill", "x", "--set: infill is the text `x`; it must be a number, 0 to 100 %"),
+            ("seam", "reer", "--set: seam = `reer` is unknown; did you mean `rear`?"),
+            ("layer_height", "0.41", "--set: layer_height = 0.41 mm is more than machine.nozzle"),
+            ("line_width", "0.15", "--set: line_width = 0.15 mm is too little"),
             (
                 "machine.end",
                 "M104 S{temp}",
                 "--set: machine.end, line 1 of it: unknown placeholder",
             ),
-            (
-                "machine.end",
-                "M105",
-                "--set: machine.end, line 1 of it: M105 must not",
-            ),
+            ("machine.end", "M105", "--set: machine.end, line 1 of it: M105 must not"),
             ("machine.start", "G21", ""),
-            (
-                "machine.relative_e",
-                "true",
-                "--set: machine.relative_e = true, but",
-            ),
+            ("machine.relative_e", "true", "--set: machine.relative_e = true, but"),
         ] {
             if start.is_empty() {
                 assert!(load(DEFAULT, &[set(key, value)]).is_ok());
@@ -470,34 +367,20 @@ mod tests {
     #[test]
     fn combinations_that_cannot_print_blame_the_command_line_first() {
         let message = refused(&[set("dual.mode", "pair"), set("layer_height", "0.3")]);
-        assert!(
-            message.starts_with("--set: two layers of layer_height = 0.3 mm"),
-            "{message}"
-        );
+        assert!(message.starts_with("--set: two layers of layer_height = 0.3 mm"), "{message}");
         let message = refused(&[set("machine.nozzle", "0.1")]);
-        assert!(
-            message.starts_with("--set: layer_height = 0.2 mm is more"),
-            "{message}"
-        );
-        let message = refused(&[
-            set("machine.start", "G21"),
-            set("filament.bed_temperature", "60"),
-        ]);
+        assert!(message.starts_with("--set: layer_height = 0.2 mm is more"), "{message}");
+        let message =
+            refused(&[set("machine.start", "G21"), set("filament.bed_temperature", "60")]);
         assert!(message.contains("would have no effect"), "{message}");
     }
 
     #[test]
     fn unknown_profiles_get_a_suggestion_and_the_list() {
         let message = load("zcube", &[]).unwrap_err().to_string();
-        assert!(
-            message.contains("did you mean `zcube-dual`? Known are zcube-dual,"),
-            "{message}"
-        );
+        assert!(message.contains("did you mean `zcube-dual`? Known are zcube-dual,"), "{message}");
         let message = load("./no.toml", &[]).unwrap_err().to_string();
-        assert!(
-            message.starts_with("./no.toml: cannot read this profile: "),
-            "{message}"
-        );
+        assert!(message.starts_with("./no.toml: cannot read this profile: "), "{message}");
     }
 
     #[test]
@@ -505,11 +388,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
         fs::write(at("a.toml"), "inherits = \"b.toml\"\nwalls = 3\n").unwrap();
-        fs::write(
-            at("b.toml"),
-            "inherits = \"witbox-1\"\nwalls = 4\ninfill = 7\n",
-        )
-        .unwrap();
+        fs::write(at("b.toml"), "inherits = \"witbox-1\"\nwalls = 4\ninfill = 7\n").unwrap();
         let profile = load(&at("a.toml"), &[]).unwrap();
         assert_eq!((profile.settings.walls, profile.settings.infill), (3, 7.0));
         assert_eq!(profile.settings.machine.name, "bq Witbox 1");
@@ -517,10 +396,7 @@ mod tests {
 
         fs::write(at("b.toml"), "walls = 4\ninherits = \"./a.toml\"\n").unwrap();
         let message = load(&at("a.toml"), &[]).unwrap_err().to_string();
-        assert!(
-            message.contains("b.toml:2: inherits goes round in a circle: "),
-            "{message}"
-        );
+        assert!(message.contains("b.toml:2: inherits goes round in a circle: "), "{message}");
 
         fs::write(at("b.toml"), "walls = 4\n").unwrap();
         let message = load(&at("a.toml"), &[]).unwrap_err().to_string();

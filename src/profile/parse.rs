@@ -23,9 +23,7 @@ pub(super) fn document(file: &str, text: &str) -> Result<Vec<Entry>> {
     let table = DeTable::parse(text).map_err(|error| {
         let line = error.span().map_or(1, |span| line_of(text, span.start));
         let reason = error.message().replace('\n', ", ");
-        Error::Config(format!(
-            "{file}:{line}: this is no valid TOML: {reason}; mend the line"
-        ))
+        Error::Config(format!("{file}:{line}: this is no valid TOML: {reason}; mend the line"))
     })?;
     let mut entries = Vec::new();
     flatten(table.get_ref(), "", text, &mut entries);
@@ -36,10 +34,8 @@ pub(super) fn document(file: &str, text: &str) -> Result<Vec<Entry>> {
 
 /// One value as `--set` has it: TOML, or else the text itself.
 pub(super) fn value(text: &str) -> Value {
-    DeValue::parse(text).map_or_else(
-        |_| Value::String(text.to_owned()),
-        |value| scalar(value.get_ref()),
-    )
+    DeValue::parse(text)
+        .map_or_else(|_| Value::String(text.to_owned()), |value| scalar(value.get_ref()))
 }
 
 fn flatten(table: &DeTable<'_>, prefix: &str, text: &str, entries: &mut Vec<Entry>) {
@@ -49,21 +45,13 @@ fn flatten(table: &DeTable<'_>, prefix: &str, text: &str, entries: &mut Vec<Entr
             // An empty table of an unknown name must not pass unseen.
             if inner.is_empty() {
                 let line = line_of(text, name.span().start);
-                entries.push(Entry {
-                    key,
-                    value: Value::Table(toml::Table::new()),
-                    line,
-                });
+                entries.push(Entry { key, value: Value::Table(toml::Table::new()), line });
             } else {
                 flatten(inner, &format!("{key}."), text, entries);
             }
         } else {
             let line = line_of(text, name.span().start);
-            entries.push(Entry {
-                key,
-                value: scalar(value.get_ref()),
-                line,
-            });
+            entries.push(Entry { key, value: scalar(value.get_ref()), line });
         }
     }
 }
@@ -83,11 +71,7 @@ fn scalar(value: &DeValue<'_>) -> Value {
 }
 
 fn line_of(text: &str, offset: usize) -> usize {
-    text.bytes()
-        .take(offset)
-        .filter(|byte| *byte == b'\n')
-        .count()
-        + 1
+    text.bytes().take(offset).filter(|byte| *byte == b'\n').count() + 1
 }
 
 #[cfg(test)]
@@ -99,18 +83,13 @@ mod tests {
         let text = "walls = 2\n\n[speed]\n# comment\nwall = 1_200\n[support]\nenabled = true\n";
         let entries = document("f", text).unwrap();
         let found: Vec<_> = entries.iter().map(|e| (e.key.as_str(), e.line)).collect();
-        assert_eq!(
-            found,
-            [("walls", 1), ("speed.wall", 5), ("support.enabled", 7)]
-        );
+        assert_eq!(found, [("walls", 1), ("speed.wall", 5), ("support.enabled", 7)]);
         assert_eq!(entries[1].value, Value::Integer(1200));
     }
 
     #[test]
     fn syntax_errors_name_file_and_line_in_one_line() {
-        let error = document("a.toml", "walls = 2\nskin_layers = \n")
-            .unwrap_err()
-            .to_string();
+        let error = document("a.toml", "walls = 2\nskin_layers = \n").unwrap_err().to_string();
         assert!(error.starts_with("a.toml:2: "), "{error}");
         assert!(!error.contains('\n'));
     }

@@ -17,10 +17,7 @@ const NOT_DUMPED: &[&str] = &["description", "machine.start", "machine.end"];
 pub fn dump(settings: &Settings) -> Vec<(String, String)> {
     let mut lines = all(settings);
     lines.retain(|(key, _)| !NOT_DUMPED.contains(&key.name));
-    lines
-        .into_iter()
-        .map(|(key, value)| (key.name.to_owned(), one_line(&value)))
-        .collect()
+    lines.into_iter().map(|(key, value)| (key.name.to_owned(), one_line(&value))).collect()
 }
 
 /// The whole profile as a TOML file that gives the same settings again, each
@@ -39,17 +36,10 @@ pub fn document(profile: &Profile, explain: bool) -> String {
         if explain {
             push(&mut text, format_args!("# {}\n", key.comment()));
         }
-        let value = if key.kind == Kind::Block {
-            block(&value)
-        } else {
-            one_line(&value)
-        };
+        let value = if key.kind == Kind::Block { block(&value) } else { one_line(&value) };
         push(&mut text, format_args!("{name} = {value}"));
         if let Some(origin) = profile.origins.get(key.name) {
-            push(
-                &mut text,
-                format_args!("  # {}", printable(&origin.to_string())),
-            );
+            push(&mut text, format_args!("  # {}", printable(&origin.to_string())));
         }
         text.push('\n');
     }
@@ -82,9 +72,7 @@ fn one_line(value: &Value) -> String {
 
 /// A JSON string is a TOML basic string too, but for U+007F, which TOML wants escaped.
 fn quoted(text: &str) -> String {
-    serde_json::Value::from(text)
-        .to_string()
-        .replace('\u{7f}', "\\u007f")
+    serde_json::Value::from(text).to_string().replace('\u{7f}', "\\u007f")
 }
 
 /// A block on lines of its own where TOML can hold it literally.
@@ -103,9 +91,7 @@ fn block(value: &Value) -> String {
 
 /// A comment must not end its line early: control characters of a file name are replaced.
 fn printable(text: &str) -> String {
-    text.chars()
-        .map(|c| if c.is_control() { '?' } else { c })
-        .collect()
+    text.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
 }
 
 fn push(text: &mut String, part: std::fmt::Arguments<'_>) {
@@ -154,9 +140,7 @@ mod tests {
                     origin: crate::profile::ValueOrigin::Set,
                 };
                 let settings = load("zcube-dual", &[given]).unwrap().settings;
-                let shown = dump(&settings)
-                    .into_iter()
-                    .find(|(name, _)| name == key.name);
+                let shown = dump(&settings).into_iter().find(|(name, _)| name == key.name);
                 assert_eq!(shown.unwrap().1, format!("\"{word}\""));
             }
         }
@@ -182,17 +166,9 @@ mod tests {
         settings.filament.name = "\"".repeat(keys::MAX_TEXT);
         settings.machine.name = "\u{1f600}".repeat(keys::MAX_TEXT);
         let lines = dump(&settings);
-        assert!(
-            lines
-                .iter()
-                .all(|(key, value)| key.len() + value.len() < 900)
-        );
+        assert!(lines.iter().all(|(key, value)| key.len() + value.len() < 900));
         assert!(lines.iter().all(|(_, value)| !value.contains('\n')));
-        assert!(
-            !lines
-                .iter()
-                .any(|(key, _)| NOT_DUMPED.contains(&key.as_str()))
-        );
+        assert!(!lines.iter().any(|(key, _)| NOT_DUMPED.contains(&key.as_str())));
     }
 
     #[test]

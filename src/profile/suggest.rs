@@ -33,10 +33,7 @@ mod tests {
     #[test]
     fn near_words_are_found_and_far_ones_are_not() {
         let known = ["layer_height", "speed.travel", "walls"];
-        assert_eq!(
-            nearest("layer_heigth", known.into_iter()),
-            Some("layer_height")
-        );
+        assert_eq!(nearest("layer_heigth", known.into_iter()), Some("layer_height"));
         assert_eq!(nearest("travel", known.into_iter()), Some("speed.travel"));
         assert_eq!(nearest("zzz", known.into_iter()), None);
     }
