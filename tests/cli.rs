@@ -109,7 +109,7 @@ fn no_two_arguments_may_mean_the_same_file() {
     let folder = folder();
     fails(&folder, &["part.stl", "-o", "-", "--report", "-"], 2, "standard output");
     fails(&folder, &["part.stl", "-o", "./part.stl"], 2, "would replace part.stl");
-    fails(&folder, &["part.stl", "-o", "a", "--report", "a"], 2, "the same file");
+    fails(&folder, &["part.stl", "-o", "a", "--report", "./a"], 2, "the same file");
     fails(&folder, &["-", "-", "-o", "a"], 2, "standard input holds one model");
 }
 
@@ -180,4 +180,51 @@ fn a_closed_pipe_is_no_failure() {
         format!("{{ sleep 0.2; '{}' profile show; echo $? >&2; }} | true", program.display());
     let mut shell = Command::new("sh");
     shell.args(["-c", &script]).current_dir(folder.path()).assert().stderr("0\n");
+}
+
+/// A closed block of 12 x 10 x 4 mm.
+fn write_block(path: &Path) {
+    let corner = |i: usize| {
+        let pick = |bit: usize, size: usize| if i & bit == 0 { 0 } else { size };
+        format!("vertex {} {} {}\n", pick(1, 12), pick(2, 10), pick(4, 4))
+    };
+    let quads =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let mut text = "solid block\n".to_owned();
+    for [a, b, c, d] in quads {
+        for triangle in [[a, b, c], [a, c, d]] {
+            text += "facet normal 0 0 0\nouter loop\n";
+            text.extend(triangle.map(corner));
+            text += "endloop\nendfacet\n";
+        }
+    }
+    fs::write(path, text + "endsolid block\n").unwrap();
+}
+
+#[test]
+fn a_good_run_writes_its_products_and_a_summary_of_three_lines() {
+    let folder = folder();
+    write_block(&folder.path().join("block.stl"));
+    let three_lines = predicate::function(|text: &str| text.lines().count() == 3);
+    slicer(&folder)
+        .args(["block.stl", "-o", "a.gcode", "--report", "a.json", "--strict", "--dual"])
+        .assert()
+        .success()
+        .stdout("")
+        .stderr(three_lines);
+    assert_eq!(files(folder.path()), ["a.gcode", "a.json", "block.stl", "part.stl"]);
+    let report = fs::read(folder.path().join("a.json")).unwrap();
+    assert!(serde_json::from_slice::<serde_json::Value>(&report).unwrap().is_object());
+}
+
+#[test]
+fn the_product_is_the_same_on_stdout_and_on_any_number_of_threads() {
+    let folder = folder();
+    write_block(&folder.path().join("block.stl"));
+    slicer(&folder).args(["block.stl", "-o", "a.gcode", "-q"]).assert().success().stderr("");
+    let file = fs::read(folder.path().join("a.gcode")).unwrap();
+    for threads in ["1", "3"] {
+        let words = ["block.stl", "-q", "-o", "-", "--threads", threads];
+        slicer(&folder).args(words).assert().success().stdout(file.clone()).stderr("");
+    }
 }

@@ -93,7 +93,8 @@ fn slice(args: &SliceArgs) -> Result<u8> {
     if args.strict && !report.warnings.is_empty() {
         let count = report.warnings.len();
         let plural = if count == 1 { "warning" } else { "warnings" };
-        say(&format!("error: {count} {plural} with --strict; nothing was written\n"));
+        let left = if sink.can_be_undone() { "nothing was written" } else { "discard the output" };
+        say(&format!("error: {count} {plural} with --strict; {left}\n"));
         return Ok(STRICT);
     }
     // The report is written before the G-code is put in place, so that a full

@@ -40,6 +40,11 @@ impl Sink {
         Ok(Self { name: name.to_owned(), target })
     }
 
+    /// Whether dropping this leaves nothing of what was written.
+    pub(crate) fn can_be_undone(&self) -> bool {
+        matches!(self.target, Target::Temporary(..))
+    }
+
     /// Makes what was written the output.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use super::args::SliceArgs;
 use super::output::is_stdout;
 use slicer::error::{Error, Result};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Checks that no two arguments mean the same file.
 ///
@@ -34,15 +34,19 @@ fn refuse(why: &str) -> Result<()> {
     Err(Error::Usage(why.to_owned()))
 }
 
-/// Devices may well be named twice, only files are compared.
+/// Devices may well be named twice, only files are compared; files that are
+/// not there yet, too.
 fn is_same_file(a: &Path, b: &Path) -> bool {
-    if a == b {
-        return !a.starts_with("/dev");
+    real_path(a).is_some_and(|a| real_path(b) == Some(a))
+}
+
+fn real_path(path: &Path) -> Option<PathBuf> {
+    if let Ok(real) = path.canonicalize() {
+        return real.is_file().then_some(real);
     }
-    match (std::fs::canonicalize(a), std::fs::canonicalize(b)) {
-        (Ok(a), Ok(b)) => a == b && a.is_file(),
-        _ => false,
-    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new(".")).canonicalize().ok()?;
+    Some(folder.join(path.file_name()?))
 }
 
 /// clap's message without its usage block: what is wrong, its tip, and where to find more.

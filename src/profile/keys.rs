@@ -260,7 +260,8 @@ fn described(value: &Value) -> String {
     match value {
         Value::String(text) => format!("the text `{}`", text.escape_debug()),
         Value::Integer(number) => format!("the number {number}"),
-        Value::Float(number) => format!("the number {number}"),
+        // With its point, so that 2.0 is not told to be no whole number as "2".
+        Value::Float(number) => format!("the number {number:?}"),
         Value::Boolean(on) => on.to_string(),
         Value::Datetime(_) => "a date".to_owned(),
         Value::Array(_) => "a list".to_owned(),

@@ -186,6 +186,9 @@ fn merge_layer(layer: Layer, chain: &mut Vec<Layer>, merged: &mut Merged) -> Res
     }
     chain.pop();
     for entry in entries.into_iter().filter(|entry| entry.key != "inherits") {
+        if entry.is_empty_table() {
+            continue;
+        }
         let origin = ValueOrigin::File { name: shown.clone(), line: entry.line };
         insert(&entry.key, entry.value, origin, merged)?;
     }
@@ -397,6 +400,13 @@ mod tests {
         fs::write(at("b.toml"), "walls = 4\ninherits = \"./a.toml\"\n").unwrap();
         let message = load(&at("a.toml"), &[]).unwrap_err().to_string();
         assert!(message.contains("b.toml:2: inherits goes round in a circle: "), "{message}");
+
+        // A table whose lines are all commented out is no mistake, unless nobody knows it.
+        fs::write(at("b.toml"), "inherits = \"thesis\"\n[dual]\n# mode = 1\n").unwrap();
+        assert!(load(&at("a.toml"), &[]).is_ok());
+        fs::write(at("b.toml"), "inherits = \"thesis\"\n[duel]\n").unwrap();
+        let message = load(&at("a.toml"), &[]).unwrap_err().to_string();
+        assert!(message.contains("b.toml:2: unknown key `duel`"), "{message}");
 
         fs::write(at("b.toml"), "walls = 4\n").unwrap();
         let message = load(&at("a.toml"), &[]).unwrap_err().to_string();
