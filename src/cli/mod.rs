@@ -15,7 +15,6 @@ use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
 use slicer::report::Report;
 use std::ffi::OsString;
-use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 use std::sync::Arc;
@@ -47,7 +46,9 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
 
 /// What clap has to say: help and version are products, the rest is one line.
 fn refused(error: &clap::Error) -> u8 {
-    use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
+    use clap::error::ErrorKind::{
+        DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion,
+    };
     let text = error.render();
     match error.kind() {
         DisplayHelp | DisplayVersion => match output::print(&text.to_string()) {
@@ -92,7 +93,8 @@ fn slice(args: &SliceArgs) -> Result<u8> {
     if args.strict && !report.warnings.is_empty() {
         let count = report.warnings.len();
         let plural = if count == 1 { "warning" } else { "warnings" };
-        say(&format!("error: {count} {plural} with --strict; nothing was written\n"));
+        let left = if sink.can_be_undone() { "nothing was written" } else { "discard the output" };
+        say(&format!("error: {count} {plural} with --strict; {left}\n"));
         return Ok(STRICT);
     }
     // The report is written before the G-code is put in place, so that a full
@@ -154,10 +156,10 @@ fn other(command: &Command) -> Result<()> {
         }
         Command::Profile(ProfileCommand::Check { name }) => {
             // A bare name that is a file here is meant as one: a check is about a file.
-            let dotted = format!("./{name}");
+            let bare = !name.contains('/') && !name.ends_with(".toml");
             let built_in = profile::builtin_names().any(|known| known == name);
-            let file = !built_in && fs::metadata(name).is_ok_and(|data| data.is_file());
-            profile::load(if file { &dotted } else { name }, &[])?;
+            let file = bare && !built_in && Path::new(name).is_file();
+            profile::load(&if file { format!("./{name}") } else { name.clone() }, &[])?;
             format!("{name}: good\n")
         }
         Command::Completions { shell } => {

@@ -40,6 +40,11 @@ impl Sink {
         Ok(Self { name: name.to_owned(), target })
     }
 
+    /// Whether dropping this leaves nothing of what was written.
+    pub(crate) fn can_be_undone(&self) -> bool {
+        matches!(self.target, Target::Temporary(..))
+    }
+
     /// Makes what was written the output.
     ///
     /// # Errors
@@ -99,9 +104,9 @@ pub(crate) fn print(text: &str) -> Result<()> {
     sink.commit()
 }
 
+/// An output's failure, `action` being what was tried.
 pub(crate) fn failed(name: &Path, action: &'static str, source: io::Error) -> Error {
-    let file = if is_stdout(name) { PathBuf::from("-") } else { name.to_owned() };
-    Error::Output { file, action, source }
+    Error::Output { file: name.to_owned(), action, source }
 }
 
 fn open_target(name: &Path) -> io::Result<Target> {
@@ -127,7 +132,9 @@ fn end_of_links(name: &Path) -> io::Result<PathBuf> {
     const MOST: usize = 40;
     let mut path = name.to_owned();
     for _ in 0..MOST {
-        let Ok(next) = fs::read_link(&path) else { return Ok(path) };
+        let Ok(next) = fs::read_link(&path) else {
+            return Ok(path);
+        };
         path = path.parent().map_or_else(|| next.clone(), |folder| folder.join(&next));
     }
     Err(told("the link leads to itself; remove it"))

@@ -33,8 +33,9 @@ fn shares(report: &Report) -> String {
         return String::new();
     }
     let used = report.roles.iter().filter(|role| role.filament_mm > 0.0);
-    let parts: Vec<_> =
-        used.map(|role| format!("{} {:.0} %", role.role, 100.0 * role.filament_mm / total)).collect();
+    let parts: Vec<_> = used
+        .map(|role| format!("{} {:.0} %", role.role, 100.0 * role.filament_mm / total))
+        .collect();
     format!(" ({})", parts.join(", "))
 }
 

@@ -3,7 +3,7 @@
 use super::args::SliceArgs;
 use super::output::is_stdout;
 use slicer::error::{Error, Result};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Checks that no two arguments mean the same file.
 ///
@@ -34,21 +34,26 @@ fn refuse(why: &str) -> Result<()> {
     Err(Error::Usage(why.to_owned()))
 }
 
-/// Devices may well be named twice, only files are compared.
+/// Devices may well be named twice, only files are compared; files that are
+/// not there yet, too.
 fn is_same_file(a: &Path, b: &Path) -> bool {
-    if a == b {
-        return !a.starts_with("/dev");
+    real_path(a).is_some_and(|a| real_path(b) == Some(a))
+}
+
+fn real_path(path: &Path) -> Option<PathBuf> {
+    if let Ok(real) = path.canonicalize() {
+        return real.is_file().then_some(real);
     }
-    match (std::fs::canonicalize(a), std::fs::canonicalize(b)) {
-        (Ok(a), Ok(b)) => a == b && a.is_file(),
-        _ => false,
-    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new(".")).canonicalize().ok()?;
+    Some(folder.join(path.file_name()?))
 }
 
 /// clap's message without its usage block: what is wrong, its tip, and where to find more.
 pub(super) fn one_line(text: &str) -> String {
     let mut parts: Vec<String> = Vec::new();
-    let lines = text.lines().take_while(|line| !line.starts_with("Usage:"));
+    let over = |line: &str| line.starts_with("Usage:") || line.starts_with("For more information");
+    let lines = text.lines().take_while(|line| !over(line));
     for line in lines.map(str::trim).filter(|line| !line.is_empty()) {
         let line = line.trim_start_matches("error: ");
         match (parts.last_mut(), line.strip_prefix("tip: ")) {
@@ -63,7 +68,6 @@ pub(super) fn one_line(text: &str) -> String {
             (_, tip) => parts.push(tip.unwrap_or(line).to_owned()),
         }
     }
-    parts.retain(|part| !part.starts_with("For more information"));
     parts.push("see `slicer --help`".to_owned());
     parts.join("; ")
 }
@@ -80,6 +84,12 @@ mod tests {
             one_line(text),
             "unexpected argument '--wals' found; a similar argument exists: '--walls'; \
              see `slicer --help`"
+        );
+        let text = "error: invalid value 'a' for '--b'\n  [possible values: c]\n\nFor more \
+                    information, try '--help'.\n";
+        assert_eq!(
+            one_line(text),
+            "invalid value 'a' for '--b'; [possible values: c]; see `slicer --help`"
         );
         let text = "error: the following required arguments were not provided:\n  --output <OUT>\n  \
                     <INPUT>...\n\nUsage: slicer\n";

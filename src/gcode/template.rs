@@ -51,15 +51,17 @@ pub fn values(settings: &Settings, print: &PrintFacts) -> Vec<(&'static str, Str
 }
 
 /// Fills `block` in: `{name}` becomes its value, `{{` and `}}` become braces.
-/// `name` is the block's key, for messages.
+/// `name` is the block's key, for messages. Lines end with a newline alone, the
+/// last one too.
 ///
 /// # Errors
 /// [`Error::Config`] for an unknown placeholder or a single brace.
 pub fn render(name: &str, block: &str, values: &[(&str, String)]) -> Result<String> {
     let mut text = String::with_capacity(block.len());
-    for (index, line) in block.split_inclusive('\n').enumerate() {
+    for (index, line) in block.lines().enumerate() {
         render_line(line, values, &mut text)
             .map_err(|why| Error::Config(format!("{name}, line {} of it: {why}", index + 1)))?;
+        text.push('\n');
     }
     Ok(text)
 }
@@ -129,6 +131,12 @@ mod tests {
     fn placeholders_are_filled_in() {
         let text = render("b", "M104 S{temperature} T{tool}\n{{x}} ;}}\n", &sample()).unwrap();
         assert_eq!(text, "M104 S220 T1\n{x} ;}\n");
+    }
+
+    #[test]
+    fn every_line_ends_with_a_newline_alone() {
+        assert_eq!(render("b", "G21\r\nG90", &[]).unwrap(), "G21\nG90\n");
+        assert_eq!(render("b", "", &[]).unwrap(), "");
     }
 
     #[test]

@@ -22,10 +22,7 @@ const NOT_FOR_MAKERBOT: &[&str] = &[
 ///
 /// # Errors
 /// [`Error::Config`] that starts with the origin of one of the values concerned.
-pub(super) fn together(
-    settings: &Settings,
-    origins: &BTreeMap<String, ValueOrigin>,
-) -> Result<()> {
+pub(super) fn together(settings: &Settings, origins: &BTreeMap<String, ValueOrigin>) -> Result<()> {
     let blame = Blame { origins };
     heights(settings, &blame)?;
     blocks(settings, &blame)

@@ -195,7 +195,10 @@ impl Key {
     pub fn check(&self, value: Value) -> Result<Value, String> {
         match (self.kind, value) {
             (Kind::Number { min, max }, Value::Integer(whole)) => {
-                #[expect(clippy::cast_precision_loss, reason = "far beyond any limit where it is lost")]
+                #[expect(
+                    clippy::cast_precision_loss,
+                    reason = "far beyond any limit where it is lost"
+                )]
                 let number = whole as f64;
                 self.within(number, min, max)
             }
@@ -211,11 +214,7 @@ impl Key {
             (Kind::Text, Value::String(text)) => self.one_line(text),
             (Kind::Switch, Value::Boolean(on)) => Ok(Value::Boolean(on)),
             (Kind::Block, Value::String(text)) => Ok(Value::String(text)),
-            (_, other) => Err(format!(
-                "is {}; it must be {}",
-                described(&other),
-                self.expected()
-            )),
+            (_, other) => Err(format!("is {}; it must be {}", described(&other), self.expected())),
         }
     }
 
@@ -261,7 +260,8 @@ fn described(value: &Value) -> String {
     match value {
         Value::String(text) => format!("the text `{}`", text.escape_debug()),
         Value::Integer(number) => format!("the number {number}"),
-        Value::Float(number) => format!("the number {number}"),
+        // With its point, so that 2.0 is not told to be no whole number as "2".
+        Value::Float(number) => format!("the number {number:?}"),
         Value::Boolean(on) => on.to_string(),
         Value::Datetime(_) => "a date".to_owned(),
         Value::Array(_) => "a list".to_owned(),

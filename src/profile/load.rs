@@ -135,13 +135,14 @@ impl Layer {
         }
         let names: Vec<_> = builtin_names().collect();
         Err(format!(
-            "unknown profile `{}`{} Known are {}; name a file with its ending .toml",
+            "unknown profile `{}`{} Known are {}; a file ends in .toml or is given as ./{}",
             wanted.escape_debug(),
             match suggest::did_you_mean(wanted, builtin_names()) {
                 hint if hint.is_empty() => ".".to_owned(),
                 hint => hint,
             },
-            names.join(", ")
+            names.join(", "),
+            wanted.escape_debug()
         ))
     }
 
@@ -185,6 +186,9 @@ fn merge_layer(layer: Layer, chain: &mut Vec<Layer>, merged: &mut Merged) -> Res
     }
     chain.pop();
     for entry in entries.into_iter().filter(|entry| entry.key != "inherits") {
+        if entry.is_empty_table() {
+            continue;
+        }
         let origin = ValueOrigin::File { name: shown.clone(), line: entry.line };
         insert(&entry.key, entry.value, origin, merged)?;
     }
@@ -257,7 +261,155 @@ fn build(shown: &str, merged: &Merged) -> Result<Settings> {
     }
     // Every value has been checked against the table of keys, which a test
     // holds against the type: this can only fail if the two have parted.
-    Settings::deserialize(root).map_err(|error| {
-        Error::Config(format!("{shown}: {}", error.message().replace('\n', ", ")))
-    })
+    Settings::deserialize(root)
+        .map_err(|error| Error::Config(format!("{shown}: {}", error.message().replace('\n', ", "))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::{DualMode, RetractWhen};
+    use std::fs;
+
+    fn set(key: &str, value: &str) -> Override {
+        Override { key: key.to_owned(), value: value.to_owned(), origin: ValueOrigin::Set }
+    }
+
+    fn refused(overrides: &[Override]) -> String {
+        load(DEFAULT, overrides).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn every_shipped_profile_loads() {
+        for name in builtin_names() {
+            let profile = load(name, &[]).unwrap();
+            assert_eq!(profile.name, name);
+            assert!(!profile.settings.description.is_empty());
+        }
+        assert_eq!(builtin_names().next(), Some(DEFAULT));
+    }
+
+    #[test]
+    fn shipped_profiles_say_unit_and_limits_of_each_key() {
+        for (name, text) in BUILTIN {
+            let lines: Vec<_> = text.lines().collect();
+            for entry in parse::document(name, text).unwrap() {
+                let Some(key) = keys::find(&entry.key) else {
+                    continue;
+                };
+                // A block's comment stands above it.
+                let back = if key.kind == Kind::Block { 2 } else { 1 };
+                let line = lines[entry.line - back];
+                let comment = line.rsplit_once("# ").map(|(_, comment)| comment);
+                assert_eq!(comment, Some(key.comment().as_str()), "{name}:{}", entry.line);
+            }
+        }
+    }
+
+    #[test]
+    fn the_thesis_profile_is_the_thesis() {
+        let thesis = load("thesis", &[]).unwrap();
+        let settings = &thesis.settings;
+        assert_eq!(settings.dual.mode, DualMode::Pair);
+        assert_eq!(settings.retraction.when, RetractWhen::Always);
+        let end = 1.0 + settings.outer_wall_inset - settings.infill_overlap;
+        assert!((end * settings.line_width - 0.3).abs() < 1e-9);
+        // Inherited values keep the place they are written at.
+        assert!(thesis.origins["speed.wall"].to_string().starts_with("zcube-dual:"));
+        assert!(thesis.origins["dual.mode"].to_string().starts_with("thesis:"));
+    }
+
+    #[test]
+    fn later_layers_win_and_are_remembered() {
+        let flag = Override {
+            key: "walls".to_owned(),
+            value: "5".to_owned(),
+            origin: ValueOrigin::Flag("--walls"),
+        };
+        let given = [set("walls", "4"), flag, set("dual.mode", "pair"), set("machine.name", "7")];
+        let profile = load(DEFAULT, &given).unwrap();
+        assert_eq!(profile.settings.walls, 5);
+        assert_eq!(profile.settings.machine.name, "7");
+        assert_eq!(profile.origins["walls"], ValueOrigin::Flag("--walls"));
+        assert_eq!(profile.origins["dual.mode"], ValueOrigin::Set);
+    }
+
+    #[test]
+    fn wrong_settings_are_refused_with_a_hint() {
+        for (key, value, start) in [
+            (
+                "layer_heigth",
+                "1",
+                "--set: unknown key `layer_heigth`; did you mean `layer_height`?",
+            ),
+            ("speed", "1", "--set: `speed` is a table, not a value; set one of speed.wall,"),
+            ("walls", "101", "--set: walls = 101 is out of range; it must be 0 to 100 walls"),
+            ("infill", "x", "--set: infill is the text `x`; it must be a number, 0 to 100 %"),
+            ("seam", "reer", "--set: seam = `reer` is unknown; did you mean `rear`?"),
+            ("layer_height", "0.41", "--set: layer_height = 0.41 mm is more than machine.nozzle"),
+            ("line_width", "0.15", "--set: line_width = 0.15 mm is too little"),
+            (
+                "machine.end",
+                "M104 S{temp}",
+                "--set: machine.end, line 1 of it: unknown placeholder",
+            ),
+            ("machine.end", "M105", "--set: machine.end, line 1 of it: M105 must not"),
+            ("machine.start", "G21", ""),
+            ("machine.relative_e", "true", "--set: machine.relative_e = true, but"),
+        ] {
+            if start.is_empty() {
+                assert!(load(DEFAULT, &[set(key, value)]).is_ok());
+                continue;
+            }
+            let message = refused(&[set(key, value)]);
+            assert!(message.starts_with(start), "{message}");
+            assert!(!message.contains('\n'), "{message}");
+        }
+    }
+
+    #[test]
+    fn combinations_that_cannot_print_blame_the_command_line_first() {
+        let message = refused(&[set("dual.mode", "pair"), set("layer_height", "0.3")]);
+        assert!(message.starts_with("--set: two layers of layer_height = 0.3 mm"), "{message}");
+        let message = refused(&[set("machine.nozzle", "0.1")]);
+        assert!(message.starts_with("--set: layer_height = 0.2 mm is more"), "{message}");
+        let message =
+            refused(&[set("machine.start", "G21"), set("filament.bed_temperature", "60")]);
+        assert!(message.contains("would have no effect"), "{message}");
+    }
+
+    #[test]
+    fn unknown_profiles_get_a_suggestion_and_the_list() {
+        let message = load("zcube", &[]).unwrap_err().to_string();
+        assert!(message.contains("did you mean `zcube-dual`? Known are zcube-dual,"), "{message}");
+        let message = load("./no.toml", &[]).unwrap_err().to_string();
+        assert!(message.starts_with("./no.toml: cannot read this profile: "), "{message}");
+    }
+
+    #[test]
+    fn files_inherit_from_names_and_files_beside_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+        fs::write(at("a.toml"), "inherits = \"b.toml\"\nwalls = 3\n").unwrap();
+        fs::write(at("b.toml"), "inherits = \"witbox-1\"\nwalls = 4\ninfill = 7\n").unwrap();
+        let profile = load(&at("a.toml"), &[]).unwrap();
+        assert_eq!((profile.settings.walls, profile.settings.infill), (3, 7.0));
+        assert_eq!(profile.settings.machine.name, "bq Witbox 1");
+        assert_eq!(profile.name, "a.toml");
+
+        fs::write(at("b.toml"), "walls = 4\ninherits = \"./a.toml\"\n").unwrap();
+        let message = load(&at("a.toml"), &[]).unwrap_err().to_string();
+        assert!(message.contains("b.toml:2: inherits goes round in a circle: "), "{message}");
+
+        // A table whose lines are all commented out is no mistake, unless nobody knows it.
+        fs::write(at("b.toml"), "inherits = \"thesis\"\n[dual]\n# mode = 1\n").unwrap();
+        assert!(load(&at("a.toml"), &[]).is_ok());
+        fs::write(at("b.toml"), "inherits = \"thesis\"\n[duel]\n").unwrap();
+        let message = load(&at("a.toml"), &[]).unwrap_err().to_string();
+        assert!(message.contains("b.toml:2: unknown key `duel`"), "{message}");
+
+        fs::write(at("b.toml"), "walls = 4\n").unwrap();
+        let message = load(&at("a.toml"), &[]).unwrap_err().to_string();
+        assert!(message.contains("`description` has no value"), "{message}");
+    }
 }

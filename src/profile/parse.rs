@@ -1,5 +1,6 @@
 //! TOML text -> entries: each value under its dotted key, with the line it stands on.
 
+use super::keys::KEYS;
 use crate::error::{Error, Result};
 use toml::Value;
 use toml::de::{DeTable, DeValue};
@@ -13,6 +14,14 @@ pub(super) struct Entry {
     pub(super) value: Value,
     /// Line of the key, from 1.
     pub(super) line: usize,
+}
+
+impl Entry {
+    /// Whether this is the head of a known table without any value in it.
+    pub(super) fn is_empty_table(&self) -> bool {
+        let table = format!("{}.", self.key);
+        self.value.is_table() && KEYS.iter().any(|key| key.name.starts_with(&table))
+    }
 }
 
 /// Entries of one file in the order of their lines.

@@ -98,3 +98,84 @@ fn push(text: &mut String, part: std::fmt::Arguments<'_>) {
     // Writing into a String cannot fail.
     let _ = text.write_fmt(part);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::{builtin_names, keys, load};
+    use std::collections::BTreeSet;
+
+    fn leaves(prefix: &str, value: &Value, found: &mut BTreeSet<String>) {
+        let Value::Table(table) = value else {
+            found.insert(prefix.to_owned());
+            return;
+        };
+        for (name, value) in table {
+            let dot = if prefix.is_empty() { "" } else { "." };
+            leaves(&format!("{prefix}{dot}{name}"), value, found);
+        }
+    }
+
+    #[test]
+    fn the_table_of_keys_and_the_type_agree() {
+        let mut settings = load("zcube-dual", &[]).unwrap().settings;
+        settings.top_skin_layers = Some(1);
+        settings.bottom_skin_layers = Some(1);
+        let mut typed = BTreeSet::new();
+        leaves("", &Value::try_from(&settings).unwrap(), &mut typed);
+        let listed: BTreeSet<_> = keys::KEYS.iter().map(|key| key.name.to_owned()).collect();
+        assert_eq!(typed, listed);
+    }
+
+    #[test]
+    fn words_in_the_table_are_those_of_the_types() {
+        for key in KEYS {
+            let Kind::Word(words) = key.kind else {
+                continue;
+            };
+            for word in words {
+                let given = crate::profile::Override {
+                    key: key.name.to_owned(),
+                    value: (*word).to_owned(),
+                    origin: crate::profile::ValueOrigin::Set,
+                };
+                let settings = load("zcube-dual", &[given]).unwrap().settings;
+                let shown = dump(&settings).into_iter().find(|(name, _)| name == key.name);
+                assert_eq!(shown.unwrap().1, format!("\"{word}\""));
+            }
+        }
+    }
+
+    #[test]
+    fn a_shown_profile_gives_the_same_settings_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shown.toml");
+        for name in builtin_names() {
+            for explain in [false, true] {
+                let profile = load(name, &[]).unwrap();
+                std::fs::write(&path, document(&profile, explain)).unwrap();
+                let again = load(path.to_str().unwrap(), &[]).unwrap();
+                assert_eq!(again.settings, profile.settings, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn dumped_lines_are_short_whatever_the_names_hold() {
+        let mut settings = load("zcube-dual", &[]).unwrap().settings;
+        settings.filament.name = "\"".repeat(keys::MAX_TEXT);
+        settings.machine.name = "\u{1f600}".repeat(keys::MAX_TEXT);
+        let lines = dump(&settings);
+        assert!(lines.iter().all(|(key, value)| key.len() + value.len() < 900));
+        assert!(lines.iter().all(|(_, value)| !value.contains('\n')));
+        assert!(!lines.iter().any(|(key, _)| NOT_DUMPED.contains(&key.as_str())));
+    }
+
+    #[test]
+    fn texts_are_quoted_as_toml_wants_it() {
+        let text = "a\"b\\c\u{7f}\té";
+        let line = format!("x = {}", quoted(text));
+        let table: toml::Table = toml::from_str(&line).unwrap();
+        assert_eq!(table["x"].as_str(), Some(text));
+    }
+}

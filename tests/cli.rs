@@ -1,0 +1,230 @@
+//! Command lines -> exit codes, streams and files, as a user or a script sees them.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use assert_cmd::Command;
+use predicates::prelude::*;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+fn slicer(folder: &TempDir) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
+    command.current_dir(folder.path());
+    command
+}
+
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("part.stl"), "solid part\nendsolid part\n").unwrap();
+    folder
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// The run fails with this code and these words in exactly one line on stderr,
+/// says nothing on stdout, and leaves no file.
+fn fails(folder: &TempDir, words: &[&str], code: i32, says: &str) {
+    let before = files(folder.path());
+    let one_line = predicate::function(|text: &str| text.lines().count() == 1);
+    slicer(folder)
+        .args(words)
+        .assert()
+        .code(code)
+        .stdout("")
+        .stderr(predicate::str::starts_with("error: ").and(predicate::str::contains(says)))
+        .stderr(one_line);
+    assert_eq!(files(folder.path()), before, "{words:?}");
+}
+
+#[test]
+fn wrong_flags_are_one_line_with_a_tip() {
+    let folder = folder();
+    fails(&folder, &["part.stl", "-o", "a", "--wals", "2"], 2, "'--walls'");
+    fails(&folder, &["part.stl"], 2, "--output <OUT>");
+    fails(&folder, &["-o", "a"], 2, "<INPUT>");
+    fails(&folder, &["part.stl", "-o", "a", "--pattern", "gird"], 2, "grid");
+    fails(&folder, &["part.stl", "-o", "a", "--scale", "0"], 2, "more than 0");
+    fails(&folder, &["part.stl", "-o", "a", "--rotate", "1,2"], 2, "3 numbers");
+    fails(&folder, &["part.stl", "-o", "a", "-q", "-v"], 2, "cannot be used with");
+    fails(&folder, &["part.stl", "-o", "a", "--threads", "0"], 2, "--threads");
+}
+
+#[test]
+fn wrong_settings_name_the_flag() {
+    let folder = folder();
+    let run = |words: &[&str], says| {
+        fails(&folder, &[&["part.stl", "-o", "a"], words].concat(), 2, says);
+    };
+    run(&["--layer-height", "-1"], "--layer-height: layer_height = -1 is out of range");
+    run(&["--layer-height", "x"], "--layer-height: layer_height is the text `x`");
+    run(&["--layer-height", "0.5"], "--layer-height: layer_height = 0.5 mm is more than");
+    run(&["--dual", "--layer-height", "0.3"], "thick infill taller than machine.nozzle");
+    run(&["--set", "wals=2"], "--set: unknown key `wals`; did you mean `walls`?");
+    run(&["--set", "walls"], "there is no `=`");
+    run(&["-p", "generic"], "unknown profile `generic`");
+    run(&["-p", "mine.toml"], "mine.toml: cannot read this profile");
+}
+
+#[test]
+fn wrong_profiles_name_file_and_line() {
+    let folder = folder();
+    let profile = |text: &str| fs::write(folder.path().join("mine.toml"), text).unwrap();
+    let run = |says| {
+        fails(&folder, &["part.stl", "-o", "a", "-p", "mine.toml"], 2, says);
+        fails(&folder, &["profile", "check", "mine.toml"], 2, says);
+    };
+    profile("inherits = \"zcube-dual\"\n\n[speed]\nwal = 1\n");
+    run("mine.toml:4: unknown key `speed.wal`; did you mean `speed.wall`?");
+    profile("inherits = \"zcube-dual\"\ninfill = 120\n");
+    run("mine.toml:2: infill = 120 is out of range; it must be 0 to 100 %");
+    profile("inherits = \"zcube-dual\"\nwalls = \n");
+    run("mine.toml:2: this is no valid TOML");
+    profile("inherits = \"mine.toml\"\n");
+    run("mine.toml:1: inherits goes round in a circle: mine.toml -> mine.toml");
+    profile("inherits = \"zcub-dual\"\n");
+    run("mine.toml:1: inherits: unknown profile `zcub-dual`; did you mean `zcube-dual`?");
+    profile("inherits = \"zcube-dual\"\n[machine]\nstart = '''\nG21\nM104 S{temprature}\n'''\n");
+    run("mine.toml:3: machine.start, line 2 of it: unknown placeholder {temprature}");
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_told_before_the_work() {
+    let folder = folder();
+    fs::create_dir(folder.path().join("dir")).unwrap();
+    fails(&folder, &["part.stl", "-o", "no/a.gcode"], 4, "there is no directory no; create it");
+    fails(&folder, &["part.stl", "-o", "dir"], 4, "it is a directory");
+    let words = ["part.stl", "-o", "a.gcode", "--report", "no/a.json"];
+    fails(&folder, &words, 4, "there is no directory no; create it");
+}
+
+#[test]
+fn no_two_arguments_may_mean_the_same_file() {
+    let folder = folder();
+    fails(&folder, &["part.stl", "-o", "-", "--report", "-"], 2, "standard output");
+    fails(&folder, &["part.stl", "-o", "./part.stl"], 2, "would replace part.stl");
+    fails(&folder, &["part.stl", "-o", "a", "--report", "./a"], 2, "the same file");
+    fails(&folder, &["-", "-", "-o", "a"], 2, "standard input holds one model");
+}
+
+#[test]
+fn a_run_alone_shows_short_help_and_fails() {
+    let folder = folder();
+    slicer(&folder).assert().code(2).stdout("").stderr(predicate::str::contains("--output"));
+}
+
+#[test]
+fn help_is_a_product_with_examples_and_exit_codes() {
+    let folder = folder();
+    slicer(&folder)
+        .arg("--help")
+        .assert()
+        .success()
+        .stdout(predicate::str::contains("Examples:").and(predicate::str::contains("Exit codes:")))
+        .stderr("");
+}
+
+#[test]
+fn profiles_are_listed_shown_and_checked() {
+    let folder = folder();
+    slicer(&folder)
+        .args(["profile", "list"])
+        .assert()
+        .success()
+        .stdout(predicate::str::starts_with("zcube-dual ").and(predicate::str::contains("thesis")))
+        .stderr("");
+    let shown = slicer(&folder)
+        .args(["profile", "show", "thesis", "--set", "walls=2"])
+        .assert()
+        .success()
+        .stdout(predicate::str::contains("walls = 2  # --set"))
+        .stdout(predicate::str::is_match("outer_wall_inset = 0  # thesis:\\d+").unwrap())
+        .stderr("");
+    fs::write(folder.path().join("mine.toml"), &shown.get_output().stdout).unwrap();
+    slicer(&folder)
+        .args(["profile", "check", "mine.toml"])
+        .assert()
+        .success()
+        .stdout("mine.toml: good\n");
+}
+
+#[test]
+fn completions_and_the_manual_are_printed() {
+    let folder = folder();
+    for words in [&["completions", "bash"][..], &["completions", "fish"], &["man"]] {
+        slicer(&folder)
+            .args(words)
+            .assert()
+            .success()
+            .stdout(
+                predicate::str::contains("layer-height")
+                    .or(predicate::str::contains("layer\\-height")),
+            )
+            .stderr("");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_is_no_failure() {
+    let folder = folder();
+    // `true` never reads, so the pipe is closed under the long text.
+    let program = assert_cmd::cargo::cargo_bin!("slicer");
+    let script =
+        format!("{{ sleep 0.2; '{}' profile show; echo $? >&2; }} | true", program.display());
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &script]).current_dir(folder.path()).assert().stderr("0\n");
+}
+
+/// A closed block of 12 x 10 x 4 mm.
+fn write_block(path: &Path) {
+    let corner = |i: usize| {
+        let pick = |bit: usize, size: usize| if i & bit == 0 { 0 } else { size };
+        format!("vertex {} {} {}\n", pick(1, 12), pick(2, 10), pick(4, 4))
+    };
+    let quads =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let mut text = "solid block\n".to_owned();
+    for [a, b, c, d] in quads {
+        for triangle in [[a, b, c], [a, c, d]] {
+            text += "facet normal 0 0 0\nouter loop\n";
+            text.extend(triangle.map(corner));
+            text += "endloop\nendfacet\n";
+        }
+    }
+    fs::write(path, text + "endsolid block\n").unwrap();
+}
+
+#[test]
+fn a_good_run_writes_its_products_and_a_summary_of_three_lines() {
+    let folder = folder();
+    write_block(&folder.path().join("block.stl"));
+    let three_lines = predicate::function(|text: &str| text.lines().count() == 3);
+    slicer(&folder)
+        .args(["block.stl", "-o", "a.gcode", "--report", "a.json", "--strict", "--dual"])
+        .assert()
+        .success()
+        .stdout("")
+        .stderr(three_lines);
+    assert_eq!(files(folder.path()), ["a.gcode", "a.json", "block.stl", "part.stl"]);
+    let report = fs::read(folder.path().join("a.json")).unwrap();
+    assert!(serde_json::from_slice::<serde_json::Value>(&report).unwrap().is_object());
+}
+
+#[test]
+fn the_product_is_the_same_on_stdout_and_on_any_number_of_threads() {
+    let folder = folder();
+    write_block(&folder.path().join("block.stl"));
+    slicer(&folder).args(["block.stl", "-o", "a.gcode", "-q"]).assert().success().stderr("");
+    let file = fs::read(folder.path().join("a.gcode")).unwrap();
+    for threads in ["1", "3"] {
+        let words = ["block.stl", "-q", "-o", "-", "--threads", threads];
+        slicer(&folder).args(words).assert().success().stdout(file.clone()).stderr("");
+    }
+}
