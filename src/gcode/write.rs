@@ -114,8 +114,8 @@ impl WriteParams {
     }
 
     /// Filament for a stretch of path, mm.
-    fn filament(&self, role: Role, length_mm: f64, width: f64, height: Coord) -> f64 {
-        self.rates[role as usize] * length_mm * (width / crate::units::UNITS_PER_MM) * to_mm(height)
+    fn filament(&self, role: Role, length_mm: f64, width: Coord, height: Coord) -> f64 {
+        self.rates[role as usize] * length_mm * to_mm(width) * to_mm(height)
     }
 
     /// What a layer will use when it starts at `at`.
@@ -130,7 +130,7 @@ impl WriteParams {
             }
             usage.retractions += usize::from(step.retract);
             let used = &mut usage.roles[step.path.role as usize];
-            for (_, _, length, width) in step.path.segments() {
+            for (_, length, width) in step.path.segments() {
                 let length = length / crate::units::UNITS_PER_MM;
                 used.length += length;
                 used.filament += self.filament(step.path.role, length, width, step.path.height);
@@ -318,11 +318,10 @@ impl<'a> Text<'a> {
             self.height = path.height;
             self.annotate(";HEIGHT:", path.height);
         }
-        for (_, to, length, width) in path.segments() {
-            let rounded = width.round() as Coord;
-            if (rounded - self.width).abs() >= LEAST_WIDTH_CHANGE {
-                self.width = rounded;
-                self.annotate(";WIDTH:", rounded);
+        for (to, length, width) in path.segments() {
+            if (width - self.width).abs() >= LEAST_WIDTH_CHANGE {
+                self.width = width;
+                self.annotate(";WIDTH:", width);
             }
             let length = length / crate::units::UNITS_PER_MM;
             self.e += self.params.filament(path.role, length, width, path.height);

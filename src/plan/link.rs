@@ -16,6 +16,9 @@ pub type Chain = Vec<LinePoint>;
 /// them: a longer one would lie on its neighbours.
 const LONGEST_SOLID_JOIN: Coord = 2;
 
+/// A join of sparse lines runs at most this many rows' distance along them from row to row.
+const FLATTEST_STEP: Coord = 2;
+
 /// Lines shorter than this are left out (50 µm): the bead's round end covers them.
 const LEAST_LINE: i64 = 500;
 
@@ -81,11 +84,23 @@ pub fn skin(lines: &[Line], params: &Params) -> Vec<Chain> {
                 if link.from == Side::Right {
                     points.reverse();
                 }
-                chain.extend(points);
+                lay(points, &mut chain, pitch);
             }
             chain
         })
         .collect()
+}
+
+/// Appends a line, given with the widths at its points, to a chain of widths on the
+/// way to them. The join to it is half as wide as a line: the other half of what it
+/// covers is filled by the round ends of the lines.
+fn lay(points: Vec<LinePoint>, chain: &mut Chain, line_width: Coord) {
+    let mut before = None;
+    for point in points {
+        let width = before.map_or(line_width / 2, |b: Coord| (b + point.width) / 2);
+        before = Some(point.width);
+        chain.push(LinePoint { width, ..point });
+    }
 }
 
 /// Chains of every `stride`-th line of a sparse region; `pitch` is the distance of its rows.
@@ -123,7 +138,8 @@ impl Edges<'_> {
     /// Whether the straight join is inside the region on every row between.
     fn straight(&self, (u, a): (Coord, i32), (to, b): (Coord, i32)) -> bool {
         let run = i64::from(to) - i64::from(u);
-        (a + 1..b).all(|j| {
+        // A flatter join could slip past a hole between two rows.
+        run.abs() <= i64::from(FLATTEST_STEP * self.pitch * (b - a)) && (a + 1..b).all(|j| {
             let u = u + (run * i64::from(j - a) / i64::from(b - a)) as Coord;
             self.region.row(j).iter().any(|s| s.start <= u && u <= s.end)
         })
@@ -136,8 +152,8 @@ impl Edges<'_> {
         (to, b): (Coord, i32),
         side: Side,
     ) -> Option<Vec<LinePoint>> {
-        // Along an edge flatter than this a join would be longer than a travel is worth.
-        let step = 2 * self.pitch;
+        // Along a flatter edge a join would be longer than a travel is worth.
+        let step = FLATTEST_STEP * self.pitch;
         let mut at = u;
         let mut points = Vec::new();
         for j in a + 1..b {

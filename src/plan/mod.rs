@@ -62,7 +62,7 @@ impl Role {
 pub struct PathPoint {
     /// Where.
     pub at: Point,
-    /// Width of the bead here, grid units; a bead changes its width evenly between two points.
+    /// Width of the bead on the way to here from the point before, grid units.
     pub width: Coord,
 }
 
@@ -98,12 +98,18 @@ impl Path {
         self.points.last().map(|p| p.at).unwrap_or_default()
     }
 
-    /// Each segment: its two ends, its length and its mean width, grid units.
-    pub fn segments(&self) -> impl Iterator<Item = (Point, Point, f64, f64)> {
-        self.points.windows(2).map(|w| {
-            let width = (f64::from(w[0].width) + f64::from(w[1].width)) / 2.0;
-            (w[0].at, w[1].at, w[0].at.distance(w[1].at), width)
-        })
+    /// Each segment: where it ends, its length and its width, grid units.
+    pub fn segments(&self) -> impl Iterator<Item = (Point, f64, Coord)> {
+        self.points.windows(2).map(|w| (w[1].at, w[0].at.distance(w[1].at), w[1].width))
+    }
+
+    /// Turns it round.
+    fn reverse(&mut self) {
+        self.points.reverse();
+        // A width belongs to the way to its point: it moves on to the segment's other end.
+        for k in (1..self.points.len()).rev() {
+            self.points[k].width = self.points[k - 1].width;
+        }
     }
 }
 

@@ -157,7 +157,7 @@ fn order_chains(chains: Vec<Path>, at: &mut Point, out: &mut Vec<Path>) {
         let (start, end) = ends.swap_remove(k);
         let mut path = left.swap_remove(k);
         if end.distance2(*at) < start.distance2(*at) {
-            path.points.reverse();
+            path.reverse();
         }
         *at = path.end();
         out.push(path);

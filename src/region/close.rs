@@ -20,6 +20,10 @@ const WIDEST: f64 = 1.75;
 /// Strips narrower than this stay open (20 µm): half of what positioning can tell.
 const LEAST_STRIP: Coord = 200;
 
+/// How much further the ends of lines reach that are not joined to another, in line
+/// widths: two round ends leave a corner open between them that a join would cover.
+const TIP: f64 = 0.25;
+
 /// A join between two lines covers the strips this many line widths from their ends.
 const SHORT_STRIP: Coord = 3;
 
@@ -36,7 +40,7 @@ pub struct LinePoint {
     pub u: Coord,
     /// Across them.
     pub v: Coord,
-    /// Width of the bead here.
+    /// Width of the bead on the way to here from the point before.
     pub width: Coord,
 }
 
@@ -71,6 +75,14 @@ pub struct Joined {
 }
 
 impl Joined {
+    fn left(self) -> bool {
+        self.above.0 || self.below.0
+    }
+
+    fn right(self) -> bool {
+        self.above.1 || self.below.1
+    }
+
     /// Joined to a line of the row before, at the left end or at the right.
     pub fn below(&mut self, left: bool) {
         self.below = (left, !left);
@@ -197,7 +209,7 @@ impl Strips {
 }
 
 /// The points of `line` from left to right, moved and widened to fill the strips
-/// beside it.
+/// beside it; widths are those at the points.
 #[must_use]
 pub fn points(line: &Line, joined: Joined, params: &Params) -> Vec<LinePoint> {
     let Line { row, span, .. } = *line;
@@ -206,20 +218,26 @@ pub fn points(line: &Line, joined: Joined, params: &Params) -> Vec<LinePoint> {
     let mut kept = vec![0];
     keep_bends(&samples, 0, samples.len() - 1, &mut kept);
     kept.push(samples.len() - 1);
-    let w = f64::from(params.line_width);
-    let v = f64::from(row) * w;
-    kept.into_iter()
-        .map(|k| {
-            let Strip { u, above, below } = samples[k];
-            let spare = (WIDEST - 1.0) * w;
-            let share = if above + below > spare { spare / (above + below) } else { 1.0 };
-            LinePoint {
-                u,
-                v: (v + share * (above - below) / 2.0).round() as Coord,
-                width: (w + share * (above + below)).round() as Coord,
-            }
-        })
-        .collect()
+    let mut points: Vec<LinePoint> =
+        kept.into_iter().map(|k| filled(row, samples[k], params.line_width)).collect();
+    let Some(last) = points.len().checked_sub(1) else { return points };
+    let tip = (params.line_width as f64 * TIP) as Coord;
+    points[0].u -= if joined.left() { 0 } else { tip };
+    points[last].u += if joined.right() { 0 } else { tip };
+    points
+}
+
+/// The middle of a line and its width where it fills the strips beside it.
+fn filled(row: i32, strip: Strip, line_width: Coord) -> LinePoint {
+    let w = f64::from(line_width);
+    let Strip { u, above, below } = strip;
+    let spare = (WIDEST - 1.0) * w;
+    let share = if above + below > spare { spare / (above + below) } else { 1.0 };
+    LinePoint {
+        u,
+        v: (f64::from(row) * w + share * (above - below) / 2.0).round() as Coord,
+        width: (w + share * (above + below)).round() as Coord,
+    }
 }
 
 /// The strips beside a line that no join covers.
