@@ -91,11 +91,13 @@ pub fn slice(
     let mut window =
         region::window::Window::new(&slicer, &params, &settings.dual, supports.unwrap_or_default());
     while let Some(regions) = window.next() {
-        let pieces: Vec<plan::Pieces> = regions.par_iter().map(|r| plan::pieces(r, &plan)).collect();
+        let pieces: Vec<plan::Pieces> =
+            regions.par_iter().map(|r| plan::pieces(r, &plan)).collect();
         // Where a layer ends decides how the next is best begun: one after the other.
         let mut ordered = Vec::with_capacity(regions.len());
         for (region, pieces) in regions.iter().zip(pieces) {
-            let paths = plan::order::order(pieces, region.layer.height, at.unwrap_or_default(), &plan);
+            let paths =
+                plan::order::order(pieces, region.layer.height, at.unwrap_or_default(), &plan);
             let end = paths.last().map(plan::Path::end).or(at);
             ordered.push((region, std::mem::replace(&mut at, end), paths));
             tally.layer(region);
@@ -137,7 +139,8 @@ fn bed(machine: &profile::Machine) -> mesh::Bed {
 
 /// The bed's corners as seen from the middle of the layout, grid units.
 fn bed_corners(bed: &mesh::Bed, offset: [f64; 2]) -> (Point, Point) {
-    let corner = |at: [f64; 2]| Point { x: to_units(at[0] - offset[0]), y: to_units(at[1] - offset[1]) };
+    let corner =
+        |at: [f64; 2]| Point { x: to_units(at[0] - offset[0]), y: to_units(at[1] - offset[1]) };
     (corner(bed.min), corner(bed.max))
 }
 

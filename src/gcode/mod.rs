@@ -66,8 +66,7 @@ impl<'a> Writer<'a> {
     pub fn layers(&mut self, layers: &[Toolpath]) -> Result<()> {
         let params = &self.params;
         let mut at = self.start.at;
-        let from: Vec<Option<Point>> =
-            layers
+        let from: Vec<Option<Point>> = layers
             .iter()
             .map(|layer| {
                 let end = layer.end().or(at);
@@ -84,8 +83,11 @@ impl<'a> Writer<'a> {
             self.usage.add(usage);
         }
         self.start.at = at;
-        let texts: Vec<Vec<u8>> =
-            layers.par_iter().zip(&starts).map(|(layer, start)| params.layer(layer, start)).collect();
+        let texts: Vec<Vec<u8>> = layers
+            .par_iter()
+            .zip(&starts)
+            .map(|(layer, start)| params.layer(layer, start))
+            .collect();
         texts.iter().try_for_each(|text| self.put(text))
     }
 

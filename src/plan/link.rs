@@ -19,6 +19,10 @@ const LONGEST_SOLID_JOIN: Coord = 2;
 /// A join of sparse lines runs at most this many rows' distance along them from row to row.
 const FLATTEST_STEP: Coord = 2;
 
+/// Width of a join between two solid lines, in line widths: the rest of what it covers
+/// is filled by the lines' round ends.
+const SOLID_JOIN_WIDTH: f64 = 0.4;
+
 /// Lines shorter than this are left out (50 µm): the bead's round end covers them.
 const LEAST_LINE: i64 = 500;
 
@@ -92,12 +96,12 @@ pub fn skin(lines: &[Line], params: &Params) -> Vec<Chain> {
 }
 
 /// Appends a line, given with the widths at its points, to a chain of widths on the
-/// way to them. The join to it is half as wide as a line: the other half of what it
-/// covers is filled by the round ends of the lines.
+/// way to them.
 fn lay(points: Vec<LinePoint>, chain: &mut Chain, line_width: Coord) {
+    let join = (f64::from(line_width) * SOLID_JOIN_WIDTH) as Coord;
     let mut before = None;
     for point in points {
-        let width = before.map_or(line_width / 2, |b: Coord| (b + point.width) / 2);
+        let width = before.map_or(join, |b: Coord| (b + point.width) / 2);
         before = Some(point.width);
         chain.push(LinePoint { width, ..point });
     }
@@ -139,10 +143,11 @@ impl Edges<'_> {
     fn straight(&self, (u, a): (Coord, i32), (to, b): (Coord, i32)) -> bool {
         let run = i64::from(to) - i64::from(u);
         // A flatter join could slip past a hole between two rows.
-        run.abs() <= i64::from(FLATTEST_STEP * self.pitch * (b - a)) && (a + 1..b).all(|j| {
-            let u = u + (run * i64::from(j - a) / i64::from(b - a)) as Coord;
-            self.region.row(j).iter().any(|s| s.start <= u && u <= s.end)
-        })
+        run.abs() <= i64::from(FLATTEST_STEP * self.pitch * (b - a))
+            && (a + 1..b).all(|j| {
+                let u = u + (run * i64::from(j - a) / i64::from(b - a)) as Coord;
+                self.region.row(j).iter().any(|s| s.start <= u && u <= s.end)
+            })
     }
 
     /// The points of a join along the region's edge, if one edge leads there.

@@ -81,8 +81,7 @@ impl Path {
     /// A closed wall that starts and ends at the vertex `from`.
     fn closed(role: Role, contour: &[Point], from: usize, width: Coord, height: Coord) -> Self {
         let n = contour.len();
-        let points =
-            (0..=n).map(|k| PathPoint { at: contour[(from + k) % n], width }).collect();
+        let points = (0..=n).map(|k| PathPoint { at: contour[(from + k) % n], width }).collect();
         Self { role, points, height }
     }
 
@@ -186,16 +185,18 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
     let mut chains: Vec<Path> = Vec::new();
     let height = region.layer.height;
     let mut add = |role, height, raster: Raster, links: Vec<link::Chain>| {
-        chains.extend(links.into_iter().map(|chain| Path {
-            role,
-            height,
-            points: chain
-                .into_iter()
-                .map(|p| PathPoint {
-                    at: raster.frame.leave(Point { x: p.u, y: p.v }),
-                    width: p.width,
-                })
-                .collect(),
+        chains.extend(links.into_iter().map(|chain| {
+            Path {
+                role,
+                height,
+                points: chain
+                    .into_iter()
+                    .map(|p| PathPoint {
+                        at: raster.frame.leave(Point { x: p.u, y: p.v }),
+                        width: p.width,
+                    })
+                    .collect(),
+            }
         }));
     };
     let skin = &region.skin;
@@ -204,17 +205,16 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
     add(Role::Skin, height, raster, skin.slivers.clone());
     for infill in &region.infill {
         let raster = params.region.rasters[infill.comb.raster];
-        let (role, height) = if infill.thick {
-            (Role::ThickInfill, 2 * height)
-        } else {
-            (Role::Infill, height)
-        };
-        let chains = link::comb(&infill.rows, infill.comb.stride, raster.pitch, params.region.line_width);
+        let (role, height) =
+            if infill.thick { (Role::ThickInfill, 2 * height) } else { (Role::Infill, height) };
+        let chains =
+            link::comb(&infill.rows, infill.comb.stride, raster.pitch, params.region.line_width);
         add(role, height, raster, chains);
     }
     if let Some(support) = &params.support {
         let raster = support.raster;
-        let chains = link::comb(&region.support, support.stride, raster.pitch, params.region.line_width);
+        let chains =
+            link::comb(&region.support, support.stride, raster.pitch, params.region.line_width);
         add(Role::Support, height, raster, chains);
     }
     let support = chains.extract_if(.., |c| c.role == Role::Support).collect();
@@ -224,7 +224,12 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
 
 /// The toolpath of a layer whose paths are in order; the nozzle comes from `at`.
 #[must_use]
-pub fn toolpath(region: &Region, paths: Vec<Path>, at: Option<Point>, params: &PlanParams) -> Toolpath {
+pub fn toolpath(
+    region: &Region,
+    paths: Vec<Path>,
+    at: Option<Point>,
+    params: &PlanParams,
+) -> Toolpath {
     let Layer { index, z, height, .. } = region.layer;
     let steps = travel::steps(paths, &region.layer.contours, at, params);
     Toolpath { layer: index, z, height, steps }

@@ -101,7 +101,8 @@ impl<'a> Outer<'a> {
         let crossings = edges.filter(|(a, b)| {
             let (low, high) = if a.y < b.y { (a, b) } else { (b, a) };
             low.y < p.y && p.y <= high.y && {
-                let side = (i64::from(high.x) - i64::from(low.x)) * (i64::from(p.y) - i64::from(low.y))
+                let side = (i64::from(high.x) - i64::from(low.x))
+                    * (i64::from(p.y) - i64::from(low.y))
                     - (i64::from(high.y) - i64::from(low.y)) * (i64::from(p.x) - i64::from(low.x));
                 side > 0
             }
@@ -128,7 +129,9 @@ fn order_walls(
         if params.outer_first { depths.min() } else { depths.max() }
     } {
         let seam = |wall: &Wall| -> (i64, usize) {
-            let place = |(k, p): (usize, &Point)| (if params.seam_rear { -i64::from(p.y) } else { p.distance2(*at) }, k);
+            let place = |(k, p): (usize, &Point)| {
+                (if params.seam_rear { -i64::from(p.y) } else { p.distance2(*at) }, k)
+            };
             wall.path.iter().enumerate().map(place).min().unwrap_or_default()
         };
         let best = walls

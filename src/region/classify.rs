@@ -1,9 +1,11 @@
 //! Neighbouring layers' rows -> Areas: which stretch of each raster line is skin, which sparse infill.
 //!
 //! With `n` skin layers a place is sparse infill where all of the `n` layers
-//! below and above cover it, else skin. A neighbour covers with its walls: it
-//! counts up to the middle of its outer wall, so that a steep slope, which the
-//! neighbours' walls close already, gets no thin ring of skin.
+//! below and above cover it, else skin. A neighbour covers up to its contour,
+//! with its walls, while skin and infill begin inside this layer's walls: a steep
+//! slope, which the walls of the layers close already, gets no thin ring of skin.
+//! Where there is skin it reaches a little further, under or over what covers it,
+//! to hold on.
 
 use super::{Params, Prepared};
 use crate::geom::spans::{Rows, Span, intersect};

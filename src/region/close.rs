@@ -121,12 +121,14 @@ pub fn close(crossed: &Crossed<'_>, params: &Params) -> (Vec<Line>, Vec<Vec<Line
         let u = if crossed.left_turn { -at } else { at };
         for &span in crossed.columns.row(c) {
             let walls = crossed.fill_columns.row(c);
-            let (low, high) = if crossed.left_turn { (span.start, span.end) } else { (-span.end, -span.start) };
+            let (low, high) =
+                if crossed.left_turn { (span.start, span.end) } else { (-span.end, -span.start) };
             let (at_start, at_end) = (
                 walls.iter().any(|w| w.start == span.start),
                 walls.iter().any(|w| w.end == span.end),
             );
-            let (wall_low, wall_high) = if crossed.left_turn { (at_start, at_end) } else { (at_end, at_start) };
+            let (wall_low, wall_high) =
+                if crossed.left_turn { (at_start, at_end) } else { (at_end, at_start) };
             let extent = Extent { u, low, high, wall_low, wall_high };
             if !strips.add(&extent, params) && (wall_low || wall_high) {
                 thin.push(extent);
@@ -194,7 +196,8 @@ impl Strips {
     }
 
     fn note(&mut self, row: i32, u: Coord, above: f64, below: f64) {
-        let Some(strips) = usize::try_from(row - self.first).ok().and_then(|k| self.rows.get_mut(k))
+        let Some(strips) =
+            usize::try_from(row - self.first).ok().and_then(|k| self.rows.get_mut(k))
         else {
             return;
         };
@@ -309,7 +312,8 @@ fn keep_bends(samples: &[Strip], a: usize, b: usize, kept: &mut Vec<usize>) {
         let below = first.below + t * (last.below - first.below) - samples[k].below;
         above.abs().max(below.abs())
     };
-    let worst = (a + 1..b).map(|k| (miss(k), k)).max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1)));
+    let worst =
+        (a + 1..b).map(|k| (miss(k), k)).max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1)));
     if let Some((miss, k)) = worst.filter(|(miss, _)| *miss > LEAST_BEND) {
         let _ = miss;
         keep_bends(samples, a, k, kept);
@@ -324,12 +328,18 @@ fn slivers(thin: Vec<Extent>, params: &Params) -> Vec<Vec<LinePoint>> {
     let w = params.line_width;
     for extent in thin {
         let height = extent.high - extent.low;
-        let width = (height + w - 2 * params.overlap).clamp(w / 2, (WIDEST * f64::from(w)) as Coord);
+        let width =
+            (height + w - 2 * params.overlap).clamp(w / 2, (WIDEST * f64::from(w)) as Coord);
         let point = LinePoint { u: extent.u, v: extent.low + height / 2, width };
         let joins = |last: &Extent| {
             extent.u - last.u == w && extent.low <= last.high && last.low <= extent.high
         };
-        match beads.iter_mut().rev().take_while(|(e, _)| extent.u - e.u <= w).find(|(e, _)| joins(e)) {
+        match beads
+            .iter_mut()
+            .rev()
+            .take_while(|(e, _)| extent.u - e.u <= w)
+            .find(|(e, _)| joins(e))
+        {
             Some((last, bead)) => {
                 *last = extent;
                 bead.push(point);

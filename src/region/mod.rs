@@ -35,9 +35,6 @@ pub struct Params {
     pub outer_inset: Coord,
     /// Distance of the ends of skin and infill lines from the contour.
     pub fill_inset: Coord,
-    /// How far inside its contour a neighbouring layer counts as covering this
-    /// one: at the middle of its outer wall.
-    pub cover_inset: Coord,
     /// How far lines reach into the innermost wall.
     pub overlap: Coord,
     /// Solid layers at the top.
@@ -68,14 +65,15 @@ impl Params {
         let w = settings.line_width;
         let outer = settings.outer_wall_inset;
         let from_contour = outer + f64::from(settings.walls) - settings.infill_overlap;
-        let fill_inset = if settings.walls == 0 { 0.5 - settings.infill_overlap } else { from_contour };
-        let skin = |turn: f64| Raster { frame: Frame::new(settings.angle + turn), pitch: to_units(w) };
+        let fill_inset =
+            if settings.walls == 0 { 0.5 - settings.infill_overlap } else { from_contour };
+        let skin =
+            |turn: f64| Raster { frame: Frame::new(settings.angle + turn), pitch: to_units(w) };
         let mut params = Self {
             line_width: to_units(w),
             walls: settings.walls,
             outer_inset: to_units(outer * w),
             fill_inset: to_units(fill_inset * w),
-            cover_inset: to_units(outer.min(fill_inset) * w),
             overlap: to_units(settings.infill_overlap * w),
             top_skins: settings.top_skins() as usize,
             bottom_skins: settings.bottom_skins() as usize,
@@ -101,8 +99,10 @@ impl Params {
         };
         for set in turns {
             let spacing = spacing * set.len() as f64;
-            let combs =
-                set.iter().map(|turn| self.comb(settings.angle + turn, to_units(spacing))).collect();
+            let combs = set
+                .iter()
+                .map(|turn| self.comb(settings.angle + turn, to_units(spacing)))
+                .collect();
             self.infill.push(combs);
         }
     }
@@ -143,7 +143,7 @@ pub struct Prepared {
 pub struct PreparedRows {
     /// Where lines of skin or infill may run.
     pub fill: Rows,
-    /// Where this layer covers its neighbours: with its walls.
+    /// Where this layer covers its neighbours: up to its contour, with its walls.
     pub cover: Rows,
 }
 
@@ -157,10 +157,7 @@ impl Prepared {
             .iter()
             .map(|&raster| {
                 let scan = Scan::new(&layer.contours, raster);
-                PreparedRows {
-                    fill: scan.inset(params.fill_inset),
-                    cover: scan.inset(params.cover_inset),
-                }
+                PreparedRows { fill: scan.inset(params.fill_inset), cover: scan.into_inside() }
             })
             .collect();
         Self { layer, walls, rows }
@@ -211,6 +208,10 @@ impl Infill {
     #[must_use]
     pub fn length(&self) -> i64 {
         let printed = |j: i32| j.rem_euclid(self.comb.stride) == 0;
-        self.rows.iter().filter(|(j, _)| printed(*j)).map(|(_, row)| crate::geom::spans::total(row)).sum()
+        self.rows
+            .iter()
+            .filter(|(j, _)| printed(*j))
+            .map(|(_, row)| crate::geom::spans::total(row))
+            .sum()
     }
 }

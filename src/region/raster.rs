@@ -44,10 +44,8 @@ impl Scan {
     /// Lays `contours` (closed, outside counter-clockwise) under the lines of `raster`.
     #[must_use]
     pub fn new(contours: &[Contour], raster: Raster) -> Self {
-        let contours: Vec<Contour> = contours
-            .iter()
-            .map(|c| c.iter().map(|&p| raster.frame.enter(p)).collect())
-            .collect();
+        let contours: Vec<Contour> =
+            contours.iter().map(|c| c.iter().map(|&p| raster.frame.enter(p)).collect()).collect();
         let inside = inside(&contours, raster);
         Self { raster, contours, inside }
     }
@@ -56,6 +54,12 @@ impl Scan {
     #[must_use]
     pub fn inside(&self) -> &Rows {
         &self.inside
+    }
+
+    /// [`Self::inside`], without a copy.
+    #[must_use]
+    pub fn into_inside(self) -> Rows {
+        self.inside
     }
 
     /// Where the lines are inside and at least `distance` from every contour.

@@ -50,7 +50,10 @@ impl SupportParams {
             settings.layer_height * libm::cos(angle) / libm::sin(angle)
         };
         support.enabled.then(|| Self {
-            raster: Raster { frame: Frame::new(settings.angle), pitch: (spacing + stride / 2) / stride },
+            raster: Raster {
+                frame: Frame::new(settings.angle),
+                pitch: (spacing + stride / 2) / stride,
+            },
             stride,
             lean: to_units(lean.min(1000.0)),
             outset: to_units(support.outset),
@@ -153,7 +156,8 @@ impl Window {
         let layer = &self.layers[at];
         // The overhang of layer k + 1 + gap begins at layer k.
         let begins = out.len() > layer.index + 1 + params.gap;
-        let new = if begins { self.overhangs.pop_front().unwrap_or_default() } else { Rows::default() };
+        let new =
+            if begins { self.overhangs.pop_front().unwrap_or_default() } else { Rows::default() };
         let mut rows = self.above.or(&new).minus(&layer.near);
         let around = at.saturating_sub(params.gap)..(at + params.gap + 1).min(self.layers.len());
         for other in around.filter(|&n| n != at) {
@@ -195,8 +199,7 @@ impl Bed {
 
 /// The rows that are printed, on the bed, without what is shorter than a line is wide.
 fn printed(rows: &Rows, params: &SupportParams, bed: &Bed) -> Rows {
-    let is_printed = |j: i32, s: Span| {
-        j.rem_euclid(params.stride) == 0 && s.len() >= i64::from(params.least)
-    };
+    let is_printed =
+        |j: i32, s: Span| j.rem_euclid(params.stride) == 0 && s.len() >= i64::from(params.least);
     rows.and(&bed.rows).filter(is_printed)
 }

@@ -7,7 +7,7 @@
 use super::classify::{Areas, areas};
 use super::close::{Crossed, close};
 use super::dual::{self, LayerAreas, PairStats};
-use super::{Infill, walls, Params, Prepared, Region, Skin};
+use super::{Infill, Params, Prepared, Region, Skin, walls};
 use crate::geom::spans::Rows;
 use crate::profile::Dual;
 use crate::slice::Slicer;
@@ -118,11 +118,15 @@ impl<'a> Window<'a> {
         let count = self.slicer.heights().count;
         let Some(upper) = upper.filter(|_| dual::is_pair(lower, count, self.dual.mode)) else {
             let each = |k| {
-                let areas = self.areas(k, dual::plain_combs(k, self.params).iter().map(|c| c.raster));
+                let areas =
+                    self.areas(k, dual::plain_combs(k, self.params).iter().map(|c| c.raster));
                 let infill = dual::plain(k, &areas, self.params);
                 Filling { skin: self.skin(k, &areas), infill }
             };
-            return ([Some(lower), upper].into_iter().flatten().map(each).collect(), PairStats::default());
+            return (
+                [Some(lower), upper].into_iter().flatten().map(each).collect(),
+                PairStats::default(),
+            );
         };
         let combs = dual::pair_combs(lower / 2, self.dual, self.params);
         let below = self.areas(lower, combs.iter().map(|c| c.raster));

@@ -46,7 +46,11 @@ impl<'a> Slicer<'a> {
         let blocks = heights.count.div_ceil(BLOCK);
         let reach = |t: &[u32; 3]| -> Range<usize> {
             let layers = crossed(mesh, heights, t);
-            if layers.is_empty() { 0..0 } else { layers.start / BLOCK..(layers.end - 1) / BLOCK + 1 }
+            if layers.is_empty() {
+                0..0
+            } else {
+                layers.start / BLOCK..(layers.end - 1) / BLOCK + 1
+            }
         };
         let mut starts = vec![0; blocks + 1];
         for t in &mesh.triangles {
@@ -118,7 +122,13 @@ impl<'a> Slicer<'a> {
         // The order of the triangles must not show: sort before the union.
         contours.sort_unstable();
         let contours = polygon::union(&contours);
-        Layer { index: k, z: self.heights.top(k), height: self.heights.height(k), contours, closed_gap }
+        Layer {
+            index: k,
+            z: self.heights.top(k),
+            height: self.heights.height(k),
+            contours,
+            closed_gap,
+        }
     }
 }
 
@@ -143,7 +153,8 @@ impl Walk<'_> {
         // Chains that begin at a gap first: a walk from their middle would cut them in two.
         for &t in triangles {
             let entry = self.edge(t, false);
-            if self.adjacency.neighbour[t as usize][entry] == NONE && done[t as usize] != self.mark {
+            if self.adjacency.neighbour[t as usize][entry] == NONE && done[t as usize] != self.mark
+            {
                 let mut chain = vec![self.crossing(t, entry)];
                 self.follow(t, done, &mut chain);
                 open.push(chain);
