@@ -90,7 +90,7 @@ pub fn slice(
     let mut at: Option<Point> = None;
     let mut window =
         region::window::Window::new(&slicer, &params, &settings.dual, supports.unwrap_or_default());
-    while let Some(regions) = window.next() {
+    for regions in window.by_ref() {
         let pieces: Vec<plan::Pieces> =
             regions.par_iter().map(|r| plan::pieces(r, &plan)).collect();
         // Where a layer ends decides how the next is best begun: one after the other.

@@ -223,7 +223,7 @@ fn extend(
             .iter()
             .enumerate()
             .filter_map(|(k, s)| s.filter(|s| s.overlaps(near)).map(|s| (k, s)));
-        let (index, span) = if side == Side::Right { beside.last() } else { beside.next() }?;
+        let (index, span) = if side == Side::Right { beside.next_back() } else { beside.next() }?;
         let points = join((side.of(last.span), last.row), (side.of(span), row), side)?;
         Some((index, side, span, points))
     })?;

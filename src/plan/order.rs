@@ -49,7 +49,7 @@ impl Island {
 #[must_use]
 pub fn islands(walls: Vec<Wall>, chains: Vec<Path>, contours: &[Contour]) -> Vec<Island> {
     let outer: Vec<Outer<'_>> =
-        contours.iter().filter(|c| double_area(c) > 0).map(|c| Outer::new(c)).collect();
+        contours.iter().filter(|c| double_area(c) > 0).map(Outer::new).collect();
     // The last one takes what rounding leaves outside of all.
     let mut islands: Vec<Island> = (0..=outer.len()).map(|_| Island::default()).collect();
     // Of nested contours (an island in a hole) the one with the smallest box holds the piece.

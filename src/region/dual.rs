@@ -55,7 +55,7 @@ fn turn(n: usize, params: &Params) -> &[Comb] {
 /// first layer never does: a thick bead on the bare bed does not hold.
 #[must_use]
 pub fn is_pair(lower: usize, count: usize, mode: DualMode) -> bool {
-    mode == DualMode::Pair && lower % 2 == 0 && lower > 0 && lower + 1 < count
+    mode == DualMode::Pair && lower.is_multiple_of(2) && lower > 0 && lower + 1 < count
 }
 
 /// The infill of a layer on its own.
