@@ -2,7 +2,7 @@
 //! and skins at the fine layer height, sparse infill on one layer of each pair
 //! with twice the material.
 //!
-//! The modules in the order of the way an STL takes; [`slice`] shows it whole:
+//! The modules in the order of the way an STL takes; [`slice()`] shows it whole:
 //!
 //! - [`mesh`]: bytes -> triangles, welded and laid on the bed
 //! - [`mod@slice`]: triangles -> layers of closed contours
