@@ -23,6 +23,9 @@ const FLATTEST_STEP: Coord = 2;
 /// is filled by the lines' round ends.
 const SOLID_JOIN_WIDTH: f64 = 0.4;
 
+/// A straight join may leave its region by this much (10 µm): edges are rounded to the grid.
+const SLACK: Coord = 100;
+
 /// Lines are joined if their distance is at most this many times the shorter one's length.
 const LONGEST_JOIN: i64 = 4;
 
@@ -152,7 +155,8 @@ impl Edges<'_> {
         run.abs() <= i64::from(FLATTEST_STEP * self.pitch * (b - a))
             && (a + 1..b).all(|j| {
                 let u = u + (run * i64::from(j - a) / i64::from(b - a)) as Coord;
-                self.region.row(j).iter().any(|s| s.start <= u && u <= s.end)
+                let holds = |s: &Span| s.start - SLACK <= u && u <= s.end + SLACK;
+                self.region.row(j).iter().any(holds)
             })
     }
 
