@@ -7,6 +7,7 @@
 //! layer are disjoint and together its inset; rows are sorted, disjoint, never
 //! empty.
 
+pub mod bend;
 pub mod classify;
 pub mod close;
 pub mod dual;
@@ -20,7 +21,7 @@ use crate::geom::spans::Rows;
 use crate::profile::{Pattern, Settings};
 use crate::slice::Layer;
 use crate::units::{Coord, to_units};
-use close::Line;
+use bend::{Line, LinePoint};
 use raster::{Raster, Scan};
 use walls::Wall;
 
@@ -189,7 +190,7 @@ pub struct Skin {
     /// Its lines, row by row; bent and widened along walls.
     pub lines: Vec<Line>,
     /// Beads along strips too thin for a line.
-    pub slivers: Vec<Vec<close::LinePoint>>,
+    pub slivers: Vec<Vec<LinePoint>>,
 }
 
 /// Infill lines of one layer in one direction.
