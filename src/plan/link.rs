@@ -21,7 +21,7 @@ const FLATTEST_STEP: Coord = 2;
 
 /// Width of a join between two solid lines, in line widths: the rest of what it covers
 /// is filled by the lines' round ends.
-const SOLID_JOIN_WIDTH: f64 = 0.4;
+const SOLID_JOIN_WIDTH: f64 = 0.25;
 
 /// A straight join may leave its region by this much (10 µm): edges are rounded to the grid.
 const SLACK: Coord = 100;
