@@ -231,7 +231,7 @@ mod tests {
         let mut settings = profile::load("generic-marlin", &[]).unwrap().settings;
         settings.angle = 0.0;
         let params = Params::new(&settings);
-        let along = Scan::new(&[contour.clone()], params.rasters[0]).inside().clone();
+        let along = Scan::new(std::slice::from_ref(&contour), params.rasters[0]).inside().clone();
         let across = Scan::new(&[contour], params.rasters[1]).inside().clone();
         let crossed = Crossed {
             skin: &along,
