@@ -5,7 +5,7 @@ use super::number::{push_fixed, push_integer, thousandths};
 use crate::geom::Point;
 use crate::plan::{Path, Role, Toolpath};
 use crate::profile::{ExtrusionModel, Settings};
-use crate::units::{Coord, to_mm, to_units};
+use crate::units::{Coord, nearest, to_mm, to_units};
 use std::f64::consts::PI;
 use std::io::Write as _;
 
@@ -394,7 +394,7 @@ impl<'a> Text<'a> {
 
 /// mm of filament in 10⁻⁵ mm.
 fn ticks(mm: f64) -> i64 {
-    (mm * 100_000.0).round() as i64
+    nearest(mm * 100_000.0)
 }
 
 #[cfg(test)]
