@@ -1,8 +1,8 @@
 //! Report: what a run found and made, as versioned JSON (`--report`) and as a three-line summary.
 
-use crate::Job;
 use crate::error::{Error, Result};
 use crate::gcode::write::{Usage, filament_area};
+use crate::job::{self, Job};
 use crate::mesh::MeshReport;
 use crate::mesh::transform::Placed;
 use crate::plan::Role;
@@ -107,8 +107,8 @@ pub struct DualReport {
     pub volume_ratio: f64,
 }
 
-/// Thin places of a layer below this are corners, not shape, mm².
-const LEAST_THIN_MM2: f64 = 2.0;
+/// Thin places of a layer below this are rounding and tips of corners, not shape, mm².
+const LEAST_THIN_MM2: f64 = 1.0;
 
 /// What the layers of a print add up to, beside what is extruded.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -167,7 +167,7 @@ pub fn report(
     let volume_cm3 = filament_mm * filament_area(settings) / 1000.0;
     Ok(Report {
         schema: SCHEMA,
-        slicer: crate::NAME.to_owned(),
+        slicer: job::NAME.to_owned(),
         profile: job.profile.clone(),
         models: placed.reports.clone(),
         size_mm: placed.size_mm,

@@ -7,6 +7,7 @@
 //! layer are disjoint and together its inset; rows are sorted, disjoint, never
 //! empty.
 
+pub mod bend;
 pub mod classify;
 pub mod close;
 pub mod dual;
@@ -20,7 +21,7 @@ use crate::geom::spans::Rows;
 use crate::profile::{Pattern, Settings};
 use crate::slice::Layer;
 use crate::units::{Coord, to_units};
-use close::Line;
+use bend::{Line, LinePoint};
 use raster::{Raster, Scan};
 use walls::Wall;
 
@@ -189,7 +190,7 @@ pub struct Skin {
     /// Its lines, row by row; bent and widened along walls.
     pub lines: Vec<Line>,
     /// Beads along strips too thin for a line.
-    pub slivers: Vec<Vec<close::LinePoint>>,
+    pub slivers: Vec<Vec<LinePoint>>,
 }
 
 /// Infill lines of one layer in one direction.
@@ -204,14 +205,13 @@ pub struct Infill {
 }
 
 impl Infill {
-    /// The length of the lines to be printed, grid units.
+    /// The length of the lines to be printed, grid units: those of the comb that are
+    /// at least `least` long.
     #[must_use]
-    pub fn length(&self) -> i64 {
+    pub fn length(&self, least: Coord) -> i64 {
         let printed = |j: i32| j.rem_euclid(self.comb.stride) == 0;
-        self.rows
-            .iter()
-            .filter(|(j, _)| printed(*j))
-            .map(|(_, row)| crate::geom::spans::total(row))
-            .sum()
+        let rows = self.rows.iter().filter(|(j, _)| printed(*j));
+        let spans = rows.flat_map(|(_, row)| row).map(|span| span.len());
+        spans.filter(|&len| len >= i64::from(least)).sum()
     }
 }
