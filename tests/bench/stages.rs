@@ -1,0 +1,206 @@
+//! Models -> time per stage: the stages one by one, then the whole run into a sink.
+//!
+//! `cargo bench --bench stages` measures fixtures/bracket.stl; with
+//! `SLICER_MODELS=folder` also the models named in [`LARGE`], as far as the folder
+//! holds them. Words behind `--` pick some, such as `-- femur` or `-- whole`.
+
+#![allow(missing_docs, reason = "criterion's macros make functions without docs")]
+#![allow(clippy::print_stderr, reason = "says what is not measured")]
+
+use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
+use slicer::geom::Point;
+use slicer::mesh::transform::{Placed, place};
+use slicer::mesh::{Bed, Placement, Unit, stl};
+use slicer::profile::{self, Override, Settings, ValueOrigin};
+use slicer::region::raster::Scan;
+use slicer::region::window::Window;
+use slicer::region::{Params, Prepared, Region, classify, walls};
+use slicer::slice::{Heights, Layer, Slicer};
+use slicer::units::to_units;
+use slicer::{Job, plan};
+use std::hint::black_box;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Name in the results and file in the folder of large models.
+const LARGE: [(&str, &str); 3] =
+    [("femur", "scan_femur.stl"), ("liver", "scan_liver.stl"), ("benchy", "calib_3dbenchy.stl")];
+
+/// A model, and what it becomes under the settings of the comparison: one wall, dual.
+struct Model {
+    name: &'static str,
+    file: PathBuf,
+    bytes: Vec<u8>,
+    settings: Settings,
+    params: Params,
+}
+
+impl Model {
+    fn new(name: &'static str, file: PathBuf) -> Self {
+        let set = |key: &str, value: &str| Override {
+            key: key.to_owned(),
+            value: value.to_owned(),
+            origin: ValueOrigin::Set,
+        };
+        let overrides = [set("walls", "1"), set("dual.mode", "pair")];
+        let settings = profile::load("generic-marlin", &overrides).expect("it is shipped").settings;
+        let bytes = std::fs::read(&file).expect("the model can be read");
+        let params = Params::new(&settings);
+        Self { name, file, bytes, settings, params }
+    }
+
+    fn place(&self) -> Placed {
+        let machine = &self.settings.machine;
+        let bed = Bed {
+            min: [0.0, 0.0],
+            max: [machine.bed_width, machine.bed_depth],
+            height: machine.bed_height,
+        };
+        let raw = stl::parse(self.name, &self.bytes).expect("a sound model");
+        place(vec![raw], &placement(), &bed).expect("it fits")
+    }
+
+    fn slicer<'a>(&self, placed: &'a Placed) -> Slicer<'a> {
+        let top = placed.mesh.vertices.iter().map(|v| v[2]).max().unwrap_or(0);
+        let first = to_units(self.settings.first_layer_height);
+        let heights = Heights::new(first, to_units(self.settings.layer_height), top);
+        let tolerance = to_units(self.settings.tolerance);
+        Slicer::new(&placed.mesh, &placed.adjacency, heights, tolerance)
+    }
+}
+
+fn placement() -> Placement {
+    Placement { unit: Unit::Mm, scale: 1.0, rotate: [0.0; 3], at: None, copies: 1 }
+}
+
+/// The bracket, and the large models that are there.
+fn models() -> Vec<Model> {
+    let fixture = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/bracket.stl");
+    let mut models = vec![Model::new("bracket", fixture)];
+    let Some(folder) = std::env::var_os("SLICER_MODELS").map(PathBuf::from) else {
+        eprintln!("SLICER_MODELS names no folder: only the bracket is measured");
+        return models;
+    };
+    for (name, file) in LARGE {
+        let file = folder.join(file);
+        if file.is_file() {
+            models.push(Model::new(name, file));
+        } else {
+            eprintln!("{} is missing: skipped", file.display());
+        }
+    }
+    models
+}
+
+/// Bytes to a welded mesh, to an oriented one on the bed, to contours.
+fn mesh_and_slice(c: &mut Criterion, model: &Model) {
+    let mut group = c.benchmark_group("mesh");
+    group.bench_function(BenchmarkId::new("parse and weld", model.name), |b| {
+        b.iter(|| stl::parse(model.name, black_box(&model.bytes)));
+    });
+    group.bench_function(BenchmarkId::new("parse and place", model.name), |b| {
+        b.iter(|| black_box(model).place());
+    });
+    group.finish();
+    let placed = model.place();
+    let slicer = model.slicer(&placed);
+    let mut group = c.benchmark_group("slice");
+    group.bench_function(BenchmarkId::new("bucket triangles", model.name), |b| {
+        b.iter(|| model.slicer(black_box(&placed)));
+    });
+    group.bench_function(BenchmarkId::new("middle block", model.name), |b| {
+        b.iter(|| slicer.block(black_box(slicer.blocks() / 2)));
+    });
+    group.finish();
+}
+
+/// All layers of a block, one after the other: what each part of the pass costs.
+fn region(c: &mut Criterion, model: &Model) {
+    let placed = model.place();
+    let slicer = model.slicer(&placed);
+    let layers: Vec<Layer> = slicer.block(slicer.blocks() / 2);
+    let params = &model.params;
+    let mut group = c.benchmark_group("region, middle block");
+    group.bench_function(BenchmarkId::new("walls", model.name), |b| {
+        b.iter(|| layers.iter().map(|l| walls::walls(&l.contours, params).len()).sum::<usize>());
+    });
+    group.bench_function(BenchmarkId::new("raster scan", model.name), |b| {
+        b.iter(|| layers.iter().map(|l| scan(l, params).inside().total()).sum::<i64>());
+    });
+    let scans: Vec<Scan> = layers.iter().map(|l| scan(l, params)).collect();
+    group.bench_function(BenchmarkId::new("inset", model.name), |b| {
+        b.iter(|| scans.iter().map(|s| s.inset(params.fill_inset).total()).sum::<i64>());
+    });
+    let prepared: Vec<Prepared> = layers.iter().map(|l| Prepared::new(l.clone(), params)).collect();
+    group.bench_function(BenchmarkId::new("classify", model.name), |b| {
+        let areas = |k| classify::areas(k, 0, &|k| prepared.get(k), params).skin.total();
+        b.iter(|| (0..prepared.len()).map(areas).sum::<i64>());
+    });
+    group.finish();
+}
+
+fn scan(layer: &Layer, params: &Params) -> Scan {
+    Scan::new(&layer.contours, params.rasters[0])
+}
+
+/// All regions of a print to linked pieces, to paths in order.
+fn plan(c: &mut Criterion, model: &Model) {
+    let placed = model.place();
+    let slicer = model.slicer(&placed);
+    let window = Window::new(&slicer, &model.params, &model.settings.dual, Vec::new());
+    let regions: Vec<Region> = window.flatten().collect();
+    let params = plan::PlanParams::new(&model.settings, &model.params, None);
+    let pieces = || regions.iter().map(|r| plan::pieces(r, &params)).collect::<Vec<_>>();
+    let mut group = c.benchmark_group("plan");
+    group.bench_function(BenchmarkId::new("link", model.name), |b| b.iter(pieces));
+    group.bench_function(BenchmarkId::new("order", model.name), |b| {
+        let order = |all: Vec<plan::Pieces>| {
+            let mut at = Point::default();
+            for (region, pieces) in regions.iter().zip(all) {
+                let paths = plan::order::order(pieces, region.layer.height, at, &params);
+                at = paths.last().map_or(at, plan::Path::end);
+            }
+            at
+        };
+        b.iter_batched(pieces, order, BatchSize::LargeInput);
+    });
+    group.finish();
+}
+
+/// From the file to G-code that nobody keeps, on all cores and on one.
+fn whole(c: &mut Criterion, model: &Model) {
+    let job = Job {
+        models: vec![model.file.to_string_lossy().into_owned()],
+        placement: placement(),
+        settings: model.settings.clone(),
+        profile: "generic-marlin".to_owned(),
+        output: PathBuf::from("-"),
+    };
+    let run = || slicer::slice(&job, &mut std::io::sink(), &Default::default());
+    let mut group = c.benchmark_group("whole");
+    group.bench_function(BenchmarkId::new("all cores", model.name), |b| b.iter(run));
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
+    group.bench_function(BenchmarkId::new("one core", model.name), |b| {
+        one.install(|| b.iter(run));
+    });
+    group.finish();
+}
+
+fn all(c: &mut Criterion) {
+    for model in models() {
+        mesh_and_slice(c, &model);
+        region(c, &model);
+        plan(c, &model);
+        whole(c, &model);
+    }
+}
+
+criterion_group! {
+    name = stages;
+    config = Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1));
+    targets = all
+}
+criterion_main!(stages);
