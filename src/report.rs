@@ -160,7 +160,7 @@ pub fn report(
     if filament_mm <= 0.0 {
         return Err(Error::Unprintable(format!(
             "nothing to print: everything is thinner than a line of {} mm; use a smaller \
-             --line-width or --scale",
+             --line-width, a larger --scale or another --unit",
             settings.line_width
         )));
     }

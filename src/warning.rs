@@ -8,13 +8,6 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "code", rename_all = "kebab-case")]
 pub enum Warning {
-    /// Triangles with two equal corners were dropped.
-    DegenerateTriangles {
-        /// The model's file.
-        file: String,
-        /// How many.
-        count: usize,
-    },
     /// Sides of triangles that no oppositely wound neighbour continues.
     OpenMesh {
         /// The model's file.
@@ -55,10 +48,6 @@ pub enum Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::DegenerateTriangles { file, count } => {
-                let triangles = plural(*count as u64, "triangle");
-                write!(f, "{file}: dropped {triangles} with two equal corners")
-            }
             Self::OpenMesh { file, edges } => write!(
                 f,
                 "{file}: the mesh is not closed, {} without a matching neighbour; check the \

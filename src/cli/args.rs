@@ -187,7 +187,7 @@ pub(crate) struct PlaceArgs {
     /// Unit of the models' numbers
     #[arg(long, default_value = "mm", value_parser = ["mm", "inch"])]
     unit: String,
-    /// Print each model this often
+    /// Print each model N times
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     copies: u32,
 }

@@ -89,6 +89,9 @@ fn slice(args: &SliceArgs) -> Result<u8> {
     let report_sink = report_sink.transpose()?;
 
     let report = work(args, out, profile, &mut sink)?;
+    if !args.quiet {
+        say(&summary::notes(&report));
+    }
     for warning in &report.warnings {
         say(&format!("warning: {warning}\n"));
     }

@@ -146,8 +146,9 @@ fn beside(path: PathBuf) -> io::Result<Target> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    if path.file_name().is_none() {
-        return Err(told("this names no file"));
+    let is_folder = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
+    if path.file_name().is_none() || is_folder {
+        return Err(told("this names no file; add a file name"));
     }
     if !folder.is_dir() {
         return Err(told(&format!("there is no directory {}; create it", folder.display())));

@@ -1,5 +1,6 @@
 //! Report -> lines for people: the three-line summary, and more with -v.
 
+use slicer::mesh::MeshReport;
 use slicer::profile::{Profile, dump};
 use slicer::report::Report;
 use std::time::Duration;
@@ -24,6 +25,18 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
         shares(report),
         took.as_secs_f64(),
     )
+}
+
+/// What was mended without harm, one line each.
+pub(crate) fn notes(report: &Report) -> String {
+    let mended = report.models.iter().filter(|model| model.degenerate > 0);
+    let note = |model: &MeshReport| {
+        let MeshReport { file, degenerate, .. } = model;
+        format!(
+            "note: {file}: dropped {degenerate} of its triangles, which have two equal corners\n"
+        )
+    };
+    mended.map(note).collect()
 }
 
 /// How the filament is shared out, such as ` (outer wall 30 %, skin 70 %)`.

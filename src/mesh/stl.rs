@@ -4,7 +4,7 @@ use super::coordinate::{complaint, usable};
 use super::weld::{MAX_TRIANGLES, Welder};
 use super::{RawMesh, ascii, sniff};
 use crate::error::{Error, Result};
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 
 pub use super::coordinate::MAX_NUMBER;
 
@@ -25,8 +25,13 @@ pub fn load(path: &str) -> Result<RawMesh> {
     } else {
         (path, std::fs::read(path))
     };
-    let bytes = read.map_err(|error| {
-        Error::input(name, format!("cannot be read: {error}; check the name and the permissions"))
+    let bytes = read.map_err(|error| match error.kind() {
+        _ if path.is_empty() => Error::input("''", "is no file name; name a model"),
+        ErrorKind::IsADirectory => Error::input(name, "is a directory; name a file in it"),
+        _ => Error::input(
+            name,
+            format!("cannot be read: {error}; check the name and the permissions"),
+        ),
     })?;
     parse(name, &bytes)
 }

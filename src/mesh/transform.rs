@@ -167,10 +167,6 @@ fn warn(report: &MeshReport, warnings: &mut Vec<Warning>) {
         let count = report.trailing_bytes;
         warnings.push(Warning::TrailingBytes { file: file.clone(), count });
     }
-    if report.degenerate > 0 {
-        let count = report.degenerate;
-        warnings.push(Warning::DegenerateTriangles { file: file.clone(), count });
-    }
     if report.open_edges > 0 {
         warnings.push(Warning::OpenMesh { file: file.clone(), edges: report.open_edges });
     }
@@ -380,7 +376,7 @@ mod tests {
         let mut model = corner([0.0; 3], [0.5, 0.25, 0.125]);
         model.triangles.push([0, 1, 2]);
         model.triangles.push([0, 1, 3]);
-        (model.report.degenerate, model.report.trailing_bytes) = (2, 3);
+        model.report.trailing_bytes = 3;
         let placed = one(model, &PLAIN);
         let file = || "x.stl".to_owned();
         assert_eq!(placed.reports[0].open_edges, 6);
@@ -388,7 +384,6 @@ mod tests {
             placed.warnings,
             [
                 Warning::TrailingBytes { file: file(), count: 3 },
-                Warning::DegenerateTriangles { file: file(), count: 2 },
                 Warning::OpenMesh { file: file(), edges: 6 },
                 Warning::TinyModel { file: file(), size_mm: 0.5 },
             ]

@@ -5,8 +5,8 @@
 //! lines between show it. Lines that cannot be joined begin a new chain.
 
 use crate::geom::spans::{Rows, Span};
-use crate::region::Params;
 use crate::region::bend::{self, Joined, Line, LinePoint};
+use crate::region::{Comb, Params};
 use crate::units::Coord;
 
 /// Lines joined end to end, in the frame of their raster.
@@ -120,9 +120,11 @@ fn lay(points: Vec<LinePoint>, chain: &mut Chain, line_width: Coord) {
     }
 }
 
-/// Chains of every `stride`-th line of a sparse region; `pitch` is the distance of its rows.
+/// Chains of the lines that `comb` prints of a sparse region; `pitch` is the distance
+/// of its rows.
 #[must_use]
-pub fn comb(region: &Rows, stride: i32, pitch: Coord, width: Coord) -> Vec<Chain> {
+pub fn comb(region: &Rows, comb: Comb, pitch: Coord, width: Coord) -> Vec<Chain> {
+    let stride = comb.stride;
     let printed = region.iter().filter(|(j, _)| j.rem_euclid(stride) == 0);
     let long = |s: &Span| Some(*s).filter(|s| s.len() >= i64::from(width));
     let rows = printed.map(|(j, row)| (j, row.iter().map(long).collect()));
@@ -134,7 +136,7 @@ pub fn comb(region: &Rows, stride: i32, pitch: Coord, width: Coord) -> Vec<Chain
     let join = |from: (Coord, i32), to: (Coord, i32), side: Side| {
         let straight = || edges.straight(from, to).then(Vec::new);
         let join = || straight().or_else(|| edges.along(from, to, side));
-        short(from, to).then(join).flatten()
+        (comb.joined && short(from, to)).then(join).flatten()
     };
     link(rows, stride, stride * pitch, join)
         .into_iter()
@@ -263,6 +265,10 @@ mod tests {
 
     const W: Coord = 4_000;
 
+    fn every(stride: i32) -> Comb {
+        Comb { raster: 0, stride, joined: true }
+    }
+
     /// Rows 0 to `count`, 40 mm long, without `hole` on the rows it names.
     fn region(count: i32, hole: Option<(std::ops::Range<i32>, Span)>) -> Rows {
         let whole = [Span { start: 0, end: 400_000 }];
@@ -285,7 +291,7 @@ mod tests {
 
     #[test]
     fn a_convex_region_is_one_zigzag() {
-        let chains = comb(&region(26, None), 5, W, W);
+        let chains = comb(&region(26, None), every(5), W, W);
         assert_eq!(chains.len(), 1);
         let ends: Vec<Coord> = chains[0].iter().map(|p| p.u).collect();
         assert_eq!(ends[..6], [0, 400_000, 400_000, 0, 0, 400_000]);
@@ -296,7 +302,7 @@ mod tests {
     fn joins_go_round_a_hole_and_never_across() {
         let hole = (6..14, Span { start: 100_000, end: 300_000 });
         let region = region(26, Some(hole));
-        let chains = comb(&region, 5, W, W);
+        let chains = comb(&region, every(5), W, W);
         chains.iter().for_each(|chain| joins_are_inside(&region, chain));
         let lines: usize = chains.iter().map(|c| c.len() / 2).sum();
         assert_eq!(lines, 7, "six rows, one of them in two pieces: {chains:?}");
@@ -304,8 +310,14 @@ mod tests {
     }
 
     #[test]
+    fn lines_of_a_crossing_pattern_are_not_joined() {
+        let chains = comb(&region(26, None), Comb { joined: false, ..every(5) }, W, W);
+        assert_eq!(chains.len(), 6);
+    }
+
+    #[test]
     fn sparse_lines_far_apart_are_not_joined() {
-        let chains = comb(&region(41, None), 20, W, W);
+        let chains = comb(&region(41, None), every(20), W, W);
         assert_eq!(chains.len(), 3);
         assert!(chains.iter().all(|c| c.len() == 2));
     }
@@ -314,6 +326,6 @@ mod tests {
     fn a_sparse_line_shorter_than_wide_is_left_out() {
         let mut rows = Rows::starting_at(0);
         rows.push_row(|out| out.push(Span { start: 0, end: W - 1 }));
-        assert!(comb(&rows, 1, W, W).is_empty());
+        assert!(comb(&rows, every(1), W, W).is_empty());
     }
 }

@@ -207,14 +207,13 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
         let raster = params.region.rasters[infill.comb.raster];
         let (role, height) =
             if infill.thick { (Role::ThickInfill, 2 * height) } else { (Role::Infill, height) };
-        let chains =
-            link::comb(&infill.rows, infill.comb.stride, raster.pitch, params.region.line_width);
+        let chains = link::comb(&infill.rows, infill.comb, raster.pitch, params.region.line_width);
         add(role, height, raster, chains);
     }
     if let Some(support) = &params.support {
         let raster = support.raster;
         let chains =
-            link::comb(&region.support, support.stride, raster.pitch, params.region.line_width);
+            link::comb(&region.support, support.comb(), raster.pitch, params.region.line_width);
         add(Role::Support, height, raster, chains);
     }
     let support = chains.extract_if(.., |c| c.role == Role::Support).collect();

@@ -60,6 +60,9 @@ pub struct Comb {
     pub raster: usize,
     /// Lines with an index divisible by this are printed.
     pub stride: i32,
+    /// Neighbouring lines are joined at their ends. Not where lines of several
+    /// directions end at the same wall: their joins would lie on each other.
+    pub joined: bool,
 }
 
 impl Params {
@@ -104,10 +107,11 @@ impl Params {
         };
         for set in turns {
             let spacing = spacing * set.len() as f64;
-            let combs = set
-                .iter()
-                .map(|turn| self.comb(settings.angle + turn, to_units(spacing)))
-                .collect();
+            let mut combs = Vec::with_capacity(set.len());
+            for turn in *set {
+                let comb = self.comb(settings.angle + turn, to_units(spacing));
+                combs.push(Comb { joined: set.len() == 1, ..comb });
+            }
             self.infill.push(combs);
         }
     }
@@ -122,7 +126,7 @@ impl Params {
             self.rasters.push(raster);
             self.rasters.len() - 1
         });
-        Comb { raster: index, stride }
+        Comb { raster: index, stride, joined: true }
     }
 
     /// The raster of the skin of layer `k`, and the one across it.

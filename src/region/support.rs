@@ -5,6 +5,7 @@
 //! layer, keeping its distance from the part, until it reaches the bed or the part:
 //! `S(k) = (O(k+1+gap) ∪ S(k+1)) − outset(L(k))`.
 
+use super::Comb;
 use super::raster::{Raster, Scan};
 use crate::geom::Point;
 use crate::geom::frame::Frame;
@@ -37,6 +38,12 @@ pub struct SupportParams {
 }
 
 impl SupportParams {
+    /// The lines that are printed.
+    #[must_use]
+    pub fn comb(&self) -> Comb {
+        Comb { raster: 0, stride: self.stride, joined: true }
+    }
+
     /// The numbers that `settings` mean for support; none if there is to be none.
     #[must_use]
     pub fn new(settings: &Settings) -> Option<Self> {

@@ -179,8 +179,11 @@ impl<'a> Window<'a> {
                 (std::mem::take(&mut prepared.walls), std::mem::take(&mut prepared.layer.contours));
             let layer = crate::slice::Layer { contours, ..prepared.layer.clone() };
             let inset = self.params.outer_inset;
-            let thin_mm2 =
-                if inset > 0 { walls::thin_area(&layer.contours, &walls, inset) } else { 0.0 };
+            let thin_mm2 = if inset > 0 && self.params.walls > 0 {
+                walls::thin_area(&layer.contours, &walls, inset)
+            } else {
+                0.0
+            };
             regions.push(Region { layer, walls, skin, infill, support, thin_mm2 });
             self.done += 1;
         }
