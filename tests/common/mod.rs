@@ -6,6 +6,7 @@
 
 pub(crate) mod checks;
 pub(crate) mod gcode;
+pub(crate) mod raster;
 pub(crate) mod section;
 pub(crate) mod solid;
 

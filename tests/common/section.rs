@@ -133,9 +133,11 @@ fn cut(triangle: &[[f64; 3]; 3], z: f64) -> Option<([f64; 2], [f64; 2])> {
     for e in 0..3 {
         let (a, b) = (triangle[e], triangle[(e + 1) % 3]);
         if (a[2] >= z) != (b[2] >= z) {
-            let t = (z - a[2]) / (b[2] - a[2]);
             let up = usize::from(b[2] > a[2]);
-            ends[up] = Some([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
+            // The same point from both sides of an edge: a ray must not slip between two.
+            let (low, high) = if up == 1 { (a, b) } else { (b, a) };
+            let t = (z - low[2]) / (high[2] - low[2]);
+            ends[up] = Some([low[0] + t * (high[0] - low[0]), low[1] + t * (high[1] - low[1])]);
         }
     }
     Some((ends[0]?, ends[1]?))
