@@ -107,8 +107,8 @@ pub struct DualReport {
     pub volume_ratio: f64,
 }
 
-/// Thin places of a layer below this are corners, not shape, mm².
-const LEAST_THIN_MM2: f64 = 2.0;
+/// Thin places of a layer below this are rounding and tips of corners, not shape, mm².
+const LEAST_THIN_MM2: f64 = 1.0;
 
 /// What the layers of a print add up to, beside what is extruded.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -23,8 +23,15 @@ const FLATTEST_STEP: Coord = 2;
 /// is filled by the lines' round ends.
 const SOLID_JOIN_WIDTH: f64 = 0.4;
 
-/// Lines shorter than this are left out (50 µm): the bead's round end covers them.
-const LEAST_LINE: i64 = 500;
+/// A straight join may leave its region by this much (10 µm): edges are rounded to the grid.
+const SLACK: Coord = 100;
+
+/// Lines are joined if their distance is at most this many times the shorter one's length.
+const LONGEST_JOIN: i64 = 4;
+
+/// Solid lines shorter than this are left out (50 µm): the ends of their neighbours
+/// cover them. A sparse line shorter than it is wide is left out: it would be a blob.
+const LEAST_SOLID: i64 = 500;
 
 /// Which end of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +69,8 @@ struct Link {
 pub fn skin(lines: &[Line], params: &Params) -> Vec<Chain> {
     let pitch = params.line_width;
     let rows: Vec<&[Line]> = lines.chunk_by(|a, b| a.row == b.row).collect();
-    let spans = rows.iter().map(|row| (row[0].row, row.iter().map(|line| line.span).collect()));
+    let solid = |line: &Line| Some(line.span).filter(|s| s.len() >= LEAST_SOLID);
+    let spans = rows.iter().map(|row| (row[0].row, row.iter().map(solid).collect()));
     let join = |from: (Coord, i32), to: (Coord, i32), _: Side| {
         ((from.0 - to.0).abs() <= LONGEST_SOLID_JOIN * pitch).then(Vec::new)
     };
@@ -111,7 +119,8 @@ fn lay(points: Vec<LinePoint>, chain: &mut Chain, line_width: Coord) {
 #[must_use]
 pub fn comb(region: &Rows, stride: i32, pitch: Coord, width: Coord) -> Vec<Chain> {
     let printed = region.iter().filter(|(j, _)| j.rem_euclid(stride) == 0);
-    let rows = printed.map(|(j, row)| (j, row.to_vec()));
+    let long = |s: &Span| Some(*s).filter(|s| s.len() >= i64::from(width));
+    let rows = printed.map(|(j, row)| (j, row.iter().map(long).collect()));
     let edges = Edges { region, pitch, width };
     let join = |from: (Coord, i32), to: (Coord, i32), side: Side| {
         edges.straight(from, to).then(Vec::new).or_else(|| edges.along(from, to, side))
@@ -146,7 +155,8 @@ impl Edges<'_> {
         run.abs() <= i64::from(FLATTEST_STEP * self.pitch * (b - a))
             && (a + 1..b).all(|j| {
                 let u = u + (run * i64::from(j - a) / i64::from(b - a)) as Coord;
-                self.region.row(j).iter().any(|s| s.start <= u && u <= s.end)
+                let holds = |s: &Span| s.start - SLACK <= u && u <= s.end + SLACK;
+                self.region.row(j).iter().any(holds)
             })
     }
 
@@ -171,22 +181,20 @@ impl Edges<'_> {
 }
 
 /// Joins lines of rows `stride` apart that lie beside each other or at most `slack`
-/// apart along the lines. `join` gives the points between two ends, given as
+/// apart along the lines; what is none is left out. `join` gives the points between two ends, given as
 /// `(u, row)`, or none if they cannot be joined.
 fn link(
-    rows: impl Iterator<Item = (i32, Vec<Span>)>,
+    rows: impl Iterator<Item = (i32, Vec<Option<Span>>)>,
     stride: i32,
     slack: Coord,
     join: impl Fn((Coord, i32), (Coord, i32), Side) -> Option<Vec<LinePoint>>,
 ) -> Vec<Vec<Link>> {
     let mut done: Vec<Vec<Link>> = Vec::new();
     let mut open: Vec<Vec<Link>> = Vec::new();
-    for (row, spans) in rows {
+    for (row, mut free) in rows {
         if open.first().and_then(|c| c.last()).is_some_and(|l| l.row + stride != row) {
             done.append(&mut open);
         }
-        let mut free: Vec<Option<Span>> =
-            spans.into_iter().map(|s| Some(s).filter(|s| s.len() >= LEAST_LINE)).collect();
         let mut growing = Vec::with_capacity(free.len());
         for mut chain in open.drain(..) {
             match extend(&mut chain, row, &mut free, slack, &join) {
@@ -224,7 +232,11 @@ fn extend(
             .enumerate()
             .filter_map(|(k, s)| s.filter(|s| s.overlaps(near)).map(|s| (k, s)));
         let (index, span) = if side == Side::Right { beside.next_back() } else { beside.next() }?;
-        let points = join((side.of(last.span), last.row), (side.of(span), row), side)?;
+        // A join much longer than the lines it joins would be an infill of its own.
+        let shorter = last.span.len().min(span.len());
+        let worth = i64::from(slack) <= LONGEST_JOIN * shorter;
+        let ends = ((side.of(last.span), last.row), (side.of(span), row));
+        let points = worth.then(|| join(ends.0, ends.1, side)).flatten()?;
         Some((index, side, span, points))
     })?;
     free[index] = None;

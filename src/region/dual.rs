@@ -26,6 +26,7 @@ pub struct PairStats {
     /// Length of thin lines beside them on both layers, grid units.
     pub thin: i64,
     /// Length of lines of both layers that a print without dual would have, grid units.
+    /// (None of these counts lines shorter than they are wide, which are not printed.)
     pub plain: i64,
 }
 
@@ -81,8 +82,9 @@ pub fn pair(
     dual: &Dual,
     params: &Params,
 ) -> ([Vec<Infill>; 2], PairStats) {
+    let w = params.line_width;
     let length = |combs: &[Comb], areas: &LayerAreas| -> i64 {
-        combs.iter().map(|&comb| infill(comb, areas, false).length()).sum()
+        combs.iter().map(|&comb| infill(comb, areas, false).length(w)).sum()
     };
     let own = [turn(2 * m, params), turn(2 * m + 1, params)];
     let (combs, lower_is_shorter) = match dual.direction {
@@ -97,19 +99,19 @@ pub fn pair(
     let mut stats = PairStats::default();
     for &comb in combs {
         let (a, b) = (infill(comb, lower, false), infill(comb, upper, false));
-        let plain = a.length() + b.length();
+        let plain = a.length(w) + b.length(w);
         let thick = match dual.remainder {
-            DualRemainder::Thin => shared(&a.rows, &b.rows, params.line_width),
+            DualRemainder::Thin => shared(&a.rows, &b.rows, w),
             DualRemainder::Drop if lower_is_shorter => a.rows.clone(),
             DualRemainder::Drop => b.rows.clone(),
         };
         let thick = Infill { comb, rows: thick, thick: true };
         stats.plain += plain;
-        stats.thick += thick.length();
+        stats.thick += thick.length(w);
         if dual.remainder == DualRemainder::Thin {
             for (side, whole) in out.iter_mut().zip([a, b]) {
                 let rest = Infill { rows: whole.rows.minus(&thick.rows), ..whole };
-                stats.thin += rest.length();
+                stats.thin += rest.length(w);
                 side.push(rest);
             }
         }

@@ -204,14 +204,13 @@ pub struct Infill {
 }
 
 impl Infill {
-    /// The length of the lines to be printed, grid units.
+    /// The length of the lines to be printed, grid units: those of the comb that are
+    /// at least `least` long.
     #[must_use]
-    pub fn length(&self) -> i64 {
+    pub fn length(&self, least: Coord) -> i64 {
         let printed = |j: i32| j.rem_euclid(self.comb.stride) == 0;
-        self.rows
-            .iter()
-            .filter(|(j, _)| printed(*j))
-            .map(|(_, row)| crate::geom::spans::total(row))
-            .sum()
+        let rows = self.rows.iter().filter(|(j, _)| printed(*j));
+        let spans = rows.flat_map(|(_, row)| row).map(|span| span.len());
+        spans.filter(|&len| len >= i64::from(least)).sum()
     }
 }

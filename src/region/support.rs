@@ -8,7 +8,7 @@
 use super::raster::{Raster, Scan};
 use crate::geom::Point;
 use crate::geom::frame::Frame;
-use crate::geom::spans::{Rows, Span};
+use crate::geom::spans::{Rows, Span, subtract};
 use crate::profile::{Settings, SupportBase};
 use crate::slice::{Layer, Slicer};
 use crate::units::{Coord, to_units};
@@ -87,7 +87,7 @@ impl Seen {
     }
 }
 
-/// The support of every layer, by index; rows that are not printed are empty.
+/// The support of every layer, by index, on all rows of its raster.
 /// `within` is the bed, as the corners of a rectangle around the origin.
 #[must_use]
 pub fn supports(slicer: &Slicer<'_>, params: &SupportParams, within: (Point, Point)) -> Vec<Rows> {
@@ -106,7 +106,7 @@ pub fn supports(slicer: &Slicer<'_>, params: &SupportParams, within: (Point, Poi
         keep_to_bed(slicer, params, &mut columns);
     }
     let bed = Bed::new(within, params.raster);
-    columns.par_iter().map(|rows| printed(rows, params, &bed)).collect()
+    columns.par_iter().map(|rows| on_bed(rows, params, &bed)).collect()
 }
 
 /// The layers around the one whose support is being made, from the top down.
@@ -158,7 +158,7 @@ impl Window {
         let begins = out.len() > layer.index + 1 + params.gap;
         let new =
             if begins { self.overhangs.pop_front().unwrap_or_default() } else { Rows::default() };
-        let mut rows = self.above.or(&new).minus(&layer.near);
+        let mut rows = join_gaps(&self.above.or(&new).minus(&layer.near), layer, params.least);
         let around = at.saturating_sub(params.gap)..(at + params.gap + 1).min(self.layers.len());
         for other in around.filter(|&n| n != at) {
             rows = rows.minus(&self.layers[other].inside);
@@ -167,6 +167,29 @@ impl Window {
         self.above = rows;
         self.done = at + 1;
     }
+}
+
+/// Joins support on both sides of a gap that is no wider than two lines and free of
+/// the part: such a gap is a leftover of something above, and only costs travels.
+fn join_gaps(rows: &Rows, layer: &Seen, line_width: Coord) -> Rows {
+    let mut out = Rows::starting_at(rows.range().start);
+    let mut free = Vec::new();
+    for (j, row) in rows.iter() {
+        out.push_row(|spans| {
+            let base = spans.len();
+            for &span in row {
+                let gap = spans[base..].last().and_then(|last| Span::new(last.end, span.start));
+                free.clear();
+                subtract(gap.as_slice(), layer.near.row(j), &mut free);
+                let narrow = gap.is_none_or(|gap| gap.len() <= 2 * i64::from(line_width));
+                match spans[base..].last_mut() {
+                    Some(last) if narrow && free == gap.as_slice() => last.end = span.end,
+                    _ => spans.push(span),
+                }
+            }
+        });
+    }
+    out
 }
 
 /// Takes away what stands on the part: everything above any layer below.
@@ -197,9 +220,7 @@ impl Bed {
     }
 }
 
-/// The rows that are printed, on the bed, without what is shorter than a line is wide.
-fn printed(rows: &Rows, params: &SupportParams, bed: &Bed) -> Rows {
-    let is_printed =
-        |j: i32, s: Span| j.rem_euclid(params.stride) == 0 && s.len() >= i64::from(params.least);
-    rows.and(&bed.rows).filter(is_printed)
+/// What lies on the bed, without what is shorter than a line is wide.
+fn on_bed(rows: &Rows, params: &SupportParams, bed: &Bed) -> Rows {
+    rows.and(&bed.rows).filter(|_, s| s.len() >= i64::from(params.least))
 }

@@ -29,17 +29,37 @@ pub fn walls(contours: &[Contour], params: &Params) -> Vec<Wall> {
     walls
 }
 
-/// The area of `contours` that is too thin for the outer wall, mm²: what their
-/// area has more than the walls' area and the strip of half a wall around them.
-/// Corners make it a little too large, by about the square of the inset each.
+/// Corners of a wall sharper than this (half the turn's tangent) are cut off by the
+/// offset: what is outside of them is a thin place.
+const SHARPEST_CORNER: f64 = 1.75;
+
+/// The area of `contours` that is too thin for the outer wall, mm²: what they have
+/// more than the walls with a strip of `inset` around them. The strip around a
+/// polygon has the area `P·d + d²·Σ tan(φ/2)` with perimeter `P` and turns `φ`.
 #[must_use]
 pub fn thin_area(contours: &[Contour], walls: &[Wall], inset: Coord) -> f64 {
+    let d = f64::from(inset);
     let area = |c: &Contour| double_area(c) as f64 / 2.0;
-    let length = |c: &Contour| -> f64 {
-        c.iter().zip(c.iter().cycle().skip(1)).map(|(a, b)| a.distance(*b)).sum()
+    let strip = |c: &Contour| {
+        let (length, turns) = length_and_turns(c);
+        length * d + turns * d * d
     };
     let whole: f64 = contours.iter().map(area).sum();
     let outer = walls.iter().filter(|w| w.depth == 0);
-    let walled: f64 = outer.map(|w| area(&w.path) + length(&w.path) * f64::from(inset)).sum();
+    let walled: f64 = outer.map(|w| area(&w.path) + strip(&w.path)).sum();
     ((whole - walled) / (UNITS_PER_MM * UNITS_PER_MM)).max(0.0)
+}
+
+/// The perimeter of a polygon and the sum of the tangents of half its turns, left positive.
+fn length_and_turns(contour: &Contour) -> (f64, f64) {
+    let n = contour.len();
+    let edge = |k: usize| {
+        let (a, b) = (contour[k % n], contour[(k + 1) % n]);
+        (f64::from(b.x) - f64::from(a.x), f64::from(b.y) - f64::from(a.y), a.distance(b))
+    };
+    (0..n).fold((0.0, 0.0), |(length, turns), k| {
+        let ((ax, ay, a), (bx, by, b)) = (edge(k), edge(k + 1));
+        let half = (ax * by - ay * bx) / (a * b + ax * bx + ay * by).max(f64::MIN_POSITIVE);
+        (length + a, turns + half.clamp(-SHARPEST_CORNER, SHARPEST_CORNER))
+    })
 }
