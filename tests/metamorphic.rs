@@ -32,7 +32,8 @@ const DUAL: &[(&str, &str)] = &[("dual.mode", "pair"), ("support.enabled", "true
 fn shuffled(solid: &Solid, seed: u64) -> Solid {
     let mut state = seed;
     let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize
     };
     let mut triangles = solid.triangles.clone();
@@ -158,12 +159,18 @@ fn a_file_tells_neither_when_nor_where_it_was_made() {
     let run = slice(&fixture("bracket.stl"), "generic-klipper", DUAL);
     assert!(run.print.of(Kind::Skin).count() > 0);
     let temp = std::env::temp_dir();
-    for word in [temp.to_str().unwrap(), "model.stl", "test.gcode", "thread", env!("CARGO_MANIFEST_DIR")] {
+    for word in
+        [temp.to_str().unwrap(), "model.stl", "test.gcode", "thread", env!("CARGO_MANIFEST_DIR")]
+    {
         assert!(!run.text.contains(word), "the file contains {word}");
     }
     // Years of this century with a month behind them, and times of day.
     let bytes = run.text.as_bytes();
-    let date = |w: &[u8]| w.starts_with(b"20") && w[2..4].iter().all(u8::is_ascii_digit) && matches!(w[4], b'-' | b'/');
+    let date = |w: &[u8]| {
+        w.starts_with(b"20")
+            && w[2..4].iter().all(u8::is_ascii_digit)
+            && matches!(w[4], b'-' | b'/')
+    };
     assert!(!bytes.windows(5).any(date), "the file contains a date");
     let time = |w: &[u8]| w[2] == b':' && [0, 1, 3, 4].iter().all(|&k| w[k].is_ascii_digit());
     assert!(!bytes.windows(5).any(time), "the file contains a time");

@@ -46,14 +46,20 @@ pub(crate) fn heights_rise(print: &Print, what: &str) {
     }
 }
 
-/// Filament goes back only by the retraction's length, standing still, and comes back before any bead.
+/// From the first bead to the last, filament goes back only by the retraction's
+/// length, standing still, and comes back before any bead.
 pub(crate) fn filament_is_pulled_and_given_back(print: &Print, settings: &Settings, what: &str) {
-    for m in print.moves.iter().filter(|m| m.layer.is_some() && m.kind != Kind::Custom) {
+    let last = print.moves.iter().rposition(Move::is_bead).unwrap_or(0);
+    let on_layers = |m: &&Move| m.layer.is_some() && m.kind != Kind::Custom;
+    for m in print.moves[..=last].iter().filter(on_layers) {
         let line = m.line;
         if m.e < 0.0 {
             let by = -m.e;
             assert!(m.length() == 0.0, "{what}: line {line} pulls on the way");
-            assert!((by - settings.retraction.length).abs() < 2e-5, "{what}: line {line} pulls {by}");
+            assert!(
+                (by - settings.retraction.length).abs() < 2e-5,
+                "{what}: line {line} pulls {by}"
+            );
             assert!(m.pulled == 0.0, "{what}: line {line} pulls twice");
         } else if m.e > 0.0 && m.length() == 0.0 {
             assert!((m.e - m.pulled).abs() < 2e-5, "{what}: line {line} pushes out of nothing");
@@ -85,7 +91,11 @@ pub(crate) fn walls_close(print: &Print, what: &str) {
         for chain in print.chains(kind) {
             let (first, last) = (chain[0], chain[chain.len() - 1]);
             let (a, b) = (first.a(), last.b());
-            assert!(a == b, "{what}: the wall from line {} starts at {a:?}, ends at {b:?}", first.line);
+            assert!(
+                a == b,
+                "{what}: the wall from line {} starts at {a:?}, ends at {b:?}",
+                first.line
+            );
         }
     }
 }

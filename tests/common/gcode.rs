@@ -183,7 +183,9 @@ impl Print {
                     state.at[axis] = values.get(name).copied().unwrap_or(from[axis]);
                 }
                 state.feed = values.get("F").copied().unwrap_or(state.feed);
-                let e = values.get("E").map_or(0.0, |&e| if state.relative_e { e } else { e - state.e });
+                let e = values
+                    .get("E")
+                    .map_or(0.0, |&e| if state.relative_e { e } else { e - state.e });
                 // Sums of decimals: what is below the last digit is no filament.
                 let e = (e * 1e6).round() / 1e6;
                 state.e += e;
