@@ -10,13 +10,14 @@
 //! - [`plan`]: regions -> paths in order, with travels
 //! - [`gcode`]: paths -> text
 //!
-//! Beside the way: [`geom`] and [`units`] (plane geometry on the integer grid),
+//! Beside the way: [`job`] (what a run is asked for), [`geom`] and [`units`] (plane geometry on the integer grid),
 //! [`profile`] (settings), [`report`], [`progress`], [`warning`] and [`error`].
 //! The command line is the binary's own.
 
 pub mod error;
 pub mod gcode;
 pub mod geom;
+pub mod job;
 pub mod mesh;
 pub mod plan;
 pub mod profile;
@@ -31,26 +32,9 @@ use error::{Error, Result};
 use gcode::template::PrintFacts;
 use geom::Point;
 use rayon::prelude::*;
-use std::path::PathBuf;
 use units::to_units;
 
-/// Name and version of this program.
-pub const NAME: &str = concat!("slicer ", env!("CARGO_PKG_VERSION"));
-
-/// One run: which models become which file, and how.
-#[derive(Debug, Clone)]
-pub struct Job {
-    /// Model files, `-` for standard input.
-    pub models: Vec<String>,
-    /// Where they lie.
-    pub placement: mesh::Placement,
-    /// All effective settings.
-    pub settings: profile::Settings,
-    /// Name or file of the profile, for the report.
-    pub profile: String,
-    /// Name of the output, for messages.
-    pub output: PathBuf,
-}
+pub use job::{Job, NAME};
 
 /// Slices `job` and writes the G-code to `out`.
 ///

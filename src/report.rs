@@ -1,8 +1,8 @@
 //! Report: what a run found and made, as versioned JSON (`--report`) and as a three-line summary.
 
-use crate::Job;
 use crate::error::{Error, Result};
 use crate::gcode::write::{Usage, filament_area};
+use crate::job::{self, Job};
 use crate::mesh::MeshReport;
 use crate::mesh::transform::Placed;
 use crate::plan::Role;
@@ -167,7 +167,7 @@ pub fn report(
     let volume_cm3 = filament_mm * filament_area(settings) / 1000.0;
     Ok(Report {
         schema: SCHEMA,
-        slicer: crate::NAME.to_owned(),
+        slicer: job::NAME.to_owned(),
         profile: job.profile.clone(),
         models: placed.reports.clone(),
         size_mm: placed.size_mm,

@@ -1,7 +1,7 @@
 //! Text -> RawMesh: reads ASCII STL word by word, so that its lines do not matter.
 
 use super::RawMesh;
-use super::stl::{complaint, usable};
+use super::coordinate::{complaint, usable};
 use super::weld::{MAX_TRIANGLES, Welder};
 
 /// What a facet takes at least, in bytes, for a bound on what is allocated ahead.

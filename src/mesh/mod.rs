@@ -5,6 +5,7 @@ pub mod stl;
 pub mod transform;
 
 mod ascii;
+mod coordinate;
 mod fit;
 mod layout;
 mod measure;

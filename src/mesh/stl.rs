@@ -1,13 +1,12 @@
 //! Bytes -> RawMesh: reads binary and ASCII STL and says what is wrong with the rest.
 
+use super::coordinate::{complaint, usable};
 use super::weld::{MAX_TRIANGLES, Welder};
 use super::{RawMesh, ascii, sniff};
 use crate::error::{Error, Result};
 use std::io::Read;
 
-/// Largest number accepted as a coordinate, in the file's unit. What is above
-/// is a damaged file, not a model.
-pub const MAX_NUMBER: f32 = 1e9;
+pub use super::coordinate::MAX_NUMBER;
 
 /// Bytes before the first triangle of a binary file: a header of 80 and the count.
 const HEADER: usize = 84;
@@ -79,12 +78,32 @@ fn parse_any(bytes: &[u8]) -> std::result::Result<RawMesh, String> {
         let quote = ascii::quote(line.unwrap_or_default());
         return Err(format!("is no STL but text that begins with {quote}; export it as STL"));
     }
-    let (Some(announced), Some(count)) = (announced, count) else {
+    match (announced, count) {
+        (Some(announced), Some(count)) => odd_binary(bytes, announced, count),
+        _ => {
+            Err(format!("has only {length} bytes, too few for an STL; export or download it again"))
+        }
+    }
+}
+
+/// Reads a binary file whose length is not what its `count` of `announced` triangles
+/// makes: trailing bytes are left out, all else is an error.
+fn odd_binary(
+    bytes: &[u8],
+    announced: u64,
+    count: [u8; 4],
+) -> std::result::Result<RawMesh, String> {
+    let length = bytes.len() as u64;
+    let surplus = length.saturating_sub(binary_length(announced));
+    if announced > 0 && surplus > 0 && surplus % RECORD as u64 == 0 {
+        // Whole triangles too many: which number is right nobody can tell.
         return Err(format!(
-            "has only {length} bytes, too few for an STL; export or download it again"
+            "announces {announced} triangles, but {} more follow; it is damaged: export or \
+             download it again",
+            surplus / RECORD as u64
         ));
-    };
-    if announced > 0 && binary_length(announced) < length {
+    }
+    if announced > 0 && surplus > 0 {
         let end = usize::try_from(binary_length(announced)).unwrap_or(bytes.len());
         return binary(bytes, end);
     }
@@ -141,20 +160,6 @@ fn corners(record: &[u8]) -> [[f32; 3]; 3] {
         f32::from_le_bytes([record[at], record[at + 1], record[at + 2], record[at + 3]])
     };
     std::array::from_fn(|corner| std::array::from_fn(|axis| number(12 + corner * 12 + axis * 4)))
-}
-
-/// Whether a number can be a coordinate; false for NaN too.
-pub(crate) fn usable(number: f32) -> bool {
-    number.abs() <= MAX_NUMBER
-}
-
-/// Says why a number is not [`usable`].
-pub(crate) fn complaint(number: f32) -> String {
-    if number.is_finite() {
-        format!("the coordinate {number:e} is absurdly large")
-    } else {
-        format!("a coordinate is {number}, which is no finite number")
-    }
 }
 
 #[cfg(test)]

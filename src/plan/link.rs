@@ -6,7 +6,7 @@
 
 use crate::geom::spans::{Rows, Span};
 use crate::region::Params;
-use crate::region::close::{self, Joined, Line, LinePoint};
+use crate::region::bend::{self, Joined, Line, LinePoint};
 use crate::units::Coord;
 
 /// Lines joined end to end, in the frame of their raster.
@@ -21,7 +21,7 @@ const FLATTEST_STEP: Coord = 2;
 
 /// Width of a join between two solid lines, in line widths: the rest of what it covers
 /// is filled by the lines' round ends.
-const SOLID_JOIN_WIDTH: f64 = 0.4;
+const SOLID_JOIN_WIDTH: f64 = 0.25;
 
 /// A straight join may leave its region by this much (10 µm): edges are rounded to the grid.
 const SLACK: Coord = 100;
@@ -92,7 +92,7 @@ pub fn skin(lines: &[Line], params: &Params) -> Vec<Chain> {
                 if k + 1 < zigzag.len() {
                     joined.above(link.from == Side::Right);
                 }
-                let mut points = close::points(line(link.row, link.index), joined, params);
+                let mut points = bend::points(line(link.row, link.index), joined, params);
                 if link.from == Side::Right {
                     points.reverse();
                 }

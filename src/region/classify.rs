@@ -1,7 +1,7 @@
 //! Neighbouring layers' rows -> Areas: which stretch of each raster line is skin, which sparse infill.
 //!
 //! With `n` skin layers a place is sparse infill where all of the `n` layers
-//! below and above cover it, else skin. A neighbour covers up to its contour,
+//! below and above cover it, else skin. A neighbour covers nearly up to its contour,
 //! with its walls, while skin and infill begin inside this layer's walls: a steep
 //! slope, which the walls of the layers close already, gets no thin ring of skin.
 //! Where there is skin it reaches a little further, under or over what covers it,

@@ -7,6 +7,7 @@
 //! layer are disjoint and together its inset; rows are sorted, disjoint, never
 //! empty.
 
+pub mod bend;
 pub mod classify;
 pub mod close;
 pub mod dual;
@@ -20,7 +21,7 @@ use crate::geom::spans::Rows;
 use crate::profile::{Pattern, Settings};
 use crate::slice::Layer;
 use crate::units::{Coord, to_units};
-use close::Line;
+use bend::{Line, LinePoint};
 use raster::{Raster, Scan};
 use walls::Wall;
 
@@ -35,6 +36,9 @@ pub struct Params {
     pub outer_inset: Coord,
     /// Distance of the ends of skin and infill lines from the contour.
     pub fill_inset: Coord,
+    /// How far inside its contour a neighbouring layer counts as covering this one,
+    /// so that skin begins where this layer's walls end to close what is exposed.
+    pub cover_inset: Coord,
     /// How far lines reach into the innermost wall.
     pub overlap: Coord,
     /// Solid layers at the top.
@@ -74,6 +78,7 @@ impl Params {
             walls: settings.walls,
             outer_inset: to_units(outer * w),
             fill_inset: to_units(fill_inset * w),
+            cover_inset: to_units((0.5 - settings.infill_overlap).max(0.0) * w),
             overlap: to_units(settings.infill_overlap * w),
             top_skins: settings.top_skins() as usize,
             bottom_skins: settings.bottom_skins() as usize,
@@ -143,7 +148,7 @@ pub struct Prepared {
 pub struct PreparedRows {
     /// Where lines of skin or infill may run.
     pub fill: Rows,
-    /// Where this layer covers its neighbours: up to its contour, with its walls.
+    /// Where this layer covers its neighbours: with its walls, nearly up to its contour.
     pub cover: Rows,
 }
 
@@ -157,7 +162,10 @@ impl Prepared {
             .iter()
             .map(|&raster| {
                 let scan = Scan::new(&layer.contours, raster);
-                PreparedRows { fill: scan.inset(params.fill_inset), cover: scan.into_inside() }
+                PreparedRows {
+                    fill: scan.inset(params.fill_inset),
+                    cover: scan.inset(params.cover_inset),
+                }
             })
             .collect();
         Self { layer, walls, rows }
@@ -189,7 +197,7 @@ pub struct Skin {
     /// Its lines, row by row; bent and widened along walls.
     pub lines: Vec<Line>,
     /// Beads along strips too thin for a line.
-    pub slivers: Vec<Vec<close::LinePoint>>,
+    pub slivers: Vec<Vec<LinePoint>>,
 }
 
 /// Infill lines of one layer in one direction.

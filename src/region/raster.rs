@@ -56,12 +56,6 @@ impl Scan {
         &self.inside
     }
 
-    /// [`Self::inside`], without a copy.
-    #[must_use]
-    pub fn into_inside(self) -> Rows {
-        self.inside
-    }
-
     /// Where the lines are inside and at least `distance` from every contour.
     #[must_use]
     pub fn inset(&self, distance: Coord) -> Rows {

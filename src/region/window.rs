@@ -159,6 +159,7 @@ impl<'a> Window<'a> {
         let Some(layer) = self.layer(k) else { return Skin::default() };
         let crossed = Crossed {
             skin: &of(along).skin,
+            fill: &layer.rows[along].fill,
             columns: &of(across).skin,
             fill_columns: &layer.rows[across].fill,
             left_turn: along == 0,
