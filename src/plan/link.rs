@@ -23,6 +23,11 @@ const FLATTEST_STEP: Coord = 2;
 /// is filled by the lines' round ends.
 const SOLID_JOIN_WIDTH: f64 = 0.25;
 
+/// Ends of sparse lines further apart than this, in line widths, are not joined: the
+/// joins along a wall would weigh more than the lines, most where lines of several
+/// directions end there.
+const LONGEST_SPARSE_JOIN: i64 = 12;
+
 /// A straight join may leave its region by this much (10 µm): edges are rounded to the grid.
 const SLACK: Coord = 100;
 
@@ -122,8 +127,14 @@ pub fn comb(region: &Rows, stride: i32, pitch: Coord, width: Coord) -> Vec<Chain
     let long = |s: &Span| Some(*s).filter(|s| s.len() >= i64::from(width));
     let rows = printed.map(|(j, row)| (j, row.iter().map(long).collect()));
     let edges = Edges { region, pitch, width };
+    let short = |from: (Coord, i32), to: (Coord, i32)| {
+        let (du, dv) = (i64::from(to.0 - from.0), i64::from((to.1 - from.1) * pitch));
+        du * du + dv * dv <= (LONGEST_SPARSE_JOIN * i64::from(width)).pow(2)
+    };
     let join = |from: (Coord, i32), to: (Coord, i32), side: Side| {
-        edges.straight(from, to).then(Vec::new).or_else(|| edges.along(from, to, side))
+        let straight = || edges.straight(from, to).then(Vec::new);
+        let join = || straight().or_else(|| edges.along(from, to, side));
+        short(from, to).then(join).flatten()
     };
     link(rows, stride, stride * pitch, join)
         .into_iter()
