@@ -133,7 +133,7 @@ proptest! {
         let raster = Raster { frame: Frame::new(0.0), pitch: 4000 };
         let scan = Scan::new(&contours, raster);
         // 2 µm more and less: what the library's arcs of straight pieces are worth.
-        let of_library = |by: f64| Scan::new(&library_offset(&contours, by), raster).into_inside();
+        let of_library = |by: f64| Scan::new(&library_offset(&contours, by), raster).inside().clone();
         for (is, by) in [(scan.inset(to_units(r)), -r), (scan.outset(to_units(r)), r)] {
             let (less, more) = (of_library(by - 0.002), of_library(by + 0.002));
             for j in -60..60 {
