@@ -1,6 +1,7 @@
 //! Start and end blocks for MakerBot machines -> GPX: it converts them without a word.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::print_stdout, reason = "a test that is skipped says so")]
 
 mod common;
 

@@ -76,7 +76,7 @@ fn spans(rows: &Rows) -> Vec<(i32, Vec<Span>)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(128))]
+    #![proptest_config(ProptestConfig::with_cases(192))]
 
     #[test]
     fn inside_is_where_the_contours_wind(
@@ -179,7 +179,7 @@ fn stacks() -> impl Strategy<Value = Vec<Vec<Outline>>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(96))]
 
     #[test]
     fn skin_and_infill_are_disjoint_and_together_the_inside_of_the_walls(
@@ -419,7 +419,7 @@ fn towers() -> impl Strategy<Value = Solid> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(96))]
 
     #[test]
     fn layers_of_a_closed_mesh_have_no_gap_and_sum_to_its_volume(solid in towers()) {

@@ -4,6 +4,7 @@
 //! Unset, these tests pass with a message. In a debug build they take minutes.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::print_stdout, reason = "a test that is skipped says so")]
 
 mod common;
 

@@ -218,8 +218,8 @@ fn walls_are_as_many_as_asked_for_and_a_line_apart() {
 /// The length of `bead` inside the square around `middle`, from −`half` to `half`, moved by `by`.
 fn clipped(bead: &Move, middle: [f64; 2], half: f64, by: f64) -> f64 {
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
-    for axis in 0..2 {
-        let (a, b) = (bead.from[axis] - middle[axis] - by, bead.to[axis] - middle[axis] - by);
+    for (axis, middle) in middle.into_iter().enumerate() {
+        let (a, b) = (bead.from[axis] - middle - by, bead.to[axis] - middle - by);
         if (b - a).abs() < 1e-9 {
             if a.abs() > half {
                 return 0.0;

@@ -25,8 +25,8 @@ impl Section {
         let mut bands = vec![Vec::new(); count];
         for (k, (a, b)) in edges.iter().enumerate() {
             let index = |y: f64| (((y - low) / band) as usize).min(count - 1);
-            for b in index(a[1].min(b[1]))..=index(a[1].max(b[1])) {
-                bands[b].push(k);
+            for band in &mut bands[index(a[1].min(b[1]))..=index(a[1].max(b[1]))] {
+                band.push(k);
             }
         }
         Self { edges, bands, low, band }

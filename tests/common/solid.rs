@@ -117,14 +117,11 @@ impl Solid {
 
     /// Lowest and highest coordinates.
     pub(crate) fn extent(&self) -> (Point3, Point3) {
-        let mut extent = ([f64::MAX; 3], [f64::MIN; 3]);
-        for p in self.triangles.as_flattened() {
-            for axis in 0..3 {
-                extent.0[axis] = extent.0[axis].min(p[axis]);
-                extent.1[axis] = extent.1[axis].max(p[axis]);
-            }
-        }
-        extent
+        let bound = |pick: fn(f64, f64) -> f64, from: f64| {
+            let points = self.triangles.as_flattened().iter();
+            points.fold([from; 3], |b, p| [pick(b[0], p[0]), pick(b[1], p[1]), pick(b[2], p[2])])
+        };
+        (bound(f64::min, f64::MAX), bound(f64::max, f64::MIN))
     }
 
     /// As the slicer lays it: the box's middle at `middle`, its foot on the bed.
