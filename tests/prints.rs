@@ -57,6 +57,47 @@ fn relative_filament_prints_as_soundly() {
 }
 
 #[test]
+fn unusual_settings_print_as_soundly() {
+    for set in [
+        &[("walls", "30")][..],
+        &[("infill", "100"), DUAL],
+        &[("infill", "0")],
+        &[("skin_layers", "0"), DUAL],
+        &[("layer_height", "0.1"), ("first_layer_height", "0.3"), DUAL, SUPPORT],
+        &[("layer_height", "0.3"), ("first_layer_height", "0.2")],
+        &[("line_width", "0.8"), ("skin_reach", "3"), DUAL],
+        &[("tolerance", "0"), ("angle", "-31.5"), ("infill_overlap", "0")],
+        &[("tolerance", "0.04"), ("pattern", "triangles"), DUAL],
+        &[("pattern", "grid"), ("infill", "70"), DUAL],
+        &[("retraction.length", "0")],
+        &[("retraction.when", "always"), ("retraction.min_travel", "0"), ("seam", "nearest")],
+        &[("wall_order", "outer-first"), ("walls", "3")],
+        &[SUPPORT, ("support.threshold_angle", "90"), ("support.spacing", "0.5")],
+    ] {
+        for name in ["bracket.stl", "sphere_20.stl", "two_shells.stl"] {
+            let run = slice(&fixture(name), "generic-marlin", set);
+            let what = format!("{name} {set:?}");
+            sound(&run.print, &run.settings, &what);
+            let solid = placed(name, &run);
+            let some: Vec<usize> = all_layers(&run).into_iter().step_by(5).collect();
+            let (out, line) = furthest_out(&run.print, &solid, &some, |_| true);
+            assert!(out <= 0.05, "{what}: line {line} reaches {out} mm out");
+        }
+    }
+}
+
+#[test]
+fn a_part_without_walls_stays_within_its_contour() {
+    for name in ["cube_20.stl", "bracket.stl"] {
+        let run = slice(&fixture(name), "generic-marlin", &[("walls", "0")]);
+        let solid = placed(name, &run);
+        let some: Vec<usize> = all_layers(&run).into_iter().step_by(5).collect();
+        let (out, line) = furthest_out(&run.print, &solid, &some, |_| true);
+        assert!(out <= 0.05, "{name}: line {line} reaches {out} mm out");
+    }
+}
+
+#[test]
 fn no_bead_reaches_out_of_the_part() {
     for profile in ["generic-marlin", "zcube-dual"] {
         for name in FIXTURES {
