@@ -228,3 +228,67 @@ fn the_product_is_the_same_on_stdout_and_on_any_number_of_threads() {
         slicer(&folder).args(words).assert().success().stdout(file.clone()).stderr("");
     }
 }
+
+/// A run that is told to stop removes its unfinished file.
+#[cfg(unix)]
+#[test]
+fn interrupted_run_leaves_nothing() {
+    use std::io::Write as _;
+    use std::process::{Command as Process, Stdio};
+    let folder = tempfile::tempdir().unwrap();
+    // Reads its model from standard input, which stays open: it waits until it is stopped.
+    let mut child = Process::new(env!("CARGO_BIN_EXE_slicer"))
+        .args(["-", "-o", "part.gcode"])
+        .current_dir(folder.path())
+        .stdin(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut input = child.stdin.take().unwrap();
+    input.write_all(b"solid waiting\n").unwrap();
+    let there = || std::fs::read_dir(folder.path()).unwrap().count();
+    for _ in 0..500 {
+        if there() == 1 {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    assert_eq!(there(), 1, "the unfinished file was never begun");
+    let killed = Process::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(there(), 0);
+}
+
+/// A cube with two of its corners in one place: a triangle without area.
+fn cube_with_a_flaw() -> Vec<u8> {
+    let mut bytes =
+        std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/cube_20.stl")).unwrap();
+    let first: Vec<u8> = bytes[84..134].to_vec();
+    bytes.extend_from_slice(&first);
+    let at = bytes.len() - 50;
+    bytes.copy_within(at + 12..at + 24, at + 24);
+    let count = u32::from_le_bytes([bytes[80], bytes[81], bytes[82], bytes[83]]) + 1;
+    bytes[80..84].copy_from_slice(&count.to_le_bytes());
+    bytes
+}
+
+#[test]
+fn strict_run_with_a_warning_is_done_but_exits_with_1() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("cube.stl"), cube_with_a_flaw()).unwrap();
+    for (strict, code) in [(false, 0), (true, 1)] {
+        let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_slicer"));
+        command.current_dir(folder.path()).args(["cube.stl", "-o", "a.gcode", "-q"]);
+        if strict {
+            command.arg("--strict");
+        }
+        let output = command.output().unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{text}");
+        assert!(text.starts_with("warning: cube.stl: 1 triangle"), "{text}");
+        assert_eq!(text.contains("error: 1 warning with --strict"), strict, "{text}");
+        assert!(folder.path().join("a.gcode").is_file());
+        std::fs::remove_file(folder.path().join("a.gcode")).unwrap();
+    }
+}

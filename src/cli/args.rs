@@ -21,11 +21,12 @@ A model whose file is named like a subcommand is given as ./profile.";
 
 const EXIT_CODES: &str = "\
 Exit codes:
-  0  done
-  1  not done: there were warnings, and --strict was given
-  2  wrong arguments, profile or setting
-  3  a model cannot be read, does not fit, or leaves nothing to print
-  4  an output cannot be written
+    0  done
+    1  done, but there were warnings and --strict was given
+    2  wrong arguments, profile or setting
+    3  a model cannot be read, does not fit, or leaves nothing to print
+    4  an output cannot be written
+  130  interrupted
 Only the product goes to standard output, everything else to standard error.
 A run that fails leaves no file behind.";
 
@@ -119,7 +120,7 @@ pub(crate) struct SliceArgs {
     /// Write a report as JSON; `-` writes standard output
     #[arg(long, value_name = "FILE", help_heading = "Running")]
     pub(crate) report: Option<PathBuf>,
-    /// Fail where there are warnings, and write nothing
+    /// Exit with 1 if there are warnings; the output is written all the same
     #[arg(long, help_heading = "Running")]
     pub(crate) strict: bool,
     /// Threads to use; the output never depends on it [default: all cores]

@@ -1,6 +1,7 @@
 //! Arguments -> products and exit code: the only place that prints.
 
 mod args;
+mod interrupt;
 mod output;
 mod progress;
 mod summary;
@@ -20,7 +21,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Exit code of a run that `--strict` turned down.
+/// Exit code of a run that is done but has findings, with `--strict`.
 const STRICT: u8 = 1;
 
 /// Runs the program with these arguments, the program's name first, and
@@ -74,6 +75,7 @@ fn say(text: &str) {
 
 fn slice(args: &SliceArgs) -> Result<u8> {
     let started = Instant::now();
+    interrupt::watch();
     let Some(out) = args.output.as_deref() else {
         return Err(Error::Usage("no output; give one with -o".to_owned()));
     };
@@ -90,13 +92,6 @@ fn slice(args: &SliceArgs) -> Result<u8> {
     for warning in &report.warnings {
         say(&format!("warning: {warning}\n"));
     }
-    if args.strict && !report.warnings.is_empty() {
-        let count = report.warnings.len();
-        let plural = if count == 1 { "warning" } else { "warnings" };
-        let left = if sink.can_be_undone() { "nothing was written" } else { "discard the output" };
-        say(&format!("error: {count} {plural} with --strict; {left}\n"));
-        return Ok(STRICT);
-    }
     // The report is written before the G-code is put in place, so that a full
     // disk leaves neither.
     let report_sink = report_sink.map(|(path, sink)| write_report(path, sink, &report));
@@ -109,7 +104,18 @@ fn slice(args: &SliceArgs) -> Result<u8> {
     if !args.quiet {
         say(&summary::summary(&report, started.elapsed()));
     }
-    Ok(0)
+    Ok(findings(args.strict, report.warnings.len()))
+}
+
+/// The exit code of a run that is done: with `--strict` warnings are a failure, though
+/// the output is there to be looked at.
+fn findings(strict: bool, warnings: usize) -> u8 {
+    if !strict || warnings == 0 {
+        return 0;
+    }
+    let plural = if warnings == 1 { "warning" } else { "warnings" };
+    say(&format!("error: {warnings} {plural} with --strict; look at them before printing\n"));
+    STRICT
 }
 
 fn load(args: &SliceArgs) -> Result<Profile> {

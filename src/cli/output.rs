@@ -1,5 +1,6 @@
 //! Path -> Sink: a file that is there whole or not at all, a device, or standard output.
 
+use super::interrupt;
 use slicer::error::{Error, Result};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Stdout, Write};
@@ -40,11 +41,6 @@ impl Sink {
         Ok(Self { name: name.to_owned(), target })
     }
 
-    /// Whether dropping this leaves nothing of what was written.
-    pub(crate) fn can_be_undone(&self) -> bool {
-        matches!(self.target, Target::Temporary(..))
-    }
-
     /// Makes what was written the output.
     ///
     /// # Errors
@@ -57,7 +53,12 @@ impl Sink {
             Target::Temporary(out, path) => out
                 .into_inner()
                 .map_err(io::IntoInnerError::into_error)
-                .and_then(|file| file.persist(path).map_err(|error| error.error))
+                .and_then(|file| {
+                    let temporary = file.path().to_owned();
+                    let done = file.persist(path).map_err(|error| error.error);
+                    interrupt::done(&temporary);
+                    done
+                })
                 .map(drop),
         };
         done.map_err(|source| failed(&name, "cannot write", source))
@@ -158,6 +159,7 @@ fn beside(path: PathBuf) -> io::Result<Target> {
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let file = builder.tempfile_in(folder)?;
+    interrupt::begun(file.path());
     Ok(Target::Temporary(BufWriter::new(file), path))
 }
 

@@ -95,7 +95,7 @@ fn odd_binary(
 ) -> std::result::Result<RawMesh, String> {
     let length = bytes.len() as u64;
     let surplus = length.saturating_sub(binary_length(announced));
-    if announced > 0 && surplus > 0 && surplus % RECORD as u64 == 0 {
+    if announced > 0 && surplus > 0 && surplus.is_multiple_of(RECORD as u64) {
         // Whole triangles too many: which number is right nobody can tell.
         return Err(format!(
             "announces {announced} triangles, but {} more follow; it is damaged: export or \
