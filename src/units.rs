@@ -18,11 +18,22 @@ pub const MAX_COORDINATE_MM: f64 = 10_000.0;
 /// Millimetres to the nearest grid unit (halves away from zero).
 #[must_use]
 pub fn to_units(mm: f64) -> Coord {
-    (mm * UNITS_PER_MM).round() as Coord
+    nearest(mm * UNITS_PER_MM) as Coord
 }
 
 /// Grid units to millimetres.
 #[must_use]
 pub fn to_mm(units: Coord) -> f64 {
     f64::from(units) / UNITS_PER_MM
+}
+
+/// The whole number nearest to `value`, halves away from zero.
+///
+/// Adding a half and cutting off is many times faster than [`f64::round`], which
+/// is a call on processors without SSE 4.1; it differs only for the last number
+/// below a half.
+#[must_use]
+#[inline]
+pub fn nearest(value: f64) -> i64 {
+    (value + 0.5_f64.copysign(value)) as i64
 }

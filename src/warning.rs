@@ -56,25 +56,29 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::DegenerateTriangles { file, count } => {
-                write!(f, "{file}: {count} triangles with two equal corners were dropped")
+                let triangles = plural(*count as u64, "triangle");
+                write!(f, "{file}: dropped {triangles} with two equal corners")
             }
             Self::OpenMesh { file, edges } => write!(
                 f,
-                "{file}: the mesh is not closed ({edges} edges have no matching \
-                 neighbour); check the print or mend the model"
+                "{file}: the mesh is not closed, {} without a matching neighbour; check the \
+                 print or mend the model",
+                plural(*edges as u64, "edge")
             ),
             Self::OpenContours { layers, longest_gap_mm } => write!(
                 f,
-                "contours did not close on {layers} layers and were closed by straight lines \
-                 of up to {longest_gap_mm:.3} mm; mend the model"
+                "closed open contours on {} by straight lines of up to {longest_gap_mm:.3} mm; \
+                 check the print or mend the model",
+                plural(*layers as u64, "layer")
             ),
             Self::ThinPlaces { layers, area_mm2 } => write!(
                 f,
-                "{area_mm2:.1} mm² on {layers} layers are thinner than one line and are not \
-                 printed; use a smaller line width"
+                "left out {area_mm2:.1} mm² on {} that are thinner than one line; use a smaller \
+                 --line-width",
+                plural(*layers as u64, "layer")
             ),
             Self::TrailingBytes { file, count } => {
-                write!(f, "{file}: {count} bytes after the last triangle were ignored")
+                write!(f, "{file}: ignored {} after the last triangle", plural(*count, "byte"))
             }
             Self::TinyModel { file, size_mm } => write!(
                 f,
@@ -83,4 +87,9 @@ impl fmt::Display for Warning {
             ),
         }
     }
+}
+
+/// A number of things, such as `1 byte` or `2 bytes`.
+fn plural(count: u64, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }

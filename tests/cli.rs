@@ -286,7 +286,7 @@ fn strict_run_with_a_warning_is_done_but_exits_with_1() {
         let output = command.output().unwrap();
         let text = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(code), "{text}");
-        assert!(text.starts_with("warning: cube.stl: 1 triangle"), "{text}");
+        assert!(text.starts_with("warning: cube.stl: dropped 1 triangle with"), "{text}");
         assert_eq!(text.contains("error: 1 warning with --strict"), strict, "{text}");
         assert!(folder.path().join("a.gcode").is_file());
         std::fs::remove_file(folder.path().join("a.gcode")).unwrap();

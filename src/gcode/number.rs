@@ -1,5 +1,7 @@
 //! Integers -> text: fixed-point numbers, never an exponent, no allocation.
 
+use crate::units::nearest;
+
 /// Appends `value · 10^-decimals` to `out` without trailing zeros: `1050` with
 /// three decimals is `1.05`.
 pub fn push_fixed(out: &mut Vec<u8>, value: i64, decimals: u32) {
@@ -40,7 +42,7 @@ pub fn push_integer(out: &mut Vec<u8>, mut value: u64) {
 /// `mm` in thousandths, rounded half away from zero.
 #[must_use]
 pub fn thousandths(mm: f64) -> i64 {
-    (mm * 1000.0).round() as i64
+    nearest(mm * 1000.0)
 }
 
 #[cfg(test)]

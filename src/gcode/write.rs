@@ -5,7 +5,7 @@ use super::number::{push_fixed, push_integer, thousandths};
 use crate::geom::Point;
 use crate::plan::{Path, Role, Toolpath};
 use crate::profile::{ExtrusionModel, Settings};
-use crate::units::{Coord, to_mm, to_units};
+use crate::units::{Coord, nearest, to_mm, to_units};
 use std::f64::consts::PI;
 use std::io::Write as _;
 
@@ -394,5 +394,75 @@ impl<'a> Text<'a> {
 
 /// mm of filament in 10⁻⁵ mm.
 fn ticks(mm: f64) -> i64 {
-    (mm * 100_000.0).round() as i64
+    nearest(mm * 100_000.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::{PathPoint, Step};
+    use crate::profile;
+
+    fn toolpath() -> Toolpath {
+        let path = |role, height, xs: &[Coord], y| Path {
+            role,
+            height,
+            points: xs.iter().map(|&x| PathPoint { at: Point { x, y }, width: 4_000 }).collect(),
+        };
+        let wall = path(Role::OuterWall, 2_000, &[0, 100_000], 0);
+        let thick = path(Role::ThickInfill, 4_000, &[100_000, 0], 20_000);
+        let steps = vec![Step { retract: true, path: wall }, Step { retract: false, path: thick }];
+        Toolpath { layer: 3, z: 8_000, height: 2_000, steps }
+    }
+
+    fn text(profile: &str) -> String {
+        let settings = profile::load(profile, &[]).unwrap().settings;
+        let params = WriteParams::new(&settings, [150.0, 150.0]);
+        let start = Start { at: None, e: 1.0, done: (3, 10) };
+        String::from_utf8(params.layer(&toolpath(), &start)).unwrap()
+    }
+
+    #[test]
+    fn absolute_e_goes_on_and_thick_lines_take_twice_as_much() {
+        assert_eq!(
+            text("zcube-dual"),
+            "\
+;LAYER_CHANGE
+;Z:0.8
+;HEIGHT:0.2
+M73 P30
+G1 E0 F1200
+G1 Z0.8 F1000
+G1 X150 Y150 F5400
+G1 E1 F1200
+;TYPE:External perimeter
+;WIDTH:0.4
+G1 X160 E1.5 F1620
+G1 Y152 F5400
+;TYPE:Internal infill
+;HEIGHT:0.4
+;WIDTH:0.4
+G1 X150 E2.3 F3600
+"
+        );
+    }
+
+    #[test]
+    fn relative_e_counts_from_move_to_move() {
+        let text = text("generic-klipper");
+        let moves: Vec<&str> = text.lines().filter(|l| l.contains(" E")).collect();
+        // 10 mm of 0.4 × 0.2 mm and of 0.4 × 0.4 mm from filament of 1.75 mm.
+        assert_eq!(
+            moves,
+            ["G1 E-1 F1200", "G1 E1 F1200", "G1 X160 E0.3326 F1620", "G1 X150 E0.6652 F3600"]
+        );
+    }
+
+    #[test]
+    fn usage_counts_what_is_written() {
+        let settings = profile::load("zcube-dual", &[]).unwrap().settings;
+        let usage = WriteParams::new(&settings, [0.0, 0.0]).usage(&toolpath(), None);
+        assert!((usage.filament() - 1.3).abs() < 1e-9);
+        assert_eq!((usage.travels, usage.retractions), (2, 1));
+    }
 }

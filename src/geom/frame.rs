@@ -1,7 +1,7 @@
 //! Point -> (u, v): the frame of a raster direction, in which raster lines run along u at constant v.
 
 use super::Point;
-use crate::units::Coord;
+use crate::units::{Coord, nearest};
 
 /// A turn of the plane that lays the raster lines level. Exact for multiples of 90°.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,8 +44,8 @@ impl Frame {
     fn turn(&self, p: Point, sin: f64) -> Point {
         let (x, y) = (f64::from(p.x), f64::from(p.y));
         Point {
-            x: (x * self.cos - y * sin).round() as Coord,
-            y: (x * sin + y * self.cos).round() as Coord,
+            x: nearest(x * self.cos - y * sin) as Coord,
+            y: nearest(x * sin + y * self.cos) as Coord,
         }
     }
 }

@@ -255,3 +255,65 @@ fn extend(
     chain.push(Link { join: points, row, index, span, from: side });
     Some(index)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::spans::subtract;
+
+    const W: Coord = 4_000;
+
+    /// Rows 0 to `count`, 40 mm long, without `hole` on the rows it names.
+    fn region(count: i32, hole: Option<(std::ops::Range<i32>, Span)>) -> Rows {
+        let whole = [Span { start: 0, end: 400_000 }];
+        let mut rows = Rows::starting_at(0);
+        for j in 0..count {
+            let cut = hole.as_ref().filter(|(rows, _)| rows.contains(&j)).map(|(_, s)| *s);
+            rows.push_row(|out| subtract(&whole, cut.as_slice(), out));
+        }
+        rows
+    }
+
+    fn joins_are_inside(region: &Rows, chain: &Chain) {
+        for w in chain.windows(2).filter(|w| w[0].v != w[1].v) {
+            for j in w[0].v.min(w[1].v) / W..=w[0].v.max(w[1].v) / W {
+                let holds = |u: Coord| region.row(j).iter().any(|s| s.start <= u && u <= s.end);
+                assert!(holds(w[0].u) && holds(w[1].u), "{w:?} on row {j}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_convex_region_is_one_zigzag() {
+        let chains = comb(&region(26, None), 5, W, W);
+        assert_eq!(chains.len(), 1);
+        let ends: Vec<Coord> = chains[0].iter().map(|p| p.u).collect();
+        assert_eq!(ends[..6], [0, 400_000, 400_000, 0, 0, 400_000]);
+        assert_eq!(chains[0].len(), 12);
+    }
+
+    #[test]
+    fn joins_go_round_a_hole_and_never_across() {
+        let hole = (6..14, Span { start: 100_000, end: 300_000 });
+        let region = region(26, Some(hole));
+        let chains = comb(&region, 5, W, W);
+        chains.iter().for_each(|chain| joins_are_inside(&region, chain));
+        let lines: usize = chains.iter().map(|c| c.len() / 2).sum();
+        assert_eq!(lines, 7, "six rows, one of them in two pieces: {chains:?}");
+        assert!(chains.len() > 1);
+    }
+
+    #[test]
+    fn sparse_lines_far_apart_are_not_joined() {
+        let chains = comb(&region(41, None), 20, W, W);
+        assert_eq!(chains.len(), 3);
+        assert!(chains.iter().all(|c| c.len() == 2));
+    }
+
+    #[test]
+    fn a_sparse_line_shorter_than_wide_is_left_out() {
+        let mut rows = Rows::starting_at(0);
+        rows.push_row(|out| out.push(Span { start: 0, end: W - 1 }));
+        assert!(comb(&rows, 1, W, W).is_empty());
+    }
+}

@@ -103,3 +103,41 @@ fn meet(a: Point, b: Point, p: Point, q: Point) -> bool {
     let (a_side, b_side) = (side(p, q, a).signum(), side(p, q, b).signum());
     p_side * q_side <= 0 && a_side * b_side <= 0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(low: Coord, high: Coord, hole: bool) -> Contour {
+        let p = |x, y| Point { x, y };
+        let mut square = vec![p(low, low), p(high, low), p(high, high), p(low, high)];
+        if hole {
+            square.reverse();
+        }
+        square
+    }
+
+    #[test]
+    fn ways_inside_stay_and_ways_across_leave() {
+        let crossings = Crossings::new(&[square(0, 1000, false), square(400, 600, true)]);
+        let p = |x, y| Point { x, y };
+        for (a, b, leaves) in [
+            (p(100, 100), p(900, 100), false),
+            (p(100, 100), p(100, 900), false),
+            (p(100, 500), p(900, 500), true),
+            (p(100, 100), p(1100, 100), true),
+            (p(-200, 500), p(-100, 500), true),
+            (p(450, 450), p(550, 550), true),
+            (p(-500, -500), p(5000, -400), true),
+        ] {
+            assert_eq!(crossings.leaves(a, b), leaves, "{a:?} to {b:?}");
+            assert_eq!(crossings.leaves(b, a), leaves, "{b:?} to {a:?}");
+        }
+    }
+
+    #[test]
+    fn without_contours_every_way_is_outside() {
+        let crossings = Crossings::new(&[]);
+        assert!(crossings.leaves(Point { x: 1, y: 2 }, Point { x: 3, y: -4 }));
+    }
+}

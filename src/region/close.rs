@@ -217,3 +217,67 @@ fn slivers(thin: Vec<Extent>, params: &Params) -> Vec<Vec<LinePoint>> {
     }
     beads.into_iter().map(|(_, bead)| bead).filter(|bead| bead.len() >= LEAST_COLUMNS).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::{Contour, Point};
+    use crate::profile;
+    use crate::region::bend::{Joined, points};
+    use crate::region::raster::Scan;
+
+    /// Closes a skin that is all of `contour`, lines along x.
+    fn closed(contour: Contour) -> (Vec<Line>, Vec<Vec<LinePoint>>, Params) {
+        let mut settings = profile::load("generic-marlin", &[]).unwrap().settings;
+        settings.angle = 0.0;
+        let params = Params::new(&settings);
+        let along = Scan::new(std::slice::from_ref(&contour), params.rasters[0]).inside().clone();
+        let across = Scan::new(&[contour], params.rasters[1]).inside().clone();
+        let crossed = Crossed {
+            skin: &along,
+            fill: &along,
+            columns: &across,
+            fill_columns: &across,
+            left_turn: true,
+        };
+        let (lines, slivers) = close(&crossed, &params);
+        (lines, slivers, params)
+    }
+
+    fn rectangle(low: (Coord, Coord), high: (Coord, Coord)) -> Contour {
+        let p = |x, y| Point { x, y };
+        vec![p(low.0, low.1), p(high.0, low.1), p(high.0, high.1), p(low.0, high.1)]
+    }
+
+    #[test]
+    fn the_last_line_is_widened_up_to_the_edge() {
+        // Rows lie at multiples of 4000: 3000 are left above the last one.
+        let (lines, slivers, params) = closed(rectangle((-50_000, -1_000), (50_000, 43_000)));
+        assert!(slivers.is_empty());
+        let last = lines.iter().find(|l| l.row == 10).unwrap();
+        let points = points(last, Joined::default(), &params);
+        let open = 3_000 - params.overlap;
+        assert_eq!(points.len(), 2, "one straight line: {points:?}");
+        assert!(points.iter().all(|p| p.width == params.line_width + open), "{points:?}");
+        assert!(points.iter().all(|p| p.v == 40_000 + open / 2), "{points:?}");
+    }
+
+    #[test]
+    fn lines_in_the_middle_stay_as_they_are() {
+        let (lines, _, params) = closed(rectangle((-50_000, -1_000), (50_000, 43_000)));
+        let middle = lines.iter().find(|l| l.row == 5).unwrap();
+        let points = points(middle, Joined::default(), &params);
+        assert!(points.iter().all(|p| p.width == params.line_width && p.v == 20_000));
+    }
+
+    #[test]
+    fn a_skin_between_two_rows_gets_a_bead_along_its_middle() {
+        let (lines, slivers, params) = closed(rectangle((-50_000, 500), (50_000, 3_500)));
+        assert!(lines.is_empty());
+        assert_eq!(slivers.len(), 1);
+        let width = 3_000 + params.line_width - 2 * params.overlap;
+        assert!(slivers[0].iter().all(|p| p.v == 2_000 && p.width == width), "{slivers:?}");
+        let length = slivers[0].last().unwrap().u - slivers[0][0].u;
+        assert!(length > 100_000 - 2 * params.line_width, "{length}");
+    }
+}

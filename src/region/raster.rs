@@ -13,7 +13,7 @@
 use crate::geom::frame::Frame;
 use crate::geom::spans::{Rows, Span, merge, subtract};
 use crate::geom::{Contour, Point};
-use crate::units::Coord;
+use crate::units::{Coord, nearest};
 
 /// A set of raster lines: row `j` runs at `v = j · pitch` in `frame`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -244,7 +244,7 @@ impl Capsule {
     /// The chord at `v`, none where rounding leaves nothing of it.
     fn chord(&self, v: Coord) -> Option<Span> {
         let (start, end) = (-self.flank(v, -1.0), self.flank(v, 1.0));
-        Span::new(start.round() as Coord, end.round() as Coord)
+        Span::new(nearest(start) as Coord, nearest(end) as Coord)
     }
 
     /// How far the capsule reaches at `v` towards `side` (+1 right, −1 left),
