@@ -122,6 +122,12 @@ fn travels_across_an_outer_wall_pull_the_filament_back() {
         let pulled = run.print.moves.iter().filter(|m| m.is_travel() && m.pulled > 0.0);
         assert!(pulled.count() >= run.print.layers.len(), "{profile}");
     }
+    for name in FIXTURES {
+        let run = slice(&fixture(name), "generic-marlin", &[SUPPORT]);
+        let solid = placed(name, &run);
+        let strings = stringing_travels(&run.print, &solid, &run.settings, &all_layers(&run));
+        assert!(strings.is_empty(), "{name}: lines {strings:?}");
+    }
 }
 
 #[test]
@@ -489,8 +495,10 @@ fn overlapping_shells_have_no_wall_inside() {
 
 #[test]
 fn thick_lines_are_on_the_upper_layers_of_pairs_and_twice_as_high() {
-    for name in FIXTURES {
-        let run = slice(&fixture(name), "generic-marlin", &[DUAL, SUPPORT]);
+    // Without skins only the rule keeps thick lines off the first layers.
+    for (name, skins) in FIXTURES.map(|name| [(name, "3"), (name, "0")]).concat() {
+        let set = [DUAL, SUPPORT, ("skin_layers", skins)];
+        let run = slice(&fixture(name), "generic-marlin", &set);
         let mut thick = 0;
         for m in run.print.beads() {
             let k = m.layer.unwrap();

@@ -139,7 +139,8 @@ pub(crate) fn furthest_out(
     worst
 }
 
-/// Travels through the outside of the body without the filament pulled back, of those that are long enough.
+/// Travels that leave the body without the filament pulled back, of those that are
+/// long enough.
 pub(crate) fn stringing_travels(
     print: &Print,
     solid: &Solid,
@@ -151,9 +152,11 @@ pub(crate) fn stringing_travels(
         let section = section(print, solid, k);
         let travels = print.moves.iter().filter(|m| m.layer == Some(k) && m.is_travel());
         let long = travels.filter(|m| m.length() > settings.retraction.min_travel + ROUNDING);
-        lines.extend(
-            long.filter(|m| m.pulled == 0.0 && section.crosses(m.a(), m.b(), 0.03)).map(|m| m.line),
-        );
+        let leaves = |m: &&Move| {
+            let steps = (m.length() / 0.1).ceil() as usize;
+            (0..=steps).any(|k| section.signed_distance(m.at(k as f64 / steps as f64), 0.1) > 0.03)
+        };
+        lines.extend(long.filter(|m| m.pulled == 0.0).filter(leaves).map(|m| m.line));
     }
     lines
 }

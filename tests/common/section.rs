@@ -86,20 +86,6 @@ impl Section {
         if worst == 0.0 && !self.is_inside(p) { self.distance(p, 100.0 * radius) } else { worst }
     }
 
-    /// Whether the way from `a` to `b` crosses an edge, by more than `slack` on both sides of it.
-    pub(crate) fn crosses(&self, a: [f64; 2], b: [f64; 2], slack: f64) -> bool {
-        let side = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
-            let length = ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt();
-            ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])) / length.max(1e-12)
-        };
-        let apart = |x: f64, y: f64| x.min(y) < -slack && x.max(y) > slack;
-        let near = self.band(a[1].min(b[1]))..=self.band(a[1].max(b[1]));
-        self.bands[near].iter().flatten().any(|&k| {
-            let (p, q) = self.edges[k];
-            apart(side(a, b, p), side(a, b, q)) && apart(side(p, q, a), side(p, q, b))
-        })
-    }
-
     /// The signed area, mm²: overlaps of shells count twice.
     pub(crate) fn area(&self) -> f64 {
         self.edges.iter().map(|(a, b)| (a[0] * b[1] - a[1] * b[0]) / 2.0).sum()
