@@ -209,6 +209,10 @@ impl Walk<'_> {
     }
 }
 
+/// With more open chains on a layer than this each is closed on itself: comparing all
+/// ends with all would take too long, and such a soup has no right answer.
+const MOST_OPEN: usize = 512;
+
 /// Closes open chains: each end goes on in the chain that begins nearest, by a
 /// straight line. Returns the longest such line.
 ///
@@ -220,9 +224,9 @@ fn close(mut open: Vec<Contour>, closed: &mut Vec<Contour>) -> Coord {
         open.iter().filter_map(|c| Some((*c.first()?, *c.last()?))).collect();
     let mut gaps: Vec<(i64, usize, usize)> = Vec::new();
     for (i, (_, end)) in ends.iter().enumerate() {
-        for (j, (start, _)) in ends.iter().enumerate() {
-            gaps.push((end.distance2(*start), i, j));
-        }
+        let own = i..i + 1;
+        let partners = if ends.len() <= MOST_OPEN { 0..ends.len() } else { own };
+        gaps.extend(partners.map(|j| (end.distance2(ends[j].0), i, j)));
     }
     gaps.sort_unstable();
     let mut next = vec![None; open.len()];
@@ -247,4 +251,44 @@ fn close(mut open: Vec<Contour>, closed: &mut Vec<Contour>) -> Coord {
         }
     }
     (longest as f64).sqrt() as Coord
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::edges::adjacency;
+
+    /// A box of 10 × 10 × 10 mm, without the triangles that `left_out` names.
+    fn layers(left_out: &[usize]) -> Vec<Layer> {
+        let corner = |k: i32| [(k & 1) * 100_000, (k >> 1 & 1) * 100_000, (k >> 2) * 100_000];
+        let vertices: Vec<[i32; 3]> = (0..8).map(corner).collect();
+        let faces: [[u32; 4]; 6] =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]];
+        let all = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let kept = all.enumerate().filter(|(k, _)| !left_out.contains(k));
+        let mesh = Mesh { vertices, triangles: kept.map(|(_, t)| t).collect() };
+        let adjacency = adjacency(&mesh.vertices, &mesh.triangles);
+        let heights = Heights::new(2_000, 2_000, 100_000);
+        let slicer = Slicer::new(&mesh, &adjacency, heights, 100);
+        (0..slicer.blocks()).flat_map(|b| slicer.block(b)).collect()
+    }
+
+    #[test]
+    fn every_layer_of_a_box_is_its_square() {
+        let layers = layers(&[]);
+        assert_eq!(layers.len(), 50);
+        for layer in layers {
+            assert_eq!(layer.closed_gap, 0);
+            assert_eq!(layer.contours.len(), 1);
+            assert_eq!(crate::geom::double_area(&layer.contours[0]), 2 * 100_000_i128.pow(2));
+        }
+    }
+
+    #[test]
+    fn a_missing_side_is_closed_by_a_straight_line_and_told() {
+        for layer in layers(&[6, 7]) {
+            assert_eq!(layer.closed_gap, 100_000);
+            assert_eq!(crate::geom::double_area(&layer.contours[0]), 2 * 100_000_i128.pow(2));
+        }
+    }
 }
