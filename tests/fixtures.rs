@@ -42,6 +42,7 @@ fn fixtures_are_closed_and_have_their_volume() {
             "overhang.stl" => (16.0 * (8.0 * 20.0 + 30.0 * 5.0), [30.0, 16.0, 25.0]),
             "two_shells.stl" => (10_000.0, [25.0, 25.0, 20.0]),
             "cavity.stl" => (8000.0 - 512.0, [20.0, 20.0, 20.0]),
+            "tile.stl" => (57.6, [6.0, 6.0, 1.6]),
             "bracket.stl" => (16_796.0, [90.0, 30.0, 24.0]),
             _ => panic!("no expectation for {name}"),
         };
@@ -69,6 +70,7 @@ fn fixtures() -> Vec<(&'static str, Vec<u8>)> {
         ("overhang.stl", binary(&overhang())),
         ("two_shells.stl", binary(&shells)),
         ("cavity.stl", binary(&hollow)),
+        ("tile.stl", binary(&cuboid([0.0; 3], [6.0, 6.0, 1.6]))),
     ]
 }
 

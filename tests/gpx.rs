@@ -1,20 +1,41 @@
 //! Start and end blocks for MakerBot machines -> GPX: it converts them without a word.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::print_stdout, reason = "a test that is skipped says so")]
+
+mod common;
 
 use slicer::gcode::template::{PrintFacts, render, values};
 use slicer::profile::{DialectName, builtin_names, load};
 use std::fs;
 use std::process::Command;
 
-/// GPX's exit code is always 0, so its silence is the only proof.
+/// Converts `gcode`; GPX's exit code is always 0, so its silence is the only proof.
+fn assert_silent(gcode: &str, least_bytes: u64, what: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let (from, to) = (folder.path().join("a.gcode"), folder.path().join("a.x3g"));
+    fs::write(&from, gcode).unwrap();
+    let run = Command::new("gpx").args(["-I", "-m", "r1d"]).args([&from, &to]).output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&run.stdout), "", "{what}");
+    assert_eq!(String::from_utf8_lossy(&run.stderr), "", "{what}");
+    // Silence alone would also come from doing nothing.
+    let bytes = fs::metadata(&to).unwrap().len();
+    assert!(bytes > least_bytes, "{what}: only {bytes} bytes");
+}
+
+fn is_installed() -> bool {
+    let is = Command::new("gpx").arg("-?").output().is_ok();
+    if !is {
+        println!("skipped: gpx is not installed");
+    }
+    is
+}
+
 #[test]
 fn blocks_convert_in_silence() {
-    if Command::new("gpx").arg("-?").output().is_err() {
-        println!("skipped: gpx is not installed");
+    if !is_installed() {
         return;
     }
-    let folder = tempfile::tempdir().unwrap();
     for name in builtin_names() {
         let settings = load(name, &[]).unwrap().settings;
         if settings.machine.dialect != DialectName::Makerbot {
@@ -23,15 +44,24 @@ fn blocks_convert_in_silence() {
         let values = values(&settings, &PrintFacts { height: 10.0, ..PrintFacts::default() });
         let start = render("machine.start", &settings.machine.start, &values).unwrap();
         let end = render("machine.end", &settings.machine.end, &values).unwrap();
-        let (gcode, x3g) = (folder.path().join("a.gcode"), folder.path().join("a.x3g"));
         let print = "G1 X0 Y0 Z0.2 F5400\nG1 X10 Y0 E0.5 F1620\n";
-        fs::write(&gcode, format!("{start}{print}{end}")).unwrap();
-        let run =
-            Command::new("gpx").args(["-I", "-m", "r1d"]).args([&gcode, &x3g]).output().unwrap();
-        assert_eq!(String::from_utf8_lossy(&run.stdout), "", "{name}");
-        assert_eq!(String::from_utf8_lossy(&run.stderr), "", "{name}");
-        // Silence alone would also come from doing nothing.
-        assert!(fs::metadata(&x3g).unwrap().len() > 200, "{name}");
-        fs::remove_file(&x3g).unwrap();
+        assert_silent(&format!("{start}{print}{end}"), 200, name);
+    }
+}
+
+#[test]
+fn whole_prints_convert_in_silence() {
+    if !is_installed() {
+        return;
+    }
+    for profile in ["zcube-dual", "replicator", "thesis"] {
+        for (name, fan) in [("bracket.stl", "0"), ("overhang.stl", "100")] {
+            let set = [("dual.mode", "pair"), ("support.enabled", "true"), ("filament.fan", fan)];
+            let run = common::slice(&common::fixture(name), profile, &set);
+            // A move takes 40 bytes or so.
+            let moves = run.print.moves.len() as u64;
+            assert!(moves > 1000, "{name}");
+            assert_silent(&run.text, 20 * moves, &format!("{name} {profile}"));
+        }
     }
 }

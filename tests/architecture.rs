@@ -1,0 +1,269 @@
+//! Source text -> verdict: the layout the modules promise: who imports whom, sizes, first lines, who may print.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What each module of the library may use of the crate, beside itself.
+const MAY_USE: &[(&str, &[&str])] = &[
+    ("units", &[]),
+    ("error", &[]),
+    ("warning", &[]),
+    ("progress", &[]),
+    ("geom", &["units"]),
+    ("mesh", &["units", "error", "warning"]),
+    ("slice", &["geom", "mesh", "units"]),
+    ("region", &["geom", "slice", "profile", "units"]),
+    ("plan", &["geom", "region", "slice", "profile", "units"]),
+    // The program's name comes from the job.
+    ("gcode", &["geom", "plan", "profile", "error", "units", "job"]),
+    ("job", &["mesh", "profile"]),
+    // A profile's blocks are tried out when it is checked.
+    ("profile", &["error", "gcode"]),
+];
+
+/// Modules that may use all others: the flow itself, and what tells of it.
+const MAY_USE_ALL: &[&str] = &["lib", "report"];
+
+/// The binary's own modules.
+const BINARY: &[&str] = &["cli", "main"];
+
+/// Lines of a file.
+const MOST_LINES: usize = 500;
+
+/// Lines of a function.
+const MOST_LINES_OF_FUNCTION: usize = 60;
+
+struct Source {
+    /// From src/, with slashes.
+    path: String,
+    /// `geom` for `geom/spans.rs`, `lib` for `lib.rs`.
+    module: String,
+    text: String,
+}
+
+fn sources() -> Vec<Source> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let (mut folders, mut files) = (vec![root.clone()], Vec::<PathBuf>::new());
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() { folders.push(path) } else { files.push(path) }
+        }
+    }
+    files.sort();
+    let source = |path: PathBuf| {
+        let from_root = path.strip_prefix(&root).unwrap();
+        let parts: Vec<_> = from_root.iter().map(|p| p.to_str().unwrap()).collect();
+        Source {
+            module: parts[0].trim_end_matches(".rs").to_owned(),
+            path: parts.join("/"),
+            text: fs::read_to_string(&path).unwrap(),
+        }
+    };
+    let sources: Vec<Source> = files.into_iter().map(source).collect();
+    assert!(sources.len() > 40, "only {} sources were found", sources.len());
+    sources
+}
+
+/// The code without comments and without what string and character literals hold.
+fn bare(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let skip = if rest.starts_with("//") {
+            rest.find('\n').unwrap_or(rest.len())
+        } else if c == '"' {
+            end_of_string(rest)
+        } else if c == '\'' {
+            end_of_character(rest)
+        } else {
+            out.push(c);
+            rest = &rest[c.len_utf8()..];
+            continue;
+        };
+        // Line breaks within literals keep their place.
+        out.extend(rest[..skip].chars().filter(|&c| c == '\n'));
+        rest = &rest[skip..];
+    }
+    out
+}
+
+/// Where the literal ends that `text` begins with; bytes.
+fn end_of_string(text: &str) -> usize {
+    let mut escaped = false;
+    for (k, c) in text.char_indices().skip(1) {
+        match c {
+            '"' if !escaped => return k + 1,
+            _ => escaped = c == '\\' && !escaped,
+        }
+    }
+    text.len()
+}
+
+/// Where the character literal ends that `text` begins with; a lifetime is only its quote.
+fn end_of_character(text: &str) -> usize {
+    let mut chars = text.char_indices().skip(1);
+    match chars.next() {
+        Some((_, '\\')) => text[2..].find('\'').map_or(1, |k| {
+            // An escaped quote is followed by the one that ends the literal.
+            if k == 0 { 4 } else { k + 3 }
+        }),
+        Some(_) => match chars.next() {
+            Some((k, '\'')) => k + 1,
+            _ => 1,
+        },
+        None => 1,
+    }
+}
+
+/// The modules that `code` names by a path from the crate's root, `root`.
+fn uses(code: &str, root: &str) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for (at, _) in code.match_indices(root) {
+        let before = code[..at].chars().next_back();
+        if before.is_some_and(|c| c.is_alphanumeric() || c == '_') {
+            continue;
+        }
+        let rest = &code[at + root.len()..];
+        if let Some(list) = rest.strip_prefix('{') {
+            // `use crate::{a, b::c}`: the first word of each item of the outer list.
+            let (mut depth, mut item) = (0, String::new());
+            for c in list.chars() {
+                match c {
+                    '{' => depth += 1,
+                    '}' if depth == 0 => break,
+                    '}' => depth -= 1,
+                    ',' if depth == 0 => {
+                        found.insert(std::mem::take(&mut item));
+                    }
+                    _ if depth == 0 => item.push(c),
+                    _ => {}
+                }
+            }
+            found.insert(item);
+        } else {
+            found.insert(rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect());
+        }
+    }
+    let first_word =
+        |item: &String| item.trim().split("::").next().unwrap_or_default().trim().to_owned();
+    found.iter().map(first_word).filter(|word| !word.is_empty()).collect()
+}
+
+#[test]
+fn modules_use_only_what_lies_before_them() {
+    let known: Vec<&str> =
+        MAY_USE.iter().map(|(module, _)| *module).chain(MAY_USE_ALL.iter().copied()).collect();
+    for source in sources().iter().filter(|s| !BINARY.contains(&s.module.as_str())) {
+        let module = source.module.as_str();
+        assert!(known.contains(&module), "{}: say in this test what it may use", source.path);
+        let Some((_, allowed)) = MAY_USE.iter().find(|(name, _)| *name == module) else { continue };
+        for used in uses(&bare(&source.text), "crate::") {
+            let fits = used == module || allowed.contains(&used.as_str());
+            assert!(fits, "src/{} uses {used}, which {module} may not", source.path);
+        }
+    }
+}
+
+#[test]
+fn the_command_line_is_used_by_the_program_alone_and_the_report_by_none_of_the_stages() {
+    for source in sources() {
+        let used = uses(&bare(&source.text), "crate::");
+        if !BINARY.contains(&source.module.as_str()) {
+            assert!(!used.contains("cli"), "src/{}", source.path);
+        }
+        if !BINARY.contains(&source.module.as_str()) && source.module != "lib" {
+            assert!(!used.contains("report"), "src/{}", source.path);
+        }
+    }
+}
+
+#[test]
+fn every_source_begins_with_what_it_is() {
+    for source in sources() {
+        let first = source.text.lines().next().unwrap_or_default();
+        let said = first.strip_prefix("//! ").unwrap_or_default();
+        assert!(said.len() > 10, "src/{} begins with {first:?}", source.path);
+    }
+}
+
+#[test]
+fn sources_are_short() {
+    for source in sources() {
+        let lines = source.text.lines().count();
+        assert!(lines <= MOST_LINES, "src/{} has {lines} lines", source.path);
+    }
+}
+
+/// Each function's name, first line and length, by counting braces.
+fn functions(code: &str) -> Vec<(String, usize, usize)> {
+    let mut found = Vec::new();
+    for (at, _) in code.match_indices("fn ") {
+        let before = code[..at].chars().next_back();
+        if before.is_some_and(|c| !c.is_whitespace() && c != '(') {
+            continue;
+        }
+        let name: String =
+            code[at + 3..].chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+        let (mut brackets, mut depth, mut length) = (0, 0, None);
+        for (k, c) in code[at..].char_indices() {
+            match c {
+                '(' | '[' => brackets += 1,
+                ')' | ']' => brackets -= 1,
+                ';' if depth == 0 && brackets == 0 => break,
+                '{' => depth += 1,
+                '}' if depth == 1 => {
+                    length = Some(code[at..at + k].matches('\n').count() + 1);
+                    break;
+                }
+                '}' => depth -= 1,
+                _ => {}
+            }
+        }
+        let line = code[..at].matches('\n').count() + 1;
+        found.extend(length.filter(|_| !name.is_empty()).map(|length| (name, line, length)));
+    }
+    found
+}
+
+#[test]
+fn functions_are_short() {
+    let mut count = 0;
+    for source in sources() {
+        for (name, line, length) in functions(&bare(&source.text)) {
+            count += 1;
+            assert!(
+                length <= MOST_LINES_OF_FUNCTION,
+                "src/{}:{line}: {name} has {length} lines",
+                source.path
+            );
+        }
+    }
+    assert!(count > 300, "only {count} functions were found");
+}
+
+#[test]
+fn only_the_command_line_prints() {
+    for source in sources().iter().filter(|s| !BINARY.contains(&s.module.as_str())) {
+        let code = bare(&source.text);
+        for word in ["println!", "eprintln!", "print!", "eprint!", "dbg!", "stdout()", "stderr()"] {
+            assert!(!code.contains(word), "src/{} has {word}", source.path);
+        }
+    }
+}
+
+#[test]
+fn the_text_of_literals_and_comments_is_no_code() {
+    let text = "a \"x { \\\" // \" b // { \n '{' c '\\'' '\\n' &'a d \"\n\" e";
+    assert_eq!(bare(text), "a  b \n  c   &a d \n e");
+    let code = "use crate::{geom::Point, units::{a, b}}; my_crate::x; crate::mesh::stl";
+    let expected = ["geom", "mesh", "units"].map(str::to_owned);
+    assert_eq!(uses(code, "crate::"), expected.into_iter().collect());
+    let code = "impl A {\n fn one() -> [u8; 2] {\n {}\n }\n fn no();\n}\nfn two() {}\n";
+    let found = functions(code);
+    assert_eq!(found[0], ("one".to_owned(), 2, 3));
+    assert_eq!(found[1].0, "two");
+}

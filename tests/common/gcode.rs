@@ -1,0 +1,249 @@
+//! G-code text -> Print: every move with what it is for. Written from the format's rules, not from the writer.
+
+use std::collections::BTreeMap;
+
+/// What `;TYPE:` says a move is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Kind {
+    /// Start and end blocks.
+    Custom,
+    OuterWall,
+    InnerWall,
+    Skin,
+    Infill,
+    Support,
+}
+
+/// One `G0` or `G1`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Move {
+    /// Line of the file, from 1.
+    pub(crate) line: usize,
+    /// Layer from 0; `None` before the first.
+    pub(crate) layer: Option<usize>,
+    pub(crate) kind: Kind,
+    pub(crate) from: [f64; 3],
+    pub(crate) to: [f64; 3],
+    /// Filament pushed (pulled if negative), mm.
+    pub(crate) e: f64,
+    /// Filament that is pulled back when the move begins, mm.
+    pub(crate) pulled: f64,
+    /// mm/min.
+    pub(crate) feed: f64,
+    /// Of the bead, mm.
+    pub(crate) height: f64,
+    /// Of the bead, mm.
+    pub(crate) width: f64,
+}
+
+impl Move {
+    /// In the plane, mm.
+    pub(crate) fn length(&self) -> f64 {
+        (self.to[0] - self.from[0]).hypot(self.to[1] - self.from[1])
+    }
+
+    /// Lays filament on a layer.
+    pub(crate) fn is_bead(&self) -> bool {
+        self.layer.is_some() && self.kind != Kind::Custom && self.e > 0.0 && self.length() > 0.0
+    }
+
+    /// Moves in the plane without filament.
+    pub(crate) fn is_travel(&self) -> bool {
+        self.layer.is_some() && self.kind != Kind::Custom && self.e == 0.0 && self.length() > 0.0
+    }
+
+    pub(crate) fn a(&self) -> [f64; 2] {
+        [self.from[0], self.from[1]]
+    }
+
+    pub(crate) fn b(&self) -> [f64; 2] {
+        [self.to[0], self.to[1]]
+    }
+
+    /// The point a part `t` of the way along.
+    pub(crate) fn at(&self, t: f64) -> [f64; 2] {
+        let (a, b) = (self.a(), self.b());
+        [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+    }
+}
+
+/// What the annotations of one layer say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LayerHead {
+    pub(crate) z: f64,
+    pub(crate) height: f64,
+}
+
+/// A file.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Print {
+    pub(crate) moves: Vec<Move>,
+    pub(crate) layers: Vec<LayerHead>,
+    /// Values of `M73 P`, in order.
+    pub(crate) progress: Vec<i64>,
+}
+
+/// Words in force.
+struct State {
+    at: [f64; 3],
+    e: f64,
+    relative_e: bool,
+    feed: f64,
+    pulled: f64,
+    kind: Kind,
+    height: f64,
+    width: f64,
+}
+
+impl Print {
+    /// Reads `text`, and says which line is no G-code.
+    pub(crate) fn read(text: &str) -> Result<Self, String> {
+        let mut print = Self::default();
+        let mut state = State {
+            at: [0.0; 3],
+            e: 0.0,
+            relative_e: false,
+            feed: 0.0,
+            pulled: 0.0,
+            kind: Kind::Custom,
+            height: 0.0,
+            width: 0.0,
+        };
+        for (k, line) in text.lines().enumerate() {
+            let step = match line.split_once(';') {
+                Some((code, note)) if code.trim().is_empty() => print.note(note, &mut state),
+                Some((code, _)) => print.code(k + 1, code, &mut state),
+                None => print.code(k + 1, line, &mut state),
+            };
+            step.map_err(|what| format!("line {}: {what}: {line}", k + 1))?;
+        }
+        Ok(print)
+    }
+
+    fn note(&mut self, note: &str, state: &mut State) -> Result<(), String> {
+        let number = |text: &str| text.parse::<f64>().map_err(|e| e.to_string());
+        if note == "LAYER_CHANGE" {
+            self.layers.push(LayerHead { z: f64::NAN, height: f64::NAN });
+        } else if let Some(kind) = note.strip_prefix("TYPE:") {
+            state.kind = match kind {
+                "Custom" => Kind::Custom,
+                "External perimeter" => Kind::OuterWall,
+                "Perimeter" => Kind::InnerWall,
+                "Solid infill" => Kind::Skin,
+                "Internal infill" => Kind::Infill,
+                "Support material" => Kind::Support,
+                other => return Err(format!("unknown type {other}")),
+            };
+        } else if let Some(z) = note.strip_prefix("Z:") {
+            self.layers.last_mut().ok_or("no layer")?.z = number(z)?;
+        } else if let Some(height) = note.strip_prefix("HEIGHT:") {
+            state.height = number(height)?;
+            let layer = self.layers.last_mut().ok_or("no layer")?;
+            if layer.height.is_nan() {
+                layer.height = state.height;
+            }
+        } else if let Some(width) = note.strip_prefix("WIDTH:") {
+            state.width = number(width)?;
+        }
+        Ok(())
+    }
+
+    fn code(&mut self, line: usize, code: &str, state: &mut State) -> Result<(), String> {
+        let mut words = code.split_whitespace();
+        let Some(command) = words.next() else { return Ok(()) };
+        if !matches!(command, "G0" | "G1" | "G28" | "G92" | "M82" | "M83" | "M73") {
+            let known = command.starts_with(['G', 'M', 'T', 'S', 'P', 'B', 'E'])
+                || command.chars().all(|c| c.is_ascii_uppercase() || c == '_');
+            return if known { Ok(()) } else { Err("no command".to_owned()) };
+        }
+        let mut values = BTreeMap::new();
+        for word in words {
+            let (letter, value) = word.split_at(1);
+            let plain = value.bytes().all(|b| b.is_ascii_digit() || b == b'.' || b == b'-');
+            let value = value.parse::<f64>().ok().filter(|_| plain);
+            if values.insert(letter, value.ok_or("bad number")?).is_some() {
+                return Err("a word twice".to_owned());
+            }
+        }
+        let axes = ["X", "Y", "Z"];
+        match command {
+            "M82" => state.relative_e = false,
+            "M83" => state.relative_e = true,
+            "M73" => self.progress.extend(values.get("P").map(|p| *p as i64)),
+            "G28" => state.at = [0.0; 3],
+            "G92" => {
+                for (axis, name) in axes.iter().enumerate() {
+                    state.at[axis] = values.get(name).copied().unwrap_or(state.at[axis]);
+                }
+                state.e = values.get("E").copied().unwrap_or(state.e);
+            }
+            _ => {
+                let from = state.at;
+                for (axis, name) in axes.iter().enumerate() {
+                    state.at[axis] = values.get(name).copied().unwrap_or(from[axis]);
+                }
+                state.feed = values.get("F").copied().unwrap_or(state.feed);
+                let e = values
+                    .get("E")
+                    .map_or(0.0, |&e| if state.relative_e { e } else { e - state.e });
+                // Sums of decimals: what is below the last digit is no filament.
+                let e = (e * 1e6).round() / 1e6;
+                state.e += e;
+                self.moves.push(Move {
+                    line,
+                    layer: self.layers.len().checked_sub(1),
+                    kind: state.kind,
+                    from,
+                    to: state.at,
+                    e,
+                    pulled: state.pulled,
+                    feed: state.feed,
+                    height: state.height,
+                    width: state.width,
+                });
+                if state.kind != Kind::Custom && self.layers.last().is_some() {
+                    state.pulled = (state.pulled - e).max(0.0);
+                    state.pulled = if state.pulled < 1e-6 { 0.0 } else { state.pulled };
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves that lay filament on layers.
+    pub(crate) fn beads(&self) -> impl Iterator<Item = &Move> {
+        self.moves.iter().filter(|m| m.is_bead())
+    }
+
+    /// Those of one kind.
+    pub(crate) fn of(&self, kind: Kind) -> impl Iterator<Item = &Move> {
+        self.beads().filter(move |m| m.kind == kind)
+    }
+
+    /// Whether a bead is higher than its layer.
+    pub(crate) fn is_thick(&self, bead: &Move) -> bool {
+        bead.layer.is_some_and(|k| bead.height > 1.5 * self.layers[k].height)
+    }
+
+    /// Filament of one kind, thick or not, mm.
+    pub(crate) fn filament(&self, kind: Kind, thick: bool) -> f64 {
+        self.of(kind).filter(|m| self.is_thick(m) == thick).map(|m| m.e).sum()
+    }
+
+    /// Beads that follow each other without a gap, of one kind and layer.
+    pub(crate) fn chains(&self, kind: Kind) -> Vec<Vec<Move>> {
+        let mut chains: Vec<Vec<Move>> = Vec::new();
+        let mut goes_on = false;
+        for m in &self.moves {
+            let bead = m.is_bead() && m.kind == kind;
+            if bead {
+                match chains.last_mut().filter(|_| goes_on) {
+                    Some(chain) if chain[0].layer == m.layer => chain.push(*m),
+                    _ => chains.push(vec![*m]),
+                }
+            }
+            goes_on = bead;
+        }
+        chains
+    }
+}

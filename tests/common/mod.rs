@@ -1,0 +1,111 @@
+//! Helpers of the integration tests: solids in code, a run of the slicer, its G-code read back, and judgements of it.
+
+#![allow(dead_code, reason = "no test uses all of it")]
+#![allow(unused_imports, reason = "no test uses all of it")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+pub(crate) mod checks;
+pub(crate) mod gcode;
+pub(crate) mod raster;
+pub(crate) mod section;
+pub(crate) mod solid;
+
+use slicer::Job;
+use slicer::error::Result;
+use slicer::mesh::{Placement, Unit};
+use slicer::profile::{Override, Settings, ValueOrigin, load};
+use slicer::progress::Progress;
+use slicer::report::Report;
+use std::path::{Path, PathBuf};
+
+pub(crate) use gcode::{Kind, Move, Print};
+pub(crate) use section::Section;
+pub(crate) use solid::Solid;
+
+/// What a run made.
+pub(crate) struct Run {
+    pub(crate) text: String,
+    pub(crate) print: Print,
+    pub(crate) report: Report,
+    pub(crate) settings: Settings,
+}
+
+impl Run {
+    /// The middle of the bed in the machine's coordinates, where models are put.
+    pub(crate) fn middle(&self) -> [f64; 2] {
+        checks::bed(&self.settings).map(|[low, high]| (low + high) / 2.0)
+    }
+
+    /// mm³ of filament for each mm of it.
+    pub(crate) fn filament_area(&self) -> f64 {
+        let d = self.settings.filament.diameter;
+        std::f64::consts::PI * d * d / 4.0
+    }
+}
+
+/// One model, resting on the bed's middle as it is.
+pub(crate) fn as_it_is() -> Placement {
+    Placement { unit: Unit::Mm, scale: 1.0, rotate: [0.0; 3], at: None, copies: 1 }
+}
+
+/// The effective settings of `profile` with `set` laid over it, as `--set` would.
+pub(crate) fn settings(profile: &str, set: &[(&str, &str)]) -> Settings {
+    let overrides: Vec<Override> = set
+        .iter()
+        .map(|(key, value)| Override {
+            key: (*key).to_owned(),
+            value: (*value).to_owned(),
+            origin: ValueOrigin::Set,
+        })
+        .collect();
+    load(profile, &overrides).unwrap().settings
+}
+
+/// Slices the file at `path`.
+pub(crate) fn slice_file(
+    path: &Path,
+    settings: &Settings,
+    placement: &Placement,
+) -> Result<(String, Report)> {
+    let job = Job {
+        models: vec![path.to_str().unwrap().to_owned()],
+        placement: placement.clone(),
+        settings: settings.clone(),
+        profile: "test".to_owned(),
+        output: PathBuf::from("test.gcode"),
+    };
+    let mut out = Vec::new();
+    let report = slicer::slice(&job, &mut out, &Progress::default())?;
+    Ok((String::from_utf8(out).unwrap(), report))
+}
+
+/// Slices `stl` (a file's bytes) in this process, laid out as `placement` says.
+pub(crate) fn slice_placed(
+    stl: &[u8],
+    profile: &str,
+    set: &[(&str, &str)],
+    placement: &Placement,
+) -> Run {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.stl");
+    std::fs::write(&path, stl).unwrap();
+    let settings = settings(profile, set);
+    let (text, report) = slice_file(&path, &settings, placement).unwrap();
+    let print = Print::read(&text).unwrap();
+    Run { text, print, report, settings }
+}
+
+/// Slices `stl` in the middle of the bed.
+pub(crate) fn slice(stl: &[u8], profile: &str, set: &[(&str, &str)]) -> Run {
+    slice_placed(stl, profile, set, &as_it_is())
+}
+
+/// The bytes of a file of `fixtures/`.
+pub(crate) fn fixture(name: &str) -> Vec<u8> {
+    std::fs::read(fixtures().join(name)).unwrap()
+}
+
+/// The folder `fixtures/`.
+pub(crate) fn fixtures() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures")
+}

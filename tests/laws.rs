@@ -1,0 +1,477 @@
+//! Laws that every stage keeps, held against brute force, a library of others and sums, on random shapes.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+use common::solid::{Outline, circle, star};
+use common::{Kind, Section, Solid, as_it_is, settings, slice};
+use i_overlay::mesh::float::outline::offset::OutlineOffset;
+use i_overlay::mesh::float::style::{LineJoin, OutlineStyle};
+use proptest::prelude::*;
+use slicer::geom::frame::Frame;
+use slicer::geom::spans::{Rows, Span, total};
+use slicer::geom::{Contour, Point, double_area, polygon};
+use slicer::mesh::{Bed, stl, transform};
+use slicer::region::classify::{self, Areas};
+use slicer::region::dual::{self, LayerAreas};
+use slicer::region::raster::{Raster, Scan};
+use slicer::region::{Infill, Params, Prepared};
+use slicer::slice::{Heights, Layer, Slicer};
+use slicer::units::{Coord, UNITS_PER_MM, to_units};
+
+/// A star of 3 to 12 points around a middle, mm.
+fn stars() -> impl Strategy<Value = Outline> {
+    let radii = prop::collection::vec(1.0..9.0_f64, 3..12);
+    (radii, -6.0..6.0_f64, -6.0..6.0_f64)
+        .prop_map(|(radii, x, y)| star(&radii).iter().map(|p| [p[0] + x, p[1] + y]).collect())
+}
+
+fn contour(outline: &Outline) -> Contour {
+    outline.iter().map(|p| Point { x: to_units(p[0]), y: to_units(p[1]) }).collect()
+}
+
+fn contours(outlines: &[Outline]) -> Vec<Contour> {
+    outlines.iter().map(contour).collect()
+}
+
+/// The contours in grid units, for brute force.
+fn section(contours: &[Contour]) -> Section {
+    let number = |p: Point| [f64::from(p.x), f64::from(p.y)];
+    let edges = |c: &Contour| -> Vec<_> {
+        c.iter().zip(c.iter().cycle().skip(1)).map(|(a, b)| (number(*a), number(*b))).collect()
+    };
+    Section::from_edges(contours.iter().flat_map(edges).collect())
+}
+
+/// How often `contours` wind around `p`, by the sum of the angles they are seen under.
+fn winding_by_angles(contours: &[Contour], p: [f64; 2]) -> i64 {
+    let angle = |q: &Point| (f64::from(q.y) - p[1]).atan2(f64::from(q.x) - p[0]);
+    let tau = std::f64::consts::TAU;
+    let turn = |a: &Point, b: &Point| {
+        let d = angle(b) - angle(a);
+        d - (d / tau).round() * tau
+    };
+    let sum: f64 = contours
+        .iter()
+        .flat_map(|c| c.iter().zip(c.iter().cycle().skip(1)))
+        .map(|(a, b)| turn(a, b))
+        .sum();
+    (sum / tau).round() as i64
+}
+
+fn holds(row: &[Span], u: Coord) -> bool {
+    row.iter().any(|s| s.start <= u && u < s.end)
+}
+
+fn is_tidy(rows: &Rows) -> bool {
+    rows.iter().all(|(_, row)| {
+        row.iter().all(|s| s.start < s.end) && row.windows(2).all(|w| w[0].end <= w[1].start)
+    })
+}
+
+/// Rows compared without the empty ones around them.
+fn spans(rows: &Rows) -> Vec<(i32, Vec<Span>)> {
+    rows.iter().filter(|(_, row)| !row.is_empty()).map(|(j, row)| (j, row.to_vec())).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(192))]
+
+    #[test]
+    fn inside_is_where_the_contours_wind(
+        outlines in prop::collection::vec(stars(), 1..4), joined: bool, degrees in 0.0..360.0_f64,
+    ) {
+        // Overlapping shells go in as they are, or joined to one outline by the union.
+        let raw = contours(&outlines);
+        let contours = if joined { polygon::union(&raw) } else { raw.clone() };
+        let raster = Raster { frame: Frame::new(degrees), pitch: 3701 };
+        let scan = Scan::new(&contours, raster);
+        prop_assert!(is_tidy(scan.inside()));
+        let edges = section(&raw);
+        for j in -45..45 {
+            for u in (-160_000..160_000).step_by(4999) {
+                let at = raster.frame.leave(Point { x: u, y: j * raster.pitch });
+                let p = [f64::from(at.x), f64::from(at.y)];
+                // Crossings are rounded to the grid, turned corners too.
+                if edges.distance(p, 4.0) >= 4.0 {
+                    let is = holds(scan.inside().row(j), u);
+                    prop_assert_eq!(is, winding_by_angles(&raw, p) != 0, "row {} at {}", j, u);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn inset_and_outset_keep_their_distance(
+        outlines in prop::collection::vec(stars(), 1..4),
+        r in 50..15_000_i32,
+        spots in prop::collection::vec((-60..60_i32, -200_000..200_000_i32), 600),
+    ) {
+        let contours = polygon::union(&contours(&outlines));
+        let raster = Raster { frame: Frame::new(0.0), pitch: 4000 };
+        let scan = Scan::new(&contours, raster);
+        let (inset, outset) = (scan.inset(r), scan.outset(r));
+        prop_assert!(is_tidy(&inset) && is_tidy(&outset));
+        let edges = section(&contours);
+        let distance = f64::from(r);
+        for (j, u) in spots {
+            let p = [f64::from(u), f64::from(j * raster.pitch)];
+            let (inside, far) = (edges.is_inside(p), edges.distance(p, 2.0 * distance + 10.0));
+            if (far - distance).abs() > 1.0 && far > 1.0 {
+                prop_assert_eq!(holds(inset.row(j), u), inside && far > distance, "in: {} {}", j, u);
+                prop_assert_eq!(holds(outset.row(j), u), inside || far < distance, "out: {} {}", j, u);
+            }
+        }
+    }
+
+    #[test]
+    fn inset_and_outset_are_those_of_a_polygon_offset(
+        outlines in prop::collection::vec(stars(), 1..3), r in 0.1..1.5_f64,
+    ) {
+        let contours = polygon::union(&contours(&outlines));
+        let raster = Raster { frame: Frame::new(0.0), pitch: 4000 };
+        let scan = Scan::new(&contours, raster);
+        // 2 µm more and less: what the library's arcs of straight pieces are worth.
+        let of_library = |by: f64| Scan::new(&library_offset(&contours, by), raster).inside().clone();
+        for (is, by) in [(scan.inset(to_units(r)), -r), (scan.outset(to_units(r)), r)] {
+            let (less, more) = (of_library(by - 0.002), of_library(by + 0.002));
+            for j in -60..60 {
+                let (low, high) = (total(less.row(j)) - 4, total(more.row(j)) + 4);
+                let length = total(is.row(j));
+                prop_assert!((low..=high).contains(&length), "{} row {}: {} not in {}..{}", by, j, length, low, high);
+            }
+        }
+    }
+}
+
+/// `contours` grown by `by` mm (shrunk if negative) by i_overlay, with round corners.
+fn library_offset(contours: &[Contour], by: f64) -> Vec<Contour> {
+    let outlines: Vec<Outline> = contours
+        .iter()
+        .map(|c| c.iter().map(|p| [p.x, p.y].map(|x| f64::from(x) / UNITS_PER_MM)).collect())
+        .collect();
+    let style = OutlineStyle::new(by).line_join(LineJoin::Round(0.03));
+    // It wants holes together with what they are in; its overlay with nothing sorts that out.
+    use i_overlay::core::fill_rule::FillRule;
+    use i_overlay::float::simplify::SimplifyShape;
+    let shapes = outlines.simplify_shape(FillRule::NonZero);
+    shapes.outline(&style).iter().flatten().map(contour).collect()
+}
+
+/// A stack of layers of random stars, prepared as the pipeline does it.
+fn stack(params: &Params, outlines: &[Vec<Outline>]) -> Vec<Prepared> {
+    let prepared = |(index, outlines): (usize, &Vec<Outline>)| {
+        let layer = Layer {
+            index,
+            z: 2000 * (index as Coord + 1),
+            height: 2000,
+            contours: polygon::union(&contours(outlines)),
+            closed_gap: 0,
+        };
+        Prepared::new(layer, params)
+    };
+    outlines.iter().enumerate().map(prepared).collect()
+}
+
+fn stacks() -> impl Strategy<Value = Vec<Vec<Outline>>> {
+    prop::collection::vec(prop::collection::vec(stars(), 1..3), 1..9)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn skin_and_infill_are_disjoint_and_together_the_inside_of_the_walls(
+        outlines in stacks(), skins in 0..4_u32, reach in 0.0..1.0_f64,
+    ) {
+        let (skins, reach) = (skins.to_string(), reach.to_string());
+        let set = [("skin_layers", skins.as_str()), ("skin_reach", &reach), ("pattern", "triangles")];
+        let params = Params::new(&settings("generic-marlin", &set));
+        let layers = stack(&params, &outlines);
+        for k in 0..layers.len() {
+            for r in 0..params.rasters.len() {
+                let Areas { skin, infill } =
+                    classify::areas(k, r, &|k| layers.get(k), &params);
+                let fill = &layers[k].rows[r].fill;
+                prop_assert!(is_tidy(&skin) && is_tidy(&infill));
+                prop_assert!(skin.and(&infill).is_empty(), "layer {} raster {}", k, r);
+                prop_assert_eq!(skin.total() + infill.total(), fill.total());
+                prop_assert_eq!(spans(&skin.or(&infill)), spans(fill));
+                for n in 1..=params.top_skins {
+                    // A neighbour that is not there covers nothing.
+                    let above = layers.get(k + n);
+                    let below = k.checked_sub(n).map(|k| &layers[k]);
+                    for neighbour in [above, below] {
+                        let bare = match neighbour {
+                            Some(neighbour) => infill.minus(&neighbour.rows[r].cover),
+                            None => infill.clone(),
+                        };
+                        let longest = bare.iter().flat_map(|(_, row)| row).map(|s| s.len()).max();
+                        prop_assert!(longest.unwrap_or(0) < 500, "bare infill of {:?}", longest);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn twice_the_thick_and_the_thin_lines_are_both_layers_lines(
+        outlines in stacks(), pattern in 0..4_usize, m in 1..6_usize,
+    ) {
+        let pattern = ["rectilinear", "aligned", "grid", "triangles"][pattern];
+        let settings = settings("generic-marlin", &[("pattern", pattern), ("dual.mode", "pair"), ("skin_layers", "1")]);
+        let params = Params::new(&settings);
+        let layers = stack(&params, &outlines);
+        for k in 1..layers.len() {
+            let (lower, upper) = (all_areas(k - 1, &layers, &params), all_areas(k, &layers, &params));
+            let ([below, above], stats) = dual::pair(m, &lower, &upper, &settings.dual, &params);
+            let sum = |all: &[Infill], thick: bool| -> i64 {
+                all.iter().filter(|i| i.thick == thick).map(length).sum()
+            };
+            let combs = dual::pair_combs(m, &settings.dual, &params);
+            let plain: i64 = combs
+                .iter()
+                .flat_map(|&comb| [(&lower, comb), (&upper, comb)])
+                .map(|(areas, comb)| {
+                    let rows = areas[comb.raster].as_ref().unwrap().infill.clone();
+                    length(&Infill { comb, rows, thick: false })
+                })
+                .sum();
+            let (thick, thin) = (sum(&above, true), sum(&below, false) + sum(&above, false));
+            prop_assert_eq!(2 * thick + thin, plain);
+            // The report leaves out what is too short to be printed.
+            prop_assert_eq!(stats.thick, thick);
+            prop_assert!(stats.thin <= thin && stats.plain <= plain);
+            prop_assert!(below.iter().all(|i| !i.thick), "thick lines on the lower layer");
+            for infill in above.iter().filter(|i| i.thick) {
+                let r = infill.comb.raster;
+                let [a, b] = [&lower, &upper].map(|areas| &areas[r].as_ref().unwrap().infill);
+                prop_assert!(infill.rows.minus(a).is_empty() && infill.rows.minus(b).is_empty());
+                // What both have and is not thick is in pieces shorter than a line is wide.
+                let left = a.and(b).minus(&infill.rows);
+                let short = |(_, row): (i32, &[Span])| row.iter().all(|s| s.len() < i64::from(params.line_width));
+                prop_assert!(left.iter().all(short));
+                // And where a line is thick, none is thin.
+                for thin in below.iter().chain(&above).filter(|i| !i.thick && i.comb == infill.comb) {
+                    prop_assert!(thin.rows.and(&infill.rows).is_empty());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_thesis_prints_the_shorter_layer_thick_and_drops_the_other(outlines in stacks(), m in 1..6_usize) {
+        let settings = settings("thesis", &[("skin_layers", "1")]);
+        let params = Params::new(&settings);
+        let layers = stack(&params, &outlines);
+        for k in 1..layers.len() {
+            let (lower, upper) = (all_areas(k - 1, &layers, &params), all_areas(k, &layers, &params));
+            let ([below, above], _) = dual::pair(m, &lower, &upper, &settings.dual, &params);
+            // Lines shorter than they are wide are not printed and not counted.
+            let printed = |all: &[Infill]| -> i64 {
+                all.iter().map(|i| i.length(params.line_width)).sum()
+            };
+            let plain = [(2 * m, &lower), (2 * m + 1, &upper)]
+                .map(|(k, areas)| printed(&dual::plain(k, areas, &params)));
+            let kept = printed(&above);
+            prop_assert!(above.iter().all(|i| i.thick));
+            prop_assert_eq!(below.iter().map(length).sum::<i64>(), 0);
+            prop_assert_eq!(kept, plain[0].min(plain[1]));
+        }
+    }
+}
+
+/// The length of the lines of a comb, however short.
+fn length(infill: &Infill) -> i64 {
+    let printed = |j: i32| j.rem_euclid(infill.comb.stride) == 0;
+    infill.rows.iter().filter(|(j, _)| printed(*j)).map(|(_, row)| total(row)).sum()
+}
+
+fn all_areas(k: usize, layers: &[Prepared], params: &Params) -> LayerAreas {
+    let of = |r| Some(classify::areas(k, r, &|k| layers.get(k), params));
+    (0..params.rasters.len()).map(of).collect()
+}
+
+#[test]
+fn directions_of_pairs_cross_whatever_their_lengths() {
+    let settings = settings("generic-marlin", &[("dual.mode", "pair")]);
+    let params = Params::new(&settings);
+    let raster = |m: usize| dual::pair_combs(m, &settings.dual, &params)[0].raster;
+    for m in 1..20 {
+        assert_eq!(dual::pair_combs(m, &settings.dual, &params).len(), 1);
+        assert_ne!(raster(m), raster(m + 1), "pair {m}");
+    }
+}
+
+/// Filament that the beads' lengths, widths and heights ask for, by role as written, mm³.
+fn space(run: &common::Run, kind: Kind, thick: bool) -> f64 {
+    let beads = run.print.of(kind).filter(|m| run.print.is_thick(m) == thick);
+    beads.map(|m| m.length() * m.width * m.height).sum()
+}
+
+const KINDS: [Kind; 5] =
+    [Kind::OuterWall, Kind::InnerWall, Kind::Skin, Kind::Infill, Kind::Support];
+
+#[test]
+fn filament_is_the_volume_of_the_beads() {
+    for name in ["bracket.stl", "sphere_20.stl", "overhang.stl"] {
+        let set =
+            [("dual.mode", "pair"), ("support.enabled", "true"), ("extrusion.multiplier", "0.9")];
+        let run = slice(&common::fixture(name), "generic-marlin", &set);
+        for kind in KINDS {
+            for thick in [false, true] {
+                let laid = run.print.filament(kind, thick) * run.filament_area();
+                let space = 0.9 * space(&run, kind, thick);
+                // Widths are told in steps of 0.01 mm.
+                assert!(
+                    (laid - space).abs() <= 0.005 * space,
+                    "{name} {kind:?}: {laid} for {space}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn filament_is_the_factor_times_the_length_and_thick_lines_take_twice_that() {
+    let set = [("dual.mode", "pair"), ("support.enabled", "true")];
+    for name in ["bracket.stl", "sphere_20.stl", "overhang.stl"] {
+        let run = slice(&common::fixture(name), "zcube-dual", &set);
+        for m in run.print.beads().filter(|m| m.length() > 1.0 && (m.width - 0.4).abs() < 1e-9) {
+            let factor = match m.kind {
+                Kind::OuterWall | Kind::InnerWall => 0.05,
+                _ if run.print.is_thick(m) => 0.08,
+                _ => 0.04,
+            };
+            let is = m.e / m.length();
+            // Both are rounded, and a line may be 0.01 mm wider than is told.
+            let off = if m.kind == Kind::Skin { 0.03 } else { 0.002 };
+            assert!((is / factor - 1.0).abs() < off, "{name} line {}: {is}, not {factor}", m.line);
+        }
+    }
+}
+
+#[test]
+fn the_report_counts_what_the_file_holds() {
+    let set = [("dual.mode", "pair"), ("support.enabled", "true")];
+    for profile in ["generic-marlin", "zcube-dual"] {
+        let run = slice(&common::fixture("bracket.stl"), profile, &set);
+        for (name, kind, thick) in [
+            ("outer wall", Kind::OuterWall, false),
+            ("inner wall", Kind::InnerWall, false),
+            ("skin", Kind::Skin, false),
+            ("infill", Kind::Infill, false),
+            ("thick infill", Kind::Infill, true),
+            ("support", Kind::Support, false),
+        ] {
+            let told = run.report.roles.iter().find(|r| r.role == name).unwrap();
+            let beads = || run.print.of(kind).filter(|m| run.print.is_thick(m) == thick);
+            let length: f64 = beads().map(common::Move::length).sum();
+            let filament = run.print.filament(kind, thick);
+            assert!((told.length_mm - length).abs() <= 2e-3 * length, "{name}: {length} mm");
+            assert!(
+                (told.filament_mm - filament).abs() <= 1e-3 * filament,
+                "{name}: {filament} mm"
+            );
+        }
+    }
+}
+
+/// The layers of `solid`, 0.1 mm high, simplified within `tolerance` mm.
+fn layers(solid: &Solid, tolerance: f64) -> Vec<Layer> {
+    let mesh = stl::parse("test", &solid.stl()).unwrap();
+    let bed = Bed { min: [-100.0; 2], max: [100.0; 2], height: 100.0 };
+    let placed = transform::place(vec![mesh], &as_it_is(), &bed).unwrap();
+    assert_eq!(placed.reports[0].open_edges, 0);
+    let top = placed.mesh.vertices.iter().map(|v| v[2]).max().unwrap();
+    let heights = Heights::new(1000, 1000, top);
+    let slicer = Slicer::new(&placed.mesh, &placed.adjacency, heights, to_units(tolerance));
+    (0..slicer.blocks()).flat_map(|b| slicer.block(b)).collect()
+}
+
+/// mm².
+fn area(layer: &Layer) -> f64 {
+    let sum: i128 = layer.contours.iter().map(|c| double_area(c)).sum();
+    sum as f64 / 2.0 / UNITS_PER_MM / UNITS_PER_MM
+}
+
+/// mm.
+fn perimeter(layer: &Layer) -> f64 {
+    let edges = layer.contours.iter().flat_map(|c| c.iter().zip(c.iter().cycle().skip(1)));
+    edges.map(|(a, b)| a.distance(*b)).sum::<f64>() / UNITS_PER_MM
+}
+
+/// Towers of random rings, 0.8 to 4 mm apart.
+fn towers() -> impl Strategy<Value = Solid> {
+    let ring = |n| (prop::collection::vec(3.0..9.0_f64, n), 0.8..4.0_f64);
+    (3..30_usize).prop_flat_map(move |n| prop::collection::vec(ring(n), 2..6)).prop_map(|rings| {
+        let mut z = 0.0;
+        let rings: Vec<_> = rings
+            .iter()
+            .map(|(radii, up)| {
+                z += up;
+                (star(radii), z)
+            })
+            .collect();
+        Solid::tower(&rings)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn layers_of_a_closed_mesh_have_no_gap_and_sum_to_its_volume(solid in towers()) {
+        let layers = layers(&solid, 0.0);
+        prop_assert!(layers.iter().all(|l| l.closed_gap == 0 && !l.contours.is_empty()));
+        let sum: f64 = layers.iter().map(|l| 0.1 * area(l)).sum();
+        let (low, high) = solid.extent();
+        // A layer counts whole if its middle is inside: up to half a layer at the top.
+        let widest = layers.iter().map(area).fold(0.0, f64::max);
+        let rest = (high[2] - low[2] - 0.1 * layers.len() as f64).abs() * widest;
+        let volume = solid.volume();
+        prop_assert!((sum - volume).abs() <= rest + 0.003 * volume, "{} of {}", sum, volume);
+    }
+
+    #[test]
+    fn contours_are_those_of_a_plane_through_the_triangles(solid in towers()) {
+        let middle = solid.on_bed([0.0; 2]);
+        for layer in layers(&solid, 0.0).iter().step_by(7) {
+            let z = (f64::from(layer.z) - 500.0) / UNITS_PER_MM;
+            let by_hand = Section::new(&middle, z);
+            prop_assert!((area(layer) - by_hand.area()).abs() < 0.05, "at {}", z);
+            for p in layer.contours.iter().flatten() {
+                let far = by_hand.distance([p.x, p.y].map(|x| f64::from(x) / UNITS_PER_MM), 1.0);
+                prop_assert!(far < 0.001, "{} mm off at {}", far, z);
+            }
+        }
+    }
+
+    #[test]
+    fn simplified_contours_keep_their_place_and_their_area(
+        solid in towers(), corners in 30..300_usize, tolerance in 0.002..0.1_f64,
+    ) {
+        // A finely cornered tube beside the tower, which has much to simplify.
+        let solid = solid.and(&Solid::prism(&circle(5.0, corners), 0.0, 3.0).shifted([30.0, 0.0, 0.8]));
+        let (exact, simple) = (layers(&solid, 0.0), layers(&solid, tolerance));
+        prop_assert_eq!(exact.len(), simple.len());
+        for (exact, simple) in exact.iter().zip(&simple) {
+            let bound = tolerance * perimeter(exact) + 1e-4;
+            prop_assert!((area(exact) - area(simple)).abs() <= bound);
+            let edges = section(&simple.contours);
+            for p in exact.contours.iter().flatten() {
+                let far = edges.distance([f64::from(p.x), f64::from(p.y)], 1e4) / UNITS_PER_MM;
+                prop_assert!(far <= tolerance + 0.0003, "{} mm off", far);
+            }
+        }
+    }
+}
+
+#[test]
+fn simplification_takes_most_corners_of_a_fine_circle() {
+    let fine = Solid::cylinder(10.0, 0.5, 2000);
+    let count = |tolerance| layers(&fine, tolerance)[0].contours[0].len();
+    assert!(count(0.0) >= 2000);
+    assert!(count(0.01) < 200, "{}", count(0.01));
+}
