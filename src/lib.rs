@@ -29,10 +29,11 @@ pub mod units;
 pub mod warning;
 
 use error::{Error, Result};
-use gcode::template::PrintFacts;
 use geom::Point;
 use rayon::prelude::*;
 use units::to_units;
+
+use profile::template::PrintFacts;
 
 pub use job::{Job, NAME};
 

@@ -5,7 +5,7 @@
 
 mod common;
 
-use slicer::gcode::template::{PrintFacts, render, values};
+use slicer::profile::template::{PrintFacts, render, values};
 use slicer::profile::{DialectName, builtin_names, load};
 use std::fs;
 use std::process::Command;

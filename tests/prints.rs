@@ -571,14 +571,19 @@ fn the_thesis_keeps_the_shorter_direction_every_time() {
 }
 
 #[test]
-fn the_last_pull_is_as_short_as_any_other() {
+fn the_end_pulls_no_more_than_the_start_pushed() {
     for profile in slicer::profile::builtin_names() {
         let run = slice(&fixture("cube_20.stl"), profile, &[]);
-        let last_bead = run.print.moves.iter().rposition(Move::is_bead).unwrap();
-        let after = &run.print.moves[last_bead + 1..];
-        let pulls: Vec<f64> = after.iter().filter(|m| m.e < 0.0).map(|m| m.e).collect();
-        assert!(!pulls.is_empty(), "{profile}");
-        assert!(pulls.iter().all(|&e| e >= -2.001), "{profile}: pulls {pulls:?} mm at the end");
+        let moves = &run.print.moves;
+        let first_bead = moves.iter().position(Move::is_bead).unwrap();
+        let last_bead = moves.iter().rposition(Move::is_bead).unwrap();
+        let pushed: f64 = moves[..first_bead].iter().map(|m| m.e.max(0.0)).sum();
+        let pulls: Vec<f64> =
+            moves[last_bead + 1..].iter().filter(|m| m.e < 0.0).map(|m| m.e).collect();
+        let length = run.settings.retraction.length;
+        assert!((pulls[0] + length).abs() < 1e-3, "{profile}: pulls {pulls:?} mm at the end");
+        let pulled: f64 = pulls[1..].iter().sum();
+        assert!(-pulled <= pushed, "{profile}: pushed {pushed}, pulls {pulls:?} mm at the end");
     }
 }
 

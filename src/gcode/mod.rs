@@ -2,18 +2,17 @@
 
 pub mod dialect;
 pub mod number;
-pub mod template;
 pub mod write;
 
 use crate::error::{Error, Result};
 use crate::geom::Point;
 use crate::job;
 use crate::plan::Toolpath;
+use crate::profile::template::{self, PrintFacts};
 use crate::profile::{Settings, dump};
 use rayon::prelude::*;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use template::PrintFacts;
 use write::{Start, Usage, WriteParams};
 
 /// Writes one G-code file.

@@ -146,16 +146,7 @@ impl WriteParams {
         let mut text = Text::new(self, start);
         text.begin(layer, start);
         for step in &layer.steps {
-            if step.retract {
-                text.retract();
-                text.hop(layer.z + self.hop);
-            }
-            text.lift(layer.z, step.retract);
-            text.travel(step.path.start());
-            text.hop_down(layer.z);
-            if step.retract {
-                text.unretract();
-            }
+            text.approach(layer.z, step.path.start(), step.retract);
             text.path(&step.path, layer);
         }
         text.out
@@ -165,6 +156,9 @@ impl WriteParams {
     #[must_use]
     pub fn finish(&self, start: &Start) -> Vec<u8> {
         let mut text = Text::new(self, start);
+        if self.dialect.restarts_e() && !self.relative_e {
+            text.line("G92 E0");
+        }
         if self.retract > 0.0 {
             text.retract();
         }
@@ -258,35 +252,27 @@ impl<'a> Text<'a> {
         self.height = layer.height;
     }
 
-    /// Up to the layer's own height; `lifted` moves have been made by [`Self::hop`].
-    fn lift(&mut self, z: Coord, retracted: bool) {
-        if self.z.is_none() && !(retracted && self.params.hop > 0) {
+    /// The way to the beginning of a path at height `z`.
+    fn approach(&mut self, z: Coord, to: Point, retract: bool) {
+        if retract {
+            self.retract();
+            if self.params.hop > 0 {
+                self.move_z(z + self.params.hop);
+            }
+        }
+        // Up before sideways. The first way of a print goes down at its end instead:
+        // the start block leaves the nozzle above its purge.
+        if self.z.is_none() && self.x.is_some() {
             self.move_z(z);
         }
-    }
-
-    fn hop(&mut self, z: Coord) {
-        if self.params.hop > 0 {
-            self.move_z(z);
+        if self.go(to) {
+            self.end_move(self.params.travel_feed);
         }
-    }
-
-    fn hop_down(&mut self, z: Coord) {
         if self.z != Some(z) {
             self.move_z(z);
         }
-    }
-
-    fn move_z(&mut self, z: Coord) {
-        self.out.extend_from_slice(b"G1 Z");
-        push_fixed(&mut self.out, thousandths(to_mm(z)), 3);
-        self.z = Some(z);
-        self.end_move(self.params.z_feed);
-    }
-
-    fn travel(&mut self, to: Point) {
-        if self.go(to) {
-            self.end_move(self.params.travel_feed);
+        if retract {
+            self.pull(self.params.retract);
         }
     }
 
@@ -294,8 +280,11 @@ impl<'a> Text<'a> {
         self.pull(-self.params.retract);
     }
 
-    fn unretract(&mut self) {
-        self.pull(self.params.retract);
+    fn move_z(&mut self, z: Coord) {
+        self.out.extend_from_slice(b"G1 Z");
+        push_fixed(&mut self.out, thousandths(to_mm(z)), 3);
+        self.z = Some(z);
+        self.end_move(self.params.z_feed);
     }
 
     fn pull(&mut self, by: f64) {
@@ -432,8 +421,8 @@ mod tests {
 ;HEIGHT:0.2
 M73 P30
 G1 E0 F1200
-G1 Z0.8 F1000
 G1 X150 Y150 F5400
+G1 Z0.8 F1000
 G1 E1 F1200
 ;TYPE:External perimeter
 ;WIDTH:0.4

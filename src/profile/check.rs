@@ -1,8 +1,8 @@
 //! Settings + origins -> verdict: refuses values that are each in range but cannot print together.
 
+use super::template::{self, PrintFacts};
 use super::{DialectName, DualMode, Settings, ValueOrigin};
 use crate::error::{Error, Result};
-use crate::gcode::template::{self, PrintFacts};
 use std::collections::BTreeMap;
 
 /// Slack for comparing lengths that were written as decimals, mm.

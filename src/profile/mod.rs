@@ -7,6 +7,7 @@ mod parse;
 mod settings;
 mod show;
 pub(crate) mod suggest;
+pub mod template;
 
 pub use load::{DEFAULT, Override, Profile, ValueOrigin, builtin_names, load};
 pub use settings::*;

@@ -8,7 +8,8 @@ use crate::units::Coord;
 pub(super) const WIDEST: f64 = 1.75;
 
 /// How much further the ends of lines reach that are not joined to another, in line
-/// widths: two round ends leave a corner open between them that a join would cover.
+/// widths and at most the overlap: two round ends leave a corner open between them
+/// that a join would cover.
 const TIP: f64 = 0.25;
 
 /// A join between two lines covers the strips this many line widths from their ends.
@@ -90,7 +91,7 @@ pub fn points(line: &Line, joined: Joined, params: &Params) -> Vec<LinePoint> {
     kept.push(samples.len() - 1);
     let mut points: Vec<LinePoint> =
         kept.into_iter().map(|k| filled(line.row, samples[k], w)).collect();
-    let tip = (f64::from(w) * TIP) as Coord;
+    let tip = ((f64::from(w) * TIP) as Coord).min(params.overlap);
     if let [first, .., last] = points.as_mut_slice() {
         first.u -= if joined.above.left || joined.below.left { 0 } else { tip };
         last.u += if joined.above.right || joined.below.right { 0 } else { tip };

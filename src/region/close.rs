@@ -40,6 +40,8 @@ pub struct Crossed<'a> {
 /// The lines of a skin, and the beads along strips too thin for a line.
 #[must_use]
 pub fn close(crossed: &Crossed<'_>, params: &Params) -> (Vec<Line>, Vec<Vec<LinePoint>>) {
+    // Without a wall there is nothing to close up to, only an outside to stay within.
+    let walled = params.walls > 0;
     let mut strips = Strips::new(crossed.skin.range(), params);
     let mut thin = Vec::new();
     for extent in extents(crossed, params) {
@@ -50,10 +52,13 @@ pub fn close(crossed: &Crossed<'_>, params: &Params) -> (Vec<Line>, Vec<Vec<Line
     let mut lines = Vec::new();
     for (row, spans) in crossed.skin.iter() {
         for &span in spans {
-            let (mut above, mut below) = strips.beside(row, span);
-            add_ends(&mut above, span, crossed, (row, row + 1), params);
-            add_ends(&mut below, span, crossed, (row, row - 1), params);
-            lines.push(Line { row, span, above, below });
+            let mut line = Line { row, span, above: Vec::new(), below: Vec::new() };
+            if walled {
+                (line.above, line.below) = strips.beside(row, span);
+                add_ends(&mut line.above, span, crossed, (row, row + 1), params);
+                add_ends(&mut line.below, span, crossed, (row, row - 1), params);
+            }
+            lines.push(line);
         }
     }
     (lines, slivers(thin, params))

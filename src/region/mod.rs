@@ -71,9 +71,15 @@ impl Params {
     pub fn new(settings: &Settings) -> Self {
         let w = settings.line_width;
         let outer = settings.outer_wall_inset;
-        let from_contour = outer + f64::from(settings.walls) - settings.infill_overlap;
-        let fill_inset =
-            if settings.walls == 0 { 0.5 - settings.infill_overlap } else { from_contour };
+        // Without a wall there is none to reach into.
+        let (wall, overlap) = match settings.walls {
+            0 => (0.5, 0.0),
+            walls => (outer + f64::from(walls), settings.infill_overlap),
+        };
+        let fill_inset = wall - overlap;
+        // Where the walls' inner edge is, seen from the ends of the lines; never quite
+        // as far in as they are, so that an upright side needs no skin.
+        let cover_inset = (0.5 - overlap).min(fill_inset - 0.25).max(0.0);
         let skin =
             |turn: f64| Raster { frame: Frame::new(settings.angle + turn), pitch: to_units(w) };
         let mut params = Self {
@@ -81,8 +87,8 @@ impl Params {
             walls: settings.walls,
             outer_inset: to_units(outer * w),
             fill_inset: to_units(fill_inset * w),
-            cover_inset: to_units((0.5 - settings.infill_overlap).max(0.0) * w),
-            overlap: to_units(settings.infill_overlap * w),
+            cover_inset: to_units(cover_inset * w),
+            overlap: to_units(overlap * w),
             top_skins: settings.top_skins() as usize,
             bottom_skins: settings.bottom_skins() as usize,
             reach: to_units(settings.skin_reach),

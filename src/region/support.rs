@@ -30,7 +30,8 @@ pub struct SupportParams {
     /// How far a layer may reach over the one below without support.
     lean: Coord,
     outset: Coord,
-    xy_distance: Coord,
+    /// Distance from the part to the middle of a support line, sideways.
+    clearance: Coord,
     /// Layers left open above and below support.
     gap: usize,
     bed_only: bool,
@@ -64,7 +65,7 @@ impl SupportParams {
             stride,
             lean: to_units(lean.min(1000.0)),
             outset: to_units(support.outset),
-            xy_distance: to_units(support.xy_distance),
+            clearance: to_units(support.xy_distance) + w / 2,
             gap: (support.z_distance / settings.layer_height).round() as usize,
             bed_only: support.stands_on == SupportBase::Bed,
             least: w,
@@ -88,7 +89,7 @@ impl Seen {
         Self {
             index: layer.index,
             inside: scan.inside().clone(),
-            near: scan.outset(params.xy_distance),
+            near: scan.outset(params.clearance),
             carries: scan.outset(params.lean),
         }
     }
@@ -206,7 +207,7 @@ fn keep_to_bed(slicer: &Slicer<'_>, params: &SupportParams, columns: &mut [Rows]
         let layers = slicer.block(block);
         let near: Vec<Rows> = layers
             .par_iter()
-            .map(|l| Scan::new(&l.contours, params.raster).outset(params.xy_distance))
+            .map(|l| Scan::new(&l.contours, params.raster).outset(params.clearance))
             .collect();
         for (layer, near) in layers.iter().zip(&near) {
             columns[layer.index] = columns[layer.index].minus(&shadow);

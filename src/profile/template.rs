@@ -1,7 +1,7 @@
 //! Start and end blocks + values -> text: fills in `{placeholders}`.
 
+use super::{Settings, suggest};
 use crate::error::{Error, Result};
-use crate::profile::{Settings, suggest};
 
 /// What a block may want to know of the print itself.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
