@@ -2,7 +2,7 @@
 //!
 //! Every message names the file, the place, the cause and what to do.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A failure that ends the run. [`Error::exit_code`] gives the process exit code.
 #[derive(Debug, thiserror::Error)]
@@ -30,7 +30,7 @@ pub enum Error {
     Unprintable(String),
 
     /// An output that cannot be opened or written (exit 4).
-    #[error("{}: {action}: {source}", file.display())]
+    #[error("{}: {action}: {source}", shown(file))]
     Output {
         /// The output as the user named it.
         file: PathBuf,
@@ -56,6 +56,11 @@ impl Error {
             Self::Output { .. } => 4,
         }
     }
+}
+
+/// An output's name for people.
+fn shown(file: &Path) -> String {
+    if file.as_os_str() == "-" { "standard output".into() } else { file.display().to_string() }
 }
 
 /// The result of everything that can fail with an [`Error`].

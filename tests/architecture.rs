@@ -20,8 +20,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // The program's name comes from the job.
     ("gcode", &["geom", "plan", "profile", "error", "units", "job"]),
     ("job", &["mesh", "profile"]),
-    // A profile's blocks are tried out when it is checked.
-    ("profile", &["error", "gcode"]),
+    ("profile", &["error"]),
 ];
 
 /// Modules that may use all others: the flow itself, and what tells of it.

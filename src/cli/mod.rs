@@ -27,9 +27,10 @@ const STRICT: u8 = 1;
 /// Runs the program with these arguments, the program's name first, and
 /// returns the process's exit code.
 pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
-    let arguments = match Arguments::try_parse_from(words) {
+    let words: Vec<OsString> = words.collect();
+    let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
-        Err(error) => return refused(&error),
+        Err(error) => return refused(&error, words.get(1).and_then(|word| word.to_str())),
     };
     let done = match &arguments.command {
         None => slice(&arguments.slice),
@@ -46,9 +47,11 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
 }
 
 /// What clap has to say: help and version are products, the rest is one line.
-fn refused(error: &clap::Error) -> u8 {
+/// `first` is the first argument, which may be a mistyped command.
+fn refused(error: &clap::Error, first: Option<&str>) -> u8 {
     use clap::error::ErrorKind::{
         DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion,
+        MissingRequiredArgument,
     };
     let text = error.render();
     match error.kind() {
@@ -61,8 +64,10 @@ fn refused(error: &clap::Error) -> u8 {
             say(&text.to_string());
             2
         }
-        _ => {
-            say(&format!("error: {}\n", usage::one_line(&text.to_string())));
+        kind => {
+            let command = first.filter(|_| kind == MissingRequiredArgument).and_then(usage::meant);
+            let told = command.unwrap_or_else(|| usage::one_line(&text.to_string()));
+            say(&format!("error: {told}\n"));
             2
         }
     }
