@@ -69,7 +69,7 @@ struct Link {
     from: Side,
 }
 
-/// Chains of skin lines, closed up to the walls; `pitch` is the distance of rows.
+/// Chains of skin lines, closed up to the walls.
 #[must_use]
 pub fn skin(lines: &[Line], params: &Params) -> Vec<Chain> {
     let pitch = params.line_width;
@@ -79,12 +79,8 @@ pub fn skin(lines: &[Line], params: &Params) -> Vec<Chain> {
     let join = |from: (Coord, i32), to: (Coord, i32), _: Side| {
         ((from.0 - to.0).abs() <= LONGEST_SOLID_JOIN * pitch).then(Vec::new)
     };
-    let first = rows.first().map_or(0, |row| row[0].row);
-    let line = |row: i32, index: usize| {
-        // Rows come in order, but rows without skin are left out.
-        let k = rows.partition_point(|r| r[0].row < row.max(first));
-        &rows[k][index]
-    };
+    // Rows come in order, but rows without skin are left out.
+    let line = |row: i32, index: usize| &rows[rows.partition_point(|r| r[0].row < row)][index];
     link(spans, 1, pitch, join)
         .into_iter()
         .map(|zigzag| {
