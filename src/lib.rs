@@ -30,10 +30,9 @@ pub mod warning;
 
 use error::{Error, Result};
 use geom::Point;
+use profile::template::PrintFacts;
 use rayon::prelude::*;
 use units::to_units;
-
-use profile::template::PrintFacts;
 
 pub use job::{Job, NAME};
 
@@ -94,7 +93,7 @@ pub fn slice(
         writer.layers(&toolpaths)?;
         progress.add(regions.len());
     }
-    let pairs = window.pair_totals();
+    let pairs = window.pair_stats();
     let usage = writer.finish()?;
     report::report(job, &placed, heights, &usage, pairs, &tally)
 }

@@ -8,9 +8,9 @@ use crate::mesh::transform::Placed;
 use crate::plan::Role;
 use crate::profile::{DualMode, Settings};
 use crate::region::Region;
-use crate::region::window::PairTotals;
+use crate::region::dual::PairStats;
 use crate::slice::Heights;
-use crate::units::{Coord, UNITS_PER_MM, to_mm};
+use crate::units::{Coord, sum_mm, to_mm};
 use crate::warning::Warning;
 use serde::Serialize;
 
@@ -152,7 +152,7 @@ pub fn report(
     placed: &Placed,
     heights: Heights,
     usage: &Usage,
-    pairs: PairTotals,
+    pairs: PairStats,
     tally: &Tally,
 ) -> Result<Report> {
     let settings = &job.settings;
@@ -206,17 +206,16 @@ fn roles(usage: &Usage, settings: &Settings) -> Vec<RoleReport> {
         .collect()
 }
 
-fn dual(pairs: PairTotals) -> DualReport {
-    let mm = |units: i64| units as f64 / UNITS_PER_MM;
+fn dual(pairs: PairStats) -> DualReport {
     DualReport {
         pairs: pairs.pairs,
         thick_pairs: pairs.thick_pairs,
-        thick_length_mm: mm(pairs.thick),
-        thin_length_mm: mm(pairs.thin),
+        thick_length_mm: sum_mm(pairs.thick),
+        thin_length_mm: sum_mm(pairs.thin),
         volume_ratio: if pairs.plain == 0 {
             1.0
         } else {
-            mm(2 * pairs.thick + pairs.thin) / mm(pairs.plain)
+            sum_mm(2 * pairs.thick + pairs.thin) / sum_mm(pairs.plain)
         },
     }
 }

@@ -37,3 +37,34 @@ pub fn to_mm(units: Coord) -> f64 {
 pub fn nearest(value: f64) -> i64 {
     (value + 0.5_f64.copysign(value)) as i64
 }
+
+/// The value at `v`, `low_v <= v <= high_v`, of what goes evenly from `low` at `low_v` to `high` at `high_v`; rounded to the nearest unit, halves upwards.
+#[must_use]
+#[inline]
+pub fn between(low: Coord, high: Coord, (v, low_v, high_v): (Coord, Coord, Coord)) -> Coord {
+    let run = i64::from(high) - i64::from(low);
+    let rise = i64::from(high_v) - i64::from(low_v);
+    let up = i64::from(v) - i64::from(low_v);
+    low + (2 * run * up + rise).div_euclid(2 * rise) as Coord
+}
+
+/// Sine and cosine of an angle in degrees: exact for quarter turns, and by `libm`
+/// otherwise, because the system's differ from one platform to the next.
+#[must_use]
+pub fn sin_cos(degrees: f64) -> (f64, f64) {
+    let turn = degrees.rem_euclid(360.0);
+    let quarter = (turn / 90.0).floor();
+    let (sin, cos) = libm::sincos((turn - quarter * 90.0).to_radians());
+    match quarter as i32 {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+/// A sum of lengths in grid units as millimetres.
+#[must_use]
+pub fn sum_mm(units: i64) -> f64 {
+    units as f64 / UNITS_PER_MM
+}

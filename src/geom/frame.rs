@@ -1,7 +1,7 @@
 //! Point -> (u, v): the frame of a raster direction, in which raster lines run along u at constant v.
 
 use super::Point;
-use crate::units::{Coord, nearest};
+use crate::units::{Coord, nearest, sin_cos};
 
 /// A turn of the plane that lays the raster lines level. Exact for multiples of 90°.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,20 +12,9 @@ pub struct Frame {
 
 impl Frame {
     /// The frame of lines at `degrees` counter-clockwise from the x axis.
-    ///
-    /// Sine and cosine come from `libm`, whose results do not depend on the platform.
     #[must_use]
     pub fn new(degrees: f64) -> Self {
-        let turn = degrees.rem_euclid(360.0);
-        let quarter = (turn / 90.0).floor();
-        let rest = (turn - quarter * 90.0).to_radians();
-        let (sin, cos) = (libm::sin(rest), libm::cos(rest));
-        let (cos, sin) = match quarter as i32 {
-            0 => (cos, sin),
-            1 => (-sin, cos),
-            2 => (-cos, -sin),
-            _ => (sin, -cos),
-        };
+        let (sin, cos) = sin_cos(degrees);
         Self { cos, sin }
     }
 

@@ -49,3 +49,27 @@ pub fn double_area(contour: &[Point]) -> i128 {
         })
         .sum()
 }
+
+/// The edges of a closed polygon, from each point to the next.
+pub fn edges(contour: &[Point]) -> impl Iterator<Item = (Point, Point)> {
+    contour.iter().copied().zip(contour.iter().copied().cycle().skip(1))
+}
+
+/// Twice the area of the triangle a b c: positive if `c` is left of a–b.
+#[must_use]
+pub fn side(a: Point, b: Point, c: Point) -> i64 {
+    let (abx, aby) = (i64::from(b.x) - i64::from(a.x), i64::from(b.y) - i64::from(a.y));
+    let (acx, acy) = (i64::from(c.x) - i64::from(a.x), i64::from(c.y) - i64::from(a.y));
+    abx * acy - aby * acx
+}
+
+/// Whether `p` is inside the closed polygons that `edges` make, by counting the edges to
+/// the right of it. They must not overlap; a point on an edge may count either way.
+#[must_use]
+pub fn encloses(edges: impl Iterator<Item = (Point, Point)>, p: Point) -> bool {
+    let to_the_right = edges.filter(|&(a, b)| {
+        let (low, high) = if a.y < b.y { (a, b) } else { (b, a) };
+        low.y < p.y && p.y <= high.y && side(low, high, p) > 0
+    });
+    to_the_right.count() % 2 == 1
+}

@@ -7,7 +7,7 @@ use super::measure::{has_area, volume_mm3};
 use super::weld::MAX_TRIANGLES;
 use super::{Bed, Mesh, MeshReport, Placement, RawMesh, Unit};
 use crate::error::{Error, Result};
-use crate::units::{MAX_COORDINATE_MM, to_units};
+use crate::units::{MAX_COORDINATE_MM, sin_cos, sum_mm, to_units};
 use crate::warning::Warning;
 use nalgebra::{Matrix3, Vector3};
 
@@ -68,7 +68,7 @@ pub fn place(models: Vec<RawMesh>, placement: &Placement, bed: &Bed) -> Result<P
     }
     let layout = lay_out(&parts, placement, bed)?;
     let height = parts.iter().map(|part| part.size[2]).max().unwrap_or(0);
-    placed.size_mm = [layout.size[0], layout.size[1], height].map(length);
+    placed.size_mm = [layout.size[0], layout.size[1], height].map(sum_mm);
     placed.offset = offset(placement, bed, placed.size_mm)?;
     let copies = placement.copies as usize;
     join(parts, &layout, copies, &mut placed);
@@ -82,15 +82,6 @@ fn rotation(degrees: [f64; 3]) -> Matrix3<f64> {
     let y = Matrix3::new(cy, 0.0, sy, 0.0, 1.0, 0.0, -sy, 0.0, cy);
     let z = Matrix3::new(cz, -sz, 0.0, sz, cz, 0.0, 0.0, 0.0, 1.0);
     z * y * x
-}
-
-/// Sine and cosine, exact for quarter turns, and by `libm` otherwise, because
-/// the system's differ from one platform to the next.
-fn sin_cos(degrees: f64) -> (f64, f64) {
-    let turn = degrees.rem_euclid(360.0);
-    let quarters = [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)];
-    let exact = [0.0, 90.0, 180.0, 270.0].iter().position(|&quarter| quarter == turn);
-    exact.map_or_else(|| libm::sincos(turn.to_radians()), |quarter| quarters[quarter])
 }
 
 /// Brings one model onto the grid and takes its triangles.
@@ -134,7 +125,7 @@ fn to_units_of(point: &Vector3<f64>) -> [i64; 3] {
 /// Completes the report of a model and refuses one that encloses nothing.
 fn report(read: MeshReport, part: &Part) -> Result<MeshReport> {
     let flat = |what: &str| {
-        let size = sides(&part.size.map(length));
+        let size = sides(&part.size.map(sum_mm));
         let advice = "check the model, --unit and --scale";
         Err(Error::input(&read.file, format!("{what} ({size} mm), nothing to print; {advice}")))
     };
@@ -150,15 +141,10 @@ fn report(read: MeshReport, part: &Part) -> Result<MeshReport> {
     Ok(MeshReport {
         open_edges: part.adjacency.unpaired,
         non_manifold_edges: part.adjacency.non_manifold,
-        size_mm: part.size.map(length),
+        size_mm: part.size.map(sum_mm),
         volume_mm3: volume_mm3(&part.mesh),
         ..read
     })
-}
-
-#[expect(clippy::cast_precision_loss, reason = "lengths are far below 2^53 units")]
-fn length(units: i64) -> f64 {
-    units as f64 / crate::units::UNITS_PER_MM
 }
 
 fn warn(report: &MeshReport, warnings: &mut Vec<Warning>) {
@@ -327,7 +313,7 @@ mod tests {
             let all = placed.mesh.vertices.iter().map(|vertex| vertex[axis]);
             let (low, high) = (all.clone().min().unwrap(), all.max().unwrap());
             assert!((low + high).abs() <= 1, "{low} {high}");
-            assert_eq!(length(i64::from(high - low)), placed.size_mm[axis]);
+            assert_eq!(sum_mm(i64::from(high - low)), placed.size_mm[axis]);
         }
     }
 

@@ -121,7 +121,7 @@ fn lay(points: Vec<LinePoint>, chain: &mut Chain, line_width: Coord) {
 #[must_use]
 pub fn comb(region: &Rows, comb: Comb, pitch: Coord, width: Coord) -> Vec<Chain> {
     let stride = comb.stride;
-    let printed = region.iter().filter(|(j, _)| j.rem_euclid(stride) == 0);
+    let printed = region.iter().filter(|(j, _)| comb.prints(*j));
     let long = |s: &Span| Some(*s).filter(|s| s.len() >= i64::from(width));
     let rows = printed.map(|(j, row)| (j, row.iter().map(long).collect()));
     let edges = Edges { region, pitch, width };

@@ -6,7 +6,7 @@
 //! go to the piece that comes first in the list, so that the order is fixed.
 
 use super::{Path, Pieces, PlanParams, Role};
-use crate::geom::{Contour, Point, double_area};
+use crate::geom::{Contour, Point, double_area, edges, encloses};
 use crate::region::walls::Wall;
 use crate::units::Coord;
 
@@ -97,17 +97,7 @@ impl<'a> Outer<'a> {
         if p.x < low.x || p.x > high.x || p.y < low.y || p.y > high.y {
             return false;
         }
-        let edges = self.contour.iter().zip(self.contour.iter().cycle().skip(1));
-        let crossings = edges.filter(|(a, b)| {
-            let (low, high) = if a.y < b.y { (a, b) } else { (b, a) };
-            low.y < p.y && p.y <= high.y && {
-                let side = (i64::from(high.x) - i64::from(low.x))
-                    * (i64::from(p.y) - i64::from(low.y))
-                    - (i64::from(high.y) - i64::from(low.y)) * (i64::from(p.x) - i64::from(low.x));
-                side > 0
-            }
-        });
-        crossings.count() % 2 == 1
+        encloses(edges(self.contour), p)
     }
 }
 

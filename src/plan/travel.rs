@@ -5,7 +5,7 @@
 //! and those outside of it, retract.
 
 use super::{Path, PlanParams, Step};
-use crate::geom::{Contour, Point};
+use crate::geom::{Contour, Point, edges, encloses, side};
 use crate::units::Coord;
 
 /// Bands that the edges of a layer are sorted into, at most.
@@ -46,9 +46,7 @@ struct Crossings {
 
 impl Crossings {
     fn new(contours: &[Contour]) -> Self {
-        let edges = || {
-            contours.iter().flat_map(|c| c.iter().copied().zip(c.iter().copied().cycle().skip(1)))
-        };
+        let edges = || contours.iter().flat_map(|c| edges(c));
         let low = edges().map(|(a, _)| a.y).min().unwrap_or(0);
         let high = edges().map(|(a, _)| a.y).max().unwrap_or(0);
         let count = edges().count().div_ceil(4).clamp(1, MOST_BANDS);
@@ -74,19 +72,8 @@ impl Crossings {
     fn holds(&self, p: Point) -> bool {
         let Ok(k) = usize::try_from((p.y - self.low).div_euclid(self.band)) else { return false };
         let Some(edges) = self.bands.get(k) else { return false };
-        let right = edges.iter().filter(|(a, b)| {
-            let (low, high) = if a.y < b.y { (*a, *b) } else { (*b, *a) };
-            low.y < p.y && p.y <= high.y && side(low, high, p) > 0
-        });
-        right.count() % 2 == 1
+        encloses(edges.iter().copied(), p)
     }
-}
-
-/// Twice the area of the triangle a b c: positive if `c` is left of a–b.
-fn side(a: Point, b: Point, c: Point) -> i64 {
-    let (abx, aby) = (i64::from(b.x) - i64::from(a.x), i64::from(b.y) - i64::from(a.y));
-    let (acx, acy) = (i64::from(c.x) - i64::from(a.x), i64::from(c.y) - i64::from(a.y));
-    abx * acy - aby * acx
 }
 
 /// Whether segments a–b and p–q share a point.

@@ -16,24 +16,31 @@ use crate::units::Coord;
 /// Areas of one layer on each raster it was asked on, by raster index.
 pub type LayerAreas = Vec<Option<Areas>>;
 
-/// What a pair's thick lines replace.
+/// What thick lines replace, in one pair or in many; lengths in grid units. Lines
+/// shorter than they are wide are not printed and not counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PairStats {
-    /// The pair has infill.
-    pub filled: bool,
-    /// Length of thick lines, grid units.
+    /// Pairs that have infill.
+    pub pairs: usize,
+    /// Of these, pairs with thick lines.
+    pub thick_pairs: usize,
+    /// Length of thick lines.
     pub thick: i64,
-    /// Length of thin lines beside them on both layers, grid units.
+    /// Length of thin lines beside them on both layers.
     pub thin: i64,
-    /// Length of lines of both layers that a print without dual would have, grid units.
-    /// (None of these counts lines shorter than they are wide, which are not printed.)
+    /// Length of lines of both layers that a print without dual would have.
     pub plain: i64,
 }
 
-/// The combs that carry the infill of layer `k` where nothing is thick.
-#[must_use]
-pub fn plain_combs(k: usize, params: &Params) -> &[Comb] {
-    turn(k, params)
+impl PairStats {
+    /// Counts other pairs in.
+    pub fn add(&mut self, other: Self) {
+        self.pairs += other.pairs;
+        self.thick_pairs += other.thick_pairs;
+        self.thick += other.thick;
+        self.thin += other.thin;
+        self.plain += other.plain;
+    }
 }
 
 /// The combs that may carry the infill of pair `m`: all that have to be classified for it.
@@ -45,7 +52,9 @@ pub fn pair_combs(m: usize, dual: &Dual, params: &Params) -> Vec<Comb> {
     }
 }
 
-fn turn(n: usize, params: &Params) -> &[Comb] {
+/// The combs whose turn it is on layer (or pair) `n`.
+#[must_use]
+pub fn turn(n: usize, params: &Params) -> &[Comb] {
     match params.infill.len() {
         0 => &[],
         sets => &params.infill[n % sets],
@@ -62,15 +71,20 @@ pub fn is_pair(lower: usize, count: usize, mode: DualMode) -> bool {
 /// The infill of a layer on its own.
 #[must_use]
 pub fn plain(k: usize, areas: &LayerAreas, params: &Params) -> Vec<Infill> {
-    plain_combs(k, params).iter().map(|&comb| infill(comb, areas, false)).collect()
+    turn(k, params).iter().map(|&comb| infill(comb, areas)).collect()
 }
 
-fn rows(comb: Comb, areas: &LayerAreas) -> Rows {
-    areas[comb.raster].as_ref().map(|a| a.infill.clone()).unwrap_or_default()
+fn infill(comb: Comb, areas: &LayerAreas) -> Infill {
+    let rows = areas[comb.raster].as_ref().map(|a| a.infill.clone()).unwrap_or_default();
+    Infill { comb, rows, thick: false }
 }
 
-fn infill(comb: Comb, areas: &LayerAreas, thick: bool) -> Infill {
-    Infill { comb, rows: rows(comb, areas), thick }
+/// The length of the lines that `combs` print of a layer.
+fn length(combs: &[Comb], areas: &LayerAreas, params: &Params) -> i64 {
+    let of = |comb: &Comb| {
+        areas[comb.raster].as_ref().map_or(0, |a| comb.length(&a.infill, params.line_width))
+    };
+    combs.iter().map(of).sum()
 }
 
 /// The infill of the lower and of the upper layer of pair `m`.
@@ -83,30 +97,30 @@ pub fn pair(
     params: &Params,
 ) -> ([Vec<Infill>; 2], PairStats) {
     let w = params.line_width;
-    let length = |combs: &[Comb], areas: &LayerAreas| -> i64 {
-        combs.iter().map(|&comb| infill(comb, areas, false).length(w)).sum()
-    };
     let own = [turn(2 * m, params), turn(2 * m + 1, params)];
-    let (combs, lower_is_shorter) = match dual.direction {
-        DualDirection::Cross => {
-            let combs = turn(m, params);
-            (combs, length(combs, lower) < length(combs, upper))
-        }
-        DualDirection::Shorter if length(own[0], lower) < length(own[1], upper) => (own[0], true),
-        DualDirection::Shorter => (own[1], false),
+    let shorter = |below: &[Comb], above: &[Comb]| {
+        length(below, lower, params) < length(above, upper, params)
     };
+    let combs = match dual.direction {
+        DualDirection::Cross => turn(m, params),
+        DualDirection::Shorter => own[usize::from(!shorter(own[0], own[1]))],
+    };
+    let keep_lower = dual.remainder == DualRemainder::Drop
+        && match dual.direction {
+            DualDirection::Cross => shorter(combs, combs),
+            DualDirection::Shorter => shorter(own[0], own[1]),
+        };
     let mut out = [Vec::new(), Vec::new()];
     let mut stats = PairStats::default();
     for &comb in combs {
-        let (a, b) = (infill(comb, lower, false), infill(comb, upper, false));
-        let plain = a.length(w) + b.length(w);
+        let (a, b) = (infill(comb, lower), infill(comb, upper));
+        stats.plain += a.length(w) + b.length(w);
         let thick = match dual.remainder {
             DualRemainder::Thin => shared(&a.rows, &b.rows, w),
-            DualRemainder::Drop if lower_is_shorter => a.rows.clone(),
+            DualRemainder::Drop if keep_lower => a.rows.clone(),
             DualRemainder::Drop => b.rows.clone(),
         };
         let thick = Infill { comb, rows: thick, thick: true };
-        stats.plain += plain;
         stats.thick += thick.length(w);
         if dual.remainder == DualRemainder::Thin {
             for (side, whole) in out.iter_mut().zip([a, b]) {
@@ -117,7 +131,8 @@ pub fn pair(
         }
         out[1].push(thick);
     }
-    stats.filled = stats.plain > 0;
+    stats.pairs = usize::from(stats.plain > 0);
+    stats.thick_pairs = usize::from(stats.thick > 0);
     (out, stats)
 }
 

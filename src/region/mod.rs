@@ -65,6 +65,21 @@ pub struct Comb {
     pub joined: bool,
 }
 
+impl Comb {
+    /// Whether line `j` is printed.
+    #[must_use]
+    pub fn prints(self, j: i32) -> bool {
+        j.rem_euclid(self.stride) == 0
+    }
+
+    /// The length of what is printed of `rows` in pieces at least `least` long, grid units.
+    #[must_use]
+    pub fn length(self, rows: &Rows, least: Coord) -> i64 {
+        let printed = rows.iter().filter(|(j, _)| self.prints(*j)).flat_map(|(_, row)| row);
+        printed.map(|span| span.len()).filter(|&len| len >= i64::from(least)).sum()
+    }
+}
+
 impl Params {
     /// The numbers that `settings` mean for this stage.
     #[must_use]
@@ -125,8 +140,7 @@ impl Params {
     /// Lines `spacing` apart as a comb over fine lines no further apart than a
     /// line is wide: the skin's own where the spacing is a multiple of theirs.
     fn comb(&mut self, degrees: f64, spacing: Coord) -> Comb {
-        let stride = (spacing + self.line_width - 1) / self.line_width;
-        let raster = Raster { frame: Frame::new(degrees), pitch: (spacing + stride / 2) / stride };
+        let (raster, stride) = Raster::fine(degrees, spacing, self.line_width);
         let known = self.rasters.iter().position(|r| *r == raster);
         let index = known.unwrap_or_else(|| {
             self.rasters.push(raster);
@@ -226,9 +240,6 @@ impl Infill {
     /// at least `least` long.
     #[must_use]
     pub fn length(&self, least: Coord) -> i64 {
-        let printed = |j: i32| j.rem_euclid(self.comb.stride) == 0;
-        let rows = self.rows.iter().filter(|(j, _)| printed(*j));
-        let spans = rows.flat_map(|(_, row)| row).map(|span| span.len());
-        spans.filter(|&len| len >= i64::from(least)).sum()
+        self.comb.length(&self.rows, least)
     }
 }

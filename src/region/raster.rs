@@ -12,8 +12,8 @@
 
 use crate::geom::frame::Frame;
 use crate::geom::spans::{Rows, Span, merge, subtract};
-use crate::geom::{Contour, Point};
-use crate::units::{Coord, nearest};
+use crate::geom::{Contour, Point, edges};
+use crate::units::{Coord, between, nearest};
 
 /// A set of raster lines: row `j` runs at `v = j · pitch` in `frame`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +25,14 @@ pub struct Raster {
 }
 
 impl Raster {
+    /// Lines at `degrees` no further apart than `width`, every `stride`-th of which
+    /// (given with them) lies `spacing` > 0 from the next.
+    #[must_use]
+    pub fn fine(degrees: f64, spacing: Coord, width: Coord) -> (Self, i32) {
+        let stride = ((spacing + width - 1) / width).max(1);
+        (Self { frame: Frame::new(degrees), pitch: (spacing + stride / 2) / stride }, stride)
+    }
+
     /// The rows `j` with `low < j · pitch <= high` (on the line counts as above).
     fn rows(&self, low: Coord, high: Coord) -> std::ops::Range<i32> {
         low.div_euclid(self.pitch) + 1..high.div_euclid(self.pitch) + 1
@@ -99,18 +107,10 @@ fn extent(contours: &[Contour]) -> Option<(Coord, Coord)> {
     Some(all.fold((first, first), |(low, high), v| (low.min(v), high.max(v))))
 }
 
-/// The edges of a closed polygon.
-fn edges(contour: &Contour) -> impl Iterator<Item = (Point, Point)> {
-    contour.iter().copied().zip(contour.iter().copied().cycle().skip(1))
-}
-
 /// Where a line at `v` crosses the edge between `low` and `high`, `low.y < v <= high.y`,
 /// rounded to the nearest unit in a way that does not depend on the edge's direction.
 fn crossing(low: Point, high: Point, v: Coord) -> Coord {
-    let run = i64::from(high.x) - i64::from(low.x);
-    let rise = i64::from(high.y) - i64::from(low.y);
-    let up = i64::from(v) - i64::from(low.y);
-    low.x + (2 * run * up + rise).div_euclid(2 * rise) as Coord
+    between(low.x, high.x, (v, low.y, high.y))
 }
 
 /// Items in rows, filled in any order: counted first, then placed, then read by row.
@@ -167,7 +167,7 @@ fn inside(contours: &[Contour], raster: Raster) -> Rows {
     let Some((low, high)) = extent(contours) else { return Rows::default() };
     let range = raster.rows(low, high);
     let mut found = Vec::new();
-    for (p, q) in contours.iter().flat_map(edges) {
+    for (p, q) in contours.iter().flat_map(|c| edges(c)) {
         // An edge that falls has the solid on its right: entering, seen along u.
         let (low, high, winding) = if p.y < q.y { (p, q, -1) } else { (q, p, 1) };
         for j in raster.rows(low.y, high.y) {
@@ -207,7 +207,7 @@ fn wound(crossings: &[Crossing], out: &mut Vec<Span>) {
 fn chords(contours: &[Contour], raster: Raster, r: Coord) -> Buckets<Span> {
     let Some((low, high)) = extent(contours) else { return Buckets::new(0..0, &[]) };
     let mut found = Vec::new();
-    for (p, q) in contours.iter().flat_map(edges) {
+    for (p, q) in contours.iter().flat_map(|c| edges(c)) {
         let capsule = Capsule::new(p, q, r);
         for j in raster.rows(p.y.min(q.y) - r, p.y.max(q.y) + r) {
             found.extend(capsule.chord(j * raster.pitch).map(|chord| (j, chord)));

@@ -8,7 +8,6 @@
 use super::Comb;
 use super::raster::{Raster, Scan};
 use crate::geom::Point;
-use crate::geom::frame::Frame;
 use crate::geom::spans::{Rows, Span, subtract};
 use crate::profile::{Settings, SupportBase};
 use crate::slice::{Layer, Slicer};
@@ -50,7 +49,7 @@ impl SupportParams {
     pub fn new(settings: &Settings) -> Option<Self> {
         let support = &settings.support;
         let (w, spacing) = (to_units(settings.line_width), to_units(support.spacing));
-        let stride = ((spacing + w - 1) / w).max(1);
+        let (raster, stride) = Raster::fine(settings.angle, spacing, w);
         let angle = support.threshold_angle.to_radians();
         let lean = if support.threshold_angle >= 90.0 {
             0.0
@@ -58,10 +57,7 @@ impl SupportParams {
             settings.layer_height * libm::cos(angle) / libm::sin(angle)
         };
         support.enabled.then(|| Self {
-            raster: Raster {
-                frame: Frame::new(settings.angle),
-                pitch: (spacing + stride / 2) / stride,
-            },
+            raster,
             stride,
             lean: to_units(lean.min(1000.0)),
             outset: to_units(support.outset),
@@ -113,8 +109,11 @@ pub fn supports(slicer: &Slicer<'_>, params: &SupportParams, within: (Point, Poi
     if params.bed_only {
         keep_to_bed(slicer, params, &mut columns);
     }
-    let bed = Bed::new(within, params.raster);
-    columns.par_iter().map(|rows| on_bed(rows, params, &bed)).collect()
+    let (low, high) = within;
+    let corners = vec![low, Point { x: high.x, y: low.y }, high, Point { x: low.x, y: high.y }];
+    let bed = Scan::new(&[corners], params.raster);
+    let long = |_, span: Span| span.len() >= i64::from(params.least);
+    columns.par_iter().map(|rows| rows.and(bed.inside()).filter(long)).collect()
 }
 
 /// The layers around the one whose support is being made, from the top down.
@@ -214,21 +213,4 @@ fn keep_to_bed(slicer: &Slicer<'_>, params: &SupportParams, columns: &mut [Rows]
             shadow = shadow.or(near);
         }
     }
-}
-
-/// The bed in the frame of a raster: a convex polygon.
-struct Bed {
-    rows: Rows,
-}
-
-impl Bed {
-    fn new((low, high): (Point, Point), raster: Raster) -> Self {
-        let corners = vec![low, Point { x: high.x, y: low.y }, high, Point { x: low.x, y: high.y }];
-        Self { rows: Scan::new(&[corners], raster).inside().clone() }
-    }
-}
-
-/// What lies on the bed, without what is shorter than a line is wide.
-fn on_bed(rows: &Rows, params: &SupportParams, bed: &Bed) -> Rows {
-    rows.and(&bed.rows).filter(|_, s| s.len() >= i64::from(params.least))
 }

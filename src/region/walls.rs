@@ -2,7 +2,7 @@
 
 use super::Params;
 use crate::geom::{Contour, double_area, polygon};
-use crate::units::{Coord, UNITS_PER_MM};
+use crate::units::UNITS_PER_MM;
 
 /// One closed wall.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,11 +34,15 @@ pub fn walls(contours: &[Contour], params: &Params) -> Vec<Wall> {
 const SHARPEST_CORNER: f64 = 1.75;
 
 /// The area of `contours` that is too thin for the outer wall, mm²: what they have
-/// more than the walls with a strip of `inset` around them. The strip around a
+/// more than the walls with a strip of the inset around them. The strip around a
 /// polygon has the area `P·d + d²·Σ tan(φ/2)` with perimeter `P` and turns `φ`.
+/// Nothing is too thin for no wall, or for one on the contour.
 #[must_use]
-pub fn thin_area(contours: &[Contour], walls: &[Wall], inset: Coord) -> f64 {
-    let d = f64::from(inset);
+pub fn thin_area(contours: &[Contour], walls: &[Wall], params: &Params) -> f64 {
+    if params.walls == 0 || params.outer_inset == 0 {
+        return 0.0;
+    }
+    let d = f64::from(params.outer_inset);
     let area = |c: &Contour| double_area(c) as f64 / 2.0;
     let strip = |c: &Contour| {
         let (length, turns) = length_and_turns(c);

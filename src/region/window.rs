@@ -29,32 +29,7 @@ pub struct Window<'a> {
     first: usize,
     /// Layers handed on so far.
     done: usize,
-    stats: PairTotals,
-}
-
-/// [`PairStats`] summed over the print; lengths in grid units.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct PairTotals {
-    /// Pairs that have infill.
-    pub pairs: usize,
-    /// Of these, pairs with thick lines.
-    pub thick_pairs: usize,
-    /// Length of thick lines.
-    pub thick: i64,
-    /// Length of thin lines beside them.
-    pub thin: i64,
-    /// Length of both layers' lines without dual.
-    pub plain: i64,
-}
-
-impl PairTotals {
-    fn add(&mut self, pair: PairStats) {
-        self.pairs += usize::from(pair.filled);
-        self.thick_pairs += usize::from(pair.thick > 0);
-        self.thick += pair.thick;
-        self.thin += pair.thin;
-        self.plain += pair.plain;
-    }
+    stats: PairStats,
 }
 
 /// What classification finds for one layer, before it takes its walls along.
@@ -81,13 +56,13 @@ impl<'a> Window<'a> {
             layers: VecDeque::new(),
             first: 0,
             done: 0,
-            stats: PairTotals::default(),
+            stats: PairStats::default(),
         }
     }
 
     /// What dual injection did so far.
     #[must_use]
-    pub fn pair_totals(&self) -> PairTotals {
+    pub fn pair_stats(&self) -> PairStats {
         self.stats
     }
 
@@ -118,8 +93,7 @@ impl<'a> Window<'a> {
         let count = self.slicer.heights().count;
         let Some(upper) = upper.filter(|_| dual::is_pair(lower, count, self.dual.mode)) else {
             let each = |k| {
-                let areas =
-                    self.areas(k, dual::plain_combs(k, self.params).iter().map(|c| c.raster));
+                let areas = self.areas(k, dual::turn(k, self.params).iter().map(|c| c.raster));
                 let infill = dual::plain(k, &areas, self.params);
                 Filling { skin: self.skin(k, &areas), infill }
             };
@@ -178,12 +152,7 @@ impl<'a> Window<'a> {
             let (walls, contours) =
                 (std::mem::take(&mut prepared.walls), std::mem::take(&mut prepared.layer.contours));
             let layer = crate::slice::Layer { contours, ..prepared.layer.clone() };
-            let inset = self.params.outer_inset;
-            let thin_mm2 = if inset > 0 && self.params.walls > 0 {
-                walls::thin_area(&layer.contours, &walls, inset)
-            } else {
-                0.0
-            };
+            let thin_mm2 = walls::thin_area(&layer.contours, &walls, self.params);
             regions.push(Region { layer, walls, skin, infill, support, thin_mm2 });
             self.done += 1;
         }

@@ -13,7 +13,7 @@ use super::{Heights, Layer};
 use crate::geom::{Contour, Point, polygon};
 use crate::mesh::Mesh;
 use crate::mesh::edges::{Adjacency, NONE, parts};
-use crate::units::Coord;
+use crate::units::{Coord, between};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -199,12 +199,7 @@ impl Walk<'_> {
         let a = self.mesh.vertices[corners[e] as usize];
         let b = self.mesh.vertices[corners[(e + 1) % 3] as usize];
         let (low, high) = if a[2] < b[2] { (a, b) } else { (b, a) };
-        let up = i64::from(self.plane) - i64::from(low[2]);
-        let rise = i64::from(high[2]) - i64::from(low[2]);
-        let along = |axis: usize| {
-            let run = i64::from(high[axis]) - i64::from(low[axis]);
-            low[axis] + (2 * run * up + rise).div_euclid(2 * rise) as Coord
-        };
+        let along = |axis: usize| between(low[axis], high[axis], (self.plane, low[2], high[2]));
         Point { x: along(0), y: along(1) }
     }
 }
