@@ -88,7 +88,7 @@ pub fn slice(
         }
         let toolpaths: Vec<plan::Toolpath> = ordered
             .into_par_iter()
-            .map(|(region, at, paths)| plan::toolpath(region, paths, at, &plan))
+            .map(|(region, from, paths)| plan::toolpath(region, paths, from, &plan))
             .collect();
         writer.layers(&toolpaths)?;
         progress.add(regions.len());

@@ -1,7 +1,7 @@
 //! Report: what a run found and made, as versioned JSON (`--report`) and as a three-line summary.
 
 use crate::error::{Error, Result};
-use crate::gcode::write::{Usage, filament_area};
+use crate::gcode::write::{Material, Usage, filament_area};
 use crate::job::{self, Job};
 use crate::mesh::MeshReport;
 use crate::mesh::transform::Placed;
@@ -164,7 +164,7 @@ pub fn report(
             settings.line_width
         )));
     }
-    let volume_cm3 = filament_mm * filament_area(settings) / 1000.0;
+    let Material { mm, cm3, grams } = Material::new(filament_mm, settings);
     Ok(Report {
         schema: SCHEMA,
         slicer: job::NAME.to_owned(),
@@ -183,11 +183,7 @@ pub fn report(
             length_mm: usage.travel_length,
             retractions: usage.retractions,
         },
-        filament: FilamentReport {
-            length_mm: filament_mm,
-            volume_cm3,
-            weight_g: volume_cm3 * settings.filament.density,
-        },
+        filament: FilamentReport { length_mm: mm, volume_cm3: cm3, weight_g: grams },
         dual: (settings.dual.mode != DualMode::Off).then(|| dual(pairs)),
         warnings: placed.warnings.iter().cloned().chain(tally.warnings()).collect(),
     })

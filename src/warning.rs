@@ -79,6 +79,7 @@ impl fmt::Display for Warning {
 }
 
 /// A number of things, such as `1 byte` or `2 bytes`.
-fn plural(count: u64, thing: &str) -> String {
+#[must_use]
+pub fn plural(count: u64, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }

@@ -15,6 +15,7 @@ use slicer::error::{Error, Result};
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
 use slicer::report::Report;
+use slicer::warning::plural;
 use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::Path;
@@ -121,8 +122,8 @@ fn findings(strict: bool, warnings: usize) -> u8 {
     if !strict || warnings == 0 {
         return 0;
     }
-    let plural = if warnings == 1 { "warning" } else { "warnings" };
-    say(&format!("error: {warnings} {plural} with --strict; look at them before printing\n"));
+    let warnings = plural(warnings as u64, "warning");
+    say(&format!("error: {warnings} with --strict; look at them before printing\n"));
     STRICT
 }
 

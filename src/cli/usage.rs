@@ -4,6 +4,7 @@ use super::args::SliceArgs;
 use super::output::is_stdout;
 use clap::CommandFactory as _;
 use slicer::error::{Error, Result};
+use slicer::profile::suggest;
 use std::path::{Path, PathBuf};
 
 /// Checks that no two arguments mean the same file.
@@ -31,17 +32,12 @@ pub(super) fn check(args: &SliceArgs, out: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The command that a first word seems to mean which is neither command nor file.
+/// What a first word seems to mean that is neither command nor file, in a sentence.
 pub(super) fn meant(word: &str) -> Option<String> {
     let commands = super::args::Arguments::command();
     let names = commands.get_subcommands().map(clap::Command::get_name).chain(["--help"]);
-    let best = names.max_by(|a, b| near(word, a).total_cmp(&near(word, b)))?;
-    let meant = near(word, best) > 0.8 && !Path::new(word).exists();
-    meant.then(|| format!("there is no command {word}; did you mean `slicer {best}`?"))
-}
-
-fn near(a: &str, b: &str) -> f64 {
-    strsim::jaro_winkler(a.trim_start_matches('-'), b.trim_start_matches('-'))
+    let name = suggest::nearest(word, names).filter(|_| !Path::new(word).exists())?;
+    Some(format!("there is no command {word}; did you mean `slicer {name}`?"))
 }
 
 fn refuse(why: &str) -> Result<()> {

@@ -5,7 +5,6 @@ pub mod number;
 pub mod write;
 
 use crate::error::{Error, Result};
-use crate::geom::Point;
 use crate::job;
 use crate::plan::Toolpath;
 use crate::profile::template::{self, PrintFacts};
@@ -13,7 +12,7 @@ use crate::profile::{Settings, dump};
 use rayon::prelude::*;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use write::{Start, Usage, WriteParams};
+use write::{Material, Start, Usage, WriteParams};
 
 /// Writes one G-code file.
 pub struct Writer<'a> {
@@ -65,24 +64,14 @@ impl<'a> Writer<'a> {
     /// [`Error::Output`] if writing fails.
     pub fn layers(&mut self, layers: &[Toolpath]) -> Result<()> {
         let params = &self.params;
-        let mut at = self.start.at;
-        let from: Vec<Option<Point>> = layers
-            .iter()
-            .map(|layer| {
-                let end = layer.end().or(at);
-                std::mem::replace(&mut at, end)
-            })
-            .collect();
-        let usages: Vec<Usage> =
-            layers.par_iter().zip(&from).map(|(layer, at)| params.usage(layer, *at)).collect();
+        let usages: Vec<Usage> = layers.par_iter().map(|layer| params.usage(layer)).collect();
         let mut starts = Vec::with_capacity(layers.len());
-        for (at, usage) in from.into_iter().zip(&usages) {
-            starts.push(Start { at, ..self.start });
+        for usage in &usages {
+            starts.push(self.start);
             self.start.e += usage.filament();
             self.start.done.0 += 1;
             self.usage.add(usage);
         }
-        self.start.at = at;
         let texts: Vec<Vec<u8>> = layers
             .par_iter()
             .zip(&starts)
@@ -110,23 +99,16 @@ impl<'a> Writer<'a> {
 
     /// The material in comments that hosts read.
     fn summary(&self) -> String {
-        let mm = self.usage.filament();
-        let cm3 = mm * write::filament_area(self.settings) / 1000.0;
-        let grams = cm3 * self.settings.filament.density;
+        let Material { mm, cm3, grams } = Material::new(self.usage.filament(), self.settings);
         format!(
             "\n; filament used [mm] = {mm:.2}\n; filament used [cm3] = {cm3:.2}\n\
              ; filament used [g] = {grams:.2}\n\n"
         )
     }
 
-    /// A block of the profile, filled in, ending in a line break.
+    /// A block of the profile, filled in.
     fn block(&self, name: &str, block: &str) -> Result<String> {
-        let values = template::values(self.settings, &self.facts);
-        let mut text = template::render(name, block, &values)?;
-        if !text.is_empty() && !text.ends_with('\n') {
-            text.push('\n');
-        }
-        Ok(text)
+        template::render(name, block, &template::values(self.settings, &self.facts))
     }
 
     fn put(&mut self, bytes: &[u8]) -> Result<()> {

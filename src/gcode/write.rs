@@ -5,7 +5,7 @@ use super::number::{push_fixed, push_integer, thousandths};
 use crate::geom::Point;
 use crate::plan::{Path, Role, Toolpath};
 use crate::profile::{ExtrusionModel, Settings};
-use crate::units::{Coord, nearest, to_mm, to_units};
+use crate::units::{Coord, UNITS_PER_MM, nearest, to_mm, to_units};
 use std::f64::consts::PI;
 use std::io::Write as _;
 
@@ -53,11 +53,9 @@ impl Usage {
     }
 }
 
-/// Where the machine stands when a layer begins.
+/// How far the print is when a layer begins.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Start {
-    /// Where the nozzle is, if known.
-    pub at: Option<Point>,
     /// Filament used so far, mm.
     pub e: f64,
     /// Layers done and in all, for the progress.
@@ -118,20 +116,21 @@ impl WriteParams {
         self.rates[role as usize] * length_mm * to_mm(width) * to_mm(height)
     }
 
-    /// What a layer will use when it starts at `at`.
+    /// What a layer will use.
     #[must_use]
-    pub fn usage(&self, layer: &Toolpath, mut at: Option<Point>) -> Usage {
+    pub fn usage(&self, layer: &Toolpath) -> Usage {
         let mut usage = Usage::default();
+        let mut at = layer.from;
         for step in &layer.steps {
             if at != Some(step.path.start()) {
                 usage.travels += 1;
                 usage.travel_length +=
-                    at.map_or(0.0, |p| p.distance(step.path.start())) / crate::units::UNITS_PER_MM;
+                    at.map_or(0.0, |p| p.distance(step.path.start())) / UNITS_PER_MM;
             }
             usage.retractions += usize::from(step.retract);
             let used = &mut usage.roles[step.path.role as usize];
             for (_, length, width) in step.path.segments() {
-                let length = length / crate::units::UNITS_PER_MM;
+                let length = length / UNITS_PER_MM;
                 used.length += length;
                 used.filament += self.filament(step.path.role, length, width, step.path.height);
             }
@@ -156,9 +155,7 @@ impl WriteParams {
     #[must_use]
     pub fn finish(&self, start: &Start) -> Vec<u8> {
         let mut text = Text::new(self, start);
-        if self.dialect.restarts_e() && !self.relative_e {
-            text.line("G92 E0");
-        }
+        text.restart_e();
         if self.retract > 0.0 {
             text.retract();
         }
@@ -180,6 +177,26 @@ impl WriteParams {
             Role::Infill | Role::ThickInfill => "Internal infill",
             Role::Support => "Support material",
         }
+    }
+}
+
+/// A length of filament in the measures that people buy it in.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Material {
+    /// Length, mm.
+    pub mm: f64,
+    /// Volume, cm³.
+    pub cm3: f64,
+    /// Weight, g.
+    pub grams: f64,
+}
+
+impl Material {
+    /// What `mm` of the filament in `settings` are.
+    #[must_use]
+    pub fn new(mm: f64, settings: &Settings) -> Self {
+        let cm3 = mm * filament_area(settings) / 1000.0;
+        Self { mm, cm3, grams: cm3 * settings.filament.density }
     }
 }
 
@@ -209,7 +226,7 @@ struct Text<'a> {
 impl<'a> Text<'a> {
     fn new(params: &'a WriteParams, start: &Start) -> Self {
         let e = if params.dialect.restarts_e() { 0.0 } else { start.e };
-        let mut text = Self {
+        Self {
             params,
             out: Vec::new(),
             e,
@@ -221,12 +238,7 @@ impl<'a> Text<'a> {
             role: None,
             width: 0,
             height: 0,
-        };
-        if let Some(at) = start.at {
-            let [x, y] = text.place(at);
-            (text.x, text.y) = (Some(x), Some(y));
         }
-        text
     }
 
     /// Annotations, progress, fan and E at the beginning of a layer.
@@ -246,10 +258,19 @@ impl<'a> Text<'a> {
             let words = self.params.dialect.fan(fan, self.params.tool);
             self.line(&words);
         }
+        self.restart_e();
+        self.height = layer.height;
+        if let Some(from) = layer.from {
+            let [x, y] = self.place(from);
+            (self.x, self.y) = (Some(x), Some(y));
+        }
+    }
+
+    /// Says that E counts from zero again, where it does.
+    fn restart_e(&mut self) {
         if self.params.dialect.restarts_e() && !self.params.relative_e {
             self.line("G92 E0");
         }
-        self.height = layer.height;
     }
 
     /// The way to the beginning of a path at height `z`.
@@ -312,7 +333,7 @@ impl<'a> Text<'a> {
                 self.width = width;
                 self.annotate(";WIDTH:", width);
             }
-            let length = length / crate::units::UNITS_PER_MM;
+            let length = length / UNITS_PER_MM;
             self.e += self.params.filament(path.role, length, width, path.height);
             if self.go(to) {
                 self.push_e();
@@ -401,13 +422,13 @@ mod tests {
         let wall = path(Role::OuterWall, 2_000, &[0, 100_000], 0);
         let thick = path(Role::ThickInfill, 4_000, &[100_000, 0], 20_000);
         let steps = vec![Step { retract: true, path: wall }, Step { retract: false, path: thick }];
-        Toolpath { layer: 3, z: 8_000, height: 2_000, steps }
+        Toolpath { layer: 3, z: 8_000, height: 2_000, from: None, steps }
     }
 
     fn text(profile: &str) -> String {
         let settings = profile::load(profile, &[]).unwrap().settings;
         let params = WriteParams::new(&settings, [150.0, 150.0]);
-        let start = Start { at: None, e: 1.0, done: (3, 10) };
+        let start = Start { e: 1.0, done: (3, 10) };
         String::from_utf8(params.layer(&toolpath(), &start)).unwrap()
     }
 
@@ -450,7 +471,7 @@ G1 X150 E2.3 F3600
     #[test]
     fn usage_counts_what_is_written() {
         let settings = profile::load("zcube-dual", &[]).unwrap().settings;
-        let usage = WriteParams::new(&settings, [0.0, 0.0]).usage(&toolpath(), None);
+        let usage = WriteParams::new(&settings, [0.0, 0.0]).usage(&toolpath());
         assert!((usage.filament() - 1.3).abs() < 1e-9);
         assert_eq!((usage.travels, usage.retractions), (2, 1));
     }

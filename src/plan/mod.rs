@@ -130,16 +130,10 @@ pub struct Toolpath {
     pub z: Coord,
     /// Height of the layer, grid units.
     pub height: Coord,
+    /// Where the nozzle comes from, if known.
+    pub from: Option<Point>,
     /// What is printed.
     pub steps: Vec<Step>,
-}
-
-impl Toolpath {
-    /// Where the layer ends, if anything is printed on it.
-    #[must_use]
-    pub fn end(&self) -> Option<Point> {
-        self.steps.last().map(|s| s.path.end())
-    }
 }
 
 /// The numbers that this stage needs.
@@ -221,15 +215,15 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
     Pieces { islands, support }
 }
 
-/// The toolpath of a layer whose paths are in order; the nozzle comes from `at`.
+/// The toolpath of a layer whose paths are in order; the nozzle comes from `from`.
 #[must_use]
 pub fn toolpath(
     region: &Region,
     paths: Vec<Path>,
-    at: Option<Point>,
+    from: Option<Point>,
     params: &PlanParams,
 ) -> Toolpath {
     let Layer { index, z, height, .. } = region.layer;
-    let steps = travel::steps(paths, &region.layer.contours, at, params);
-    Toolpath { layer: index, z, height, steps }
+    let steps = travel::steps(paths, &region.layer.contours, from, params);
+    Toolpath { layer: index, z, height, from, steps }
 }

@@ -6,7 +6,7 @@ mod load;
 mod parse;
 mod settings;
 mod show;
-pub(crate) mod suggest;
+pub mod suggest;
 pub mod template;
 
 pub use load::{DEFAULT, Override, Profile, ValueOrigin, builtin_names, load};

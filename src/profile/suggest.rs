@@ -5,7 +5,8 @@ const ALIKE: f64 = 0.5;
 
 /// The known word nearest to `word`, if any is near. A known dotted name is
 /// also compared by its last part, because users leave the table out.
-pub(crate) fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+#[must_use]
+pub fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let word = word.to_lowercase();
     let score = |name: &str| {
         let last = name.rsplit('.').next().unwrap_or(name);
@@ -22,7 +23,8 @@ pub(crate) fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> O
 }
 
 /// `; did you mean …?`, or nothing where no known word is near.
-pub(crate) fn did_you_mean<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> String {
+#[must_use]
+pub fn did_you_mean<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> String {
     nearest(word, known).map_or_else(String::new, |name| format!("; did you mean `{name}`?"))
 }
 
