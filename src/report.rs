@@ -1,7 +1,7 @@
 //! Report: what a run found and made, as versioned JSON (`--report`) and as a three-line summary.
 
 use crate::error::{Error, Result};
-use crate::gcode::write::{Material, Usage, filament_area};
+use crate::gcode::write::{Material, Usage, Used, filament_area};
 use crate::job::{self, Job};
 use crate::mesh::MeshReport;
 use crate::mesh::transform::Placed;
@@ -60,8 +60,9 @@ pub struct LayersReport {
 /// What was extruded in one role.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct RoleReport {
-    /// `outer wall`, `inner wall`, `skin`, `infill`, `thick infill` or `support`.
-    pub role: &'static str,
+    /// `outer wall`, `inner wall`, `skin`, `infill` or `support`; `thick ` before it where
+    /// it is printed for several layers at once.
+    pub role: String,
     /// Length of path, mm.
     pub length_mm: f64,
     /// Filament, mm.
@@ -190,16 +191,22 @@ pub fn report(
 }
 
 fn roles(usage: &Usage, settings: &Settings) -> Vec<RoleReport> {
-    Role::ALL
-        .iter()
-        .zip(&usage.roles)
-        .map(|(role, used)| RoleReport {
-            role: role.name(),
-            length_mm: used.length,
-            filament_mm: used.filament,
-            volume_mm3: used.filament * filament_area(settings),
-        })
-        .collect()
+    let area = filament_area(settings);
+    let told = |role: String, used: Used| RoleReport {
+        role,
+        length_mm: used.length,
+        filament_mm: used.filament,
+        volume_mm3: used.filament * area,
+    };
+    let mut roles = Vec::new();
+    for (role, [thin, thick]) in Role::ALL.iter().zip(usage.roles) {
+        roles.push(told(role.name().to_owned(), thin));
+        // An outer wall is never thick.
+        if *role != Role::OuterWall {
+            roles.push(told(format!("thick {}", role.name()), thick));
+        }
+    }
+    roles
 }
 
 fn dual(pairs: PairStats) -> DualReport {

@@ -227,7 +227,7 @@ proptest! {
             let (lower, upper) = (all_areas(k - 1, &layers, &params), all_areas(k, &layers, &params));
             let ([below, above], stats) = dual::pair(m, &lower, &upper, &settings.dual, &params);
             let sum = |all: &[Infill], thick: bool| -> i64 {
-                all.iter().filter(|i| i.thick == thick).map(length).sum()
+                all.iter().filter(|i| (i.layers > 1) == thick).map(length).sum()
             };
             let combs = dual::pair_combs(m, &settings.dual, &params);
             let plain: i64 = combs
@@ -235,7 +235,7 @@ proptest! {
                 .flat_map(|&comb| [(&lower, comb), (&upper, comb)])
                 .map(|(areas, comb)| {
                     let rows = areas[comb.raster].as_ref().unwrap().infill.clone();
-                    length(&Infill { comb, rows, thick: false })
+                    length(&Infill { comb, rows, layers: 1 })
                 })
                 .sum();
             let (thick, thin) = (sum(&above, true), sum(&below, false) + sum(&above, false));
@@ -243,8 +243,8 @@ proptest! {
             // The report leaves out what is too short to be printed.
             prop_assert_eq!(stats.thick, thick);
             prop_assert!(stats.thin <= thin && stats.plain <= plain);
-            prop_assert!(below.iter().all(|i| !i.thick), "thick lines on the lower layer");
-            for infill in above.iter().filter(|i| i.thick) {
+            prop_assert!(below.iter().all(|i| i.layers == 1), "thick lines on the lower layer");
+            for infill in above.iter().filter(|i| i.layers == 2) {
                 let r = infill.comb.raster;
                 let [a, b] = [&lower, &upper].map(|areas| &areas[r].as_ref().unwrap().infill);
                 prop_assert!(infill.rows.minus(a).is_empty() && infill.rows.minus(b).is_empty());
@@ -253,7 +253,7 @@ proptest! {
                 let short = |(_, row): (i32, &[Span])| row.iter().all(|s| s.len() < i64::from(params.line_width));
                 prop_assert!(left.iter().all(short));
                 // And where a line is thick, none is thin.
-                for thin in below.iter().chain(&above).filter(|i| !i.thick && i.comb == infill.comb) {
+                for thin in below.iter().chain(&above).filter(|i| i.layers == 1 && i.comb == infill.comb) {
                     prop_assert!(thin.rows.and(&infill.rows).is_empty());
                 }
             }
@@ -275,7 +275,7 @@ proptest! {
             let plain = [(2 * m, &lower), (2 * m + 1, &upper)]
                 .map(|(k, areas)| printed(&dual::plain(k, areas, &params)));
             let kept = printed(&above);
-            prop_assert!(above.iter().all(|i| i.thick));
+            prop_assert!(above.iter().all(|i| i.layers == 2));
             prop_assert_eq!(below.iter().map(length).sum::<i64>(), 0);
             prop_assert_eq!(kept, plain[0].min(plain[1]));
         }

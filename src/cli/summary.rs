@@ -59,14 +59,14 @@ pub(crate) fn roles(report: &Report) -> String {
         .iter()
         .map(|role| {
             format!(
-                "{:<13} {:>12.0} mm of path {:>10.1} mm of filament",
+                "{:<16} {:>12.0} mm of path {:>10.1} mm of filament",
                 role.role, role.length_mm, role.filament_mm
             )
         })
         .collect();
     let travel = &report.travel;
     lines.push(format!(
-        "{:<13} {:>12.0} mm of path in {} moves, {} with retraction",
+        "{:<16} {:>12.0} mm of path in {} moves, {} with retraction",
         "travel", travel.length_mm, travel.count, travel.retractions
     ));
     lines.join("\n") + "\n"
@@ -89,7 +89,11 @@ mod tests {
 
     #[test]
     fn three_lines_say_it_all() {
-        let role = |role, filament_mm| RoleReport { role, filament_mm, ..RoleReport::default() };
+        let role = |role: &str, filament_mm| RoleReport {
+            role: role.to_owned(),
+            filament_mm,
+            ..RoleReport::default()
+        };
         let report = Report {
             size_mm: [40.0, 30.0, 20.0],
             layers: LayersReport { count: 100, height_mm: 0.2, ..LayersReport::default() },

@@ -24,8 +24,8 @@ pub struct Used {
 /// What a layer, or a print, moves and uses.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Usage {
-    /// By role, in the order of [`Role::ALL`].
-    pub roles: [Used; 6],
+    /// By role, in the order of [`Role::ALL`]: lines of one layer's height, then thick ones.
+    pub roles: [[Used; 2]; 5],
     /// Travels.
     pub travels: usize,
     /// Their length, mm.
@@ -38,12 +38,13 @@ impl Usage {
     /// Filament in all, mm.
     #[must_use]
     pub fn filament(&self) -> f64 {
-        self.roles.iter().map(|r| r.filament).sum()
+        self.roles.as_flattened().iter().map(|r| r.filament).sum()
     }
 
     /// Adds another layer's usage.
     pub fn add(&mut self, other: &Self) {
-        for (mine, theirs) in self.roles.iter_mut().zip(&other.roles) {
+        let theirs = other.roles.as_flattened();
+        for (mine, theirs) in self.roles.as_flattened_mut().iter_mut().zip(theirs) {
             mine.length += theirs.length;
             mine.filament += theirs.filament;
         }
@@ -70,8 +71,9 @@ pub struct WriteParams {
     /// Where the layout's middle goes on the machine, grid units.
     offset: [i64; 2],
     /// mm of filament for each mm of path, mm of width and mm of height, by role.
-    rates: [f64; 6],
-    feeds: [f64; 6],
+    rates: [f64; 5],
+    /// By role, of lines of one layer's height and of thick ones.
+    feeds: [[f64; 2]; 5],
     first_layer: f64,
     travel_feed: f64,
     z_feed: f64,
@@ -97,8 +99,14 @@ impl WriteParams {
             dialect: Dialect::new(settings.machine.dialect),
             relative_e: settings.machine.relative_e,
             offset: offset.map(|mm| i64::from(to_units(mm))),
-            rates: [wall, wall, rate(x.skin_factor), infill, infill, rate(x.support_factor)],
-            feeds: [s.wall, s.wall, s.skin, s.infill, s.thick_infill, s.support],
+            rates: [wall, wall, rate(x.skin_factor), infill, rate(x.support_factor)],
+            feeds: [
+                [s.wall; 2],
+                [s.wall; 2],
+                [s.skin; 2],
+                [s.infill, s.thick_infill],
+                [s.support; 2],
+            ],
             first_layer: s.first_layer / 100.0,
             travel_feed: s.travel,
             z_feed: s.z,
@@ -128,7 +136,7 @@ impl WriteParams {
                     at.map_or(0.0, |p| p.distance(step.path.start())) / UNITS_PER_MM;
             }
             usage.retractions += usize::from(step.retract);
-            let used = &mut usage.roles[step.path.role as usize];
+            let used = &mut usage.roles[step.path.role as usize][usize::from(step.path.is_thick())];
             for (_, length, width) in step.path.segments() {
                 let length = length / UNITS_PER_MM;
                 used.length += length;
@@ -174,7 +182,7 @@ impl WriteParams {
             Role::OuterWall => "External perimeter",
             Role::InnerWall => "Perimeter",
             Role::Skin => "Solid infill",
-            Role::Infill | Role::ThickInfill => "Internal infill",
+            Role::Infill => "Internal infill",
             Role::Support => "Support material",
         }
     }
@@ -317,7 +325,7 @@ impl<'a> Text<'a> {
 
     fn path(&mut self, path: &Path, layer: &Toolpath) {
         let slow = if layer.layer == 0 { self.params.first_layer } else { 1.0 };
-        let feed = self.params.feeds[path.role as usize] * slow;
+        let feed = self.params.feeds[path.role as usize][usize::from(path.is_thick())] * slow;
         if self.role != Some(path.role) {
             self.role = Some(path.role);
             self.out.extend_from_slice(b";TYPE:");
@@ -414,13 +422,14 @@ mod tests {
     use crate::profile;
 
     fn toolpath() -> Toolpath {
-        let path = |role, height, xs: &[Coord], y| Path {
+        let path = |role, layers: u32, xs: &[Coord], y| Path {
             role,
-            height,
+            layers,
+            height: 2_000 * layers as Coord,
             points: xs.iter().map(|&x| PathPoint { at: Point { x, y }, width: 4_000 }).collect(),
         };
-        let wall = path(Role::OuterWall, 2_000, &[0, 100_000], 0);
-        let thick = path(Role::ThickInfill, 4_000, &[100_000, 0], 20_000);
+        let wall = path(Role::OuterWall, 1, &[0, 100_000], 0);
+        let thick = path(Role::Infill, 2, &[100_000, 0], 20_000);
         let steps = vec![Step { retract: true, path: wall }, Step { retract: false, path: thick }];
         Toolpath { layer: 3, z: 8_000, height: 2_000, from: None, steps }
     }

@@ -19,7 +19,7 @@ pub fn order(pieces: Pieces, height: Coord, mut at: Point, params: &PlanParams) 
         let island = islands.remove(k);
         order_walls(island.walls, height, &mut at, params, &mut out);
         let mut chains = island.chains;
-        for role in [Role::Skin, Role::Infill, Role::ThickInfill] {
+        for role in [Role::Skin, Role::Infill] {
             order_chains(chains.extract_if(.., |c| c.role == role).collect(), &mut at, &mut out);
         }
     }

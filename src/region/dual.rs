@@ -76,7 +76,7 @@ pub fn plain(k: usize, areas: &LayerAreas, params: &Params) -> Vec<Infill> {
 
 fn infill(comb: Comb, areas: &LayerAreas) -> Infill {
     let rows = areas[comb.raster].as_ref().map(|a| a.infill.clone()).unwrap_or_default();
-    Infill { comb, rows, thick: false }
+    Infill { comb, rows, layers: 1 }
 }
 
 /// The length of the lines that `combs` print of a layer.
@@ -120,7 +120,7 @@ pub fn pair(
             DualRemainder::Drop if keep_lower => a.rows.clone(),
             DualRemainder::Drop => b.rows.clone(),
         };
-        let thick = Infill { comb, rows: thick, thick: true };
+        let thick = Infill { comb, rows: thick, layers: 2 };
         stats.thick += thick.length(w);
         if dual.remainder == DualRemainder::Thin {
             for (side, whole) in out.iter_mut().zip([a, b]) {

@@ -231,8 +231,9 @@ pub struct Infill {
     pub comb: Comb,
     /// The region on every line of the raster; only those of the comb are printed.
     pub rows: Rows,
-    /// Printed for this and the layer below, with twice the material.
-    pub thick: bool,
+    /// How many layers its lines are printed for: this one and those below it, with the
+    /// material of all.
+    pub layers: u32,
 }
 
 impl Infill {
