@@ -196,7 +196,7 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
     let skin = &region.skin;
     let raster = params.region.rasters[skin.raster];
     add(Role::Skin, 1, raster, link::skin(&skin.lines, &params.region));
-    add(Role::Skin, 1, raster, skin.slivers.clone());
+    add(Role::Skin, 1, raster, skin.beads.clone());
     for infill in &region.infill {
         let raster = params.region.rasters[infill.comb.raster];
         let chains = link::comb(&infill.rows, infill.comb, raster.pitch, params.region.line_width);

@@ -4,10 +4,12 @@
 //! skins look at are there, and is forgotten once no layer above looks at it:
 //! memory holds a block and a few layers, whatever the height of the print.
 
-use super::classify::{Areas, areas};
+use super::classify::{Areas, areas, areas_beside, exposed};
 use super::close::{Crossed, close};
 use super::dual::{self, LayerAreas, PairStats};
+use super::rings::{Bead, rings, taken};
 use super::{Infill, Params, Prepared, Region, Skin, walls};
+use crate::geom::Contour;
 use crate::geom::spans::Rows;
 use crate::profile::Dual;
 use crate::slice::Slicer;
@@ -93,9 +95,10 @@ impl<'a> Window<'a> {
         let count = self.slicer.heights().count;
         let Some(upper) = upper.filter(|_| dual::is_pair(lower, count, self.dual.mode)) else {
             let each = |k| {
-                let areas = self.areas(k, dual::turn(k, self.params).iter().map(|c| c.raster));
+                let more = dual::turn(k, self.params).iter().map(|c| c.raster);
+                let (areas, beads) = self.areas(k, more);
                 let infill = dual::plain(k, &areas, self.params);
-                Filling { skin: self.skin(k, &areas), infill }
+                Filling { skin: self.skin(k, (&areas, beads)), infill }
             };
             return (
                 [Some(lower), upper].into_iter().flatten().map(each).collect(),
@@ -103,43 +106,81 @@ impl<'a> Window<'a> {
             );
         };
         let combs = dual::pair_combs(lower / 2, self.dual, self.params);
-        let below = self.areas(lower, combs.iter().map(|c| c.raster));
-        let above = self.areas(upper, combs.iter().map(|c| c.raster));
+        let (below, below_beads) = self.areas(lower, combs.iter().map(|c| c.raster));
+        let (above, above_beads) = self.areas(upper, combs.iter().map(|c| c.raster));
         let (infill, stats) = dual::pair(lower / 2, &below, &above, self.dual, self.params);
-        let fillings = [(lower, below), (upper, above)]
-            .iter()
-            .zip(infill)
-            .map(|((k, areas), infill)| Filling { skin: self.skin(*k, areas), infill })
-            .collect();
+        let skins =
+            [self.skin(lower, (&below, below_beads)), self.skin(upper, (&above, above_beads))];
+        let fillings =
+            skins.into_iter().zip(infill).map(|(skin, infill)| Filling { skin, infill }).collect();
         (fillings, stats)
     }
 
-    /// The areas of layer `k` on both skin rasters and on those that `more` names.
-    fn areas(&self, k: usize, more: impl Iterator<Item = usize>) -> LayerAreas {
-        let mut out: LayerAreas = vec![None; self.params.rasters.len()];
+    /// The areas of layer `k` on both skin rasters and on those that `more` names, and
+    /// the beads along its walls.
+    fn areas(&self, k: usize, more: impl Iterator<Item = usize>) -> (LayerAreas, Vec<Bead>) {
+        let params = self.params;
+        let mut out: LayerAreas = vec![None; params.rasters.len()];
+        let Some(layer) = self.layer(k) else { return (out, Vec::new()) };
+        let exposed = |r| exposed(k, r, &|k| self.layer(k), params);
+        let skins = [exposed(0), exposed(1)];
+        let beads = self.rings(k, layer, &skins);
+        let along = params.rasters[params.skin_rasters(k).0];
         for r in [0, 1].into_iter().chain(more) {
             if out[r].is_none() {
-                out[r] = Some(areas(k, r, &|k| self.layer(k), self.params));
+                let raster = params.rasters[r];
+                let fill = &layer.rows[r].fill;
+                let own = skins.get(r).cloned().unwrap_or_else(|| exposed(r));
+                out[r] = Some(if beads.is_empty() {
+                    areas(fill, &own, raster.pitch, params)
+                } else {
+                    let taken = taken(&beads, along.frame, raster, params);
+                    areas_beside(&taken, fill, &own, raster.pitch, params)
+                });
             }
         }
-        out
+        (out, beads)
+    }
+
+    /// The beads along the walls of layer `k`, whose skin is exposed where `skins` says on
+    /// the two skin rasters.
+    fn rings(&self, k: usize, layer: &Prepared, skins: &[Rows; 2]) -> Vec<Bead> {
+        if skins.iter().all(Rows::is_empty) {
+            return Vec::new();
+        }
+        let (along, across) = self.params.skin_rasters(k);
+        let crossed = Crossed {
+            skin: &skins[along],
+            fill: &layer.rows[along].fill,
+            columns: &skins[across],
+            fill_columns: &layer.rows[across].fill,
+            left_turn: along == 0,
+        };
+        let frame = self.params.rasters[along].frame;
+        let enter = |c: &Contour| c.iter().map(|&p| frame.enter(p)).collect();
+        let walls: Vec<Contour> = match self.params.walls {
+            0 => layer.layer.contours.iter().map(enter).collect(),
+            n => layer.walls.iter().filter(|w| w.depth + 1 == n).map(|w| enter(&w.path)).collect(),
+        };
+        rings(&walls, &crossed, self.params)
     }
 
     /// The skin of layer `k`, closed up to the walls.
-    fn skin(&self, k: usize, areas: &LayerAreas) -> Skin {
+    fn skin(&self, k: usize, (areas, beads): (&LayerAreas, Vec<Bead>)) -> Skin {
         let (along, across) = self.params.skin_rasters(k);
         let none = Areas::default();
         let of = |r: usize| areas[r].as_ref().unwrap_or(&none);
         let Some(layer) = self.layer(k) else { return Skin::default() };
+        let fill = |r: usize| of(r).fill.as_ref().unwrap_or(&layer.rows[r].fill);
         let crossed = Crossed {
             skin: &of(along).skin,
-            fill: &layer.rows[along].fill,
+            fill: fill(along),
             columns: &of(across).skin,
-            fill_columns: &layer.rows[across].fill,
+            fill_columns: fill(across),
             left_turn: along == 0,
         };
         let (lines, slivers) = close(&crossed, self.params);
-        Skin { raster: along, lines, slivers }
+        Skin { raster: along, lines, beads: [beads, slivers].concat() }
     }
 
     /// The regions of the layers that `fillings` were made for, in order.
