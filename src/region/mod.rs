@@ -10,6 +10,7 @@
 pub mod bend;
 pub mod classify;
 pub mod close;
+pub mod divide;
 pub mod dual;
 mod near;
 pub mod raster;

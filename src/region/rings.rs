@@ -25,7 +25,7 @@ pub type Bead = Vec<LinePoint>;
 pub(super) const MOST_BEADS: usize = 3;
 
 /// A bead along a wall is at least this many line widths wide, where there is room.
-const NARROWEST: f64 = 0.75;
+pub(super) const NARROWEST: f64 = 0.75;
 
 /// A strip between two walls up to this many line widths wide gets one bead.
 const SINGLE: f64 = 1.6;

@@ -2,7 +2,7 @@
 
 use super::Params;
 use super::close::Crossed;
-use super::rings::{MOST_BEADS, SHORT};
+use super::rings::{MOST_BEADS, NARROWEST, SHORT};
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, Point, edges};
 use crate::units::{Coord, between};
@@ -176,15 +176,18 @@ impl Behind {
         let w = f64::from(params.line_width);
         let lead = f64::from(params.wall_to_fill() - params.wall_edge());
         let skin = self.skin > 0 || self.other > 0;
-        let left = (self.room - self.skin - self.other) as f64;
-        if skin && left * sine <= GAP * w {
-            let depth = self.room as f64 * sine / 2.0 + lead;
+        let depth = |length: i64| length as f64 * sine + lead;
+        // What a bead covers at least of either side.
+        let taken = |length: i64| if length > 0 { depth(length).max(NARROWEST * w) } else { 0.0 };
+        let across = depth(self.room) + lead;
+        if skin && across - taken(self.skin) - taken(self.other) <= GAP * w {
+            let depth = across / 2.0;
             return Station { depth, shared: true, beads: beads(depth, w), skin: true, ..blank };
         }
         if self.skin == 0 {
             return blank;
         }
-        let depth = self.skin as f64 * sine + lead;
+        let depth = depth(self.skin);
         Station { depth, beads: beads(depth, w), skin: true, ..blank }
     }
 }

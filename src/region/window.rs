@@ -4,12 +4,12 @@
 //! skins look at are there, and is forgotten once no layer above looks at it:
 //! memory holds a block and a few layers, whatever the height of the print.
 
-use super::classify::{Areas, areas, areas_beside, exposed};
+use super::classify::Areas;
 use super::close::{Crossed, close};
+use super::divide::divide;
 use super::dual::{self, LayerAreas, PairStats};
-use super::rings::{Bead, rings, taken};
+use super::rings::Bead;
 use super::{Infill, Params, Prepared, Region, Skin, walls};
-use crate::geom::Contour;
 use crate::geom::spans::Rows;
 use crate::profile::Dual;
 use crate::slice::Slicer;
@@ -119,50 +119,7 @@ impl<'a> Window<'a> {
     /// The areas of layer `k` on both skin rasters and on those that `more` names, and
     /// the beads along its walls.
     fn areas(&self, k: usize, more: impl Iterator<Item = usize>) -> (LayerAreas, Vec<Bead>) {
-        let params = self.params;
-        let mut out: LayerAreas = vec![None; params.rasters.len()];
-        let Some(layer) = self.layer(k) else { return (out, Vec::new()) };
-        let exposed = |r| exposed(k, r, &|k| self.layer(k), params);
-        let skins = [exposed(0), exposed(1)];
-        let beads = self.rings(k, layer, &skins);
-        let along = params.rasters[params.skin_rasters(k).0];
-        for r in [0, 1].into_iter().chain(more) {
-            if out[r].is_none() {
-                let raster = params.rasters[r];
-                let fill = &layer.rows[r].fill;
-                let own = skins.get(r).cloned().unwrap_or_else(|| exposed(r));
-                out[r] = Some(if beads.is_empty() {
-                    areas(fill, &own, raster.pitch, params)
-                } else {
-                    let taken = taken(&beads, along.frame, raster, params);
-                    areas_beside(&taken, fill, &own, raster.pitch, params)
-                });
-            }
-        }
-        (out, beads)
-    }
-
-    /// The beads along the walls of layer `k`, whose skin is exposed where `skins` says on
-    /// the two skin rasters.
-    fn rings(&self, k: usize, layer: &Prepared, skins: &[Rows; 2]) -> Vec<Bead> {
-        if skins.iter().all(Rows::is_empty) {
-            return Vec::new();
-        }
-        let (along, across) = self.params.skin_rasters(k);
-        let crossed = Crossed {
-            skin: &skins[along],
-            fill: &layer.rows[along].fill,
-            columns: &skins[across],
-            fill_columns: &layer.rows[across].fill,
-            left_turn: along == 0,
-        };
-        let frame = self.params.rasters[along].frame;
-        let enter = |c: &Contour| c.iter().map(|&p| frame.enter(p)).collect();
-        let walls: Vec<Contour> = match self.params.walls {
-            0 => layer.layer.contours.iter().map(enter).collect(),
-            n => layer.walls.iter().filter(|w| w.depth + 1 == n).map(|w| enter(&w.path)).collect(),
-        };
-        rings(&walls, &crossed, self.params)
+        divide(k, more, &|k| self.layer(k), self.params)
     }
 
     /// The skin of layer `k`, closed up to the walls.
