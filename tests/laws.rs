@@ -13,7 +13,7 @@ use slicer::geom::frame::Frame;
 use slicer::geom::spans::{Rows, Span, total};
 use slicer::geom::{Contour, Point, double_area, polygon};
 use slicer::mesh::{Bed, stl, transform};
-use slicer::region::classify::{self, Areas};
+use slicer::region::classify::Areas;
 use slicer::region::divide::divide;
 use slicer::region::dual::{self, LayerAreas};
 use slicer::region::raster::{Raster, Scan};

@@ -49,6 +49,8 @@ const WIDTH_TO_PLACE: f64 = 3.0;
 struct Place {
     at: [f64; 2],
     width: f64,
+    /// How far all walls have to be away.
+    clear: f64,
 }
 
 /// The beads that cover the narrow parts of the exposed skin `crossed` along `walls`:
@@ -59,11 +61,7 @@ pub fn rings(walls: &[Contour], crossed: &Crossed<'_>, params: &Params) -> Vec<B
     if crossed.skin.is_empty() && crossed.columns.is_empty() {
         return Vec::new();
     }
-    let laps: Vec<Vec<Station>> = walls.iter().map(|w| stations(w, crossed, params)).collect();
-    if laps.iter().flatten().all(|s| s.beads == 0) {
-        return Vec::new();
-    }
-    let near = Near::new(walls, params.line_width);
+    let Some((laps, near)) = stations(walls, crossed, params) else { return Vec::new() };
     let mut out = Vec::new();
     for lap in &laps {
         for index in 0..MOST_BEADS {
@@ -95,7 +93,9 @@ fn place(station: &Station, index: usize, near: &Near, params: &Params) -> Optio
     };
     let away = edge + from + width / 2.0;
     let [x, y] = [0, 1].map(|k| station.at[k] + away * station.normal[k]);
-    near.is_free([x, y], away - SLACK * w).then_some(Place { at: [x, y], width })
+    // Without a wall there is nothing to lie on, only an outside to stay within.
+    let clear = away - if params.walls > 0 { SLACK * w } else { LEAST_BEND };
+    near.is_free([x, y], clear).then_some(Place { at: [x, y], width, clear })
 }
 
 /// The stretches of a lap around a wall that bead `index` takes, long enough to be
@@ -117,7 +117,7 @@ fn arcs(lap: &[Station], index: usize, near: &Near, params: &Params) -> Vec<Vec<
         // its two sides meet.
         let Some(place) = place(station, index, near, params) else { continue };
         let last = arcs.last_mut().filter(|_| open);
-        match last.filter(|a| a.last().is_some_and(|l| distance(l.at, place.at) <= short)) {
+        match last.filter(|a| a.last().is_some_and(|l| joins(l, &place, near, params))) {
             Some(arc) => arc.push(place),
             None => arcs.push(vec![place]),
         }
@@ -125,6 +125,15 @@ fn arcs(lap: &[Station], index: usize, near: &Near, params: &Params) -> Vec<Vec<
     }
     arcs.retain(|arc| length(arc) >= short);
     arcs
+}
+
+/// Whether a bead may go straight from one place to the next: not far, and not across
+/// a wall that pokes in between.
+fn joins(a: &Place, b: &Place, near: &Near, params: &Params) -> bool {
+    let w = f64::from(params.line_width);
+    let far = distance(a.at, b.at);
+    let middle = [0, 1].map(|k| f64::midpoint(a.at[k], b.at[k]));
+    far <= w / 2.0 || far <= SHORT * w && near.is_free(middle, a.clear.min(b.clear) - SLACK * w)
 }
 
 /// Where on `raster` no line may end because of `beads`, which are in `frame`: lines
@@ -158,7 +167,7 @@ fn bead(arc: &[Place]) -> Bead {
     let mut before = arc[0].width;
     kept.into_iter()
         .map(|k| {
-            let Place { at: [u, v], width } = arc[k];
+            let Place { at: [u, v], width, .. } = arc[k];
             let mean = f64::midpoint(before, width);
             before = width;
             LinePoint {

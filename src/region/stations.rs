@@ -2,6 +2,7 @@
 
 use super::Params;
 use super::close::Crossed;
+use super::near::Near;
 use super::rings::{MOST_BEADS, NARROWEST, SHORT};
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, Point, edges};
@@ -19,6 +20,15 @@ const OPEN: f64 = 0.1;
 
 /// Between skin along two walls, this many line widths are not worth any infill.
 const GAP: f64 = 2.0;
+
+/// A place beyond the middle of a strip, as a share of its width.
+const BEYOND: f64 = 0.6;
+
+/// How much further away the other wall may be there, as a share of the strip's width.
+const SLOPE: f64 = 0.1;
+
+/// How far out the middle of a round corner lies, so that its chords keep their distance.
+const ROUND: f64 = 1.2;
 
 /// Stretches that seem deep are narrow all the same if narrow skin follows within this
 /// many line widths: near a corner the depth is that along the other wall.
@@ -43,16 +53,47 @@ pub(super) struct Station {
     skin: bool,
 }
 
-/// The stations of a closed wall in the order of its points; none if beads cover nothing.
-pub(super) fn stations(wall: &Contour, crossed: &Crossed<'_>, params: &Params) -> Vec<Station> {
-    let mut found = measured(wall, crossed, params);
-    let round = edges(wall).map(|(p, q)| p.distance(q)).sum::<f64>();
+/// The stations of closed walls in the order of their points; none where beads cover
+/// nothing. Also all edges of the walls, if there are stations.
+pub(super) fn stations(
+    walls: &[Contour],
+    crossed: &Crossed<'_>,
+    params: &Params,
+) -> Option<(Vec<Vec<Station>>, Near)> {
+    let mut laps: Vec<Vec<Station>> = walls.iter().map(|w| measured(w, crossed, params)).collect();
+    if laps.iter().flatten().all(|s| s.beads == 0) {
+        return None;
+    }
+    let near = Near::new(walls, params.line_width);
+    for (lap, wall) in laps.iter_mut().zip(walls) {
+        lap.iter_mut().filter(|s| s.shared).for_each(|s| s.confirm(&near, params));
+        *lap = settled(wall, std::mem::take(lap), params);
+    }
+    Some((laps, near))
+}
+
+/// The stations of a wall without short changes, with the wall's own corners.
+fn settled(wall: &Contour, mut found: Vec<Station>, params: &Params) -> Vec<Station> {
     if found.iter().all(|s| s.beads == 0) {
         return Vec::new();
     }
+    let round = edges(wall).map(|(p, q)| p.distance(q)).sum::<f64>();
     bridge(&mut found, round, params);
     calm(&mut found, round, params);
     with_corners(wall, &found, round, params)
+}
+
+impl Station {
+    /// Keeps no beads where the wall at the other end of the row is not beside this one:
+    /// beyond the middle of a strip the other wall is the nearer one, in a corner it is not.
+    fn confirm(&mut self, near: &Near, params: &Params) {
+        let across = 2.0 * (self.depth + f64::from(params.wall_edge()));
+        let beyond = [0, 1].map(|k| self.at[k] + BEYOND * across * self.normal[k]);
+        if near.is_free(beyond, (1.0 - BEYOND + SLOPE) * across) {
+            self.shared = false;
+            self.beads = 0;
+        }
+    }
 }
 
 /// Where rows cross the inner edge of the walls: each edge of the wall under the raster
@@ -293,7 +334,8 @@ fn with_corners(wall: &Contour, found: &[Station], round: f64, params: &Params) 
         let (a, b) = (near(next + found.len() - 1), near(next));
         let nearest = if a.0 <= b.0 { a } else { b };
         let gap = a.0 + b.0;
-        let depth = if a.1.beads > 0 && b.1.beads > 0 && gap > 0.0 {
+        let alike = a.1.beads == b.1.beads && a.1.shared == b.1.shared;
+        let depth = if alike && gap > 0.0 {
             (a.1.depth * b.0 + b.1.depth * a.0) / gap
         } else {
             nearest.1.depth
@@ -310,15 +352,21 @@ fn with_corners(wall: &Contour, found: &[Station], round: f64, params: &Params) 
     out
 }
 
-/// Adds a corner between two edges: on its mitre, or on both its sides where that would
-/// reach far.
+/// Adds a corner between two edges: on its mitre, or round in three points where that
+/// would reach far.
 fn add_corner(before: &Edge, after: &Edge, corner: Station, out: &mut Vec<Station>) {
     let (a, b) = (before.normal(), after.normal());
     let cosine = a[0] * b[0] + a[1] * b[1];
-    if cosine < 0.0 {
-        out.extend([a, b].map(|normal| Station { normal, ..corner }));
-    } else {
+    if cosine >= 0.0 {
         let normal = [0, 1].map(|k| (a[k] + b[k]) / (1.0 + cosine));
         out.push(Station { normal, ..corner });
+        return;
     }
+    // Between the edges, or straight on where the wall turns back.
+    let length = (2.0 + 2.0 * cosine).max(0.0).sqrt();
+    let middle = [0, 1].map(|k| {
+        let ahead = if length > 0.1 { (a[k] + b[k]) / length } else { before.along[k] };
+        ahead * ROUND
+    });
+    out.extend([a, middle, b].map(|normal| Station { normal, ..corner }));
 }
