@@ -58,11 +58,7 @@ pub fn areas_beside(
     params: &Params,
 ) -> Areas {
     let fill = fill.minus(taken);
-    // What the beads leave of a stretch is skin if a line is worth it.
-    let least = i64::from(params.line_width / 2);
-    let left = exposed
-        .minus(taken)
-        .filter(|j, span| span.len() >= least || exposed.row(j).contains(&span));
+    let left = exposed.minus(taken).filter(|_, span| span.len() >= i64::from(LEAST_SKIN));
     Areas { fill: Some(fill.clone()), ..areas(&fill, &left, pitch, params) }
 }
 

@@ -11,6 +11,10 @@ use crate::units::{Coord, between};
 /// A bead takes a depth of up to this many line widths on its own.
 const WIDEST: f64 = 1.5;
 
+/// Strips between two walls get beads if they are no wider than twice this many line
+/// widths, one along either wall: wider ones taper too much for more.
+const SHARED: f64 = 1.6;
+
 /// A bead is stretched to this many line widths to spare another one on a short way.
 const STRETCHED: f64 = 1.75;
 
@@ -223,7 +227,8 @@ impl Behind {
         let across = depth(self.room) + lead;
         if skin && across - taken(self.skin) - taken(self.other) <= GAP * w {
             let depth = across / 2.0;
-            return Station { depth, shared: true, beads: beads(depth, w), skin: true, ..blank };
+            let beads = usize::from(depth <= SHARED * w);
+            return Station { depth, shared: true, beads, skin: true, ..blank };
         }
         if self.skin == 0 {
             return blank;
