@@ -1,51 +1,103 @@
 //! Walls -> Near: whether a place keeps its distance from all of them.
 
-use crate::geom::{Contour, edges};
-use crate::units::Coord;
+use crate::geom::{Contour, Point, edges};
 
-/// The edges of closed walls, sorted into square cells.
+/// Cells along each side of an area, at most.
+const MOST_CELLS: f64 = 256.0;
+
+/// A box around some places, grid units.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Area {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Area {
+    /// Around `places`, with `margin` on all sides.
+    pub(super) fn around(places: impl Iterator<Item = [f64; 2]>, margin: f64) -> Self {
+        let none = Self { low: [f64::MAX; 2], high: [f64::MIN; 2] };
+        let mut out = places.fold(none, |area, p| Self {
+            low: [0, 1].map(|k| area.low[k].min(p[k])),
+            high: [0, 1].map(|k| area.high[k].max(p[k])),
+        });
+        out.low = out.low.map(|x| x - margin);
+        out.high = out.high.map(|x| x + margin);
+        out
+    }
+
+    fn meets(&self, [p, q]: &[[f64; 2]; 2]) -> bool {
+        (0..2).all(|k| p[k].min(q[k]) <= self.high[k] && p[k].max(q[k]) >= self.low[k])
+    }
+}
+
+/// The edges of closed walls that meet an area, sorted into square cells.
 #[derive(Debug)]
 pub(super) struct Near {
-    /// From one end of an edge to the other.
     edges: Vec<[[f64; 2]; 2]>,
-    /// Each edge's index in each cell that its box touches, in the order of cells.
-    cells: Vec<((i32, i32), u32)>,
+    low: [f64; 2],
     side: f64,
+    /// Columns and rows of cells.
+    size: [usize; 2],
+    /// Where each cell begins in `items`; one more than there are cells.
+    starts: Vec<u32>,
+    /// Indices of edges whose boxes meet the cell.
+    items: Vec<u32>,
 }
 
 impl Near {
-    /// Cells of side `side`.
-    pub(super) fn new(walls: &[Contour], side: Coord) -> Self {
-        let point = |p: crate::geom::Point| [f64::from(p.x), f64::from(p.y)];
-        let edges: Vec<[[f64; 2]; 2]> =
-            walls.iter().flat_map(|w| edges(w)).map(|(p, q)| [point(p), point(q)]).collect();
-        let side = f64::from(side);
-        let mut cells = Vec::new();
-        for (k, [p, q]) in (0..).zip(&edges) {
-            let range = |i: usize| cell(p[i].min(q[i]), side)..=cell(p[i].max(q[i]), side);
-            for row in range(1) {
-                cells.extend(range(0).map(|column| ((row, column), k)));
-            }
-        }
-        cells.sort_unstable();
-        Self { edges, cells, side }
+    /// Cells of side `side`, larger where they would be too many.
+    pub(super) fn new(walls: &[Contour], area: Area, side: f64) -> Self {
+        let point = |p: Point| [f64::from(p.x), f64::from(p.y)];
+        let all = walls.iter().flat_map(|w| edges(w)).map(|(p, q)| [point(p), point(q)]);
+        let edges: Vec<[[f64; 2]; 2]> = all.filter(|edge| area.meets(edge)).collect();
+        let extent = [0, 1].map(|k| (area.high[k] - area.low[k]).max(0.0));
+        let side = side.max(extent[0].max(extent[1]) / MOST_CELLS);
+        let size = extent.map(|x| (x / side) as usize + 1);
+        let starts = vec![0; size[0] * size[1] + 1];
+        let mut near = Self { edges, low: area.low, side, size, starts, items: Vec::new() };
+        near.sort();
+        near
     }
 
-    /// Whether no wall is nearer to `p` than `distance`.
+    /// Sorts the edges into the cells by counting.
+    fn sort(&mut self) {
+        let mut next = vec![0_u32; self.starts.len()];
+        for [p, q] in &self.edges {
+            self.cells(*p, *q).for_each(|cell| next[cell + 1] += 1);
+        }
+        for k in 1..next.len() {
+            next[k] += next[k - 1];
+        }
+        self.starts.clone_from(&next);
+        let mut items = vec![0; next.last().map_or(0, |&n| n as usize)];
+        for (k, [p, q]) in (0..).zip(&self.edges) {
+            for cell in self.cells(*p, *q) {
+                items[next[cell] as usize] = k;
+                next[cell] += 1;
+            }
+        }
+        self.items = items;
+    }
+
+    /// The cells that meet the box with corners `p` and `q`.
+    fn cells(&self, p: [f64; 2], q: [f64; 2]) -> impl Iterator<Item = usize> + use<> {
+        // Casts to unsigned numbers hold below zero; what is beyond the area counts to its edge.
+        let at =
+            |x: f64, k: usize| (((x - self.low[k]) / self.side) as usize).min(self.size[k] - 1);
+        let range = |k: usize| at(p[k].min(q[k]), k)..=at(p[k].max(q[k]), k);
+        let (columns, rows, width) = (range(0), range(1), self.size[0]);
+        rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
+    }
+
+    /// Whether no wall is nearer to `p`, within the area, than `distance`.
     pub(super) fn is_free(&self, p: [f64; 2], distance: f64) -> bool {
-        let range = |i: usize| cell(p[i] - distance, self.side)..=cell(p[i] + distance, self.side);
-        range(1).all(|row| {
-            let (low, high) = ((row, *range(0).start()), (row, *range(0).end()));
-            let from = self.cells.partition_point(|(at, _)| *at < low);
-            let here = self.cells[from..].iter().take_while(|(at, _)| *at <= high);
-            let mut edges = here.map(|&(_, k)| self.edges[k as usize]);
+        let (low, high) = (p.map(|x| x - distance), p.map(|x| x + distance));
+        self.cells(low, high).all(|cell| {
+            let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
+            let mut edges = self.items[range].iter().map(|&k| self.edges[k as usize]);
             edges.all(|edge| distance2(p, edge) >= distance * distance)
         })
     }
-}
-
-fn cell(at: f64, side: f64) -> i32 {
-    (at / side).floor() as i32
 }
 
 /// The squared distance from `p` to an edge.
@@ -61,13 +113,13 @@ fn distance2(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::Point;
 
     #[test]
     fn a_place_is_free_up_to_its_distance_from_the_nearest_wall() {
         let p = |x, y| Point { x, y };
         let square = vec![p(0, 0), p(40_000, 0), p(40_000, 40_000), p(0, 40_000)];
-        let near = Near::new(&[square], 4_000);
+        let area = Area::around([[0.0; 2], [40_000.0; 2]].into_iter(), 10_000.0);
+        let near = Near::new(&[square], area, 4_000.0);
         for (at, far) in [([20_000.0, 3_000.0], 3_000.0), ([39_000.0, 20_000.0], 1_000.0)] {
             assert!(near.is_free(at, far));
             assert!(!near.is_free(at, far + 1.0));

@@ -66,7 +66,7 @@ pub fn rings(walls: &[Contour], crossed: &Crossed<'_>, params: &Params) -> Vec<B
     for lap in &laps {
         for index in 0..MOST_BEADS {
             for arc in arcs(lap, index, &near, params) {
-                out.push(bead(&arc));
+                out.push(bead(&arc, params));
             }
         }
     }
@@ -160,7 +160,7 @@ fn length(arc: &[Place]) -> f64 {
 }
 
 /// The points of a bead, only those where it bends or changes its width.
-fn bead(arc: &[Place]) -> Bead {
+fn bead(arc: &[Place], params: &Params) -> Bead {
     let mut kept = vec![0];
     keep_bends(arc, 0, arc.len() - 1, &mut kept);
     kept.push(arc.len() - 1);
@@ -169,6 +169,8 @@ fn bead(arc: &[Place]) -> Bead {
         .map(|k| {
             let Place { at: [u, v], width, .. } = arc[k];
             let mean = f64::midpoint(before, width);
+            // On its way to a narrow end a bead lies on the wall a little, if there is one.
+            let mean = if params.walls > 0 { mean } else { mean.min(before.min(width)) };
             before = width;
             LinePoint {
                 u: nearest(u) as Coord,

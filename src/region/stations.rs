@@ -2,7 +2,7 @@
 
 use super::Params;
 use super::close::Crossed;
-use super::near::Near;
+use super::near::{Area, Near};
 use super::rings::{MOST_BEADS, NARROWEST, SHORT};
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, Point, edges};
@@ -38,6 +38,10 @@ const ROUND: f64 = 1.2;
 /// many line widths: near a corner the depth is that along the other wall.
 const CORNER: f64 = 8.0;
 
+/// Beads and gaps closed in them are no further than this many line widths from a
+/// station that has beads.
+const MARGIN: f64 = CORNER + 8.0;
+
 /// A place of a wall, and the skin behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Station {
@@ -68,7 +72,9 @@ pub(super) fn stations(
     if laps.iter().flatten().all(|s| s.beads == 0) {
         return None;
     }
-    let near = Near::new(walls, params.line_width);
+    let with_beads = laps.iter().flatten().filter(|s| s.beads > 0).map(|s| s.at);
+    let w = f64::from(params.line_width);
+    let near = Near::new(walls, Area::around(with_beads, MARGIN * w), 2.0 * w);
     for (lap, wall) in laps.iter_mut().zip(walls) {
         lap.iter_mut().filter(|s| s.shared).for_each(|s| s.confirm(&near, params));
         *lap = settled(wall, std::mem::take(lap), params);
@@ -166,9 +172,6 @@ impl Edge {
         for j in low.y.div_euclid(pitch) + 1..high.y.div_euclid(pitch) + 1 {
             let v = j * pitch;
             let u = between(low.x, high.x, (v, low.y, high.y));
-            let Some(behind) = Behind::new(fill.row(j), exposed.row(j), u, !up, pitch) else {
-                continue;
-            };
             let t = f64::from(v - a.y) / f64::from(b.y - a.y);
             let at = [0, 1].map(|k| self.from[k] + t * self.length * self.along[k]);
             let blank = Station {
@@ -180,7 +183,12 @@ impl Edge {
                 way: self.way + t * self.length,
                 skin: false,
             };
-            out.push(behind.station(blank, sine, params));
+            if exposed.row(j).is_empty() {
+                out.push(blank);
+                continue;
+            }
+            let behind = Behind::new(fill.row(j), exposed.row(j), u, !up, pitch);
+            out.extend(behind.map(|b| b.station(blank, sine, params)));
         }
         if !up {
             out[first..].reverse();
@@ -354,6 +362,8 @@ fn with_corners(wall: &Contour, found: &[Station], round: f64, params: &Params) 
             next += 1;
         }
     }
+    // Of places without beads one in a row is enough.
+    out.dedup_by(|b, a| a.beads == 0 && b.beads == 0);
     out
 }
 
