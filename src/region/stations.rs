@@ -112,7 +112,7 @@ fn measured(wall: &Contour, crossed: &Crossed<'_>, params: &Params) -> Vec<Stati
     let turned = |p: Point| {
         if crossed.left_turn { Point { x: p.y, y: -p.x } } else { Point { x: -p.y, y: p.x } }
     };
-    let mut out = Vec::new();
+    let mut out = Vec::with_capacity(wall.len());
     let mut way = 0.0;
     for (p, q) in edges(wall) {
         let steep = (q.y - p.y).abs() >= (q.x - p.x).abs();
