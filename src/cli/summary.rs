@@ -11,7 +11,7 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
     let layers = &report.layers;
     let filament = &report.filament;
     let dual = report.dual.as_ref().map_or_else(String::new, |dual| {
-        format!("; {} of {} pairs of layers with thick infill", dual.thick_pairs, dual.pairs)
+        format!("; {} of {} groups of layers with thick infill", dual.thick_blocks, dual.blocks)
     });
     format!(
         "{} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm\n\
@@ -99,14 +99,14 @@ mod tests {
             layers: LayersReport { count: 100, height_mm: 0.2, ..LayersReport::default() },
             roles: vec![role("outer wall", 30.0), role("skin", 0.0), role("thick infill", 90.0)],
             filament: FilamentReport { length_mm: 120.0, volume_cm3: 0.289, weight_g: 0.36 },
-            dual: Some(DualReport { pairs: 47, thick_pairs: 46, ..DualReport::default() }),
+            dual: Some(DualReport { blocks: 47, thick_blocks: 46, ..DualReport::default() }),
             ..Report::default()
         };
         assert_eq!(
             summary(&report, Duration::from_millis(1230)),
             "100 layers of 0.2 mm, 40.0 x 30.0 x 20.0 mm\n\
              filament 120 mm, 0.29 cm³, 0.4 g (outer wall 25 %, thick infill 75 %)\n\
-             sliced in 1.23 s; 46 of 47 pairs of layers with thick infill\n"
+             sliced in 1.23 s; 46 of 47 groups of layers with thick infill\n"
         );
     }
 }

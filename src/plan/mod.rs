@@ -199,14 +199,15 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
     add(Role::Skin, 1, raster, skin.slivers.clone());
     for infill in &region.infill {
         let raster = params.region.rasters[infill.comb.raster];
-        let chains = link::comb(&infill.rows, infill.comb, raster.pitch, params.region.line_width);
+        let chains = link::hatch(infill, raster.pitch, params.region.line_width);
         add(Role::Infill, infill.layers, raster, chains);
     }
     if let Some(support) = &params.support {
         let raster = support.raster;
-        let chains =
-            link::comb(&region.support, support.comb(), raster.pitch, params.region.line_width);
-        add(Role::Support, 1, raster, chains);
+        for hatch in &region.support {
+            let chains = link::hatch(hatch, raster.pitch, params.region.line_width);
+            add(Role::Support, hatch.layers, raster, chains);
+        }
     }
     let support = chains.extract_if(.., |c| c.role == Role::Support).collect();
     let islands = order::islands(region.walls.clone(), chains, &region.layer.contours);
