@@ -4,6 +4,7 @@
 
 mod common;
 
+use common::solid::circle;
 use common::stack::{stack, stacks};
 use common::{Kind, Run, Solid, fixture, settings, slice};
 use proptest::prelude::*;
@@ -220,7 +221,7 @@ fn each_interlaced_layer_prints_its_share_of_the_lines() {
             assert_eq!(lanes, usize::from(comb.prints(j)), "line {j}");
         }
         for k in block.layers.clone() {
-            let ends = lanes.iter().filter(|&&l| grouping.ends(l, k, &block)).count();
+            let ends = lanes.iter().filter(|&&l| grouping.ends(l.phase, k, &block)).count();
             let is_last = k + 1 == block.layers.end;
             assert_eq!(ends, if is_last { ratio as usize } else { 1 }, "layer {k}");
         }
@@ -291,6 +292,39 @@ fn support_is_thick_where_a_group_shares_it() {
     let alone = [set[0], set[1], ("dual.parts", "infill")];
     let run = slice(&fixture("overhang.stl"), "generic-marlin", &alone);
     assert!(heights(&run, Kind::Support).iter().all(|&(_, n)| n == 1));
+}
+
+/// Filament of the inner walls, mm.
+fn inner_walls(run: &Run) -> f64 {
+    run.print.of(Kind::InnerWall).map(|m| m.e).sum()
+}
+
+#[test]
+fn inner_walls_of_upright_sides_are_printed_for_the_group() {
+    let plain = slice(&fixture("cube_20.stl"), "generic-marlin", &[("walls", "3")]);
+    for mode in MODES {
+        let set = [("walls", "3"), ("dual.mode", mode), ("dual.parts", "inner-walls")];
+        let run = slice(&fixture("cube_20.stl"), "generic-marlin", &set);
+        assert!(heights(&run, Kind::OuterWall).iter().all(|&(_, n)| n == 1));
+        let thick = heights(&run, Kind::InnerWall).iter().filter(|(_, n)| *n == 2).count();
+        // 49 pairs; interlaced, the two walls have their turns on layers of their own.
+        assert!(thick >= if mode == "pair" { 49 } else { 90 }, "{mode}: {thick}");
+        let ratio = inner_walls(&run) / inner_walls(&plain);
+        assert!((ratio - 1.0).abs() < 1e-4, "{mode}: {ratio}");
+    }
+}
+
+#[test]
+fn inner_walls_of_slopes_are_printed_on_every_layer() {
+    let set = [("walls", "3"), ("dual.mode", "pair"), ("dual.parts", "inner-walls")];
+    let cone = Solid::tower(&[(circle(12.0, 60), 0.0), (circle(6.0, 60), 8.0)]);
+    let run = slice(&cone.stl(), "generic-marlin", &set);
+    assert!(heights(&run, Kind::InnerWall).iter().all(|&(_, n)| n == 1));
+    // What stands upright beside the slope still is.
+    let both = cone.and(&Solid::cuboid([20.0, 0.0, 0.0], [30.0, 10.0, 8.0]));
+    let run = slice(&both.stl(), "generic-marlin", &set);
+    let heights = heights(&run, Kind::InnerWall);
+    assert!(heights.iter().any(|&(_, n)| n == 2) && heights.iter().any(|&(_, n)| n == 1));
 }
 
 #[test]

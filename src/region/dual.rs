@@ -166,7 +166,7 @@ impl<'a> Sharing<'a> {
     fn share(&mut self, comb: Comb, rows: &[Rows], skins: &[Option<&Rows>]) {
         for lane in self.grouping.lanes(comb) {
             let first = self.block.layers.start;
-            let ends = |n: usize| self.grouping.ends(lane, first + n, self.block);
+            let ends = |n: usize| self.grouping.ends(lane.phase, first + n, self.block);
             let printed = runs(rows, ends, self.line_width);
             self.explain(lane, rows, skins, &printed);
             for (out, printed) in self.hatches.iter_mut().zip(printed) {
@@ -187,7 +187,7 @@ impl<'a> Sharing<'a> {
         let mut from = 0;
         for n in 0..rows.len() {
             self.audit.plain(lane.comb, &rows[n], self.line_width);
-            if !self.grouping.ends(lane, first + n, self.block) {
+            if !self.grouping.ends(lane.phase, first + n, self.block) {
                 continue;
             }
             let group = from..n + 1;

@@ -42,8 +42,8 @@ pub struct Block {
 pub struct Lane {
     /// The lines.
     pub comb: Comb,
-    /// How many layers earlier than the block's its groups end.
-    phase: usize,
+    /// How many layers earlier than the block's their groups end.
+    pub phase: usize,
 }
 
 impl Grouping {
@@ -101,10 +101,17 @@ impl Grouping {
         (0..n).map(lane).collect()
     }
 
-    /// Whether a group of `lane` ends with layer `k` of `block`.
+    /// How many layers earlier than the block's the groups of walls of this depth end.
     #[must_use]
-    pub fn ends(&self, lane: Lane, k: usize, block: &Block) -> bool {
-        k + 1 == block.layers.end || (k + 1 + lane.phase).is_multiple_of(self.ratio)
+    pub fn wall_phase(&self, depth: u32) -> usize {
+        if self.is_interlaced() { depth as usize % self.ratio } else { 0 }
+    }
+
+    /// Whether a group that ends `phase` layers earlier than the block's ends with layer
+    /// `k` of `block`.
+    #[must_use]
+    pub fn ends(&self, phase: usize, k: usize, block: &Block) -> bool {
+        k + 1 == block.layers.end || (k + 1 + phase).is_multiple_of(self.ratio)
     }
 
     fn is_interlaced(&self) -> bool {

@@ -9,8 +9,10 @@ use super::classify::{Areas, areas};
 use super::close::{Crossed, close};
 use super::dual::{self, LayerAreas};
 use super::groups::{Block, Grouping};
-use super::{Comb, Hatch, Params, Prepared, Region, Skin, walls};
+use super::walls::{self, Wall};
+use super::{Comb, Hatch, Params, Prepared, Region, Skin};
 use crate::geom::spans::Rows;
+use crate::profile::DualPart;
 use crate::slice::Slicer;
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -46,6 +48,8 @@ struct Filling {
     skin: Skin,
     infill: Vec<Hatch>,
     support: Vec<Hatch>,
+    /// How many layers each wall is printed for.
+    walls: Vec<u32>,
 }
 
 impl<'a> Window<'a> {
@@ -118,13 +122,27 @@ impl<'a> Window<'a> {
             .collect();
         let (infill, audit) = dual::infill(block, &areas, self.grouping, self.params);
         let (support, support_audit) = self.share_support(block);
-        let mut fillings = Vec::with_capacity(areas.len());
-        for ((k, areas), (infill, support)) in
-            block.layers.clone().zip(&areas).zip(infill.into_iter().zip(support))
-        {
-            fillings.push(Filling { skin: self.skin(k, areas), infill, support });
+        let lines = infill.into_iter().zip(support).zip(self.share_walls(block));
+        let fillings = block.layers.clone().zip(&areas).zip(lines).map(
+            |((k, areas), ((infill, support), walls))| Filling {
+                skin: self.skin(k, areas),
+                infill,
+                support,
+                walls,
+            },
+        );
+        (fillings.collect(), audit.into_iter().chain(support_audit).collect())
+    }
+
+    /// How many layers each wall of each layer of a block is printed for.
+    fn share_walls(&self, block: &Block) -> Vec<Vec<u32>> {
+        let walls = |k| self.layer(k).map_or(&[] as &[Wall], |layer| &layer.walls);
+        let layers: Vec<&[Wall]> = block.layers.clone().map(walls).collect();
+        if self.grouping.shares(DualPart::InnerWalls) {
+            walls::share(block, &layers, self.grouping, self.params)
+        } else {
+            layers.iter().map(|walls| vec![1; walls.len()]).collect()
         }
-        (fillings, audit.into_iter().chain(support_audit).collect())
     }
 
     /// The support of each layer of a block.
@@ -167,13 +185,19 @@ impl<'a> Window<'a> {
     /// The regions of the layers that `fillings` were made for, in order.
     fn hand_on(&mut self, fillings: Vec<Filling>) -> Vec<Region> {
         let mut regions = Vec::with_capacity(fillings.len());
-        for Filling { skin, infill, support } in fillings {
+        for Filling { skin, infill, support, walls: printed } in fillings {
             let prepared = &mut self.layers[self.done - self.first];
             // Neighbours look at the rows only.
             let (walls, contours) =
                 (std::mem::take(&mut prepared.walls), std::mem::take(&mut prepared.layer.contours));
             let layer = crate::slice::Layer { contours, ..prepared.layer.clone() };
             let thin_mm2 = walls::thin_area(&layer.contours, &walls, self.params);
+            let walls = walls
+                .into_iter()
+                .zip(printed)
+                .filter(|(_, layers)| *layers > 0)
+                .map(|(wall, layers)| Wall { layers, ..wall })
+                .collect();
             regions.push(Region { layer, walls, skin, infill, support, thin_mm2 });
             self.done += 1;
         }
