@@ -45,11 +45,11 @@ pub fn slice(
     out: &mut dyn std::io::Write,
     progress: &progress::Progress,
 ) -> Result<report::Report> {
-    let settings = &job.settings;
-    let bed = bed(&settings.machine);
+    let bed = bed(&job.settings.machine);
     let models = job.models.iter().map(|file| mesh::stl::load(file)).collect::<Result<_>>()?;
     let placed = mesh::transform::place(models, &job.placement, &bed)?;
 
+    let settings = &settle(&job.settings, &placed.mesh);
     let heights = heights(settings, &placed.mesh);
     let facts = print_facts(&placed, heights);
     if heights.count == 0 {
@@ -99,6 +99,15 @@ pub fn slice(
     let audits = window.audits();
     let usage = writer.finish()?;
     report::report(job, &placed, heights, &usage, &audits, &tally)
+}
+
+/// The settings with what depends on the model decided.
+fn settle(settings: &profile::Settings, mesh: &mesh::Mesh) -> profile::Settings {
+    let angle = match settings.angle {
+        profile::Angle::Auto(_) => profile::Angle::Degrees(region::angle::least_turns(mesh)),
+        given => given,
+    };
+    profile::Settings { angle, ..settings.clone() }
 }
 
 /// What the start and end blocks may want to know.
