@@ -19,6 +19,7 @@ pub mod gcode;
 pub mod geom;
 pub mod job;
 pub mod mesh;
+pub mod motion;
 pub mod plan;
 pub mod profile;
 pub mod progress;

@@ -21,6 +21,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("gcode", &["geom", "plan", "profile", "error", "units", "job"]),
     ("job", &["mesh", "profile"]),
     ("profile", &["error"]),
+    ("motion", &["profile"]),
 ];
 
 /// Modules that may use all others: the flow itself, and what tells of it.
