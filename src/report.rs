@@ -1,7 +1,7 @@
 //! Report: what a run found and made, as versioned JSON (`--report`) and as a three-line summary.
 
 use crate::error::{Error, Result};
-use crate::gcode::write::{Material, Usage, Used, filament_area};
+use crate::gcode::usage::{Material, Usage, Used, filament_area};
 use crate::job::{self, Job};
 use crate::mesh::MeshReport;
 use crate::mesh::transform::Placed;

@@ -1,7 +1,9 @@
 //! Toolpaths -> text: a G-code file, written layer by layer.
 
 pub mod dialect;
+pub mod moves;
 pub mod number;
+pub mod usage;
 pub mod write;
 
 use crate::error::{Error, Result};
@@ -9,10 +11,12 @@ use crate::job;
 use crate::plan::Toolpath;
 use crate::profile::template::{self, PrintFacts};
 use crate::profile::{Settings, dump};
+use moves::{MoveParams, Moves};
 use rayon::prelude::*;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use write::{Material, Start, Usage, WriteParams};
+use usage::{Material, Usage};
+use write::{Start, WriteParams};
 
 /// Writes one G-code file.
 pub struct Writer<'a> {
@@ -20,6 +24,7 @@ pub struct Writer<'a> {
     file: PathBuf,
     settings: &'a Settings,
     facts: PrintFacts,
+    moves: MoveParams,
     params: WriteParams,
     start: Start,
     usage: Usage,
@@ -43,7 +48,8 @@ impl<'a> Writer<'a> {
             file: file.to_owned(),
             settings,
             facts,
-            params: WriteParams::new(settings, offset),
+            moves: MoveParams::new(settings, offset),
+            params: WriteParams::new(settings),
             start: Start { done: (0, facts.layers), ..Start::default() },
             usage: Usage::default(),
         };
@@ -63,19 +69,26 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// [`Error::Output`] if writing fails.
     pub fn layers(&mut self, layers: &[Toolpath]) -> Result<()> {
-        let params = &self.params;
-        let usages: Vec<Usage> = layers.par_iter().map(|layer| params.usage(layer)).collect();
+        let (params, moves) = (&self.params, &self.moves);
+        let walked: Vec<(Moves, Usage)> = layers
+            .par_iter()
+            .map(|layer| {
+                let moves = moves.moves(layer);
+                let usage = Usage::of(&moves);
+                (moves, usage)
+            })
+            .collect();
         let mut starts = Vec::with_capacity(layers.len());
-        for usage in &usages {
+        for (_, usage) in &walked {
             starts.push(self.start);
             self.start.e += usage.filament();
             self.start.done.0 += 1;
             self.usage.add(usage);
         }
-        let texts: Vec<Vec<u8>> = layers
+        let texts: Vec<Vec<u8>> = walked
             .par_iter()
             .zip(&starts)
-            .map(|(layer, start)| params.layer(layer, start))
+            .map(|((moves, _), start)| params.layer(moves, start))
             .collect();
         texts.iter().try_for_each(|text| self.put(text))
     }
@@ -86,7 +99,7 @@ impl<'a> Writer<'a> {
     /// As [`Self::new`].
     pub fn finish(mut self) -> Result<Usage> {
         let block = self.block("machine.end", &self.settings.machine.end)?;
-        let mut tail = self.params.finish(&self.start);
+        let mut tail = self.params.finish(&self.moves, &self.start);
         tail.extend_from_slice(self.params.done().as_bytes());
         tail.extend_from_slice(format!(";TYPE:Custom\n{block}").as_bytes());
         tail.extend_from_slice(self.summary().as_bytes());
