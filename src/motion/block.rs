@@ -19,6 +19,8 @@ pub(super) struct Course {
     pub(super) rest: f64,
     /// Whether more than the filament moves.
     pub(super) moves_nozzle: bool,
+    /// [`Junction::SpeedChange`]: by how much the corner before it was slowed down.
+    pub(super) slowed: f64,
     /// See [`Rates::deviation`].
     pub(super) deviation: f64,
 }
@@ -42,11 +44,12 @@ impl Course {
             acceleration,
             rest: 0.0,
             moves_nozzle,
+            slowed: 1.0,
             deviation: rates.deviation,
         };
         let rest = match rates.limits.junction {
             Junction::Jerk(jerk) => junction::from_rest(&course, &jerk),
-            Junction::Deviation(_) | Junction::SquareCorner { .. } => 0.0,
+            _ => 0.0,
         };
         course.rest = rest.max(rates.limits.minimum_speed).min(cruise);
         Some(course)

@@ -76,14 +76,14 @@ impl<T> Clock<T> {
 
     /// The next move. One of no length, or with a number that is none, takes no time.
     pub fn push(&mut self, given: Move<T>) {
-        let Some(course) = Course::new(&given, &self.rates) else {
+        let Some(mut course) = Course::new(&given, &self.rates) else {
             return self.push_empty(given.tag);
         };
         let ratio = match self.rates.limits.junction {
             Junction::SquareCorner { minimum_cruise_ratio, .. } => minimum_cruise_ratio,
             _ => 0.0,
         };
-        let corner = self.corner(&course);
+        let corner = self.corner(&mut course);
         let before = self.reach().unwrap_or(Reach { full: corner, smooth: corner });
         let block = Block::new(&course, corner, before, ratio, given.tag);
         self.before = Some(course);
@@ -136,12 +136,17 @@ impl<T> Clock<T> {
     }
 
     /// How fast the corner before `course` may be taken, squared.
-    fn corner(&self, course: &Course) -> f64 {
+    fn corner(&self, course: &mut Course) -> f64 {
         let Some(before) = &self.before else { return course.rest * course.rest };
         let limits = &self.rates.limits;
         let corner = match &limits.junction {
             Junction::Jerk(jerk) => {
                 let speed = junction::jerk(before, course, jerk);
+                speed * speed
+            }
+            Junction::SpeedChange(most) => {
+                course.slowed = junction::speed_change(before, course, most);
+                let speed = course.cruise * course.slowed;
                 speed * speed
             }
             Junction::Deviation(_) => junction::deviation(before, course, &limits.acceleration),

@@ -52,6 +52,29 @@ pub(super) fn jerk(before: &Course, after: &Course, jerk: &[f64; 4]) -> f64 {
     speed
 }
 
+/// Sailfish's "maximum speed change": the share of its speed at which the move after begins,
+/// so that no axis changes its own by more than this from what the move before began with.
+/// An axis that turns back or comes to a halt makes it nothing.
+pub(super) fn speed_change(before: &Course, after: &Course, most: &[f64; 4]) -> f64 {
+    let smallest = most.iter().copied().fold(f64::INFINITY, f64::min);
+    if after.cruise <= smallest {
+        return 1.0;
+    }
+    let mut share = 1.0_f64;
+    for axis in 0..4 {
+        let was = before.direction[axis] * before.cruise * before.slowed;
+        let will = after.direction[axis] * after.cruise;
+        if (will - was).abs() > most[axis] {
+            if will == 0.0 {
+                return 0.0;
+            }
+            let bound = if will > was { was + most[axis] } else { was - most[axis] };
+            share = share.min(bound / will);
+        }
+    }
+    share.max(0.0)
+}
+
 /// Marlin's junction deviation, squared speed: the corner as an arc that passes the
 /// corner at this distance, at no more than the acceleration towards its middle.
 pub(super) fn deviation(before: &Course, after: &Course, acceleration: &[f64; 4]) -> f64 {
@@ -103,8 +126,7 @@ pub(super) fn square_corner(before: &Course, after: &Course, extruder_velocity: 
         let arc = sine / (1.0 - sine);
         let tangent = 0.5 * sine / half_cosine;
         for course in [before, after] {
-            // Here the deviation is already times the acceleration that it was made from.
-            squared = squared.min(arc * course.deviation);
+            squared = squared.min(arc * course.deviation * course.acceleration);
             squared = squared.min(course.distance * course.acceleration * tangent);
         }
     }

@@ -1,5 +1,10 @@
 //! Settings -> Limits: what a machine's planner holds itself to.
 
+use crate::profile::{JunctionRule, Settings};
+
+/// Feeds are in mm/min where people set them.
+const SECONDS_PER_MINUTE: f64 = 60.0;
+
 /// What a machine's planner holds itself to. Arrays are x, y, z, e.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limits {
@@ -31,6 +36,10 @@ pub enum Junction {
     /// An axis that turns back may come in and leave at its jerk. Moves begin
     /// and end at rest with the same sudden change.
     Jerk([f64; 4]),
+    /// Sailfish's "maximum speed change" of each axis, mm/s: the corner is slowed down by
+    /// the share that each axis changes its speed too much. Moves begin and end at rest
+    /// at the minimum speed.
+    SpeedChange([f64; 4]),
     /// Marlin's junction deviation: how far a corner's arc would be from the corner, mm.
     Deviation(f64),
     /// Klipper's rule.
@@ -56,18 +65,51 @@ pub(super) struct Rates {
     feed_inverse: [f64; 4],
     /// 1 / acceleration.
     acceleration_inverse: [f64; 4],
-    /// How far a corner's arc would be from the corner, mm; with [`Junction::SquareCorner`]
-    /// times the acceleration that it holds for.
+    /// How far a corner's arc would be from the corner, mm.
     pub(super) deviation: f64,
     /// Klipper knows limits of the filament only where it moves alone.
     filament_alone: bool,
+}
+
+impl Limits {
+    /// The limits of the machine that these settings are for.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        let limits = &settings.limits;
+        let jerk = [limits.jerk_x, limits.jerk_y, limits.jerk_z, limits.jerk_e];
+        let per_minute = [limits.feed_x, limits.feed_y, limits.feed_z, limits.feed_e];
+        Self {
+            feed: per_minute.map(|feed| feed / SECONDS_PER_MINUTE),
+            acceleration: [
+                limits.acceleration_x,
+                limits.acceleration_y,
+                limits.acceleration_z,
+                limits.acceleration_e,
+            ],
+            print_acceleration: settings.machine.acceleration,
+            travel_acceleration: limits.travel_acceleration,
+            retract_acceleration: limits.retract_acceleration,
+            junction: match limits.junction {
+                JunctionRule::Jerk => Junction::Jerk(jerk),
+                JunctionRule::SpeedChange => Junction::SpeedChange(jerk),
+                JunctionRule::Deviation => Junction::Deviation(limits.junction_deviation),
+                JunctionRule::SquareCorner => Junction::SquareCorner {
+                    velocity: limits.square_corner_velocity,
+                    minimum_cruise_ratio: limits.minimum_cruise_ratio,
+                    extruder_corner_velocity: limits.extruder_corner_velocity,
+                },
+            },
+            look_ahead: (limits.look_ahead > 0).then_some(limits.look_ahead as usize),
+            minimum_speed: limits.minimum_speed,
+        }
+    }
 }
 
 impl Rates {
     pub(super) fn new(limits: Limits) -> Self {
         let inverse = |values: [f64; 4]| values.map(|value| 1.0 / value.max(LEAST));
         let deviation = match limits.junction {
-            Junction::Jerk(_) => 0.0,
+            Junction::Jerk(_) | Junction::SpeedChange(_) => 0.0,
             Junction::Deviation(deviation) => deviation.max(0.0),
             Junction::SquareCorner { velocity, .. } => {
                 let root_of_two = std::f64::consts::SQRT_2;
