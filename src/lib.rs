@@ -37,13 +37,13 @@ use units::to_units;
 
 pub use job::{Job, NAME};
 
-/// Slices `job` and writes the G-code to `out`.
+/// Slices `job` and writes the G-code to `out`, which is empty yet.
 ///
 /// # Errors
 /// Every [`error::Error`]; what was written to `out` until then is no usable G-code.
 pub fn slice(
     job: &Job,
-    out: &mut dyn std::io::Write,
+    out: &mut dyn gcode::Output,
     progress: &progress::Progress,
 ) -> Result<report::Report> {
     let settings = &job.settings;
@@ -95,8 +95,8 @@ pub fn slice(
         progress.add(regions.len());
     }
     let pairs = window.pair_stats();
-    let usage = writer.finish()?;
-    report::report(job, &placed, heights, &usage, pairs, &tally)
+    let sums = writer.finish()?;
+    report::report(job, &placed, heights, &sums, pairs, &tally)
 }
 
 /// What the start and end blocks may want to know.

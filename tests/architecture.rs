@@ -18,7 +18,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("region", &["geom", "slice", "profile", "units"]),
     ("plan", &["geom", "region", "slice", "profile", "units"]),
     // The program's name comes from the job.
-    ("gcode", &["geom", "plan", "profile", "error", "units", "job"]),
+    ("gcode", &["geom", "plan", "motion", "profile", "error", "units", "job"]),
     ("job", &["mesh", "profile"]),
     ("profile", &["error"]),
     ("motion", &["profile"]),

@@ -3,6 +3,7 @@
 //! The text, the sums and the clock all read these moves: a length, a feed and an
 //! amount of filament are worked out once, and the clock times what is written.
 
+use super::flow::{FlowLimit, Flows, Lowered, whole_feed};
 use super::usage::filament_area;
 use crate::geom::Point;
 use crate::plan::{Path, Role, Toolpath};
@@ -70,6 +71,8 @@ pub struct Moves {
     pub moves: Vec<Move>,
     /// For each path, the first move of the way to it.
     pub paths: Vec<usize>,
+    /// How fast its filament is molten.
+    pub flows: Flows,
 }
 
 /// The numbers that the moves are made by.
@@ -88,6 +91,7 @@ pub struct MoveParams {
     retract: f64,
     retract_feed: f64,
     hop: Coord,
+    limit: FlowLimit,
 }
 
 impl MoveParams {
@@ -117,6 +121,7 @@ impl MoveParams {
             retract: settings.retraction.length,
             retract_feed: settings.retraction.feed,
             hop: to_units(settings.retraction.z_hop),
+            limit: FlowLimit::new(settings),
         }
     }
 
@@ -152,11 +157,6 @@ impl MoveParams {
     }
 }
 
-/// A feed as it is written, mm/min.
-fn whole_feed(feed: f64) -> u32 {
-    feed.round().max(1.0) as u32
-}
-
 /// A layer's moves in the making.
 struct Walk<'a> {
     params: &'a MoveParams,
@@ -180,6 +180,7 @@ impl<'a> Walk<'a> {
             from: at.map(|(_, place)| place),
             moves: Vec::with_capacity(most),
             paths: Vec::with_capacity(layer.steps.len()),
+            flows: Flows::default(),
         };
         Self { params, out, at, z: None }
     }
@@ -238,9 +239,14 @@ impl<'a> Walk<'a> {
         let thick = path.is_thick();
         let slow = if self.out.layer == 0 { self.params.first_layer } else { 1.0 };
         let asked = self.params.feeds[path.role as usize][usize::from(thick)] * slow;
-        let feed = whole_feed(asked);
+        // No bead has this width: the first one is looked at.
+        let mut bead = Bead { role: path.role, thick, height: path.height, width: -1 };
+        let mut feed = 0;
         for (to, length, width) in path.segments() {
-            let bead = Bead { role: path.role, thick, height: path.height, width };
+            if width != bead.width {
+                bead.width = width;
+                feed = self.feed(&bead, asked);
+            }
             let length = length / UNITS_PER_MM;
             self.out.moves.push(Move {
                 to: self.params.place(to),
@@ -253,5 +259,13 @@ impl<'a> Walk<'a> {
         }
         let end = path.end();
         self.at = Some((end, self.params.place(end)));
+    }
+
+    /// How fast a bead is laid, mm/min.
+    fn feed(&mut self, bead: &Bead, asked: f64) -> u32 {
+        let (given, flow) = self.params.limit.feed(self.params.filament(bead, 1.0), asked);
+        let feeds = Lowered { asked: whole_feed(asked), given };
+        self.out.flows.note(bead.role as usize, bead.thick, flow, feeds);
+        given
     }
 }

@@ -1,5 +1,6 @@
 //! Moves -> Usage: lengths and filament, and what filament is in other measures.
 
+use super::flow::Flows;
 use super::moves::{Kind, Moves};
 use crate::profile::Settings;
 use std::f64::consts::PI;
@@ -25,13 +26,15 @@ pub struct Usage {
     pub travel_length: f64,
     /// How many of them retract.
     pub retractions: usize,
+    /// How fast filament is molten.
+    pub flows: Flows,
 }
 
 impl Usage {
     /// What a layer uses.
     #[must_use]
     pub fn of(layer: &Moves) -> Self {
-        let mut usage = Self::default();
+        let mut usage = Self { flows: layer.flows.clone(), ..Self::default() };
         for step in &layer.moves {
             match step.kind {
                 Kind::Extrude(bead) => {
@@ -66,6 +69,7 @@ impl Usage {
         self.travels += other.travels;
         self.travel_length += other.travel_length;
         self.retractions += other.retractions;
+        self.flows.add(&other.flows);
     }
 }
 
@@ -78,6 +82,8 @@ pub struct Material {
     pub cm3: f64,
     /// Weight, g.
     pub grams: f64,
+    /// Price, in the money of `filament.cost`, if that is known.
+    pub cost: Option<f64>,
 }
 
 impl Material {
@@ -85,7 +91,9 @@ impl Material {
     #[must_use]
     pub fn new(mm: f64, settings: &Settings) -> Self {
         let cm3 = mm * filament_area(settings) / 1000.0;
-        Self { mm, cm3, grams: cm3 * settings.filament.density }
+        let grams = cm3 * settings.filament.density;
+        let per_kg = settings.filament.cost;
+        Self { mm, cm3, grams, cost: (per_kg > 0.0).then_some(per_kg * grams / 1000.0) }
     }
 }
 

@@ -11,13 +11,14 @@ use std::io::Write as _;
 /// Widths that differ by less are not worth an annotation (0.01 mm).
 const LEAST_WIDTH_CHANGE: Coord = 100;
 
-/// How far the print is when a layer begins.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Start {
-    /// Filament used so far, mm.
-    pub e: f64,
-    /// Layers done and in all, for the progress.
-    pub done: (usize, usize),
+/// A layer's text.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LayerText {
+    /// All of it but the progress.
+    pub text: Vec<u8>,
+    /// Where progress may be told: at the layer's beginning, then before the way to each
+    /// path; bytes.
+    pub cuts: Vec<usize>,
 }
 
 /// What writing needs to know.
@@ -43,35 +44,36 @@ impl WriteParams {
         }
     }
 
-    /// The text of one layer.
+    /// The text of one layer; `e` is the filament used before, mm.
     #[must_use]
-    pub fn layer(&self, layer: &Moves, start: &Start) -> Vec<u8> {
-        let mut text = Text::new(self, start);
+    pub fn layer(&self, layer: &Moves, e: f64) -> LayerText {
+        let mut text = Text::new(self, e);
         // Half a screen line for a move.
         text.out.reserve(30 * layer.moves.len());
-        text.begin(layer, start);
-        for step in &layer.moves {
-            text.step(step);
+        let mut cuts = Vec::with_capacity(1 + layer.paths.len());
+        text.annotations(layer);
+        cuts.push(text.out.len());
+        text.begin(layer);
+        let mut done = 0;
+        for &first in &layer.paths {
+            layer.moves[done..first].iter().for_each(|step| text.step(step));
+            done = first;
+            cuts.push(text.out.len());
         }
-        text.out
+        layer.moves[done..].iter().for_each(|step| text.step(step));
+        LayerText { text: text.out, cuts }
     }
 
-    /// The last pull before the end block, at filament used `e`.
+    /// The last pull before the end block, at filament used `e`, mm.
     #[must_use]
-    pub fn finish(&self, moves: &MoveParams, start: &Start) -> Vec<u8> {
-        let mut text = Text::new(self, start);
+    pub fn finish(&self, moves: &MoveParams, e: f64) -> Vec<u8> {
+        let mut text = Text::new(self, e);
         text.restart_e();
         let (length, feed) = moves.last_pull();
         if length > 0.0 {
             text.pull(-length, feed);
         }
         text.out
-    }
-
-    /// What says that the print is done, where the end block does not.
-    #[must_use]
-    pub fn done(&self) -> String {
-        if self.dialect.says_done() { self.dialect.progress(100) + "\n" } else { String::new() }
     }
 
     /// The annotation of a role, in the words that viewers know.
@@ -103,8 +105,8 @@ struct Text<'a> {
 }
 
 impl<'a> Text<'a> {
-    fn new(params: &'a WriteParams, start: &Start) -> Self {
-        let e = if params.dialect.restarts_e() { 0.0 } else { start.e };
+    fn new(params: &'a WriteParams, used: f64) -> Self {
+        let e = if params.dialect.restarts_e() { 0.0 } else { used };
         Self {
             params,
             out: Vec::new(),
@@ -118,17 +120,16 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Annotations, progress, fan and E at the beginning of a layer.
-    fn begin(&mut self, layer: &Moves, start: &Start) {
+    /// What viewers read at the beginning of a layer.
+    fn annotations(&mut self, layer: &Moves) {
         self.line(";LAYER_CHANGE");
         self.annotate(";Z:", layer.z);
         self.annotate(";HEIGHT:", layer.height);
-        let (done, total) = start.done;
-        let percent = |layers: usize| 100 * layers / total.max(1);
-        if done == 0 || percent(done) != percent(done - 1) {
-            let words = self.params.dialect.progress(percent(done));
-            self.line(&words);
-        }
+        self.height = layer.height;
+    }
+
+    /// Fan and E at the beginning of a layer.
+    fn begin(&mut self, layer: &Moves) {
         let from = self.params.fan_from_layer.max(1) - 1;
         let fan = self.params.fan;
         if fan > 0.0 && layer.layer == from {
@@ -136,7 +137,6 @@ impl<'a> Text<'a> {
             self.line(&words);
         }
         self.restart_e();
-        self.height = layer.height;
         self.at = layer.from;
     }
 
@@ -273,8 +273,7 @@ mod tests {
     fn text(profile: &str) -> String {
         let settings = profile::load(profile, &[]).unwrap().settings;
         let moves = MoveParams::new(&settings, [150.0, 150.0]).moves(&toolpath());
-        let start = Start { e: 1.0, done: (3, 10) };
-        String::from_utf8(WriteParams::new(&settings).layer(&moves, &start)).unwrap()
+        String::from_utf8(WriteParams::new(&settings).layer(&moves, 1.0).text).unwrap()
     }
 
     #[test]
@@ -285,7 +284,6 @@ mod tests {
 ;LAYER_CHANGE
 ;Z:0.8
 ;HEIGHT:0.2
-M73 P30
 G1 E0 F1200
 G1 X150 Y150 F5400
 G1 Z0.8 F1000

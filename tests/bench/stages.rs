@@ -176,7 +176,10 @@ fn whole(c: &mut Criterion, model: &Model) {
         profile: "generic-marlin".to_owned(),
         output: PathBuf::from("-"),
     };
-    let run = || slicer::slice(&job, &mut std::io::sink(), &Default::default());
+    let run = || {
+        let mut out = std::io::Cursor::new(Vec::new());
+        slicer::slice(&job, &mut out, &Default::default())
+    };
     let mut group = c.benchmark_group("whole");
     group.bench_function(BenchmarkId::new("all cores", model.name), |b| b.iter(run));
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
