@@ -67,14 +67,17 @@ pub fn slice(
     let params = region::Params::new(settings);
     let support = region::support::SupportParams::new(settings);
     let on_bed = bed_corners(&bed, placed.offset);
-    let supports = support.map(|s| region::support::supports(&slicer, &s, on_bed));
+    let supports = support.map(|s| region::window::Support {
+        comb: s.comb(),
+        rows: region::support::supports(&slicer, &s, on_bed),
+    });
     let plan = plan::PlanParams::new(settings, &params, support);
 
     let mut tally = report::Tally::default();
     let mut writer = gcode::Writer::new(out, &job.output, settings, facts, placed.offset)?;
     let mut at: Option<Point> = None;
-    let mut window =
-        region::window::Window::new(&slicer, &params, &settings.dual, supports.unwrap_or_default());
+    let grouping = region::groups::Grouping::new(&settings.dual, settings.dual_ratio());
+    let mut window = region::window::Window::new(&slicer, &params, &grouping, supports);
     for regions in window.by_ref() {
         let pieces: Vec<plan::Pieces> =
             regions.par_iter().map(|r| plan::pieces(r, &plan)).collect();
@@ -94,9 +97,9 @@ pub fn slice(
         writer.layers(&toolpaths)?;
         progress.add(regions.len());
     }
-    let pairs = window.pair_stats();
+    let audits = window.audits();
     let sums = writer.finish()?;
-    report::report(job, &placed, heights, &sums, pairs, &tally)
+    report::report(job, &placed, heights, &sums, &audits, &tally)
 }
 
 /// What the start and end blocks may want to know.

@@ -9,16 +9,16 @@ use crate::job::{self, Job};
 use crate::mesh::MeshReport;
 use crate::mesh::transform::Placed;
 use crate::plan::Role;
-use crate::profile::{DualMode, Settings};
+use crate::profile::{DualMode, DualPart, Settings};
 use crate::region::Region;
-use crate::region::dual::PairStats;
+use crate::region::audit::{Apart, Audit};
 use crate::slice::Heights;
 use crate::units::{Coord, sum_mm, to_mm};
 use crate::warning::Warning;
 use serde::Serialize;
 
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// What one run found and made.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -141,19 +141,57 @@ pub struct FlowReport {
     pub limit_mm3_s: f64,
 }
 
-/// What dual injection did.
+/// What dual injection did. Lengths are those of lines, without the turns between them;
+/// lines shorter than they are wide are not printed and not counted.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct DualReport {
-    /// Pairs of layers that have infill.
-    pub pairs: usize,
-    /// Of these, pairs with thick lines.
-    pub thick_pairs: usize,
-    /// Length of thick lines, mm (turns of the zig-zag not counted).
+    /// Layers of a group.
+    pub ratio: u32,
+    /// Blocks of layers with sparse infill.
+    pub blocks: usize,
+    /// Of these, blocks with thick lines.
+    pub thick_blocks: usize,
+    /// Length of thick lines, mm.
     pub thick_length_mm: f64,
-    /// Length of thin lines left beside them, mm (likewise).
+    /// Length of thin lines left beside them, mm.
     pub thin_length_mm: f64,
-    /// Volume of the pairs' lines over that of the same lines printed thin on both layers.
+    /// Material of these lines over that of the same lines printed thin on every layer.
     pub volume_ratio: f64,
+    /// Each block of layers, infill and support apart.
+    pub audit: Vec<BlockReport>,
+}
+
+/// What became of the infill or the support of one block of layers: those that are filled
+/// in one direction, which is one group, or several where lines are interlaced.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BlockReport {
+    /// `infill` or `support`.
+    pub part: DualPart,
+    /// First layer of the block, counted from 1.
+    pub first_layer: usize,
+    /// Number of its layers.
+    pub layers: usize,
+    /// Length of thick lines, mm.
+    pub thick_length_mm: f64,
+    /// Length of thin lines, mm.
+    pub thin_length_mm: f64,
+    /// As in [`DualReport::volume_ratio`].
+    pub volume_ratio: f64,
+    /// What is not printed for a whole group, and why.
+    pub kept_apart: ApartReport,
+}
+
+/// Length of the layers' lines that are not printed for a whole group, mm, by cause.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct ApartReport {
+    /// Another layer of the group has none there: it is at or beyond its walls.
+    pub bounds_mm: f64,
+    /// Another layer of the group has skin there.
+    pub skin_mm: f64,
+    /// What the layers share is shorter than a line is wide.
+    pub short_mm: f64,
+    /// The group has fewer layers than the ratio: at the bed, at the top, or where the direction turns.
+    pub ends_mm: f64,
 }
 
 /// Thin places of a layer below this are rounding and tips of corners, not shape, mm².
@@ -201,7 +239,7 @@ pub fn report(
     placed: &Placed,
     heights: Heights,
     sums: &Sums,
-    pairs: PairStats,
+    audits: &[Audit],
     tally: &Tally,
 ) -> Result<Report> {
     let settings = &job.settings;
@@ -241,7 +279,7 @@ pub fn report(
             largest_mm3_s: usage.flows.largest,
             limit_mm3_s: settings.machine.max_volumetric_flow,
         },
-        dual: (settings.dual.mode != DualMode::Off).then(|| dual(pairs)),
+        dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits)),
         warnings: (placed.warnings.iter().cloned())
             .chain(tally.warnings())
             .chain(slowed_down(&usage.flows, settings))
@@ -313,16 +351,40 @@ fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
     warnings
 }
 
-fn dual(pairs: PairStats) -> DualReport {
+fn dual(settings: &Settings, audits: &[Audit]) -> DualReport {
+    let seen = || audits.iter().filter(|a| a.plain > 0);
+    let infill = || seen().filter(|a| a.part == DualPart::Infill);
+    let sum = |of: fn(&Audit) -> i64| seen().map(of).sum::<i64>();
     DualReport {
-        pairs: pairs.pairs,
-        thick_pairs: pairs.thick_pairs,
-        thick_length_mm: sum_mm(pairs.thick),
-        thin_length_mm: sum_mm(pairs.thin),
-        volume_ratio: if pairs.plain == 0 {
-            1.0
-        } else {
-            sum_mm(2 * pairs.thick + pairs.thin) / sum_mm(pairs.plain)
+        ratio: settings.dual_ratio(),
+        blocks: infill().count(),
+        thick_blocks: infill().filter(|a| a.thick > 0).count(),
+        thick_length_mm: sum_mm(sum(|a| a.thick)),
+        thin_length_mm: sum_mm(sum(|a| a.thin)),
+        volume_ratio: ratio(sum(|a| a.material), sum(|a| a.plain)),
+        audit: seen().map(block).collect(),
+    }
+}
+
+fn block(audit: &Audit) -> BlockReport {
+    let Apart { bounds, skin, short, ends } = audit.kept_apart;
+    BlockReport {
+        part: audit.part,
+        first_layer: audit.first + 1,
+        layers: audit.layers,
+        thick_length_mm: sum_mm(audit.thick),
+        thin_length_mm: sum_mm(audit.thin),
+        volume_ratio: ratio(audit.material, audit.plain),
+        kept_apart: ApartReport {
+            bounds_mm: sum_mm(bounds),
+            skin_mm: sum_mm(skin),
+            short_mm: sum_mm(short),
+            ends_mm: sum_mm(ends),
         },
     }
+}
+
+/// `part` of `whole`; 1 if there is nothing.
+fn ratio(part: i64, whole: i64) -> f64 {
+    if whole == 0 { 1.0 } else { part as f64 / whole as f64 }
 }

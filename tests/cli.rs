@@ -65,7 +65,7 @@ fn wrong_settings_name_the_flag() {
     run(&["--layer-height", "-1"], "--layer-height: layer_height = -1 is out of range");
     run(&["--layer-height", "x"], "--layer-height: layer_height is the text `x`");
     run(&["--layer-height", "0.5"], "--layer-height: layer_height = 0.5 mm is more than");
-    run(&["--dual", "--layer-height", "0.3"], "thick infill taller than machine.nozzle");
+    run(&["--dual", "--layer-height", "0.3"], "make thick lines taller than the 0.4 mm");
     run(&["--set", "wals=2"], "--set: unknown key `wals`; did you mean `walls`?");
     run(&["--set", "walls"], "there is no `=`");
     run(&["-p", "generic"], "unknown profile `generic`");

@@ -11,7 +11,7 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
     let layers = &report.layers;
     let filament = &report.filament;
     let dual = report.dual.as_ref().map_or_else(String::new, |dual| {
-        format!("; {} of {} pairs of layers with thick infill", dual.thick_pairs, dual.pairs)
+        format!("; {} of {} groups of layers with thick infill", dual.thick_blocks, dual.blocks)
     });
     format!(
         "{} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm\n\
@@ -125,14 +125,14 @@ mod tests {
                 cost: None,
             },
             time: TimeReport { total_s: 4_990.0, ..TimeReport::default() },
-            dual: Some(DualReport { pairs: 47, thick_pairs: 46, ..DualReport::default() }),
+            dual: Some(DualReport { blocks: 47, thick_blocks: 46, ..DualReport::default() }),
             ..Report::default()
         };
         assert_eq!(
             summary(&report, Duration::from_millis(1230)),
             "100 layers of 0.2 mm, 40.0 x 30.0 x 20.0 mm\n\
              filament 120 mm, 0.29 cm³, 0.4 g (outer wall 25 %, thick infill 75 %)\n\
-             prints in 1 h 23 min, sliced in 1.23 s; 46 of 47 pairs of layers with thick infill\n"
+             prints in 1 h 23 min, sliced in 1.23 s; 46 of 47 groups of layers with thick infill\n"
         );
     }
 

@@ -41,7 +41,7 @@ impl SupportParams {
     /// The lines that are printed.
     #[must_use]
     pub fn comb(&self) -> Comb {
-        Comb { raster: 0, stride: self.stride, joined: true }
+        Comb { raster: 0, offset: 0, stride: self.stride, joined: true }
     }
 
     /// The numbers that `settings` mean for support; none if there is to be none.

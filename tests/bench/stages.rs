@@ -12,6 +12,7 @@ use slicer::geom::Point;
 use slicer::mesh::transform::{Placed, place};
 use slicer::mesh::{Bed, Placement, Unit, stl};
 use slicer::profile::{self, Override, Settings, ValueOrigin};
+use slicer::region::groups::Grouping;
 use slicer::region::raster::Scan;
 use slicer::region::window::Window;
 use slicer::region::{Params, Prepared, Region, classify, walls};
@@ -147,7 +148,8 @@ fn scan(layer: &Layer, params: &Params) -> Scan {
 fn plan(c: &mut Criterion, model: &Model) {
     let placed = model.place();
     let slicer = model.slicer(&placed);
-    let window = Window::new(&slicer, &model.params, &model.settings.dual, Vec::new());
+    let grouping = Grouping::new(&model.settings.dual, model.settings.dual_ratio());
+    let window = Window::new(&slicer, &model.params, &grouping, None);
     let regions: Vec<Region> = window.flatten().collect();
     let params = plan::PlanParams::new(&model.settings, &model.params, None);
     let pieces = || regions.iter().map(|r| plan::pieces(r, &params)).collect::<Vec<_>>();
