@@ -6,6 +6,10 @@ use crate::profile::Settings;
 /// Part of the limit that is no more than rounding.
 const SLACK: f64 = 1e-9;
 
+/// Lines differ in width by a few per cent: what is slowed down by less than this part is
+/// no news.
+const LEAST_TOLD: f64 = 0.05;
+
 /// What the hot end can melt.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FlowLimit {
@@ -41,7 +45,7 @@ pub(super) fn whole_feed(feed: f64) -> u32 {
     feed.round().max(1.0) as u32
 }
 
-/// The feeds of a role that were lowered.
+/// The feeds of a role that were lowered by more than a little.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Lowered {
     /// The highest asked for, mm/min.
@@ -60,10 +64,10 @@ pub struct Flows {
 }
 
 impl Flows {
-    /// Notes a bead's flow, and that it was lowered for it.
+    /// Notes a bead's flow, and whether it was slowed down for it.
     pub(super) fn note(&mut self, role: usize, thick: bool, flow: f64, feeds: Lowered) {
         self.largest = self.largest.max(flow);
-        if feeds.given < feeds.asked {
+        if f64::from(feeds.given) < (1.0 - LEAST_TOLD) * f64::from(feeds.asked) {
             merge(&mut self.lowered[role][usize::from(thick)], Some(feeds));
         }
     }
@@ -106,6 +110,7 @@ mod tests {
         let mut flows = Flows::default();
         flows.note(3, true, 5.0, Lowered { asked: 3600, given: 3000 });
         flows.note(3, true, 4.0, Lowered { asked: 1800, given: 1800 });
+        flows.note(2, false, 4.0, Lowered { asked: 1800, given: 1750 });
         let mut all = flows.clone();
         all.note(3, true, 6.0, Lowered { asked: 4000, given: 3500 });
         flows.add(&all);
