@@ -15,6 +15,7 @@
 //! The command line is the binary's own.
 
 pub mod error;
+pub mod estimate;
 pub mod gcode;
 pub mod geom;
 pub mod job;
@@ -23,6 +24,7 @@ pub mod motion;
 pub mod plan;
 pub mod profile;
 pub mod progress;
+pub mod reader;
 pub mod region;
 pub mod report;
 pub mod slice;

@@ -22,6 +22,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("job", &["mesh", "profile"]),
     ("profile", &["error"]),
     ("motion", &["profile"]),
+    // A witness of its own: it shares nothing with the code that writes.
+    ("reader", &[]),
+    ("estimate", &["reader", "motion", "error"]),
 ];
 
 /// Modules that may use all others: the flow itself, and what tells of it.

@@ -29,7 +29,7 @@ pub(super) fn from_rest(course: &Course, jerk: &[f64; 4]) -> f64 {
 pub(super) fn jerk(before: &Course, after: &Course, jerk: &[f64; 4]) -> f64 {
     let shared = before.cruise.min(after.cruise);
     let mut factor = 1.0;
-    for axis in 0..4 {
+    for (axis, jerk) in jerk.iter().enumerate() {
         // As the firmware has it: only the move before is slowed down to what both can do.
         let leaving = before.direction[axis] * shared * factor;
         let entering = after.direction[axis] * after.cruise * factor;
@@ -39,8 +39,8 @@ pub(super) fn jerk(before: &Course, after: &Course, jerk: &[f64; 4]) -> f64 {
             // Turning back, or one of them stands still: it may come in and leave at its jerk.
             leaving.abs().max(entering.abs())
         };
-        if change > jerk[axis] {
-            factor *= jerk[axis] / change;
+        if change > *jerk {
+            factor *= jerk / change;
         }
     }
     let speed = shared * factor;
@@ -61,14 +61,14 @@ pub(super) fn speed_change(before: &Course, after: &Course, most: &[f64; 4]) -> 
         return 1.0;
     }
     let mut share = 1.0_f64;
-    for axis in 0..4 {
+    for (axis, most) in most.iter().enumerate() {
         let was = before.direction[axis] * before.cruise * before.slowed;
         let will = after.direction[axis] * after.cruise;
-        if (will - was).abs() > most[axis] {
+        if (will - was).abs() > *most {
             if will == 0.0 {
                 return 0.0;
             }
-            let bound = if will > was { was + most[axis] } else { was - most[axis] };
+            let bound = if will > was { was + most } else { was - most };
             share = share.min(bound / will);
         }
     }

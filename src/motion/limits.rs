@@ -138,8 +138,8 @@ impl Rates {
         };
         let axes = if moves_nozzle && self.filament_alone { 3 } else { 4 };
         let (mut slowest, mut laziest) = (0.0_f64, 0.0_f64);
-        for axis in 0..axes {
-            let length = delta[axis].abs();
+        for (axis, length) in delta.iter().enumerate().take(axes) {
+            let length = length.abs();
             slowest = slowest.max(length * self.feed_inverse[axis]);
             laziest = laziest.max(length * self.acceleration_inverse[axis]);
         }
