@@ -1,7 +1,10 @@
 //! Report: what a run found and made, as versioned JSON (`--report`) and as a three-line summary.
 
 use crate::error::{Error, Result};
-use crate::gcode::write::{Material, Usage, Used, filament_area};
+use crate::gcode::Sums;
+use crate::gcode::flow::Flows;
+use crate::gcode::times::{LayerTime, Times};
+use crate::gcode::usage::{Material, filament_area};
 use crate::job::{self, Job};
 use crate::mesh::MeshReport;
 use crate::mesh::transform::Placed;
@@ -38,6 +41,10 @@ pub struct Report {
     pub travel: TravelReport,
     /// Material in all, without the start block's purge.
     pub filament: FilamentReport,
+    /// How long the print takes, by `limits` of the profile.
+    pub time: TimeReport,
+    /// How fast filament is molten.
+    pub flow: FlowReport,
     /// Dual injection; absent where it is off.
     pub dual: Option<DualReport>,
     /// Findings.
@@ -69,6 +76,8 @@ pub struct RoleReport {
     pub filament_mm: f64,
     /// Volume, mm³.
     pub volume_mm3: f64,
+    /// Time, s.
+    pub time_s: f64,
 }
 
 /// Moves without extrusion.
@@ -80,6 +89,10 @@ pub struct TravelReport {
     pub length_mm: f64,
     /// How many of them retract.
     pub retractions: usize,
+    /// Time of the moves, in z too, s.
+    pub time_s: f64,
+    /// Time of pulling filament back and pushing it forward, s.
+    pub retraction_time_s: f64,
 }
 
 /// Material in all.
@@ -91,6 +104,41 @@ pub struct FilamentReport {
     pub volume_cm3: f64,
     /// Weight, g.
     pub weight_g: f64,
+    /// Price, in the money of `filament.cost`; absent where that is 0.
+    pub cost: Option<f64>,
+}
+
+/// How long the print takes, without homing, heating and the rest of the start and end blocks.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct TimeReport {
+    /// In all, s.
+    pub total_s: f64,
+    /// The layer that takes longest, s.
+    pub longest_layer_s: f64,
+    /// The layer that takes shortest, s.
+    pub shortest_layer_s: f64,
+    /// How much the layers' times differ: standard deviation over mean.
+    pub layer_spread: f64,
+    /// Each layer, in order.
+    pub layers: Vec<LayerTimeReport>,
+}
+
+/// How long a layer takes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct LayerTimeReport {
+    /// Its top above the bed, mm.
+    pub z_mm: f64,
+    /// Time, s.
+    pub time_s: f64,
+}
+
+/// How fast filament is molten.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct FlowReport {
+    /// The largest flow of the print, mm³/s.
+    pub largest_mm3_s: f64,
+    /// The most that the hot end melts, mm³/s.
+    pub limit_mm3_s: f64,
 }
 
 /// What dual injection did. Lengths are those of lines, without the turns between them;
@@ -190,11 +238,12 @@ pub fn report(
     job: &Job,
     placed: &Placed,
     heights: Heights,
-    usage: &Usage,
+    sums: &Sums,
     audits: &[Audit],
     tally: &Tally,
 ) -> Result<Report> {
     let settings = &job.settings;
+    let Sums { usage, times } = sums;
     let filament_mm = usage.filament();
     if filament_mm <= 0.0 {
         return Err(Error::Unprintable(format!(
@@ -203,7 +252,7 @@ pub fn report(
             settings.line_width
         )));
     }
-    let Material { mm, cm3, grams } = Material::new(filament_mm, settings);
+    let Material { mm, cm3, grams, cost } = Material::new(filament_mm, settings);
     Ok(Report {
         schema: SCHEMA,
         slicer: job::NAME.to_owned(),
@@ -216,35 +265,90 @@ pub fn report(
             height_mm: to_mm(heights.other),
             top_mm: to_mm(heights.top(heights.count - 1)),
         },
-        roles: roles(usage, settings),
+        roles: roles(sums, settings),
         travel: TravelReport {
             count: usage.travels,
             length_mm: usage.travel_length,
             retractions: usage.retractions,
+            time_s: times.travel,
+            retraction_time_s: times.retraction,
         },
-        filament: FilamentReport { length_mm: mm, volume_cm3: cm3, weight_g: grams },
+        filament: FilamentReport { length_mm: mm, volume_cm3: cm3, weight_g: grams, cost },
+        time: time(times),
+        flow: FlowReport {
+            largest_mm3_s: usage.flows.largest,
+            limit_mm3_s: settings.machine.max_volumetric_flow,
+        },
         dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits)),
-        warnings: placed.warnings.iter().cloned().chain(tally.warnings()).collect(),
+        warnings: (placed.warnings.iter().cloned())
+            .chain(tally.warnings())
+            .chain(slowed_down(&usage.flows, settings))
+            .collect(),
     })
 }
 
-fn roles(usage: &Usage, settings: &Settings) -> Vec<RoleReport> {
+fn roles(sums: &Sums, settings: &Settings) -> Vec<RoleReport> {
     let area = filament_area(settings);
-    let told = |role: String, used: Used| RoleReport {
-        role,
-        length_mm: used.length,
-        filament_mm: used.filament,
-        volume_mm3: used.filament * area,
-    };
     let mut roles = Vec::new();
-    for (role, [thin, thick]) in Role::ALL.iter().zip(usage.roles) {
-        roles.push(told(role.name().to_owned(), thin));
+    for (index, role) in Role::ALL.iter().enumerate() {
         // An outer wall is never thick.
-        if *role != Role::OuterWall {
-            roles.push(told(format!("thick {}", role.name()), thick));
+        let kinds: &[usize] = if *role == Role::OuterWall { &[0] } else { &[0, 1] };
+        for &kind in kinds {
+            let used = sums.usage.roles[index][kind];
+            roles.push(RoleReport {
+                role: role_name(*role, kind == 1),
+                length_mm: used.length,
+                filament_mm: used.filament,
+                volume_mm3: used.filament * area,
+                time_s: sums.times.roles[index][kind],
+            });
         }
     }
     roles
+}
+
+fn role_name(role: Role, thick: bool) -> String {
+    if thick { format!("thick {}", role.name()) } else { role.name().to_owned() }
+}
+
+fn time(times: &Times) -> TimeReport {
+    let seconds = || times.layers.iter().map(|layer| layer.seconds);
+    let count = times.layers.len().max(1) as f64;
+    let mean = times.total() / count;
+    let variance = seconds().map(|s| (s - mean) * (s - mean)).sum::<f64>() / count;
+    let told = |layer: &LayerTime| LayerTimeReport { z_mm: to_mm(layer.z), time_s: layer.seconds };
+    TimeReport {
+        total_s: times.total(),
+        longest_layer_s: seconds().fold(0.0, f64::max),
+        shortest_layer_s: seconds().reduce(f64::min).unwrap_or_default(),
+        layer_spread: if mean > 0.0 { variance.sqrt() / mean } else { 0.0 },
+        layers: times.layers.iter().map(told).collect(),
+    }
+}
+
+/// Where the hot end cannot follow.
+fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    for (role, kinds) in Role::ALL.iter().zip(flows.lowered) {
+        for (thick, lowered) in kinds.into_iter().enumerate() {
+            let thick = thick == 1;
+            let setting = match role {
+                Role::OuterWall | Role::InnerWall => "speed.wall",
+                Role::Skin => "speed.skin",
+                Role::Infill if thick => "speed.thick_infill",
+                Role::Infill => "speed.infill",
+                Role::Support => "speed.support",
+            };
+            warnings.extend(lowered.map(|lowered| Warning::FlowLimited {
+                role: role_name(*role, thick),
+                setting: setting.to_owned(),
+                asked_mm_min: lowered.asked,
+                lowest_mm_min: lowered.given,
+                limit_mm3_s: settings.machine.max_volumetric_flow,
+            }));
+        }
+    }
+    warnings
 }
 
 fn dual(settings: &Settings, audits: &[Audit]) -> DualReport {

@@ -61,6 +61,8 @@ pub(crate) enum Command {
     /// List, show and check profiles
     #[command(subcommand)]
     Profile(ProfileCommand),
+    /// Say how long a G-code file takes
+    Estimate(EstimateArgs),
     /// Print completions for a shell
     Completions {
         /// The shell
@@ -93,6 +95,29 @@ pub(crate) enum ProfileCommand {
         #[arg(value_name = "FILE")]
         name: String,
     },
+}
+
+/// Arguments of estimating.
+#[derive(Debug, Args)]
+pub(crate) struct EstimateArgs {
+    /// G-code file of any slicer; `-` reads standard input
+    #[arg(value_name = "FILE")]
+    pub(crate) file: String,
+    /// Built-in profile, or a file if it has a `/` or ends in .toml: the machine's [limits]
+    #[arg(short, long, value_name = "NAME", default_value = DEFAULT)]
+    pub(crate) profile: String,
+    /// Change any setting of the profile, such as limits.jerk_x=8 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Tell every layer's time, too
+    #[arg(long)]
+    pub(crate) layers: bool,
+    /// Leave out what the file itself says of limits (M201, M203, M204, M205, SET_VELOCITY_LIMIT)
+    #[arg(long)]
+    pub(crate) fixed_limits: bool,
 }
 
 /// Arguments of slicing.

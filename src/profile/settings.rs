@@ -64,6 +64,8 @@ pub struct Settings {
     pub filament: Filament,
     /// The printer.
     pub machine: Machine,
+    /// How fast the printer can move, for estimates of time.
+    pub limits: MotionLimits,
 }
 
 /// See [`Settings::wall_order`].
@@ -331,6 +333,8 @@ pub struct Filament {
     pub fan: f64,
     /// First layer (counted from 1) printed with the fan on.
     pub fan_from_layer: u32,
+    /// Price, money per kg; 0 where it is not known.
+    pub cost: f64,
 }
 
 /// `[machine]`: the printer.
@@ -357,6 +361,8 @@ pub struct Machine {
     pub acceleration: f64,
     /// E counts from the last move instead of from the start.
     pub relative_e: bool,
+    /// Plastic that the hot end can melt, mm³/s.
+    pub max_volumetric_flow: f64,
     /// G-code before the print, with `{placeholders}`.
     pub start: String,
     /// G-code after the print, with `{placeholders}`.
@@ -383,6 +389,69 @@ pub enum Origin {
     Centre,
     /// At the bed's front left corner.
     FrontLeft,
+}
+
+/// `[limits]`: what the printer's planner holds itself to. It changes no move, only
+/// estimates of time. `machine.acceleration` is the acceleration of moves that extrude.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MotionLimits {
+    /// Highest feed in x, mm/min.
+    pub feed_x: f64,
+    /// Highest feed in y, mm/min.
+    pub feed_y: f64,
+    /// Highest feed in z, mm/min.
+    pub feed_z: f64,
+    /// Highest feed of the filament, mm/min.
+    pub feed_e: f64,
+    /// Highest acceleration in x, mm/s².
+    pub acceleration_x: f64,
+    /// Highest acceleration in y, mm/s².
+    pub acceleration_y: f64,
+    /// Highest acceleration in z, mm/s².
+    pub acceleration_z: f64,
+    /// Highest acceleration of the filament, mm/s².
+    pub acceleration_e: f64,
+    /// Acceleration of moves without extrusion, mm/s².
+    pub travel_acceleration: f64,
+    /// Acceleration of the filament alone, mm/s².
+    pub retract_acceleration: f64,
+    /// Which rule says how fast a corner may be taken.
+    pub junction: JunctionRule,
+    /// `jerk` and `speed-change`: sudden change of speed in x, mm/s.
+    pub jerk_x: f64,
+    /// `jerk` and `speed-change`: sudden change of speed in y, mm/s.
+    pub jerk_y: f64,
+    /// `jerk` and `speed-change`: sudden change of speed in z, mm/s.
+    pub jerk_z: f64,
+    /// `jerk` and `speed-change`: sudden change of the filament's speed, mm/s.
+    pub jerk_e: f64,
+    /// `deviation`: how far an arc would pass from the corner, mm.
+    pub junction_deviation: f64,
+    /// `square-corner`: speed through a corner of 90°, mm/s.
+    pub square_corner_velocity: f64,
+    /// `square-corner`: part of a move, 0 to 0.99, that is left for cruising.
+    pub minimum_cruise_ratio: f64,
+    /// `square-corner`: sudden change of the filament's speed, mm/s.
+    pub extruder_corner_velocity: f64,
+    /// Moves that the planner knows of at a time; 0 is the whole file.
+    pub look_ahead: u32,
+    /// No corner need be slower than this, mm/s.
+    pub minimum_speed: f64,
+}
+
+/// See [`MotionLimits::junction`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum JunctionRule {
+    /// Marlin's classic jerk.
+    Jerk,
+    /// Sailfish's "maximum speed change".
+    SpeedChange,
+    /// Marlin's junction deviation.
+    Deviation,
+    /// Klipper's square corner velocity.
+    SquareCorner,
 }
 
 impl Settings {
