@@ -112,7 +112,7 @@ pub(crate) struct EstimateArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// Tell every layer's time, too
+    /// List every layer with its time (JSON always does)
     #[arg(long)]
     pub(crate) layers: bool,
     /// Leave out what the file itself says of limits (M201, M203, M204, M205, SET_VELOCITY_LIMIT)
