@@ -159,7 +159,8 @@ impl<T> Clock<T> {
     fn plan(&mut self) {
         let smooth = matches!(self.rates.limits.junction, Junction::SquareCorner { .. });
         if let (Some(most), false) = (self.rates.limits.look_ahead, smooth) {
-            plan::back_from_last(&mut self.pending);
+            let least = self.rates.limits.minimum_speed;
+            plan::back_from_last(&mut self.pending, least * least);
             while self.pending.len() >= most.max(2) {
                 self.settle(1);
                 plan::settle_first(&mut self.pending);
