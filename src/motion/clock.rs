@@ -9,7 +9,7 @@ use std::vec::Drain;
 
 /// Blocks that are planned at once where the whole file is looked at: enough
 /// for the pass back to be seldom, few enough to stay in the cache.
-const BATCH: usize = 1024;
+const BATCH: usize = 256;
 
 /// How long a move takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -136,8 +136,8 @@ impl<T> Clock<T> {
         let Some(before) = &self.before else { return course.rest * course.rest };
         let limits = &self.rates.limits;
         let corner = match &limits.junction {
-            Junction::Jerk(jerk) => {
-                let speed = junction::jerk(before, course, jerk);
+            Junction::Jerk(_) => {
+                let speed = junction::jerk(before, course, &self.rates.jerk_inverse);
                 speed * speed
             }
             Junction::SpeedChange(most) => {
