@@ -52,8 +52,8 @@ fn assert_same(a: &Run, b: &Run, what: &str) {
 }
 
 /// Filament of every role, mm.
-fn roles(run: &Run) -> Vec<(&'static str, f64)> {
-    run.report.roles.iter().map(|r| (r.role, r.filament_mm)).collect()
+fn roles(run: &Run) -> Vec<(String, f64)> {
+    run.report.roles.iter().map(|r| (r.role.clone(), r.filament_mm)).collect()
 }
 
 fn assert_like(a: &Run, b: &Run, factor: f64, what: &str) {

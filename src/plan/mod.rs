@@ -11,6 +11,7 @@ use crate::geom::Point;
 use crate::profile::{RetractWhen, Seam, Settings, WallOrder};
 use crate::region::raster::Raster;
 use crate::region::support::SupportParams;
+use crate::region::walls::Wall;
 use crate::region::{Params, Region};
 use crate::slice::Layer;
 use crate::units::{Coord, to_units};
@@ -24,24 +25,16 @@ pub enum Role {
     InnerWall,
     /// Solid lines at tops and bottoms.
     Skin,
-    /// Sparse infill of one layer's height.
+    /// Sparse infill.
     Infill,
-    /// Sparse infill of a pair's height.
-    ThickInfill,
     /// Support.
     Support,
 }
 
 impl Role {
     /// All roles, in the order of reports.
-    pub const ALL: [Self; 6] = [
-        Self::OuterWall,
-        Self::InnerWall,
-        Self::Skin,
-        Self::Infill,
-        Self::ThickInfill,
-        Self::Support,
-    ];
+    pub const ALL: [Self; 5] =
+        [Self::OuterWall, Self::InnerWall, Self::Skin, Self::Infill, Self::Support];
 
     /// Its name in reports.
     #[must_use]
@@ -51,7 +44,6 @@ impl Role {
             Self::InnerWall => "inner wall",
             Self::Skin => "skin",
             Self::Infill => "infill",
-            Self::ThickInfill => "thick infill",
             Self::Support => "support",
         }
     }
@@ -75,14 +67,23 @@ pub struct Path {
     pub points: Vec<PathPoint>,
     /// Height of the bead, grid units.
     pub height: Coord,
+    /// How many layers it is printed for.
+    pub layers: u32,
 }
 
 impl Path {
+    /// Whether it is printed for more than its own layer.
+    #[must_use]
+    pub fn is_thick(&self) -> bool {
+        self.layers > 1
+    }
+
     /// A closed wall that starts and ends at the vertex `from`.
-    fn closed(role: Role, contour: &[Point], from: usize, width: Coord, height: Coord) -> Self {
-        let n = contour.len();
-        let points = (0..=n).map(|k| PathPoint { at: contour[(from + k) % n], width }).collect();
-        Self { role, points, height }
+    fn closed(role: Role, wall: &Wall, from: usize, width: Coord, height: Coord) -> Self {
+        let (path, layers) = (&wall.path, wall.layers);
+        let n = path.len();
+        let points = (0..=n).map(|k| PathPoint { at: path[(from + k) % n], width }).collect();
+        Self { role, points, height: layers as Coord * height, layers }
     }
 
     /// Where it begins.
@@ -178,11 +179,12 @@ pub struct Pieces {
 pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
     let mut chains: Vec<Path> = Vec::new();
     let height = region.layer.height;
-    let mut add = |role, height, raster: Raster, links: Vec<link::Chain>| {
+    let mut add = |role, layers: u32, raster: Raster, links: Vec<link::Chain>| {
         chains.extend(links.into_iter().map(|chain| {
             Path {
                 role,
-                height,
+                layers,
+                height: layers as Coord * height,
                 points: chain
                     .into_iter()
                     .map(|p| PathPoint {
@@ -195,20 +197,19 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
     };
     let skin = &region.skin;
     let raster = params.region.rasters[skin.raster];
-    add(Role::Skin, height, raster, link::skin(&skin.lines, &params.region));
-    add(Role::Skin, height, raster, skin.slivers.clone());
+    add(Role::Skin, 1, raster, link::skin(&skin.lines, &params.region));
+    add(Role::Skin, 1, raster, skin.slivers.clone());
     for infill in &region.infill {
         let raster = params.region.rasters[infill.comb.raster];
-        let (role, height) =
-            if infill.thick { (Role::ThickInfill, 2 * height) } else { (Role::Infill, height) };
-        let chains = link::comb(&infill.rows, infill.comb, raster.pitch, params.region.line_width);
-        add(role, height, raster, chains);
+        let chains = link::hatch(infill, raster.pitch, params.region.line_width);
+        add(Role::Infill, infill.layers, raster, chains);
     }
     if let Some(support) = &params.support {
         let raster = support.raster;
-        let chains =
-            link::comb(&region.support, support.comb(), raster.pitch, params.region.line_width);
-        add(Role::Support, height, raster, chains);
+        for hatch in &region.support {
+            let chains = link::hatch(hatch, raster.pitch, params.region.line_width);
+            add(Role::Support, hatch.layers, raster, chains);
+        }
     }
     let support = chains.extract_if(.., |c| c.role == Role::Support).collect();
     let islands = order::islands(region.walls.clone(), chains, &region.layer.contours);

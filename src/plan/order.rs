@@ -19,7 +19,7 @@ pub fn order(pieces: Pieces, height: Coord, mut at: Point, params: &PlanParams) 
         let island = islands.remove(k);
         order_walls(island.walls, height, &mut at, params, &mut out);
         let mut chains = island.chains;
-        for role in [Role::Skin, Role::Infill, Role::ThickInfill] {
+        for role in [Role::Skin, Role::Infill] {
             order_chains(chains.extract_if(.., |c| c.role == role).collect(), &mut at, &mut out);
         }
     }
@@ -137,7 +137,7 @@ fn order_walls(
         let wall = walls.remove(k);
         let role = if wall.depth == 0 { Role::OuterWall } else { Role::InnerWall };
         *at = wall.path[from];
-        out.push(Path::closed(role, &wall.path, from, params.region.line_width, height));
+        out.push(Path::closed(role, &wall, from, params.region.line_width, height));
     }
 }
 

@@ -46,7 +46,7 @@ pub struct Settings {
     /// Pattern of the sparse infill.
     pub pattern: Pattern,
     /// Direction of the raster lines of even layers, degrees from the x axis; odd layers are turned by 90.
-    pub angle: f64,
+    pub angle: Angle,
     /// How far skin and infill lines reach into the innermost wall, in line widths.
     pub infill_overlap: f64,
 
@@ -102,15 +102,42 @@ pub enum Pattern {
     Triangles,
 }
 
-/// `[dual]`: dual injection.
+/// See [`Settings::angle`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Angle {
+    /// So many degrees.
+    Degrees(f64),
+    /// The one that has least turns, which depends on the model.
+    Auto(Auto),
+}
+
+impl Angle {
+    /// Degrees; half a right angle where no model has decided yet.
+    #[must_use]
+    pub fn degrees(self) -> f64 {
+        match self {
+            Self::Degrees(degrees) => degrees,
+            Self::Auto(_) => 45.0,
+        }
+    }
+}
+
+/// `[dual]`: dual injection. A group is a number of layers one on the other.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Dual {
-    /// Whether infill is printed thick.
+    /// Whether lines are printed thick, and on which layers.
     pub mode: DualMode,
-    /// Which direction a pair's thick lines take.
+    /// How many layers make a group, whose lines are printed at once.
+    pub ratio: DualRatio,
+    /// Thick lines are never taller than this, % of the nozzle's diameter.
+    pub max_bead_height: f64,
+    /// What is printed thick.
+    pub parts: Vec<DualPart>,
+    /// Which direction a group's thick lines take.
     pub direction: DualDirection,
-    /// What happens to infill that only one layer of a pair has.
+    /// What happens to infill that a layer of a group lacks.
     pub remainder: DualRemainder,
 }
 
@@ -118,10 +145,44 @@ pub struct Dual {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DualMode {
-    /// Infill on every layer.
+    /// Every line on every layer.
     Off,
-    /// Infill on the upper layer of each pair, with twice the material.
+    /// Thick lines on the uppermost layer of each group, with the material of all its layers.
     Pair,
+    /// Thick lines shared out among the layers: each layer has its turn with some of them.
+    Interlaced,
+}
+
+/// See [`Dual::ratio`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum DualRatio {
+    /// So many.
+    Layers(u32),
+    /// As many as height and flow allow.
+    Auto(Auto),
+}
+
+/// The word `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Auto {
+    /// The word.
+    Auto,
+}
+
+/// See [`Dual::parts`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DualPart {
+    /// Sparse infill.
+    Infill,
+    /// Support.
+    Support,
+    /// All walls but the outermost.
+    InnerWalls,
+    /// All skin but the layer that is seen.
+    InnerSkin,
 }
 
 /// See [`Dual::direction`].
@@ -138,9 +199,9 @@ pub enum DualDirection {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DualRemainder {
-    /// Only infill that both layers share is printed thick; the rest thin on its own layer.
+    /// Only infill that layers share is printed thick; the rest thin on its own layer.
     Thin,
-    /// One layer's infill is printed thick as a whole, the other's left out (the thesis's rule).
+    /// One layer's infill is printed thick as a whole, the others' left out (the thesis's rule).
     Drop,
 }
 
