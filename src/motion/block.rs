@@ -66,7 +66,7 @@ pub(super) struct Block<T> {
     pub(super) acceleration: f64,
     /// Most that the squared speed can change within it: 2 · acceleration · distance.
     pub(super) change: f64,
-    /// [`Block::change`] by the part of the acceleration that is used for short sprints.
+    /// [`Block::change`] by no more than the acceleration for short sprints.
     pub(super) smooth_change: f64,
     /// Highest speed, squared.
     pub(super) cruise: f64,
@@ -86,15 +86,15 @@ pub(super) struct Block<T> {
 
 impl<T> Block<T> {
     /// The block of `course` after a block that may end at `before` (squared), with a
-    /// corner that allows `corner` (squared).
-    pub(super) fn new(course: &Course, corner: f64, before: Reach, ratio: f64, tag: T) -> Self {
+    /// corner that allows `corner` (squared). `sprint` is the acceleration for short sprints, mm/s².
+    pub(super) fn new(course: &Course, corner: f64, before: Reach, sprint: f64, tag: T) -> Self {
         let change = 2.0 * course.acceleration * course.distance;
         let most_entry = corner.min(before.full);
         Self {
             distance: course.distance,
             acceleration: course.acceleration,
             change,
-            smooth_change: change * (1.0 - ratio),
+            smooth_change: change.min(2.0 * sprint * course.distance),
             cruise: course.cruise * course.cruise,
             rest: course.rest * course.rest,
             most_entry,
@@ -136,6 +136,6 @@ impl<T> Block<T> {
 pub(super) struct Reach {
     /// With the whole acceleration.
     pub(super) full: f64,
-    /// With the part that is used for short sprints.
+    /// With that for short sprints.
     pub(super) smooth: f64,
 }

@@ -79,13 +79,9 @@ impl<T> Clock<T> {
         let Some(mut course) = Course::new(&given, &self.rates) else {
             return self.push_empty(given.tag);
         };
-        let ratio = match self.rates.limits.junction {
-            Junction::SquareCorner { minimum_cruise_ratio, .. } => minimum_cruise_ratio,
-            _ => 0.0,
-        };
         let corner = self.corner(&mut course);
         let before = self.reach().unwrap_or(Reach { full: corner, smooth: corner });
-        let block = Block::new(&course, corner, before, ratio, given.tag);
+        let block = Block::new(&course, corner, before, self.rates.sprint, given.tag);
         self.before = Some(course);
         self.pending.push_back(block);
         self.plan();

@@ -67,6 +67,9 @@ pub(super) struct Rates {
     acceleration_inverse: [f64; 4],
     /// How far a corner's arc would be from the corner, mm.
     pub(super) deviation: f64,
+    /// Klipper's acceleration for short sprints, mm/s². It is a part of the machine's,
+    /// so that moves which an axis holds back to less have nothing to lose.
+    pub(super) sprint: f64,
     /// Klipper knows limits of the filament only where it moves alone.
     filament_alone: bool,
 }
@@ -116,7 +119,14 @@ impl Rates {
                 velocity * velocity * (root_of_two - 1.0) / limits.print_acceleration.max(LEAST)
             }
         };
+        let sprint = match limits.junction {
+            Junction::SquareCorner { minimum_cruise_ratio, .. } => {
+                limits.print_acceleration.max(LEAST) * (1.0 - minimum_cruise_ratio)
+            }
+            _ => f64::INFINITY,
+        };
         Self {
+            sprint,
             feed_inverse: inverse(limits.feed),
             acceleration_inverse: inverse(limits.acceleration),
             deviation,
