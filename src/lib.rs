@@ -48,11 +48,11 @@ pub fn slice(
     out: &mut dyn gcode::Output,
     progress: &progress::Progress,
 ) -> Result<report::Report> {
-    let settings = &job.settings;
-    let bed = bed(&settings.machine);
+    let bed = bed(&job.settings.machine);
     let models = job.models.iter().map(|file| mesh::stl::load(file)).collect::<Result<_>>()?;
     let placed = mesh::transform::place(models, &job.placement, &bed)?;
 
+    let settings = &settle(&job.settings, &placed.mesh);
     let heights = heights(settings, &placed.mesh);
     let facts = print_facts(&placed, heights);
     if heights.count == 0 {
@@ -121,6 +121,15 @@ impl Iterator for Planner<'_> {
         let toolpaths = ordered.into_par_iter();
         Some(toolpaths.map(|(r, from, paths)| plan::toolpath(r, paths, from, plan)).collect())
     }
+}
+
+/// The settings with what depends on the model decided.
+fn settle(settings: &profile::Settings, mesh: &mesh::Mesh) -> profile::Settings {
+    let angle = match settings.angle {
+        profile::Angle::Auto(_) => profile::Angle::Degrees(region::angle::least_turns(mesh)),
+        given => given,
+    };
+    profile::Settings { angle, ..settings.clone() }
 }
 
 /// What the start and end blocks may want to know.

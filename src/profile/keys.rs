@@ -23,6 +23,13 @@ pub enum Kind {
     Word(&'static [&'static str]),
     /// Any of these words, in a list.
     Words(&'static [&'static str]),
+    /// A number within limits, both included, or `auto`.
+    NumberOrAuto {
+        /// Lowest value allowed, in the key's unit.
+        min: f64,
+        /// Highest value allowed, in the key's unit.
+        max: f64,
+    },
     /// A whole number within limits, both included, or `auto`.
     CountOrAuto {
         /// Lowest value allowed.
@@ -107,7 +114,7 @@ pub const KEYS: &[Key] = &[
     number("skin_reach", "mm", 0.0, 20.0, "how far a skin reaches sideways into the infill"),
     number("infill", "%", 0.0, 100.0, "density of the sparse infill"),
     word("pattern", &["rectilinear", "aligned", "grid", "triangles"], "pattern of the sparse infill"),
-    number("angle", "degrees", -360.0, 360.0, "direction of the lines on even layers, from the x axis"),
+    Key { unit: "degrees", ..plain("angle", Kind::NumberOrAuto { min: -360.0, max: 360.0 }, "direction of the lines on even layers, from the x axis; auto has least turns") },
     number("infill_overlap", "line widths", 0.0, 1.0, "how far lines reach into the innermost wall"),
     word("dual.mode", &["off", "pair", "interlaced"], "thick lines: none, on the top layer of each group, or shared out evenly among its layers"),
     plain("dual.ratio", Kind::CountOrAuto { min: 2, max: 50 }, "layers whose lines are printed at once; auto is as many as pay"),
@@ -203,6 +210,7 @@ impl Key {
         }
         match self.kind {
             Kind::Number { .. }
+            | Kind::NumberOrAuto { .. }
             | Kind::Count { .. }
             | Kind::CountOrAuto { .. }
             | Kind::Word(_)
@@ -220,6 +228,7 @@ impl Key {
         match self.kind {
             Kind::Number { min, max } => format!("{min} to {max}"),
             Kind::Count { min, max } => format!("{min} to {max}"),
+            Kind::NumberOrAuto { min, max } => format!("{min} to {max} | auto"),
             Kind::CountOrAuto { min, max } => format!("{min} to {max} | auto"),
             Kind::Word(words) => words.join(" | "),
             Kind::Words(words) => format!("any of {}", words.join(", ")),
@@ -235,7 +244,10 @@ impl Key {
     /// Wrong type, out of range, or none of the words.
     pub fn check(&self, value: Value) -> Result<Value, String> {
         match (self.kind, value) {
-            (Kind::Number { min, max }, Value::Integer(whole)) => {
+            (
+                Kind::Number { min, max } | Kind::NumberOrAuto { min, max },
+                Value::Integer(whole),
+            ) => {
                 #[expect(
                     clippy::cast_precision_loss,
                     reason = "far beyond any limit where it is lost"
@@ -243,8 +255,12 @@ impl Key {
                 let number = whole as f64;
                 self.within(number, min, max)
             }
-            (Kind::Number { min, max }, Value::Float(number)) => self.within(number, min, max),
-            (Kind::CountOrAuto { .. }, Value::String(word)) => self.one_of(&["auto"], word),
+            (Kind::Number { min, max } | Kind::NumberOrAuto { min, max }, Value::Float(number)) => {
+                self.within(number, min, max)
+            }
+            (Kind::NumberOrAuto { .. } | Kind::CountOrAuto { .. }, Value::String(word)) => {
+                self.one_of(&["auto"], word)
+            }
             (Kind::Count { min, max } | Kind::CountOrAuto { min, max }, Value::Integer(whole)) => {
                 if (i64::from(min)..=i64::from(max)).contains(&whole) {
                     Ok(Value::Integer(whole))
@@ -312,6 +328,7 @@ impl Key {
         match self.kind {
             Kind::Number { .. } => format!("a number, {} {}", self.allowed(), self.unit),
             Kind::Count { .. } => format!("a whole number, {}", self.allowed()),
+            Kind::NumberOrAuto { min, max } => format!("a number, {min} to {max}, or auto"),
             Kind::CountOrAuto { min, max } => format!("a whole number, {min} to {max}, or auto"),
             Kind::Words(_) => format!("a list of {}", self.allowed()),
             Kind::Word(_) => format!("one of {}", self.allowed()),

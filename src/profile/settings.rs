@@ -46,7 +46,7 @@ pub struct Settings {
     /// Pattern of the sparse infill.
     pub pattern: Pattern,
     /// Direction of the raster lines of even layers, degrees from the x axis; odd layers are turned by 90.
-    pub angle: f64,
+    pub angle: Angle,
     /// How far skin and infill lines reach into the innermost wall, in line widths.
     pub infill_overlap: f64,
 
@@ -100,6 +100,27 @@ pub enum Pattern {
     Grid,
     /// Lines at 0°, 60° and 120° on every layer, each at a third of the density.
     Triangles,
+}
+
+/// See [`Settings::angle`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Angle {
+    /// So many degrees.
+    Degrees(f64),
+    /// The one that has least turns, which depends on the model.
+    Auto(Auto),
+}
+
+impl Angle {
+    /// Degrees; half a right angle where no model has decided yet.
+    #[must_use]
+    pub fn degrees(self) -> f64 {
+        match self {
+            Self::Degrees(degrees) => degrees,
+            Self::Auto(_) => 45.0,
+        }
+    }
 }
 
 /// `[dual]`: dual injection. A group is a number of layers one on the other.

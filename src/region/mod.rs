@@ -7,6 +7,7 @@
 //! layer are disjoint and together its inset; rows are sorted, disjoint, never
 //! empty.
 
+pub mod angle;
 pub mod audit;
 pub mod bend;
 pub mod classify;
@@ -100,8 +101,10 @@ impl Params {
         // Where the walls' inner edge is, seen from the ends of the lines; never quite
         // as far in as they are, so that an upright side needs no skin.
         let cover_inset = (0.5 - overlap).min(fill_inset - 0.25).max(0.0);
-        let skin =
-            |turn: f64| Raster { frame: Frame::new(settings.angle + turn), pitch: to_units(w) };
+        let skin = |turn: f64| Raster {
+            frame: Frame::new(settings.angle.degrees() + turn),
+            pitch: to_units(w),
+        };
         let mut params = Self {
             line_width: to_units(w),
             walls: settings.walls,
@@ -135,7 +138,7 @@ impl Params {
             let spacing = spacing * set.len() as f64;
             let mut combs = Vec::with_capacity(set.len());
             for turn in *set {
-                let comb = self.comb(settings.angle + turn, to_units(spacing));
+                let comb = self.comb(settings.angle.degrees() + turn, to_units(spacing));
                 combs.push(Comb { joined: set.len() == 1, ..comb });
             }
             self.infill.push(combs);
