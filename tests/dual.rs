@@ -353,3 +353,28 @@ fn walls_and_skins_are_those_of_the_plain_print() {
         }
     }
 }
+
+#[test]
+fn compare_tells_every_way_and_what_it_saves() {
+    let bracket = common::fixtures().join("bracket.stl");
+    let run = |more: &[&str]| {
+        let mut command = assert_cmd::Command::cargo_bin("slicer").unwrap();
+        command.arg("compare").arg(&bracket).args(["-p", "generic-marlin"]).args(more);
+        String::from_utf8(command.assert().success().get_output().stdout.clone()).unwrap()
+    };
+    let table = run(&["--layer-height", "0.1"]);
+    let flags: Vec<&str> = table.lines().skip(1).map(|l| l.split("  ").next().unwrap()).collect();
+    let ways = ["(plain)", "--dual", "--dual-mode interlaced", "--dual --dual-ratio 3"];
+    assert!(flags.starts_with(&ways), "{table}");
+    let found: serde_json::Value = serde_json::from_str(&run(&["--json"])).unwrap();
+    let ways = found["ways"].as_array().unwrap();
+    let of = |way: &serde_json::Value, key: &str| way[key].as_f64().unwrap();
+    let (plain, pair) = (&ways[0], &ways[1]);
+    let saved = 100.0 * (1.0 - of(pair, "time_s") / of(plain, "time_s"));
+    assert!((saved - of(pair, "saved_percent")).abs() < 1e-9 && saved > 5.0);
+    assert!((of(pair, "filament_mm") / of(plain, "filament_mm") - 1.0).abs() < 0.02);
+    assert!(ways.iter().all(|way| of(way, "time_s") <= of(plain, "time_s")));
+    // As slicing itself tells it.
+    let report = slice(&fixture("bracket.stl"), "generic-marlin", &[("dual.mode", "pair")]).report;
+    assert!((report.time.total_s - of(pair, "time_s")).abs() < 1e-9);
+}

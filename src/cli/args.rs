@@ -63,6 +63,8 @@ pub(crate) enum Command {
     Profile(ProfileCommand),
     /// Say how long a G-code file takes
     Estimate(EstimateArgs),
+    /// Tell what each way of dual injection saves on a model
+    Compare(Box<CompareArgs>),
     /// Print completions for a shell
     Completions {
         /// The shell
@@ -118,6 +120,27 @@ pub(crate) struct EstimateArgs {
     /// Leave out what the file itself says of limits (M201, M203, M204, M205, SET_VELOCITY_LIMIT)
     #[arg(long)]
     pub(crate) fixed_limits: bool,
+}
+
+/// Arguments of `compare`.
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    /// STL files, binary or ASCII
+    #[arg(value_name = "INPUT", required = true)]
+    pub(crate) inputs: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Built-in profile, or a file if it has a `/` or ends in .toml
+    #[arg(short, long, value_name = "NAME", default_value = DEFAULT, help_heading = "Settings")]
+    pub(crate) profile: String,
+    /// Change any setting of the profile, such as speed.wall=1500 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
+    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) settings: SettingArgs,
+    #[command(flatten)]
+    pub(crate) place: PlaceArgs,
 }
 
 /// Arguments of slicing.
@@ -291,7 +314,7 @@ pub(crate) fn set_overrides(words: &[String]) -> Result<Vec<Override>> {
 }
 
 /// `all` is short for every part there is.
-fn parts(list: &str) -> String {
+pub(crate) fn parts(list: &str) -> String {
     let all = || words("dual.parts").join(",");
     if list.trim() == "all" { all() } else { list.to_owned() }
 }
