@@ -16,6 +16,7 @@ Examples:
   slicer part.stl -p ./mine.toml --copies 4 --report part.json -o part.gcode
   slicer - -o - < part.stl > part.gcode
   slicer profile show generic-marlin > mine.toml
+  slicer estimate part.gcode -p ./mine.toml
 
 A model whose file is named like a subcommand is given as ./profile.";
 
@@ -24,7 +25,7 @@ Exit codes:
     0  done
     1  done, but there were warnings and --strict was given
     2  wrong arguments, profile or setting
-    3  a model cannot be read, does not fit, or leaves nothing to print
+    3  a model or G-code file cannot be read; a model does not fit, or leaves nothing to print
     4  an output cannot be written
   130  interrupted
 Only the product goes to standard output, everything else to standard error.
@@ -114,7 +115,7 @@ pub(crate) struct EstimateArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// Tell every layer's time, too
+    /// List every layer with its time (JSON always does)
     #[arg(long)]
     pub(crate) layers: bool,
     /// Leave out what the file itself says of limits (M201, M203, M204, M205, SET_VELOCITY_LIMIT)

@@ -37,22 +37,20 @@ impl Course {
         let (cruise, acceleration) = rates.of_move(&given.delta, distance, given.feed);
         let per_mm = 1.0 / distance;
         let direction = given.delta.map(|length| length * per_mm);
-        let mut course = Self {
+        let rest = match rates.limits.junction {
+            Junction::Jerk(_) => junction::from_rest(&direction, cruise, &rates.jerk_inverse),
+            _ => 0.0,
+        };
+        Some(Self {
             direction,
             distance,
             cruise,
             acceleration,
-            rest: 0.0,
+            rest: rest.max(rates.limits.minimum_speed).min(cruise),
             moves_nozzle,
             slowed: 1.0,
             deviation: rates.deviation,
-        };
-        let rest = match rates.limits.junction {
-            Junction::Jerk(jerk) => junction::from_rest(&course, &jerk),
-            _ => 0.0,
-        };
-        course.rest = rest.max(rates.limits.minimum_speed).min(cruise);
-        Some(course)
+        })
     }
 }
 

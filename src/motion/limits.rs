@@ -57,6 +57,9 @@ pub enum Junction {
 /// A limit of nothing would stop the clock: the least that is taken, mm/s or mm/s².
 const LEAST: f64 = 1e-3;
 
+/// No jerk at all is this much, mm/s: nothing, but not for a division.
+const LEAST_JERK: f64 = 1e-12;
+
 /// [`Limits`] with what every move needs of them worked out.
 #[derive(Debug, Clone)]
 pub(super) struct Rates {
@@ -65,6 +68,8 @@ pub(super) struct Rates {
     feed_inverse: [f64; 4],
     /// 1 / acceleration.
     acceleration_inverse: [f64; 4],
+    /// 1 / jerk.
+    pub(super) jerk_inverse: [f64; 4],
     /// How far a corner's arc would be from the corner, mm.
     pub(super) deviation: f64,
     /// Klipper's acceleration for short sprints, mm/s². It is a part of the machine's,
@@ -127,6 +132,10 @@ impl Rates {
         };
         Self {
             sprint,
+            jerk_inverse: match limits.junction {
+                Junction::Jerk(jerk) => jerk.map(|jerk| 1.0 / jerk.max(LEAST_JERK)),
+                _ => [0.0; 4],
+            },
             feed_inverse: inverse(limits.feed),
             acceleration_inverse: inverse(limits.acceleration),
             deviation,
