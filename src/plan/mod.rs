@@ -195,10 +195,11 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
             }
         }));
     };
-    let skin = &region.skin;
-    let raster = params.region.rasters[skin.raster];
-    add(Role::Skin, 1, raster, link::skin(&skin.lines, &params.region));
-    add(Role::Skin, 1, raster, skin.slivers.clone());
+    for skin in &region.skins {
+        let raster = params.region.rasters[skin.raster];
+        add(Role::Skin, skin.layers, raster, link::skin(&skin.lines, &params.region));
+        add(Role::Skin, skin.layers, raster, skin.slivers.clone());
+    }
     for infill in &region.infill {
         let raster = params.region.rasters[infill.comb.raster];
         let chains = link::hatch(infill, raster.pitch, params.region.line_width);
