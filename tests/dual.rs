@@ -203,9 +203,10 @@ proptest! {
                 left[k] = left[k].minus(thin);
                 for (count, rows) in thick {
                     prop_assert!(*count > 1 && *count <= ratio);
-                    for down in k + 1 - *count as usize..=k {
-                        prop_assert!(rows.minus(&left[down]).is_empty(), "over nothing, or twice");
-                        left[down] = left[down].minus(rows);
+                    let down = k + 1 - *count as usize;
+                    for (down, left) in left.iter_mut().enumerate().take(k + 1).skip(down) {
+                        prop_assert!(rows.minus(left).is_empty(), "over nothing, or twice");
+                        *left = left.minus(rows);
                         // What is seen from above or below is in no thick line.
                         for next in [down.checked_sub(1), Some(down + 1)] {
                             let next = next.and_then(|n| layers.get(n));
