@@ -5,6 +5,7 @@
 //! lines between show it. Lines that cannot be joined begin a new chain.
 
 use crate::geom::spans::{Rows, Span};
+use crate::geom::{Point, side};
 use crate::region::bend::{self, Joined, Line, LinePoint};
 use crate::region::{Comb, Params};
 use crate::units::Coord;
@@ -30,6 +31,9 @@ const LONGEST_SPARSE_JOIN: i64 = 12;
 
 /// A straight join may leave its region by this much (10 µm): edges are rounded to the grid.
 const SLACK: Coord = 100;
+
+/// Bends of a join along an edge that move it by less, in line widths, are left out.
+const BEND: f64 = 0.125;
 
 /// Lines are joined if their distance is at most this many times the shorter one's length.
 const LONGEST_JOIN: i64 = 4;
@@ -185,7 +189,33 @@ impl Edges<'_> {
             at = ends.filter(|u| (u - at).abs() <= step).min_by_key(|u| ((u - at).abs(), *u))?;
             points.push(LinePoint { u: at, v: j * self.pitch, width: self.width });
         }
-        ((to - at).abs() <= step).then_some(points)
+        ((to - at).abs() <= step).then(|| {
+            let end = |u, row| LinePoint { u, v: row * self.pitch, width: self.width };
+            let mut kept = Vec::new();
+            keep_bends(&points, end(u, a), end(to, b), f64::from(self.width) * BEND, &mut kept);
+            kept
+        })
+    }
+}
+
+/// Of `points` between `a` and `b`, keeps those that straight lines between the kept ones would
+/// miss by more than `least` (Ramer 1972, Douglas and Peucker 1973).
+fn keep_bends(
+    points: &[LinePoint],
+    a: LinePoint,
+    b: LinePoint,
+    least: f64,
+    kept: &mut Vec<LinePoint>,
+) {
+    let at = |p: LinePoint| Point { x: p.u, y: p.v };
+    let length = at(a).distance(at(b)).max(1.0);
+    let miss = |p: LinePoint| side(at(a), at(b), at(p)).abs() as f64 / length;
+    let worst = (0..points.len())
+        .max_by(|&k, &l| miss(points[k]).total_cmp(&miss(points[l])).then(l.cmp(&k)));
+    if let Some(k) = worst.filter(|&k| miss(points[k]) > least) {
+        keep_bends(&points[..k], a, points[k], least, kept);
+        kept.push(points[k]);
+        keep_bends(&points[k + 1..], points[k], b, least, kept);
     }
 }
 

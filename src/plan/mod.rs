@@ -5,15 +5,18 @@
 
 pub mod link;
 pub mod order;
+pub mod round;
 pub mod travel;
 
 use crate::geom::Point;
 use crate::profile::{RetractWhen, Seam, Settings, WallOrder};
+use crate::region::bend::LinePoint;
 use crate::region::raster::Raster;
 use crate::region::support::SupportParams;
 use crate::region::{Params, Region};
 use crate::slice::Layer;
 use crate::units::{Coord, to_units};
+use round::Rounding;
 
 /// What a path is printed for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -143,6 +146,7 @@ pub struct PlanParams {
     retract_always: bool,
     min_travel: Coord,
     retracts: bool,
+    rounding: Rounding,
     region: Params,
     support: Option<SupportParams>,
 }
@@ -157,6 +161,7 @@ impl PlanParams {
             retract_always: settings.retraction.when == RetractWhen::Always,
             min_travel: to_units(settings.retraction.min_travel),
             retracts: settings.retraction.length > 0.0,
+            rounding: Rounding { radius: to_units(settings.corner_radius) },
             region: region.clone(),
             support,
         }
@@ -179,18 +184,11 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
     let height = region.layer.height;
     let mut add = |role, layers: u32, raster: Raster, links: Vec<link::Chain>| {
         chains.extend(links.into_iter().map(|chain| {
-            Path {
-                role,
-                layers,
-                height: layers as Coord * height,
-                points: chain
-                    .into_iter()
-                    .map(|p| PathPoint {
-                        at: raster.frame.leave(Point { x: p.u, y: p.v }),
-                        width: p.width,
-                    })
-                    .collect(),
-            }
+            let place = |p: LinePoint| raster.frame.leave(Point { x: p.u, y: p.v });
+            let point = |p: LinePoint| PathPoint { at: place(p), width: p.width };
+            let points = chain.into_iter().map(point).collect();
+            let points = if role == Role::Skin { points } else { params.rounding.round(points) };
+            Path { role, layers, height: layers as Coord * height, points }
         }));
     };
     let skin = &region.skin;

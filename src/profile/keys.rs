@@ -100,6 +100,7 @@ pub const KEYS: &[Key] = &[
     word("pattern", &["rectilinear", "aligned", "grid", "triangles"], "pattern of the sparse infill"),
     number("angle", "degrees", -360.0, 360.0, "direction of the lines on even layers, from the x axis"),
     number("infill_overlap", "line widths", 0.0, 1.0, "how far lines reach into the innermost wall"),
+    number("corner_radius", "mm", 0.0, 10.0, "radius of the turns of infill and support; 0 leaves them sharp"),
     word("dual.mode", &["off", "pair"], "pair prints infill on one layer of two, twice as thick"),
     word("dual.direction", &["cross", "shorter"], "direction of thick lines: crossing, or the one with less length"),
     word("dual.remainder", &["thin", "drop"], "infill that one layer of a pair lacks: printed thin, or left out"),
