@@ -147,6 +147,7 @@ pub struct PlanParams {
     min_travel: Coord,
     retracts: bool,
     rounding: Rounding,
+    skin_rounding: Rounding,
     region: Params,
     support: Option<SupportParams>,
 }
@@ -155,13 +156,16 @@ impl PlanParams {
     /// The numbers that `settings` mean for this stage.
     #[must_use]
     pub fn new(settings: &Settings, region: &Params, support: Option<SupportParams>) -> Self {
+        // Without a wall the ends of lines are the outside, where nothing gets wider.
+        let radius = if settings.walls == 0 { 0 } else { to_units(settings.corner_radius) };
         Self {
             outer_first: settings.wall_order == WallOrder::OuterFirst,
             seam_rear: settings.seam == Seam::Rear,
             retract_always: settings.retraction.when == RetractWhen::Always,
             min_travel: to_units(settings.retraction.min_travel),
             retracts: settings.retraction.length > 0.0,
-            rounding: Rounding { radius: to_units(settings.corner_radius) },
+            rounding: Rounding { radius },
+            skin_rounding: Rounding { radius: radius.min(region.line_width / 2) },
             region: region.clone(),
             support,
         }
@@ -187,13 +191,19 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
             let place = |p: LinePoint| raster.frame.leave(Point { x: p.u, y: p.v });
             let point = |p: LinePoint| PathPoint { at: place(p), width: p.width };
             let points = chain.into_iter().map(point).collect();
-            let points = if role == Role::Skin { points } else { params.rounding.round(points) };
+            let rounding = if role == Role::Skin { params.skin_rounding } else { params.rounding };
+            let points = rounding.round(points);
             Path { role, layers, height: layers as Coord * height, points }
         }));
     };
     let skin = &region.skin;
     let raster = params.region.rasters[skin.raster];
-    add(Role::Skin, 1, raster, link::skin(&skin.lines, &params.region));
+    add(
+        Role::Skin,
+        1,
+        raster,
+        link::skin(&skin.lines, &params.region, params.skin_rounding.radius),
+    );
     add(Role::Skin, 1, raster, skin.slivers.clone());
     for infill in &region.infill {
         let raster = params.region.rasters[infill.comb.raster];

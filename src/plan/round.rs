@@ -23,9 +23,9 @@ const FOLDED: f64 = -0.9659;
 /// their ends from meeting in a corner of twice the angle.
 const MOST_TAKEN: f64 = 0.84;
 
-/// Segments of an arc are at least this long (0.15 mm): shorter ones are more than
+/// Segments of an arc are at least this long (0.12 mm): shorter ones are more than
 /// firmware keeps up with and look-ahead profits from.
-const LEAST_SEGMENT: f64 = 1500.0;
+const LEAST_SEGMENT: f64 = 1200.0;
 
 /// An arc takes at most this many radii of a line: those of sharp corners become
 /// smaller, since they save so much way that its material would make a blob.
