@@ -15,12 +15,16 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("geom", &["units"]),
     ("mesh", &["units", "error", "warning"]),
     ("slice", &["geom", "mesh", "units"]),
-    ("region", &["geom", "slice", "profile", "units"]),
+    ("region", &["geom", "mesh", "slice", "profile", "units"]),
     ("plan", &["geom", "region", "slice", "profile", "units"]),
     // The program's name comes from the job.
-    ("gcode", &["geom", "plan", "profile", "error", "units", "job"]),
+    ("gcode", &["geom", "plan", "motion", "profile", "error", "units", "job"]),
     ("job", &["mesh", "profile"]),
     ("profile", &["error"]),
+    ("motion", &["profile"]),
+    // A witness of its own: it shares nothing with the code that writes.
+    ("reader", &[]),
+    ("estimate", &["reader", "motion", "error"]),
 ];
 
 /// Modules that may use all others: the flow itself, and what tells of it.

@@ -61,6 +61,8 @@ pub(crate) enum Command {
     /// List, show and check profiles
     #[command(subcommand)]
     Profile(ProfileCommand),
+    /// Say how long a G-code file takes
+    Estimate(EstimateArgs),
     /// Print completions for a shell
     Completions {
         /// The shell
@@ -93,6 +95,29 @@ pub(crate) enum ProfileCommand {
         #[arg(value_name = "FILE")]
         name: String,
     },
+}
+
+/// Arguments of estimating.
+#[derive(Debug, Args)]
+pub(crate) struct EstimateArgs {
+    /// G-code file of any slicer; `-` reads standard input
+    #[arg(value_name = "FILE")]
+    pub(crate) file: String,
+    /// Built-in profile, or a file if it has a `/` or ends in .toml: the machine's [limits]
+    #[arg(short, long, value_name = "NAME", default_value = DEFAULT)]
+    pub(crate) profile: String,
+    /// Change any setting of the profile, such as limits.jerk_x=8 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Tell every layer's time, too
+    #[arg(long)]
+    pub(crate) layers: bool,
+    /// Leave out what the file itself says of limits (M201, M203, M204, M205, SET_VELOCITY_LIMIT)
+    #[arg(long)]
+    pub(crate) fixed_limits: bool,
 }
 
 /// Arguments of slicing.
@@ -139,9 +164,18 @@ pub(crate) struct SliceArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Settings")]
 pub(crate) struct SettingArgs {
-    /// Print infill on one layer of each pair, twice as thick
+    /// Print infill and support of two layers at once, twice as thick
     #[arg(long)]
     dual: bool,
+    /// Print so many layers at once, or as many as pay [default: 2]
+    #[arg(long, value_name = "N|auto")]
+    dual_ratio: Option<String>,
+    /// Where thick lines lie: `pair`, on the top layer of each group, or `interlaced`, shared out evenly
+    #[arg(long, value_name = "MODE", value_parser = PossibleValuesParser::new(words("dual.mode")), hide_possible_values = true)]
+    dual_mode: Option<String>,
+    /// What is printed thick: infill, support, inner-walls, inner-skin, or all
+    #[arg(long, value_name = "LIST")]
+    dual_parts: Option<String>,
     /// Height of a layer, mm
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     layer_height: Option<String>,
@@ -211,6 +245,9 @@ impl SettingArgs {
         let switched = |on: bool, value: &str| on.then(|| value.to_owned());
         let given = [
             ("--dual", "dual.mode", switched(self.dual, "pair")),
+            ("--dual-mode", "dual.mode", self.dual_mode.clone()),
+            ("--dual-ratio", "dual.ratio", self.dual_ratio.clone()),
+            ("--dual-parts", "dual.parts", self.dual_parts.as_deref().map(parts)),
             ("--layer-height", "layer_height", self.layer_height.clone()),
             ("--first-layer-height", "first_layer_height", self.first_layer_height.clone()),
             ("--line-width", "line_width", self.line_width.clone()),
@@ -253,9 +290,15 @@ pub(crate) fn set_overrides(words: &[String]) -> Result<Vec<Override>> {
     words.iter().map(one).collect()
 }
 
+/// `all` is short for every part there is.
+fn parts(list: &str) -> String {
+    let all = || words("dual.parts").join(",");
+    if list.trim() == "all" { all() } else { list.to_owned() }
+}
+
 fn words(key: &str) -> &'static [&'static str] {
     match keys::find(key).map(|key| key.kind) {
-        Some(Kind::Word(words)) => words,
+        Some(Kind::Word(words) | Kind::Words(words)) => words,
         _ => &[],
     }
 }

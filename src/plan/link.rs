@@ -7,7 +7,7 @@
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Point, side};
 use crate::region::bend::{self, Joined, Line, LinePoint};
-use crate::region::{Comb, Params};
+use crate::region::{Hatch, Params};
 use crate::units::Coord;
 
 /// Lines joined end to end, in the frame of their raster.
@@ -139,13 +139,14 @@ fn lay(points: Vec<LinePoint>, chain: &mut Chain, line_width: Coord, radius: Coo
     }
 }
 
-/// Chains of the lines that `comb` prints of a sparse region; `pitch` is the distance
+/// Chains of the lines that are printed of a sparse region; `pitch` is the distance
 /// of its rows.
 #[must_use]
-pub fn comb(region: &Rows, comb: Comb, pitch: Coord, width: Coord) -> Vec<Chain> {
-    let stride = comb.stride;
+pub fn hatch(hatch: &Hatch, pitch: Coord, line_width: Coord) -> Vec<Chain> {
+    let Hatch { comb, rows: region, width, .. } = hatch;
+    let (stride, width) = (comb.stride, *width);
     let printed = region.iter().filter(|(j, _)| comb.prints(*j));
-    let long = |s: &Span| Some(*s).filter(|s| s.len() >= i64::from(width));
+    let long = |s: &Span| Some(*s).filter(|s| s.len() >= i64::from(line_width));
     let rows = printed.map(|(j, row)| (j, row.iter().map(long).collect()));
     let edges = Edges { region, pitch, width };
     let short = |from: (Coord, i32), to: (Coord, i32)| {
@@ -307,11 +308,13 @@ fn extend(
 mod tests {
     use super::*;
     use crate::geom::spans::subtract;
+    use crate::region::Comb;
 
     const W: Coord = 4_000;
 
-    fn every(stride: i32) -> Comb {
-        Comb { raster: 0, stride, joined: true }
+    fn every(stride: i32, rows: &Rows) -> Hatch {
+        let comb = Comb { raster: 0, offset: 0, stride, joined: true };
+        Hatch { comb, rows: rows.clone(), layers: 1, width: W }
     }
 
     /// Rows 0 to `count`, 40 mm long, without `hole` on the rows it names.
@@ -336,7 +339,7 @@ mod tests {
 
     #[test]
     fn a_convex_region_is_one_zigzag() {
-        let chains = comb(&region(26, None), every(5), W, W);
+        let chains = hatch(&every(5, &region(26, None)), W, W);
         assert_eq!(chains.len(), 1);
         let ends: Vec<Coord> = chains[0].iter().map(|p| p.u).collect();
         assert_eq!(ends[..6], [0, 400_000, 400_000, 0, 0, 400_000]);
@@ -347,7 +350,7 @@ mod tests {
     fn joins_go_round_a_hole_and_never_across() {
         let hole = (6..14, Span { start: 100_000, end: 300_000 });
         let region = region(26, Some(hole));
-        let chains = comb(&region, every(5), W, W);
+        let chains = hatch(&every(5, &region), W, W);
         chains.iter().for_each(|chain| joins_are_inside(&region, chain));
         let lines: usize = chains.iter().map(|c| c.len() / 2).sum();
         assert_eq!(lines, 7, "six rows, one of them in two pieces: {chains:?}");
@@ -356,13 +359,15 @@ mod tests {
 
     #[test]
     fn lines_of_a_crossing_pattern_are_not_joined() {
-        let chains = comb(&region(26, None), Comb { joined: false, ..every(5) }, W, W);
+        let mut grid = every(5, &region(26, None));
+        grid.comb.joined = false;
+        let chains = hatch(&grid, W, W);
         assert_eq!(chains.len(), 6);
     }
 
     #[test]
     fn sparse_lines_far_apart_are_not_joined() {
-        let chains = comb(&region(41, None), every(20), W, W);
+        let chains = hatch(&every(20, &region(41, None)), W, W);
         assert_eq!(chains.len(), 3);
         assert!(chains.iter().all(|c| c.len() == 2));
     }
@@ -371,6 +376,6 @@ mod tests {
     fn a_sparse_line_shorter_than_wide_is_left_out() {
         let mut rows = Rows::starting_at(0);
         rows.push_row(|out| out.push(Span { start: 0, end: W - 1 }));
-        assert!(comb(&rows, every(1), W, W).is_empty());
+        assert!(hatch(&every(1, &rows), W, W).is_empty());
     }
 }

@@ -13,6 +13,7 @@ use crate::profile::{RetractWhen, Seam, Settings, WallOrder};
 use crate::region::bend::LinePoint;
 use crate::region::raster::Raster;
 use crate::region::support::SupportParams;
+use crate::region::walls::Wall;
 use crate::region::{Params, Region};
 use crate::slice::Layer;
 use crate::units::{Coord, to_units};
@@ -81,10 +82,11 @@ impl Path {
     }
 
     /// A closed wall that starts and ends at the vertex `from`.
-    fn closed(role: Role, contour: &[Point], from: usize, width: Coord, height: Coord) -> Self {
-        let n = contour.len();
-        let points = (0..=n).map(|k| PathPoint { at: contour[(from + k) % n], width }).collect();
-        Self { role, points, height, layers: 1 }
+    fn closed(role: Role, wall: &Wall, from: usize, width: Coord, height: Coord) -> Self {
+        let (path, layers) = (&wall.path, wall.layers);
+        let n = path.len();
+        let points = (0..=n).map(|k| PathPoint { at: path[(from + k) % n], width }).collect();
+        Self { role, points, height: layers as Coord * height, layers }
     }
 
     /// Where it begins.
@@ -207,14 +209,15 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
     add(Role::Skin, 1, raster, skin.slivers.clone());
     for infill in &region.infill {
         let raster = params.region.rasters[infill.comb.raster];
-        let chains = link::comb(&infill.rows, infill.comb, raster.pitch, params.region.line_width);
+        let chains = link::hatch(infill, raster.pitch, params.region.line_width);
         add(Role::Infill, infill.layers, raster, chains);
     }
     if let Some(support) = &params.support {
         let raster = support.raster;
-        let chains =
-            link::comb(&region.support, support.comb(), raster.pitch, params.region.line_width);
-        add(Role::Support, 1, raster, chains);
+        for hatch in &region.support {
+            let chains = link::hatch(hatch, raster.pitch, params.region.line_width);
+            add(Role::Support, hatch.layers, raster, chains);
+        }
     }
     let support = chains.extract_if(.., |c| c.role == Role::Support).collect();
     let islands = order::islands(region.walls.clone(), chains, &region.layer.contours);

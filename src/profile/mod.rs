@@ -4,6 +4,7 @@ mod check;
 pub mod keys;
 mod load;
 mod parse;
+mod ratio;
 mod settings;
 mod show;
 pub mod suggest;

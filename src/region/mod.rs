@@ -7,11 +7,15 @@
 //! layer are disjoint and together its inset; rows are sorted, disjoint, never
 //! empty.
 
+pub mod angle;
+pub mod audit;
 pub mod bend;
 pub mod classify;
 pub mod close;
 pub mod dual;
+pub mod groups;
 pub mod raster;
+pub mod runs;
 pub mod support;
 pub mod walls;
 pub mod window;
@@ -58,7 +62,9 @@ pub struct Params {
 pub struct Comb {
     /// Index in [`Params::rasters`].
     pub raster: usize,
-    /// Lines with an index divisible by this are printed.
+    /// Index of a line that is printed.
+    pub offset: i32,
+    /// From one printed line to the next.
     pub stride: i32,
     /// Neighbouring lines are joined at their ends. Not where lines of several
     /// directions end at the same wall: their joins would lie on each other.
@@ -69,7 +75,7 @@ impl Comb {
     /// Whether line `j` is printed.
     #[must_use]
     pub fn prints(self, j: i32) -> bool {
-        j.rem_euclid(self.stride) == 0
+        (j - self.offset).rem_euclid(self.stride) == 0
     }
 
     /// The length of what is printed of `rows` in pieces at least `least` long, grid units.
@@ -95,8 +101,10 @@ impl Params {
         // Where the walls' inner edge is, seen from the ends of the lines; never quite
         // as far in as they are, so that an upright side needs no skin.
         let cover_inset = (0.5 - overlap).min(fill_inset - 0.25).max(0.0);
-        let skin =
-            |turn: f64| Raster { frame: Frame::new(settings.angle + turn), pitch: to_units(w) };
+        let skin = |turn: f64| Raster {
+            frame: Frame::new(settings.angle.degrees() + turn),
+            pitch: to_units(w),
+        };
         let mut params = Self {
             line_width: to_units(w),
             walls: settings.walls,
@@ -130,7 +138,7 @@ impl Params {
             let spacing = spacing * set.len() as f64;
             let mut combs = Vec::with_capacity(set.len());
             for turn in *set {
-                let comb = self.comb(settings.angle + turn, to_units(spacing));
+                let comb = self.comb(settings.angle.degrees() + turn, to_units(spacing));
                 combs.push(Comb { joined: set.len() == 1, ..comb });
             }
             self.infill.push(combs);
@@ -146,7 +154,7 @@ impl Params {
             self.rasters.push(raster);
             self.rasters.len() - 1
         });
-        Comb { raster: index, stride, joined: true }
+        Comb { raster: index, offset: 0, stride, joined: true }
     }
 
     /// The raster of the skin of layer `k`, and the one across it.
@@ -206,9 +214,9 @@ pub struct Region {
     /// Its skin: the raster and the lines, closed up to the walls.
     pub skin: Skin,
     /// Its sparse infill.
-    pub infill: Vec<Infill>,
+    pub infill: Vec<Hatch>,
     /// Its support, on the support raster.
-    pub support: Rows,
+    pub support: Vec<Hatch>,
     /// Area too thin for a wall, which is not printed, mm².
     pub thin_mm2: f64,
 }
@@ -224,9 +232,9 @@ pub struct Skin {
     pub slivers: Vec<Vec<LinePoint>>,
 }
 
-/// Infill lines of one layer in one direction.
+/// Sparse lines of one layer in one direction: infill or support.
 #[derive(Debug, Clone)]
-pub struct Infill {
+pub struct Hatch {
     /// Which lines of which raster.
     pub comb: Comb,
     /// The region on every line of the raster; only those of the comb are printed.
@@ -234,9 +242,11 @@ pub struct Infill {
     /// How many layers its lines are printed for: this one and those below it, with the
     /// material of all.
     pub layers: u32,
+    /// Width of its lines.
+    pub width: Coord,
 }
 
-impl Infill {
+impl Hatch {
     /// The length of the lines to be printed, grid units: those of the comb that are
     /// at least `least` long.
     #[must_use]

@@ -4,12 +4,15 @@
 //! skins look at are there, and is forgotten once no layer above looks at it:
 //! memory holds a block and a few layers, whatever the height of the print.
 
+use super::audit::Audit;
 use super::classify::{Areas, areas};
 use super::close::{Crossed, close};
-use super::dual::{self, LayerAreas, PairStats};
-use super::{Infill, Params, Prepared, Region, Skin, walls};
+use super::dual::{self, LayerAreas};
+use super::groups::{Block, Grouping};
+use super::walls::{self, Wall};
+use super::{Comb, Hatch, Params, Prepared, Region, Skin};
 use crate::geom::spans::Rows;
-use crate::profile::Dual;
+use crate::profile::DualPart;
 use crate::slice::Slicer;
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -19,99 +22,136 @@ use std::collections::VecDeque;
 pub struct Window<'a> {
     slicer: &'a Slicer<'a>,
     params: &'a Params,
-    dual: &'a Dual,
-    /// Support by layer; empty if there is none.
-    supports: Vec<Rows>,
-    /// The next block to be sliced.
-    block: usize,
+    grouping: &'a Grouping,
+    support: Option<Support>,
+    /// The next batch to be sliced.
+    batch: usize,
     layers: VecDeque<Prepared>,
     /// Index of the first layer in the window.
     first: usize,
     /// Layers handed on so far.
     done: usize,
-    stats: PairStats,
+    audits: Vec<Audit>,
+}
+
+/// The support of a print.
+#[derive(Debug)]
+pub struct Support {
+    /// Its lines.
+    pub comb: Comb,
+    /// Where they stand, by layer.
+    pub rows: Vec<Rows>,
 }
 
 /// What classification finds for one layer, before it takes its walls along.
 struct Filling {
     skin: Skin,
-    infill: Vec<Infill>,
+    infill: Vec<Hatch>,
+    support: Vec<Hatch>,
+    /// How many layers each wall is printed for.
+    walls: Vec<u32>,
 }
 
 impl<'a> Window<'a> {
-    /// A window at the bed. `supports` holds the support of every layer, or nothing.
+    /// A window at the bed.
     #[must_use]
     pub fn new(
         slicer: &'a Slicer<'a>,
         params: &'a Params,
-        dual: &'a Dual,
-        supports: Vec<Rows>,
+        grouping: &'a Grouping,
+        support: Option<Support>,
     ) -> Self {
         Self {
             slicer,
             params,
-            dual,
-            supports,
-            block: 0,
+            grouping,
+            support,
+            batch: 0,
             layers: VecDeque::new(),
             first: 0,
             done: 0,
-            stats: PairStats::default(),
+            audits: Vec::new(),
         }
     }
 
-    /// What dual injection did so far.
+    /// What dual injection did, block by block. Nothing is left of it afterwards.
     #[must_use]
-    pub fn pair_stats(&self) -> PairStats {
-        self.stats
+    pub fn audits(&mut self) -> Vec<Audit> {
+        std::mem::take(&mut self.audits)
     }
 
-    /// Slices and prepares the next block.
+    /// Slices and prepares the next batch.
     fn load(&mut self) {
-        let layers = self.slicer.block(self.block);
-        self.block += 1;
+        let layers = self.slicer.block(self.batch);
+        self.batch += 1;
         let prepared: Vec<Prepared> =
             layers.into_par_iter().map(|layer| Prepared::new(layer, self.params)).collect();
         self.layers.extend(prepared);
     }
 
-    /// One more than the last layer that has all it needs; even unless the print ends.
-    fn ready(&self) -> usize {
+    /// The next blocks whose layers have all they need.
+    fn ready(&self) -> Vec<Block> {
+        let count = self.slicer.heights().count;
         let known = self.first + self.layers.len();
-        if self.block == self.slicer.blocks() {
-            return known;
+        let all = self.batch == self.slicer.blocks();
+        let until = if all { known } else { known.saturating_sub(self.params.top_skins.max(1)) };
+        let mut blocks = Vec::new();
+        let mut from = self.done;
+        while from < until {
+            let block = self.grouping.block(from, count);
+            from = block.layers.end;
+            if from <= until {
+                blocks.push(block);
+            }
         }
-        known.saturating_sub(self.params.top_skins.max(1)) / 2 * 2
+        blocks
     }
 
     fn layer(&self, k: usize) -> Option<&Prepared> {
         k.checked_sub(self.first).and_then(|k| self.layers.get(k))
     }
 
-    /// Divides the layers of a pair (or the single last layer).
-    fn fill(&self, lower: usize, upper: Option<usize>) -> (Vec<Filling>, PairStats) {
-        let count = self.slicer.heights().count;
-        let Some(upper) = upper.filter(|_| dual::is_pair(lower, count, self.dual.mode)) else {
-            let each = |k| {
-                let areas = self.areas(k, dual::turn(k, self.params).iter().map(|c| c.raster));
-                let infill = dual::plain(k, &areas, self.params);
-                Filling { skin: self.skin(k, &areas), infill }
-            };
-            return (
-                [Some(lower), upper].into_iter().flatten().map(each).collect(),
-                PairStats::default(),
-            );
-        };
-        let combs = dual::pair_combs(lower / 2, self.dual, self.params);
-        let below = self.areas(lower, combs.iter().map(|c| c.raster));
-        let above = self.areas(upper, combs.iter().map(|c| c.raster));
-        let (infill, stats) = dual::pair(lower / 2, &below, &above, self.dual, self.params);
-        let fillings = [(lower, below), (upper, above)]
-            .iter()
-            .zip(infill)
-            .map(|((k, areas), infill)| Filling { skin: self.skin(*k, areas), infill })
+    /// Divides the layers of a block.
+    fn fill(&self, block: &Block) -> (Vec<Filling>, Vec<Audit>) {
+        let combs = dual::combs(block, self.grouping, self.params);
+        let areas: Vec<LayerAreas> = block
+            .layers
+            .clone()
+            .into_par_iter()
+            .map(|k| self.areas(k, combs.iter().map(|c| c.raster)))
             .collect();
-        (fillings, stats)
+        let (infill, audit) = dual::infill(block, &areas, self.grouping, self.params);
+        let (support, support_audit) = self.share_support(block);
+        let lines = infill.into_iter().zip(support).zip(self.share_walls(block));
+        let fillings = block.layers.clone().zip(&areas).zip(lines).map(
+            |((k, areas), ((infill, support), walls))| Filling {
+                skin: self.skin(k, areas),
+                infill,
+                support,
+                walls,
+            },
+        );
+        (fillings.collect(), audit.into_iter().chain(support_audit).collect())
+    }
+
+    /// How many layers each wall of each layer of a block is printed for.
+    fn share_walls(&self, block: &Block) -> Vec<Vec<u32>> {
+        let walls = |k| self.layer(k).map_or(&[] as &[Wall], |layer| &layer.walls);
+        let layers: Vec<&[Wall]> = block.layers.clone().map(walls).collect();
+        if self.grouping.shares(DualPart::InnerWalls) {
+            walls::share(block, &layers, self.grouping, self.params)
+        } else {
+            layers.iter().map(|walls| vec![1; walls.len()]).collect()
+        }
+    }
+
+    /// The support of each layer of a block.
+    fn share_support(&self, block: &Block) -> (Vec<Vec<Hatch>>, Option<Audit>) {
+        let Some(support) = &self.support else {
+            return (vec![Vec::new(); block.layers.len()], None);
+        };
+        let rows = &support.rows[block.layers.clone()];
+        dual::support(block, rows, support.comb, self.grouping, self.params.line_width)
     }
 
     /// The areas of layer `k` on both skin rasters and on those that `more` names.
@@ -145,14 +185,19 @@ impl<'a> Window<'a> {
     /// The regions of the layers that `fillings` were made for, in order.
     fn hand_on(&mut self, fillings: Vec<Filling>) -> Vec<Region> {
         let mut regions = Vec::with_capacity(fillings.len());
-        for Filling { skin, infill } in fillings {
-            let support = self.supports.get_mut(self.done).map(std::mem::take).unwrap_or_default();
+        for Filling { skin, infill, support, walls: printed } in fillings {
             let prepared = &mut self.layers[self.done - self.first];
             // Neighbours look at the rows only.
             let (walls, contours) =
                 (std::mem::take(&mut prepared.walls), std::mem::take(&mut prepared.layer.contours));
             let layer = crate::slice::Layer { contours, ..prepared.layer.clone() };
             let thin_mm2 = walls::thin_area(&layer.contours, &walls, self.params);
+            let walls = walls
+                .into_iter()
+                .zip(printed)
+                .filter(|(_, layers)| *layers > 0)
+                .map(|(wall, layers)| Wall { layers, ..wall })
+                .collect();
             regions.push(Region { layer, walls, skin, infill, support, thin_mm2 });
             self.done += 1;
         }
@@ -168,21 +213,18 @@ impl Iterator for Window<'_> {
     type Item = Vec<Region>;
 
     fn next(&mut self) -> Option<Vec<Region>> {
-        while self.block < self.slicer.blocks() && self.ready() <= self.done {
+        let mut blocks = self.ready();
+        while blocks.is_empty() && self.batch < self.slicer.blocks() {
             self.load();
+            blocks = self.ready();
         }
-        let ready = self.ready();
-        if ready <= self.done {
+        if blocks.is_empty() {
             return None;
         }
-        let pairs: Vec<usize> = (self.done..ready).step_by(2).collect();
-        let filled: Vec<_> = pairs
-            .par_iter()
-            .map(|&lower| self.fill(lower, Some(lower + 1).filter(|&k| k < ready)))
-            .collect();
-        let mut fillings = Vec::with_capacity(ready - self.done);
-        for (layers, stats) in filled {
-            self.stats.add(stats);
+        let filled: Vec<_> = blocks.par_iter().map(|block| self.fill(block)).collect();
+        let mut fillings = Vec::new();
+        for (layers, audits) in filled {
+            self.audits.extend(audits);
             fillings.extend(layers);
         }
         Some(self.hand_on(fillings))
