@@ -1,8 +1,10 @@
 //! Path -> Path: sharp turns cut into a few flat ones, which the nozzle takes without stopping.
 //!
 //! A machine brakes for a corner the more, the sharper it is, and a zig-zag is
-//! nothing but lines and corners. Each corner sharper than [`SHARPEST`] gives
-//! way to equal ones along an arc within the triangle that it spans. The arc is shorter than the way round the corner, so its bead is laid wider by as much.
+//! nothing but lines and corners. Each corner sharper than [`SHARPEST`] gives way
+//! to equal ones along an arc within the triangle that it spans. The arc is shorter
+//! than the way round the corner; the material that this saves is spread over the
+//! whole path, since a wider arc would be more at once than a hot end melts.
 
 use super::PathPoint;
 use crate::geom::Point;
@@ -29,13 +31,10 @@ const LEAST_SEGMENT: f64 = 1200.0;
 
 /// An arc takes at most this many radii of a line: those of sharp corners become
 /// smaller, since they save so much way that its material would make a blob.
-const MOST_TANGENT: f64 = 1.7;
+const MOST_TANGENT: f64 = 1.2;
 
-/// An arc gets at most this many times as wide as the lines it joins.
-const WIDEST: f64 = 1.5;
-
-/// A whole path gets at most this many times as wide.
-const MOST_MORE: f64 = 1.1;
+/// A path gets at most this many times as wide to carry what its arcs save.
+const MOST_MORE: f64 = 1.04;
 
 /// A way of rounding corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,7 +70,6 @@ impl Rounding {
             round_off(corner, (lines[k], lines[k + 1]), t, &mut out);
         }
         out.extend(points.last());
-        // What the arcs cannot take of the material is spread over the whole path.
         let more = (volume(&points) / volume(&out)).clamp(1.0, MOST_MORE);
         for point in &mut out {
             point.width = nearest(f64::from(point.width) * more) as Coord;
@@ -158,7 +156,7 @@ fn round_off(corner: &[PathPoint], (a, b): (Line, Line), t: f64, out: &mut Vec<P
     };
     let (in_width, out_width) = (f64::from(middle.width), f64::from(next.width));
     let all = (in_width + out_width) * t / (f64::from(arc.corners - 1) * arc.length);
-    let width = nearest(all.min(WIDEST * in_width.max(out_width))) as Coord;
+    let width = nearest(all.min(in_width.max(out_width))) as Coord;
     let (mut u, mut v) = (a.x, a.y);
     let (mut x, mut y) = (f64::from(middle.at.x) - t * u, f64::from(middle.at.y) - t * v);
     let point = |x: f64, y: f64| Point { x: nearest(x) as Coord, y: nearest(y) as Coord };
