@@ -116,6 +116,7 @@ pub const KEYS: &[Key] = &[
     word("pattern", &["rectilinear", "aligned", "grid", "triangles"], "pattern of the sparse infill"),
     Key { unit: "degrees", ..plain("angle", Kind::NumberOrAuto { min: -360.0, max: 360.0 }, "direction of the lines on even layers, from the x axis; auto has least turns") },
     number("infill_overlap", "line widths", 0.0, 1.0, "how far lines reach into the innermost wall"),
+    number("corner_radius", "mm", 0.0, 10.0, "radius of the turns of infill, support and skins; 0 leaves them sharp"),
     word("dual.mode", &["off", "pair", "interlaced"], "thick lines: none, on the top layer of each group, or shared out evenly among its layers"),
     plain("dual.ratio", Kind::CountOrAuto { min: 2, max: 50 }, "layers whose lines are printed at once; auto is as many as pay"),
     number("dual.max_bead_height", "% of the nozzle", 10.0, 200.0, "thick lines are never taller"),

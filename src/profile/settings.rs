@@ -49,6 +49,9 @@ pub struct Settings {
     pub angle: Angle,
     /// How far skin and infill lines reach into the innermost wall, in line widths.
     pub infill_overlap: f64,
+    /// Radius that the turns of infill, support and skin lines are rounded with where there is
+    /// room, mm; 0 leaves them sharp.
+    pub corner_radius: f64,
 
     /// Dual injection: infill on one layer of each pair, twice as thick.
     pub dual: Dual,
