@@ -16,6 +16,10 @@ use crate::units::Coord;
 /// As in [`super::classify`]: exposed stretches shorter than this are noise (50 µm).
 const LEAST_SEEN: Coord = 500;
 
+/// Skin narrower than this, in line widths, is not shared: strips on slopes would fall
+/// into even narrower ones on every second layer, which take longer.
+const LEAST_WIDE: Coord = 6;
+
 /// The layers as one raster sees them.
 pub struct Skins<'a, L, S> {
     /// Layers, `None` outside the part.
@@ -150,7 +154,22 @@ where
                 rows = and(rows, up(n));
             }
         }
-        (1..count).fold(rows, |rows, n| and(rows, self.fill(k.checked_sub(n))))
+        let rows = (1..count).fold(rows, |rows, n| and(rows, self.fill(k.checked_sub(n))));
+        self.wide(k, rows)
+    }
+
+    /// What of `rows` of layer `k` is wider than [`LEAST_WIDE`] line widths, or as wide as the part: what is left if
+    /// everything around it reaches in by half of that, and it grows again.
+    fn wide(&self, k: usize, rows: Rows) -> Rows {
+        let Some(fill) = self.fill(Some(k)) else { return Rows::default() };
+        let pitch = self.params.rasters[self.raster].pitch;
+        let half = self.params.line_width * LEAST_WIDE / 2;
+        let around = fill.minus(&rows);
+        if around.is_empty() || rows.is_empty() {
+            return rows;
+        }
+        let inmost = rows.minus(&around.dilate(half, pitch));
+        if inmost.is_empty() { inmost } else { rows.and(&inmost.dilate(half, pitch)) }
     }
 
     /// What is seen of layer `k`, from above or from below, with its margin.
