@@ -10,18 +10,26 @@
 //! - [`plan`]: regions -> paths in order, with travels
 //! - [`gcode`]: paths -> text
 //!
+//! Another way, from any slicer's G-code to its time: [`reader`] (text -> moves), [`motion`] (moves and
+//! limits -> seconds), [`mod@estimate`] (seconds by role and layer).
+//!
 //! Beside the way: [`job`] (what a run is asked for), [`geom`] and [`units`] (plane geometry on the integer grid),
-//! [`profile`] (settings), [`report`], [`progress`], [`warning`] and [`error`].
+//! [`profile`] (settings), [`motion`] (moves -> time), [`reader`] and [`mod@estimate`] (G-code of any slicer -> time),
+//! [`mod@compare`] (ways to print -> what each saves), [`report`], [`progress`], [`warning`] and [`error`].
 //! The command line is the binary's own.
 
+pub mod compare;
 pub mod error;
+pub mod estimate;
 pub mod gcode;
 pub mod geom;
 pub mod job;
 pub mod mesh;
+pub mod motion;
 pub mod plan;
 pub mod profile;
 pub mod progress;
+pub mod reader;
 pub mod region;
 pub mod report;
 pub mod slice;
@@ -36,20 +44,20 @@ use units::to_units;
 
 pub use job::{Job, NAME};
 
-/// Slices `job` and writes the G-code to `out`.
+/// Slices `job` and writes the G-code to `out`, which is empty yet.
 ///
 /// # Errors
 /// Every [`error::Error`]; what was written to `out` until then is no usable G-code.
 pub fn slice(
     job: &Job,
-    out: &mut dyn std::io::Write,
+    out: &mut dyn gcode::Output,
     progress: &progress::Progress,
 ) -> Result<report::Report> {
-    let settings = &job.settings;
-    let bed = bed(&settings.machine);
+    let bed = bed(&job.settings.machine);
     let models = job.models.iter().map(|file| mesh::stl::load(file)).collect::<Result<_>>()?;
     let placed = mesh::transform::place(models, &job.placement, &bed)?;
 
+    let settings = &settle(&job.settings, &placed.mesh);
     let heights = heights(settings, &placed.mesh);
     let facts = print_facts(&placed, heights);
     if heights.count == 0 {
@@ -66,36 +74,67 @@ pub fn slice(
     let params = region::Params::new(settings);
     let support = region::support::SupportParams::new(settings);
     let on_bed = bed_corners(&bed, placed.offset);
-    let supports = support.map(|s| region::support::supports(&slicer, &s, on_bed));
+    let supports = support.map(|s| region::window::Support {
+        comb: s.comb(),
+        rows: region::support::supports(&slicer, &s, on_bed),
+    });
     let plan = plan::PlanParams::new(settings, &params, support);
 
-    let mut tally = report::Tally::default();
     let mut writer = gcode::Writer::new(out, &job.output, settings, facts, placed.offset)?;
-    let mut at: Option<Point> = None;
-    let mut window =
-        region::window::Window::new(&slicer, &params, &settings.dual, supports.unwrap_or_default());
-    for regions in window.by_ref() {
-        let pieces: Vec<plan::Pieces> =
-            regions.par_iter().map(|r| plan::pieces(r, &plan)).collect();
+    let grouping = region::groups::Grouping::new(&settings.dual, settings.dual_ratio());
+    let window = region::window::Window::new(&slicer, &params, &grouping, supports);
+    let mut planner = Planner { window, plan, at: None, tally: report::Tally::default() };
+    let mut planned = planner.next();
+    while let Some(toolpaths) = planned {
+        // Layers are written while the next are planned.
+        let (written, next) = rayon::join(|| writer.layers(&toolpaths), || planner.next());
+        written?;
+        progress.add(toolpaths.len());
+        planned = next;
+    }
+    let Planner { mut window, tally, .. } = planner;
+    let audits = window.audits();
+    let sums = writer.finish()?;
+    report::report(job, &placed, heights, &sums, &audits, &tally)
+}
+
+/// Plans the layers, some at a time.
+struct Planner<'a> {
+    window: region::window::Window<'a>,
+    plan: plan::PlanParams,
+    /// Where the nozzle is after the layers so far.
+    at: Option<Point>,
+    tally: report::Tally,
+}
+
+impl Iterator for Planner<'_> {
+    type Item = Vec<plan::Toolpath>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let regions = self.window.next()?;
+        let plan = &self.plan;
+        let pieces: Vec<plan::Pieces> = regions.par_iter().map(|r| plan::pieces(r, plan)).collect();
         // Where a layer ends decides how the next is best begun: one after the other.
         let mut ordered = Vec::with_capacity(regions.len());
         for (region, pieces) in regions.iter().zip(pieces) {
-            let paths =
-                plan::order::order(pieces, region.layer.height, at.unwrap_or_default(), &plan);
-            let end = paths.last().map(plan::Path::end).or(at);
-            ordered.push((region, std::mem::replace(&mut at, end), paths));
-            tally.layer(region);
+            let (height, from) = (region.layer.height, self.at.unwrap_or_default());
+            let paths = plan::order::order(pieces, height, from, plan);
+            let end = paths.last().map(plan::Path::end).or(self.at);
+            ordered.push((region, std::mem::replace(&mut self.at, end), paths));
+            self.tally.layer(region);
         }
-        let toolpaths: Vec<plan::Toolpath> = ordered
-            .into_par_iter()
-            .map(|(region, from, paths)| plan::toolpath(region, paths, from, &plan))
-            .collect();
-        writer.layers(&toolpaths)?;
-        progress.add(regions.len());
+        let toolpaths = ordered.into_par_iter();
+        Some(toolpaths.map(|(r, from, paths)| plan::toolpath(r, paths, from, plan)).collect())
     }
-    let pairs = window.pair_stats();
-    let usage = writer.finish()?;
-    report::report(job, &placed, heights, &usage, pairs, &tally)
+}
+
+/// The settings with what depends on the model decided.
+fn settle(settings: &profile::Settings, mesh: &mesh::Mesh) -> profile::Settings {
+    let angle = match settings.angle {
+        profile::Angle::Auto(_) => profile::Angle::Degrees(region::angle::least_turns(mesh)),
+        given => given,
+    };
+    profile::Settings { angle, ..settings.clone() }
 }
 
 /// What the start and end blocks may want to know.

@@ -1,21 +1,24 @@
 //! Report: what a run found and made, as versioned JSON (`--report`) and as a three-line summary.
 
 use crate::error::{Error, Result};
-use crate::gcode::write::{Material, Usage, Used, filament_area};
+use crate::gcode::Sums;
+use crate::gcode::flow::Flows;
+use crate::gcode::times::{LayerTime, Times};
+use crate::gcode::usage::Material;
 use crate::job::{self, Job};
 use crate::mesh::MeshReport;
 use crate::mesh::transform::Placed;
 use crate::plan::Role;
-use crate::profile::{DualMode, Settings};
+use crate::profile::{DualMode, DualPart, Settings};
 use crate::region::Region;
-use crate::region::dual::PairStats;
+use crate::region::audit::{Apart, Audit};
 use crate::slice::Heights;
 use crate::units::{Coord, sum_mm, to_mm};
 use crate::warning::Warning;
 use serde::Serialize;
 
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// What one run found and made.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -38,6 +41,10 @@ pub struct Report {
     pub travel: TravelReport,
     /// Material in all, without the start block's purge.
     pub filament: FilamentReport,
+    /// How long the print takes, by `limits` of the profile.
+    pub time: TimeReport,
+    /// How fast filament is molten.
+    pub flow: FlowReport,
     /// Dual injection; absent where it is off.
     pub dual: Option<DualReport>,
     /// Findings.
@@ -69,6 +76,8 @@ pub struct RoleReport {
     pub filament_mm: f64,
     /// Volume, mm³.
     pub volume_mm3: f64,
+    /// Time, s.
+    pub time_s: f64,
 }
 
 /// Moves without extrusion.
@@ -80,6 +89,10 @@ pub struct TravelReport {
     pub length_mm: f64,
     /// How many of them retract.
     pub retractions: usize,
+    /// Time of the moves, in z too, s.
+    pub time_s: f64,
+    /// Time of pulling filament back and pushing it forward, s.
+    pub retraction_time_s: f64,
 }
 
 /// Material in all.
@@ -91,21 +104,94 @@ pub struct FilamentReport {
     pub volume_cm3: f64,
     /// Weight, g.
     pub weight_g: f64,
+    /// Price, in the money of `filament.cost`; absent where that is 0.
+    pub cost: Option<f64>,
 }
 
-/// What dual injection did.
+/// How long the print takes, without homing, heating and the rest of the start and end blocks.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct TimeReport {
+    /// In all, s.
+    pub total_s: f64,
+    /// The layer that takes longest, s.
+    pub longest_layer_s: f64,
+    /// The layer that takes shortest, s.
+    pub shortest_layer_s: f64,
+    /// How much the layers' times differ: standard deviation over mean.
+    pub layer_spread: f64,
+    /// Each layer, in order.
+    pub layers: Vec<LayerTimeReport>,
+}
+
+/// How long a layer takes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct LayerTimeReport {
+    /// Its top above the bed, mm.
+    pub z_mm: f64,
+    /// Time, s.
+    pub time_s: f64,
+}
+
+/// How fast filament is molten.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct FlowReport {
+    /// The largest flow of the print, mm³/s.
+    pub largest_mm3_s: f64,
+    /// The most that the hot end melts, mm³/s.
+    pub limit_mm3_s: f64,
+}
+
+/// What dual injection did. Lengths are those of lines, without the turns between them;
+/// lines shorter than they are wide are not printed and not counted.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct DualReport {
-    /// Pairs of layers that have infill.
-    pub pairs: usize,
-    /// Of these, pairs with thick lines.
-    pub thick_pairs: usize,
-    /// Length of thick lines, mm (turns of the zig-zag not counted).
+    /// Layers of a group.
+    pub ratio: u32,
+    /// Blocks of layers with sparse infill.
+    pub blocks: usize,
+    /// Of these, blocks with thick lines.
+    pub thick_blocks: usize,
+    /// Length of thick lines, mm.
     pub thick_length_mm: f64,
-    /// Length of thin lines left beside them, mm (likewise).
+    /// Length of thin lines left beside them, mm.
     pub thin_length_mm: f64,
-    /// Volume of the pairs' lines over that of the same lines printed thin on both layers.
+    /// Material of these lines over that of the same lines printed thin on every layer.
     pub volume_ratio: f64,
+    /// Each block of layers, infill and support apart.
+    pub audit: Vec<BlockReport>,
+}
+
+/// What became of the infill or the support of one block of layers: those that are filled
+/// in one direction, which is one group, or several where lines are interlaced.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BlockReport {
+    /// `infill` or `support`.
+    pub part: DualPart,
+    /// First layer of the block, counted from 1.
+    pub first_layer: usize,
+    /// Number of its layers.
+    pub layers: usize,
+    /// Length of thick lines, mm.
+    pub thick_length_mm: f64,
+    /// Length of thin lines, mm.
+    pub thin_length_mm: f64,
+    /// As in [`DualReport::volume_ratio`].
+    pub volume_ratio: f64,
+    /// What is not printed for a whole group, and why.
+    pub kept_apart: ApartReport,
+}
+
+/// Length of the layers' lines that are not printed for a whole group, mm, by cause.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct ApartReport {
+    /// Another layer of the group has none there: it is at or beyond its walls.
+    pub bounds_mm: f64,
+    /// Another layer of the group has skin there.
+    pub skin_mm: f64,
+    /// What the layers share is shorter than a line is wide.
+    pub short_mm: f64,
+    /// The group has fewer layers than the ratio: at the bed, at the top, or where the direction turns.
+    pub ends_mm: f64,
 }
 
 /// Thin places of a layer below this are rounding and tips of corners, not shape, mm².
@@ -152,11 +238,12 @@ pub fn report(
     job: &Job,
     placed: &Placed,
     heights: Heights,
-    usage: &Usage,
-    pairs: PairStats,
+    sums: &Sums,
+    audits: &[Audit],
     tally: &Tally,
 ) -> Result<Report> {
     let settings = &job.settings;
+    let Sums { usage, times } = sums;
     let filament_mm = usage.filament();
     if filament_mm <= 0.0 {
         return Err(Error::Unprintable(format!(
@@ -165,7 +252,7 @@ pub fn report(
             settings.line_width
         )));
     }
-    let Material { mm, cm3, grams } = Material::new(filament_mm, settings);
+    let Material { mm, cm3, grams, cost } = Material::new(filament_mm, settings);
     Ok(Report {
         schema: SCHEMA,
         slicer: job::NAME.to_owned(),
@@ -178,47 +265,126 @@ pub fn report(
             height_mm: to_mm(heights.other),
             top_mm: to_mm(heights.top(heights.count - 1)),
         },
-        roles: roles(usage, settings),
+        roles: roles(sums, settings),
         travel: TravelReport {
             count: usage.travels,
             length_mm: usage.travel_length,
             retractions: usage.retractions,
+            time_s: times.travel,
+            retraction_time_s: times.retraction,
         },
-        filament: FilamentReport { length_mm: mm, volume_cm3: cm3, weight_g: grams },
-        dual: (settings.dual.mode != DualMode::Off).then(|| dual(pairs)),
-        warnings: placed.warnings.iter().cloned().chain(tally.warnings()).collect(),
+        filament: FilamentReport { length_mm: mm, volume_cm3: cm3, weight_g: grams, cost },
+        time: time(times),
+        flow: FlowReport {
+            largest_mm3_s: usage.flows.largest,
+            limit_mm3_s: settings.machine.max_volumetric_flow,
+        },
+        dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits)),
+        warnings: (placed.warnings.iter().cloned())
+            .chain(tally.warnings())
+            .chain(slowed_down(&usage.flows, settings))
+            .collect(),
     })
 }
 
-fn roles(usage: &Usage, settings: &Settings) -> Vec<RoleReport> {
-    let area = filament_area(settings);
-    let told = |role: String, used: Used| RoleReport {
-        role,
-        length_mm: used.length,
-        filament_mm: used.filament,
-        volume_mm3: used.filament * area,
-    };
+fn roles(sums: &Sums, settings: &Settings) -> Vec<RoleReport> {
+    let area = settings.filament_area();
     let mut roles = Vec::new();
-    for (role, [thin, thick]) in Role::ALL.iter().zip(usage.roles) {
-        roles.push(told(role.name().to_owned(), thin));
+    for (index, role) in Role::ALL.iter().enumerate() {
         // An outer wall is never thick.
-        if *role != Role::OuterWall {
-            roles.push(told(format!("thick {}", role.name()), thick));
+        let kinds: &[usize] = if *role == Role::OuterWall { &[0] } else { &[0, 1] };
+        for &kind in kinds {
+            let used = sums.usage.roles[index][kind];
+            roles.push(RoleReport {
+                role: role_name(*role, kind == 1),
+                length_mm: used.length,
+                filament_mm: used.filament,
+                volume_mm3: used.filament * area,
+                time_s: sums.times.roles[index][kind],
+            });
         }
     }
     roles
 }
 
-fn dual(pairs: PairStats) -> DualReport {
+fn role_name(role: Role, thick: bool) -> String {
+    if thick { format!("thick {}", role.name()) } else { role.name().to_owned() }
+}
+
+fn time(times: &Times) -> TimeReport {
+    let seconds = || times.layers.iter().map(|layer| layer.seconds);
+    let count = times.layers.len().max(1) as f64;
+    let mean = times.total() / count;
+    let variance = seconds().map(|s| (s - mean) * (s - mean)).sum::<f64>() / count;
+    let told = |layer: &LayerTime| LayerTimeReport { z_mm: to_mm(layer.z), time_s: layer.seconds };
+    TimeReport {
+        total_s: times.total(),
+        longest_layer_s: seconds().fold(0.0, f64::max),
+        shortest_layer_s: seconds().reduce(f64::min).unwrap_or_default(),
+        layer_spread: if mean > 0.0 { variance.sqrt() / mean } else { 0.0 },
+        layers: times.layers.iter().map(told).collect(),
+    }
+}
+
+/// Where the hot end cannot follow.
+fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    for (role, kinds) in Role::ALL.iter().zip(flows.lowered) {
+        for (thick, lowered) in kinds.into_iter().enumerate() {
+            let thick = thick == 1;
+            let setting = match role {
+                Role::OuterWall | Role::InnerWall => "speed.wall",
+                Role::Skin => "speed.skin",
+                Role::Infill if thick => "speed.thick_infill",
+                Role::Infill => "speed.infill",
+                Role::Support => "speed.support",
+            };
+            warnings.extend(lowered.map(|lowered| Warning::FlowLimited {
+                role: role_name(*role, thick),
+                setting: setting.to_owned(),
+                asked_mm_min: lowered.asked,
+                lowest_mm_min: lowered.given,
+                limit_mm3_s: settings.machine.max_volumetric_flow,
+            }));
+        }
+    }
+    warnings
+}
+
+fn dual(settings: &Settings, audits: &[Audit]) -> DualReport {
+    let seen = || audits.iter().filter(|a| a.plain > 0);
+    let infill = || seen().filter(|a| a.part == DualPart::Infill);
+    let sum = |of: fn(&Audit) -> i64| seen().map(of).sum::<i64>();
     DualReport {
-        pairs: pairs.pairs,
-        thick_pairs: pairs.thick_pairs,
-        thick_length_mm: sum_mm(pairs.thick),
-        thin_length_mm: sum_mm(pairs.thin),
-        volume_ratio: if pairs.plain == 0 {
-            1.0
-        } else {
-            sum_mm(2 * pairs.thick + pairs.thin) / sum_mm(pairs.plain)
+        ratio: settings.dual_ratio(),
+        blocks: infill().count(),
+        thick_blocks: infill().filter(|a| a.thick > 0).count(),
+        thick_length_mm: sum_mm(sum(|a| a.thick)),
+        thin_length_mm: sum_mm(sum(|a| a.thin)),
+        volume_ratio: ratio(sum(|a| a.material), sum(|a| a.plain)),
+        audit: seen().map(block).collect(),
+    }
+}
+
+fn block(audit: &Audit) -> BlockReport {
+    let Apart { bounds, skin, short, ends } = audit.kept_apart;
+    BlockReport {
+        part: audit.part,
+        first_layer: audit.first + 1,
+        layers: audit.layers,
+        thick_length_mm: sum_mm(audit.thick),
+        thin_length_mm: sum_mm(audit.thin),
+        volume_ratio: ratio(audit.material, audit.plain),
+        kept_apart: ApartReport {
+            bounds_mm: sum_mm(bounds),
+            skin_mm: sum_mm(skin),
+            short_mm: sum_mm(short),
+            ends_mm: sum_mm(ends),
         },
     }
+}
+
+/// `part` of `whole`; 1 if there is nothing.
+fn ratio(part: i64, whole: i64) -> f64 {
+    if whole == 0 { 1.0 } else { part as f64 / whole as f64 }
 }

@@ -43,6 +43,19 @@ pub enum Warning {
         /// Its largest side as placed, mm.
         size_mm: f64,
     },
+    /// Lines that the hot end cannot melt as fast as was asked for, printed slower.
+    FlowLimited {
+        /// What they are for, as in the report's roles.
+        role: String,
+        /// The setting that asked for it.
+        setting: String,
+        /// Highest feed asked for, mm/min.
+        asked_mm_min: u32,
+        /// Lowest feed given, mm/min.
+        lowest_mm_min: u32,
+        /// What the hot end melts, mm³/s.
+        limit_mm3_s: f64,
+    },
 }
 
 impl fmt::Display for Warning {
@@ -74,6 +87,14 @@ impl fmt::Display for Warning {
                 "{file}: the model is only {size_mm:.3} mm large; if its unit is not mm, \
                  use --unit or --scale"
             ),
+            Self::FlowLimited { role, setting, asked_mm_min, lowest_mm_min, limit_mm3_s } => {
+                write!(
+                    f,
+                    "{role}: slowed down from {asked_mm_min} to as little as {lowest_mm_min} mm/min, \
+                 since the hot end melts no more than {limit_mm3_s} mm³/s; set {setting} to that, \
+                 or machine.max_volumetric_flow if it melts more"
+                )
+            }
         }
     }
 }

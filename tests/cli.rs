@@ -65,7 +65,7 @@ fn wrong_settings_name_the_flag() {
     run(&["--layer-height", "-1"], "--layer-height: layer_height = -1 is out of range");
     run(&["--layer-height", "x"], "--layer-height: layer_height is the text `x`");
     run(&["--layer-height", "0.5"], "--layer-height: layer_height = 0.5 mm is more than");
-    run(&["--dual", "--layer-height", "0.3"], "thick infill taller than machine.nozzle");
+    run(&["--dual", "--layer-height", "0.3"], "make thick lines taller than the 0.4 mm");
     run(&["--set", "wals=2"], "--set: unknown key `wals`; did you mean `walls`?");
     run(&["--set", "walls"], "there is no `=`");
     run(&["-p", "generic"], "unknown profile `generic`");
@@ -227,6 +227,17 @@ fn the_product_is_the_same_on_stdout_and_on_any_number_of_threads() {
         let words = ["block.stl", "-q", "-o", "-", "--threads", threads];
         slicer(&folder).args(words).assert().success().stdout(file.clone()).stderr("");
     }
+}
+
+/// A model that leaves nothing to print is found out when all layers are done.
+#[test]
+fn a_run_that_fails_at_its_end_writes_nothing_to_a_pipe() {
+    let folder = folder();
+    write_block(&folder.path().join("block.stl"));
+    let words = ["block.stl", "--scale", "0.03", "-q", "-o"];
+    let says = "everything is thinner than a line";
+    fails(&folder, &[&words[..], &["-"]].concat(), 3, says);
+    fails(&folder, &[&words[..], &["a.gcode"]].concat(), 3, says);
 }
 
 /// A run that is told to stop removes its unfinished file.

@@ -116,7 +116,7 @@ fn check(path: &Path, profile: &str, set: &[(&str, &str)]) {
     for m in run.print.beads().filter(|m| run.print.is_thick(m)) {
         let k = m.layer.unwrap();
         assert!(
-            is_dual && k % 2 == 1 && k > 1 && m.kind == Kind::Infill,
+            is_dual && k % 2 == 1 && k > 1 && [Kind::Infill, Kind::Support].contains(&m.kind),
             "{what}: line {}",
             m.line
         );

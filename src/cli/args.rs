@@ -16,6 +16,7 @@ Examples:
   slicer part.stl -p ./mine.toml --copies 4 --report part.json -o part.gcode
   slicer - -o - < part.stl > part.gcode
   slicer profile show generic-marlin > mine.toml
+  slicer estimate part.gcode -p ./mine.toml
 
 A model whose file is named like a subcommand is given as ./profile.";
 
@@ -24,7 +25,7 @@ Exit codes:
     0  done
     1  done, but there were warnings and --strict was given
     2  wrong arguments, profile or setting
-    3  a model cannot be read, does not fit, or leaves nothing to print
+    3  a model or G-code file cannot be read; a model does not fit, or leaves nothing to print
     4  an output cannot be written
   130  interrupted
 Only the product goes to standard output, everything else to standard error.
@@ -61,6 +62,10 @@ pub(crate) enum Command {
     /// List, show and check profiles
     #[command(subcommand)]
     Profile(ProfileCommand),
+    /// Say how long a G-code file takes
+    Estimate(EstimateArgs),
+    /// Tell what each way of dual injection saves on a model
+    Compare(Box<CompareArgs>),
     /// Print completions for a shell
     Completions {
         /// The shell
@@ -93,6 +98,50 @@ pub(crate) enum ProfileCommand {
         #[arg(value_name = "FILE")]
         name: String,
     },
+}
+
+/// Arguments of estimating.
+#[derive(Debug, Args)]
+pub(crate) struct EstimateArgs {
+    /// G-code file of any slicer; `-` reads standard input
+    #[arg(value_name = "FILE")]
+    pub(crate) file: String,
+    /// Built-in profile, or a file if it has a `/` or ends in .toml: the machine's [limits]
+    #[arg(short, long, value_name = "NAME", default_value = DEFAULT)]
+    pub(crate) profile: String,
+    /// Change any setting of the profile, such as limits.jerk_x=8 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// List every layer with its time (JSON always does)
+    #[arg(long)]
+    pub(crate) layers: bool,
+    /// Leave out what the file itself says of limits (M201, M203, M204, M205, SET_VELOCITY_LIMIT)
+    #[arg(long)]
+    pub(crate) fixed_limits: bool,
+}
+
+/// Arguments of `compare`.
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    /// STL files, binary or ASCII
+    #[arg(value_name = "INPUT", required = true)]
+    pub(crate) inputs: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Built-in profile, or a file if it has a `/` or ends in .toml
+    #[arg(short, long, value_name = "NAME", default_value = DEFAULT, help_heading = "Settings")]
+    pub(crate) profile: String,
+    /// Change any setting of the profile, such as speed.wall=1500 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
+    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) settings: SettingArgs,
+    #[command(flatten)]
+    pub(crate) place: PlaceArgs,
 }
 
 /// Arguments of slicing.
@@ -139,9 +188,18 @@ pub(crate) struct SliceArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Settings")]
 pub(crate) struct SettingArgs {
-    /// Print infill on one layer of each pair, twice as thick
+    /// Print infill and support of two layers at once, twice as thick
     #[arg(long)]
     dual: bool,
+    /// Print so many layers at once, or as many as pay [default: 2]
+    #[arg(long, value_name = "N|auto")]
+    dual_ratio: Option<String>,
+    /// Where thick lines lie: `pair`, on the top layer of each group, or `interlaced`, shared out evenly
+    #[arg(long, value_name = "MODE", value_parser = PossibleValuesParser::new(words("dual.mode")), hide_possible_values = true)]
+    dual_mode: Option<String>,
+    /// What is printed thick: infill, support, inner-walls, inner-skin, or all
+    #[arg(long, value_name = "LIST")]
+    dual_parts: Option<String>,
     /// Height of a layer, mm
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     layer_height: Option<String>,
@@ -211,6 +269,9 @@ impl SettingArgs {
         let switched = |on: bool, value: &str| on.then(|| value.to_owned());
         let given = [
             ("--dual", "dual.mode", switched(self.dual, "pair")),
+            ("--dual-mode", "dual.mode", self.dual_mode.clone()),
+            ("--dual-ratio", "dual.ratio", self.dual_ratio.clone()),
+            ("--dual-parts", "dual.parts", self.dual_parts.as_deref().map(parts)),
             ("--layer-height", "layer_height", self.layer_height.clone()),
             ("--first-layer-height", "first_layer_height", self.first_layer_height.clone()),
             ("--line-width", "line_width", self.line_width.clone()),
@@ -253,9 +314,15 @@ pub(crate) fn set_overrides(words: &[String]) -> Result<Vec<Override>> {
     words.iter().map(one).collect()
 }
 
+/// `all` is short for every part there is.
+pub(crate) fn parts(list: &str) -> String {
+    let all = || words("dual.parts").join(",");
+    if list.trim() == "all" { all() } else { list.to_owned() }
+}
+
 fn words(key: &str) -> &'static [&'static str] {
     match keys::find(key).map(|key| key.kind) {
-        Some(Kind::Word(words)) => words,
+        Some(Kind::Word(words) | Kind::Words(words)) => words,
         _ => &[],
     }
 }

@@ -1,6 +1,8 @@
 //! Arguments -> products and exit code: the only place that prints.
 
 mod args;
+mod compare;
+mod estimate;
 mod interrupt;
 mod output;
 mod progress;
@@ -177,6 +179,8 @@ fn other(command: &Command) -> Result<()> {
             profile::load(&if file { format!("./{name}") } else { name.clone() }, &[])?;
             format!("{name}: good\n")
         }
+        Command::Compare(args) => compare::run(args)?,
+        Command::Estimate(args) => estimate::run(args)?,
         Command::Completions { shell } => {
             let mut text = Vec::new();
             clap_complete::generate(*shell, &mut Arguments::command(), "slicer", &mut text);

@@ -3,7 +3,7 @@
 use super::interrupt;
 use slicer::error::{Error, Result};
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Stdout, Write};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
@@ -18,25 +18,29 @@ pub(crate) struct Sink {
 
 #[derive(Debug)]
 enum Target {
-    Stdout(BufWriter<Stdout>),
-    /// A device or pipe, which cannot be replaced by a file.
-    Direct(BufWriter<File>),
+    /// A file without a name, for what cannot be replaced by a file. Copied when it is
+    /// whole: nobody at the other end of a pipe sees half a product.
+    Unnamed(BufWriter<File>, End),
     /// A file beside the one that it will become.
     Temporary(BufWriter<NamedTempFile>, PathBuf),
 }
 
+/// Where an unnamed file is copied to.
+#[derive(Debug)]
+enum End {
+    Stdout,
+    /// A device or pipe.
+    Open(File),
+}
+
 impl Sink {
     /// Opens `name`: `-` is standard output, an existing device or pipe is
-    /// written to, anything else becomes a file on [`Sink::commit`].
+    /// written to, anything else becomes a file; all of it on [`Sink::commit`].
     ///
     /// # Errors
     /// [`Error::Output`] if it cannot be opened for writing.
     pub(crate) fn open(name: &Path) -> Result<Self> {
-        let target = if is_stdout(name) {
-            Ok(Target::Stdout(BufWriter::new(io::stdout())))
-        } else {
-            open_target(name)
-        };
+        let target = if is_stdout(name) { unnamed(End::Stdout) } else { open_target(name) };
         let target = target.map_err(|source| failed(name, "cannot open for writing", source))?;
         Ok(Self { name: name.to_owned(), target })
     }
@@ -48,8 +52,7 @@ impl Sink {
     pub(crate) fn commit(self) -> Result<()> {
         let name = self.name;
         let done = match self.target {
-            Target::Stdout(mut out) => out.flush(),
-            Target::Direct(mut out) => out.flush(),
+            Target::Unnamed(out, end) => copy(out, end),
             Target::Temporary(out, path) => out
                 .into_inner()
                 .map_err(io::IntoInnerError::into_error)
@@ -68,17 +71,24 @@ impl Sink {
 impl Write for Sink {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.target {
-            Target::Stdout(out) => out.write(bytes),
-            Target::Direct(out) => out.write(bytes),
+            Target::Unnamed(out, _) => out.write(bytes),
             Target::Temporary(out, _) => out.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.target {
-            Target::Stdout(out) => out.flush(),
-            Target::Direct(out) => out.flush(),
+            Target::Unnamed(out, _) => out.flush(),
             Target::Temporary(out, _) => out.flush(),
+        }
+    }
+}
+
+impl Seek for Sink {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        match &mut self.target {
+            Target::Unnamed(out, _) => out.seek(to),
+            Target::Temporary(out, _) => out.seek(to),
         }
     }
 }
@@ -99,10 +109,9 @@ pub(crate) fn is_closed_stdout(error: &Error) -> bool {
 /// # Errors
 /// [`Error::Output`].
 pub(crate) fn print(text: &str) -> Result<()> {
-    let mut sink = Sink::open(Path::new("-"))?;
-    sink.write_all(text.as_bytes())
-        .map_err(|source| failed(Path::new("-"), "cannot write", source))?;
-    sink.commit()
+    let mut out = io::stdout().lock();
+    let done = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    done.map_err(|source| failed(Path::new("-"), "cannot write", source))
 }
 
 /// An output's failure, `action` being what was tried.
@@ -116,7 +125,7 @@ fn open_target(name: &Path) -> io::Result<Target> {
     match fs::metadata(name) {
         Ok(data) if data.is_dir() => Err(told("it is a directory; name a file in it")),
         Ok(data) if device || !data.is_file() => {
-            Ok(Target::Direct(BufWriter::new(OpenOptions::new().write(true).open(name)?)))
+            unnamed(End::Open(OpenOptions::new().write(true).open(name)?))
         }
         Ok(data) if data.permissions().readonly() => {
             Err(told("the file is write-protected; remove it or choose another name"))
@@ -124,6 +133,30 @@ fn open_target(name: &Path) -> io::Result<Target> {
         // The end of the links, so that a link stays one.
         Ok(_) => beside(fs::canonicalize(name)?),
         Err(_) => beside(end_of_links(name)?),
+    }
+}
+
+fn unnamed(end: End) -> io::Result<Target> {
+    let file = tempfile::tempfile().map_err(|source| {
+        let folder = std::env::temp_dir();
+        io::Error::new(
+            source.kind(),
+            format!("no temporary file in {}: {source}", folder.display()),
+        )
+    })?;
+    Ok(Target::Unnamed(BufWriter::new(file), end))
+}
+
+/// Sends what a file holds to where it is meant for.
+fn copy(out: BufWriter<File>, end: End) -> io::Result<()> {
+    let mut file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+    file.rewind()?;
+    match end {
+        End::Stdout => {
+            let mut stdout = io::stdout().lock();
+            io::copy(&mut file, &mut stdout).and_then(|_| stdout.flush())
+        }
+        End::Open(mut end) => io::copy(&mut file, &mut end).and_then(|_| end.flush()),
     }
 }
 
@@ -242,10 +275,40 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn devices_are_written_to() {
+    fn devices_and_pipes_are_written_to_when_all_is_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        for kept in [true, false] {
+            let reader = pipe.clone();
+            let reader = std::thread::spawn(move || fs::read(reader).unwrap());
+            let mut sink = Sink::open(&pipe).unwrap();
+            sink.write_all(b"M73 P?? R??").unwrap();
+            sink.seek(SeekFrom::Start(5)).unwrap();
+            sink.write_all(b"10").unwrap();
+            if kept {
+                sink.commit().unwrap();
+            } else {
+                drop(sink);
+            }
+            let read: &[u8] = if kept { b"M73 P10 R??" } else { b"" };
+            assert_eq!(reader.join().unwrap(), read);
+        }
         let mut sink = Sink::open(Path::new("/dev/null")).unwrap();
         sink.write_all(b"x").unwrap();
-        assert!(matches!(sink.target, Target::Direct(_)));
+        assert!(matches!(sink.target, Target::Unnamed(_, End::Open(_))));
         sink.commit().unwrap();
+    }
+
+    #[test]
+    fn what_was_written_can_be_filled_in() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.gcode");
+        let mut sink = Sink::open(&path).unwrap();
+        sink.write_all(b"one two").unwrap();
+        sink.seek(SeekFrom::Start(4)).unwrap();
+        sink.write_all(b"2").unwrap();
+        sink.commit().unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "one 2wo");
     }
 }

@@ -11,20 +11,31 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
     let layers = &report.layers;
     let filament = &report.filament;
     let dual = report.dual.as_ref().map_or_else(String::new, |dual| {
-        format!("; {} of {} pairs of layers with thick infill", dual.thick_pairs, dual.pairs)
+        format!("; {} of {} groups of layers with thick infill", dual.thick_blocks, dual.blocks)
     });
     format!(
         "{} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm\n\
          filament {:.0} mm, {:.2} cm³, {:.1} g{}\n\
-         sliced in {:.2} s{dual}\n",
+         prints in {}, sliced in {:.2} s{dual}\n",
         layers.count,
         layers.height_mm,
         filament.length_mm,
         filament.volume_cm3,
         filament.weight_g,
         shares(report),
+        duration(report.time.total_s),
         took.as_secs_f64(),
     )
+}
+
+/// A time as people say it, such as `1 h 23 min`.
+fn duration(seconds: f64) -> String {
+    let minutes = (seconds / 60.0).round() as u64;
+    match (minutes / 60, minutes % 60) {
+        (0, 0 | 1) if seconds < 59.5 => format!("{seconds:.0} s"),
+        (0, minutes) => format!("{minutes} min"),
+        (hours, minutes) => format!("{hours} h {minutes} min"),
+    }
 }
 
 /// What was mended without harm, one line each.
@@ -59,15 +70,24 @@ pub(crate) fn roles(report: &Report) -> String {
         .iter()
         .map(|role| {
             format!(
-                "{:<16} {:>12.0} mm of path {:>10.1} mm of filament",
-                role.role, role.length_mm, role.filament_mm
+                "{:<16} {:>12.0} mm of path {:>10.1} mm of filament {:>10.1} s",
+                role.role, role.length_mm, role.filament_mm, role.time_s
             )
         })
         .collect();
     let travel = &report.travel;
     lines.push(format!(
-        "{:<16} {:>12.0} mm of path in {} moves, {} with retraction",
-        "travel", travel.length_mm, travel.count, travel.retractions
+        "{:<16} {:>12.0} mm of path in {} moves, {} with retraction, {:.1} s",
+        "travel",
+        travel.length_mm,
+        travel.count,
+        travel.retractions,
+        travel.time_s + travel.retraction_time_s
+    ));
+    let (time, flow) = (&report.time, &report.flow);
+    lines.push(format!(
+        "layers take {:.1} to {:.1} s, with a spread of {:.2}; the largest flow is {:.1} mm³/s",
+        time.shortest_layer_s, time.longest_layer_s, time.layer_spread, flow.largest_mm3_s
     ));
     lines.join("\n") + "\n"
 }
@@ -85,7 +105,7 @@ pub(crate) fn settings(profile: &Profile) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use slicer::report::{DualReport, FilamentReport, LayersReport, RoleReport};
+    use slicer::report::{DualReport, FilamentReport, LayersReport, RoleReport, TimeReport};
 
     #[test]
     fn three_lines_say_it_all() {
@@ -98,15 +118,30 @@ mod tests {
             size_mm: [40.0, 30.0, 20.0],
             layers: LayersReport { count: 100, height_mm: 0.2, ..LayersReport::default() },
             roles: vec![role("outer wall", 30.0), role("skin", 0.0), role("thick infill", 90.0)],
-            filament: FilamentReport { length_mm: 120.0, volume_cm3: 0.289, weight_g: 0.36 },
-            dual: Some(DualReport { pairs: 47, thick_pairs: 46, ..DualReport::default() }),
+            filament: FilamentReport {
+                length_mm: 120.0,
+                volume_cm3: 0.289,
+                weight_g: 0.36,
+                cost: None,
+            },
+            time: TimeReport { total_s: 4_990.0, ..TimeReport::default() },
+            dual: Some(DualReport { blocks: 47, thick_blocks: 46, ..DualReport::default() }),
             ..Report::default()
         };
         assert_eq!(
             summary(&report, Duration::from_millis(1230)),
             "100 layers of 0.2 mm, 40.0 x 30.0 x 20.0 mm\n\
              filament 120 mm, 0.29 cm³, 0.4 g (outer wall 25 %, thick infill 75 %)\n\
-             sliced in 1.23 s; 46 of 47 pairs of layers with thick infill\n"
+             prints in 1 h 23 min, sliced in 1.23 s; 46 of 47 groups of layers with thick infill\n"
         );
+    }
+
+    #[test]
+    fn times_are_said_as_people_say_them() {
+        let said =
+            [(12.4, "12 s"), (59.6, "1 min"), (3_590.0, "1 h 0 min"), (90_000.0, "25 h 0 min")];
+        for (seconds, words) in said {
+            assert_eq!(duration(seconds), words);
+        }
     }
 }

@@ -36,10 +36,18 @@ impl Dialect {
         }
     }
 
-    /// What says that `percent` of the print is done.
+    /// What says that `percent` of the print is done and how many minutes are left.
+    /// Of the same length whatever the numbers are, so that it can be filled in later.
     #[must_use]
-    pub fn progress(self, percent: usize) -> String {
-        format!("M73 P{percent}")
+    pub fn progress(self, percent: u64, minutes: u64) -> String {
+        let (percent, minutes) = (percent.min(100), minutes.min(99_999));
+        match self.name {
+            DialectName::Marlin => format!("{:<15}", format!("M73 P{percent} R{minutes}")),
+            // GPX wants no R, and Klipper makes nothing of it.
+            DialectName::Makerbot | DialectName::Klipper => {
+                format!("{:<8}", format!("M73 P{percent}"))
+            }
+        }
     }
 
     /// Whether the writer has to say that the print is done; MakerBot's end block

@@ -1,27 +1,56 @@
 //! Toolpaths -> text: a G-code file, written layer by layer.
 
 pub mod dialect;
+pub mod flow;
+pub mod moves;
 pub mod number;
+mod progress;
+pub mod times;
+pub mod usage;
 pub mod write;
 
 use crate::error::{Error, Result};
 use crate::job;
+use crate::motion::Limits;
 use crate::plan::Toolpath;
 use crate::profile::template::{self, PrintFacts};
 use crate::profile::{Settings, dump};
+use moves::{MoveParams, Moves};
+use progress::Progress;
 use rayon::prelude::*;
-use std::io::Write;
+use std::collections::VecDeque;
+use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
-use write::{Material, Start, Usage, WriteParams};
+use times::{Timer, Times};
+use usage::{Material, Usage};
+use write::{LayerText, WriteParams};
+
+/// What a G-code file is written to, at its beginning. The progress is filled in at
+/// the end.
+pub trait Output: Write + Seek + Send {}
+
+impl<T: Write + Seek + Send> Output for T {}
+
+/// What a file adds up to.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Sums {
+    /// Lengths and filament.
+    pub usage: Usage,
+    /// Times.
+    pub times: Times,
+}
 
 /// Writes one G-code file.
 pub struct Writer<'a> {
-    out: &'a mut dyn Write,
-    file: PathBuf,
+    out: Places<'a>,
     settings: &'a Settings,
     facts: PrintFacts,
+    moves: MoveParams,
     params: WriteParams,
-    start: Start,
+    timer: Timer,
+    /// Layers whose times are not all known yet.
+    waiting: VecDeque<LayerText>,
+    progress: Progress,
     usage: Usage,
 }
 
@@ -32,19 +61,21 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// [`Error::Config`] for an unknown placeholder, [`Error::Output`] if writing fails.
     pub fn new(
-        out: &'a mut dyn Write,
+        out: &'a mut dyn Output,
         file: &Path,
         settings: &'a Settings,
         facts: PrintFacts,
         offset: [f64; 2],
     ) -> Result<Self> {
         let mut writer = Self {
-            out,
-            file: file.to_owned(),
+            out: Places { out, file: file.to_owned(), written: 0 },
             settings,
             facts,
-            params: WriteParams::new(settings, offset),
-            start: Start { done: (0, facts.layers), ..Start::default() },
+            moves: MoveParams::new(settings, offset),
+            params: WriteParams::new(settings),
+            timer: Timer::new(Limits::new(settings)),
+            waiting: VecDeque::new(),
+            progress: Progress::new(settings.machine.dialect),
             usage: Usage::default(),
         };
         let block = writer.block("machine.start", &settings.machine.start)?;
@@ -54,55 +85,77 @@ impl<'a> Writer<'a> {
             job::NAME,
             facts.layers
         );
-        writer.put(head.as_bytes())?;
+        writer.out.put(head.as_bytes())?;
         Ok(writer)
     }
 
-    /// Writes the next layers; formatted side by side, written in order.
+    /// Writes the next layers; formatted and timed side by side, written in order.
     ///
     /// # Errors
     /// [`Error::Output`] if writing fails.
     pub fn layers(&mut self, layers: &[Toolpath]) -> Result<()> {
-        let params = &self.params;
-        let usages: Vec<Usage> = layers.par_iter().map(|layer| params.usage(layer)).collect();
+        let (params, moves, timer) = (&self.params, &self.moves, &mut self.timer);
+        let walk = |layer| {
+            let moves = moves.moves(layer);
+            (Usage::of(&moves), moves)
+        };
+        let walked: Vec<(Usage, Moves)> = layers.par_iter().map(walk).collect();
         let mut starts = Vec::with_capacity(layers.len());
-        for usage in &usages {
-            starts.push(self.start);
-            self.start.e += usage.filament();
-            self.start.done.0 += 1;
+        for (usage, _) in &walked {
+            starts.push(self.usage.filament());
             self.usage.add(usage);
         }
-        let texts: Vec<Vec<u8>> = layers
-            .par_iter()
-            .zip(&starts)
-            .map(|(layer, start)| params.layer(layer, start))
-            .collect();
-        texts.iter().try_for_each(|text| self.put(text))
+        // The clock goes from layer to layer, the text of each stands alone.
+        let ((), texts) = rayon::join(
+            || walked.iter().for_each(|(_, moves)| timer.layer(moves)),
+            || -> Vec<LayerText> {
+                let layers = walked.par_iter().zip(&starts);
+                layers.map(|((_, moves), &e)| params.layer(moves, e)).collect()
+            },
+        );
+        self.waiting.extend(texts);
+        self.write_ready()
     }
 
-    /// Writes the end block and the settings, and says what was used.
+    /// Writes the end block and the settings, says what was used and fills in the progress.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn finish(mut self) -> Result<Usage> {
+    pub fn finish(mut self) -> Result<Sums> {
+        self.timer.finish();
+        self.write_ready()?;
         let block = self.block("machine.end", &self.settings.machine.end)?;
-        let mut tail = self.params.finish(&self.start);
-        tail.extend_from_slice(self.params.done().as_bytes());
+        let mut tail = self.params.finish(&self.moves, self.usage.filament());
+        tail.extend_from_slice(self.progress.done().as_bytes());
         tail.extend_from_slice(format!(";TYPE:Custom\n{block}").as_bytes());
         tail.extend_from_slice(self.summary().as_bytes());
         for (key, value) in dump(self.settings) {
             tail.extend_from_slice(format!("; {key} = {value}\n").as_bytes());
         }
-        self.put(&tail)?;
-        Ok(self.usage)
+        self.out.put(&tail)?;
+        let times = self.timer.times().clone();
+        self.progress.fill_in(times.total(), &mut self.out)?;
+        Ok(Sums { usage: self.usage, times })
     }
 
-    /// The material in comments that hosts read.
+    /// Writes the layers whose times are known.
+    fn write_ready(&mut self) -> Result<()> {
+        while let Some(schedule) = self.timer.next_ready() {
+            let Some(layer) = self.waiting.pop_front() else { return Ok(()) };
+            self.progress.layer(&layer, &schedule, &mut self.out)?;
+        }
+        Ok(())
+    }
+
+    /// Material and time in comments that hosts read.
     fn summary(&self) -> String {
-        let Material { mm, cm3, grams } = Material::new(self.usage.filament(), self.settings);
+        let Material { mm, cm3, grams, cost } = Material::new(self.usage.filament(), self.settings);
+        let cost = cost.map_or_else(String::new, |cost| format!("; filament cost = {cost:.2}\n"));
+        let time = times::in_words(self.timer.times().total());
         format!(
             "\n; filament used [mm] = {mm:.2}\n; filament used [cm3] = {cm3:.2}\n\
-             ; filament used [g] = {grams:.2}\n\n"
+             ; filament used [g] = {grams:.2}\n{cost}\
+             ; estimated printing time (normal mode) = {time}\n\n"
         )
     }
 
@@ -110,12 +163,29 @@ impl<'a> Writer<'a> {
     fn block(&self, name: &str, block: &str) -> Result<String> {
         template::render(name, block, &template::values(self.settings, &self.facts))
     }
+}
 
+/// An output that knows where it is.
+struct Places<'a> {
+    out: &'a mut dyn Output,
+    file: PathBuf,
+    /// Bytes so far.
+    written: u64,
+}
+
+impl Places<'_> {
     fn put(&mut self, bytes: &[u8]) -> Result<()> {
-        self.out.write_all(bytes).map_err(|source| Error::Output {
-            file: self.file.clone(),
-            action: "cannot write",
-            source,
-        })
+        self.written += bytes.len() as u64;
+        self.out.write_all(bytes).map_err(|source| self.failed(source))
+    }
+
+    /// Writes over what stands at this byte.
+    fn put_at(&mut self, place: u64, bytes: &[u8]) -> Result<()> {
+        let seek = self.out.seek(std::io::SeekFrom::Start(place));
+        seek.and_then(|_| self.out.write_all(bytes)).map_err(|source| self.failed(source))
+    }
+
+    fn failed(&self, source: std::io::Error) -> Error {
+        Error::Output { file: self.file.clone(), action: "cannot write", source }
     }
 }

@@ -1,179 +1,79 @@
-//! Toolpath -> text: the G-code of one layer, independent of all others but for where it begins.
+//! Moves -> text: the G-code of one layer, independent of all others but for where it begins.
 
 use super::dialect::Dialect;
+use super::moves::{Bead, Kind, Move, MoveParams, Moves};
 use super::number::{push_fixed, push_integer, thousandths};
-use crate::geom::Point;
-use crate::plan::{Path, Role, Toolpath};
-use crate::profile::{ExtrusionModel, Settings};
-use crate::units::{Coord, UNITS_PER_MM, nearest, to_mm, to_units};
-use std::f64::consts::PI;
+use crate::plan::Role;
+use crate::profile::Settings;
+use crate::units::{Coord, nearest, to_mm};
 use std::io::Write as _;
 
 /// Widths that differ by less are not worth an annotation (0.01 mm).
 const LEAST_WIDTH_CHANGE: Coord = 100;
 
-/// What was extruded in one role: path and filament, mm.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Used {
-    /// Length of path, mm.
-    pub length: f64,
-    /// Filament, mm.
-    pub filament: f64,
+/// A layer's text.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LayerText {
+    /// All of it but the progress.
+    pub text: Vec<u8>,
+    /// Where progress may be told: at the layer's beginning, then before the way to each
+    /// path; bytes.
+    pub cuts: Vec<usize>,
 }
 
-/// What a layer, or a print, moves and uses.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Usage {
-    /// By role, in the order of [`Role::ALL`]: lines of one layer's height, then thick ones.
-    pub roles: [[Used; 2]; 5],
-    /// Travels.
-    pub travels: usize,
-    /// Their length, mm.
-    pub travel_length: f64,
-    /// How many of them retract.
-    pub retractions: usize,
-}
-
-impl Usage {
-    /// Filament in all, mm.
-    #[must_use]
-    pub fn filament(&self) -> f64 {
-        self.roles.as_flattened().iter().map(|r| r.filament).sum()
-    }
-
-    /// Adds another layer's usage.
-    pub fn add(&mut self, other: &Self) {
-        let theirs = other.roles.as_flattened();
-        for (mine, theirs) in self.roles.as_flattened_mut().iter_mut().zip(theirs) {
-            mine.length += theirs.length;
-            mine.filament += theirs.filament;
-        }
-        self.travels += other.travels;
-        self.travel_length += other.travel_length;
-        self.retractions += other.retractions;
-    }
-}
-
-/// How far the print is when a layer begins.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Start {
-    /// Filament used so far, mm.
-    pub e: f64,
-    /// Layers done and in all, for the progress.
-    pub done: (usize, usize),
-}
-
-/// The numbers that writing needs.
+/// What writing needs to know.
 #[derive(Debug, Clone)]
 pub struct WriteParams {
     dialect: Dialect,
     relative_e: bool,
-    /// Where the layout's middle goes on the machine, grid units.
-    offset: [i64; 2],
-    /// mm of filament for each mm of path, mm of width and mm of height, by role.
-    rates: [f64; 5],
-    /// By role, of lines of one layer's height and of thick ones.
-    feeds: [[f64; 2]; 5],
-    first_layer: f64,
-    travel_feed: f64,
-    z_feed: f64,
-    retract: f64,
-    retract_feed: f64,
-    hop: Coord,
     fan: f64,
     fan_from_layer: usize,
     tool: u32,
 }
 
 impl WriteParams {
-    /// The numbers that `settings` mean for writing; `offset` is the layout's middle, mm.
+    /// What `settings` mean for writing.
     #[must_use]
-    pub fn new(settings: &Settings, offset: [f64; 2]) -> Self {
-        let (x, s) = (&settings.extrusion, &settings.speed);
-        let rate = |factor: f64| match x.model {
-            ExtrusionModel::Area => x.multiplier / filament_area(settings),
-            ExtrusionModel::Factor => x.multiplier * factor / (x.factor_width * x.factor_height),
-        };
-        let (wall, infill) = (rate(x.wall_factor), rate(x.infill_factor));
+    pub fn new(settings: &Settings) -> Self {
         Self {
             dialect: Dialect::new(settings.machine.dialect),
             relative_e: settings.machine.relative_e,
-            offset: offset.map(|mm| i64::from(to_units(mm))),
-            rates: [wall, wall, rate(x.skin_factor), infill, rate(x.support_factor)],
-            feeds: [
-                [s.wall; 2],
-                [s.wall; 2],
-                [s.skin; 2],
-                [s.infill, s.thick_infill],
-                [s.support; 2],
-            ],
-            first_layer: s.first_layer / 100.0,
-            travel_feed: s.travel,
-            z_feed: s.z,
-            retract: settings.retraction.length,
-            retract_feed: settings.retraction.feed,
-            hop: to_units(settings.retraction.z_hop),
             fan: settings.filament.fan,
             fan_from_layer: settings.filament.fan_from_layer as usize,
             tool: settings.machine.tool,
         }
     }
 
-    /// Filament for a stretch of path, mm.
-    fn filament(&self, role: Role, length_mm: f64, width: Coord, height: Coord) -> f64 {
-        self.rates[role as usize] * length_mm * to_mm(width) * to_mm(height)
-    }
-
-    /// What a layer will use.
+    /// The text of one layer; `e` is the filament used before, mm.
     #[must_use]
-    pub fn usage(&self, layer: &Toolpath) -> Usage {
-        let mut usage = Usage::default();
-        let mut at = layer.from;
-        for step in &layer.steps {
-            if at != Some(step.path.start()) {
-                usage.travels += 1;
-                usage.travel_length +=
-                    at.map_or(0.0, |p| p.distance(step.path.start())) / UNITS_PER_MM;
-            }
-            usage.retractions += usize::from(step.retract);
-            let used = &mut usage.roles[step.path.role as usize][usize::from(step.path.is_thick())];
-            for (_, length, width) in step.path.segments() {
-                let length = length / UNITS_PER_MM;
-                used.length += length;
-                used.filament += self.filament(step.path.role, length, width, step.path.height);
-            }
-            at = Some(step.path.end());
+    pub fn layer(&self, layer: &Moves, e: f64) -> LayerText {
+        let mut text = Text::new(self, e);
+        // Half a screen line for a move.
+        text.out.reserve(30 * layer.moves.len());
+        let mut cuts = Vec::with_capacity(1 + layer.paths.len());
+        text.annotations(layer);
+        cuts.push(text.out.len());
+        text.begin(layer);
+        let mut done = 0;
+        for &first in &layer.paths {
+            layer.moves[done..first].iter().for_each(|step| text.step(step));
+            done = first;
+            cuts.push(text.out.len());
         }
-        usage
+        layer.moves[done..].iter().for_each(|step| text.step(step));
+        LayerText { text: text.out, cuts }
     }
 
-    /// The text of one layer.
+    /// The last pull before the end block, at filament used `e`, mm.
     #[must_use]
-    pub fn layer(&self, layer: &Toolpath, start: &Start) -> Vec<u8> {
-        let mut text = Text::new(self, start);
-        text.begin(layer, start);
-        for step in &layer.steps {
-            text.approach(layer.z, step.path.start(), step.retract);
-            text.path(&step.path, layer);
-        }
-        text.out
-    }
-
-    /// The last pull before the end block, at filament used `e`.
-    #[must_use]
-    pub fn finish(&self, start: &Start) -> Vec<u8> {
-        let mut text = Text::new(self, start);
+    pub fn finish(&self, moves: &MoveParams, e: f64) -> Vec<u8> {
+        let mut text = Text::new(self, e);
         text.restart_e();
-        if self.retract > 0.0 {
-            text.retract();
+        let (length, feed) = moves.last_pull();
+        if length > 0.0 {
+            text.pull(-length, feed);
         }
         text.out
-    }
-
-    /// What says that the print is done, where the end block does not.
-    #[must_use]
-    pub fn done(&self) -> String {
-        if self.dialect.says_done() { self.dialect.progress(100) + "\n" } else { String::new() }
     }
 
     /// The annotation of a role, in the words that viewers know.
@@ -188,32 +88,6 @@ impl WriteParams {
     }
 }
 
-/// A length of filament in the measures that people buy it in.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Material {
-    /// Length, mm.
-    pub mm: f64,
-    /// Volume, cm³.
-    pub cm3: f64,
-    /// Weight, g.
-    pub grams: f64,
-}
-
-impl Material {
-    /// What `mm` of the filament in `settings` are.
-    #[must_use]
-    pub fn new(mm: f64, settings: &Settings) -> Self {
-        let cm3 = mm * filament_area(settings) / 1000.0;
-        Self { mm, cm3, grams: cm3 * settings.filament.density }
-    }
-}
-
-/// The cross-section of the filament, mm².
-#[must_use]
-pub fn filament_area(settings: &Settings) -> f64 {
-    PI * settings.filament.diameter * settings.filament.diameter / 4.0
-}
-
 /// A layer's text in the making, with the words that stay in force.
 struct Text<'a> {
     params: &'a WriteParams,
@@ -222,44 +96,40 @@ struct Text<'a> {
     e: f64,
     /// E as last written, 10⁻⁵ mm.
     written_e: i64,
-    x: Option<i64>,
-    y: Option<i64>,
-    z: Option<Coord>,
-    feed: Option<u64>,
+    /// Where the nozzle is, thousandths of a mm.
+    at: Option<[i32; 2]>,
+    feed: u32,
     role: Option<Role>,
     width: Coord,
     height: Coord,
 }
 
 impl<'a> Text<'a> {
-    fn new(params: &'a WriteParams, start: &Start) -> Self {
-        let e = if params.dialect.restarts_e() { 0.0 } else { start.e };
+    fn new(params: &'a WriteParams, used: f64) -> Self {
+        let e = if params.dialect.restarts_e() { 0.0 } else { used };
         Self {
             params,
             out: Vec::new(),
             e,
             written_e: ticks(e),
-            x: None,
-            y: None,
-            z: None,
-            feed: None,
+            at: None,
+            feed: 0,
             role: None,
             width: 0,
             height: 0,
         }
     }
 
-    /// Annotations, progress, fan and E at the beginning of a layer.
-    fn begin(&mut self, layer: &Toolpath, start: &Start) {
+    /// What viewers read at the beginning of a layer.
+    fn annotations(&mut self, layer: &Moves) {
         self.line(";LAYER_CHANGE");
         self.annotate(";Z:", layer.z);
         self.annotate(";HEIGHT:", layer.height);
-        let (done, total) = start.done;
-        let percent = |layers: usize| 100 * layers / total.max(1);
-        if done == 0 || percent(done) != percent(done - 1) {
-            let words = self.params.dialect.progress(percent(done));
-            self.line(&words);
-        }
+        self.height = layer.height;
+    }
+
+    /// Fan and E at the beginning of a layer.
+    fn begin(&mut self, layer: &Moves) {
         let from = self.params.fan_from_layer.max(1) - 1;
         let fan = self.params.fan;
         if fan > 0.0 && layer.layer == from {
@@ -267,11 +137,7 @@ impl<'a> Text<'a> {
             self.line(&words);
         }
         self.restart_e();
-        self.height = layer.height;
-        if let Some(from) = layer.from {
-            let [x, y] = self.place(from);
-            (self.x, self.y) = (Some(x), Some(y));
-        }
+        self.at = layer.from;
     }
 
     /// Says that E counts from zero again, where it does.
@@ -281,98 +147,67 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// The way to the beginning of a path at height `z`.
-    fn approach(&mut self, z: Coord, to: Point, retract: bool) {
-        if retract {
-            self.retract();
-            if self.params.hop > 0 {
-                self.move_z(z + self.params.hop);
+    fn step(&mut self, step: &Move) {
+        match step.kind {
+            Kind::Travel => {
+                if self.go(step.to) {
+                    self.end_move(step.feed);
+                }
+            }
+            Kind::Z => {
+                self.out.extend_from_slice(b"G1 Z");
+                push_fixed(&mut self.out, thousandths(to_mm(step.z)), 3);
+                self.end_move(step.feed);
+            }
+            Kind::Retract | Kind::Restore => self.pull(step.filament, step.feed),
+            Kind::Extrude(bead) => {
+                self.announce(&bead);
+                self.e += step.filament;
+                if self.go(step.to) {
+                    self.push_e();
+                    self.end_move(step.feed);
+                }
             }
         }
-        // Up before sideways. The first way of a print goes down at its end instead:
-        // the start block leaves the nozzle above its purge.
-        if self.z.is_none() && self.x.is_some() {
-            self.move_z(z);
-        }
-        if self.go(to) {
-            self.end_move(self.params.travel_feed);
-        }
-        if self.z != Some(z) {
-            self.move_z(z);
-        }
-        if retract {
-            self.pull(self.params.retract);
-        }
     }
 
-    fn retract(&mut self) {
-        self.pull(-self.params.retract);
-    }
-
-    fn move_z(&mut self, z: Coord) {
-        self.out.extend_from_slice(b"G1 Z");
-        push_fixed(&mut self.out, thousandths(to_mm(z)), 3);
-        self.z = Some(z);
-        self.end_move(self.params.z_feed);
-    }
-
-    fn pull(&mut self, by: f64) {
+    fn pull(&mut self, by: f64, feed: u32) {
         self.out.extend_from_slice(b"G1");
         self.e += by;
         self.push_e();
-        self.end_move(self.params.retract_feed);
+        self.end_move(feed);
     }
 
-    fn path(&mut self, path: &Path, layer: &Toolpath) {
-        let slow = if layer.layer == 0 { self.params.first_layer } else { 1.0 };
-        let feed = self.params.feeds[path.role as usize][usize::from(path.is_thick())] * slow;
-        if self.role != Some(path.role) {
-            self.role = Some(path.role);
+    /// Says what of a bead differs from the one before.
+    fn announce(&mut self, bead: &Bead) {
+        if self.role != Some(bead.role) {
+            self.role = Some(bead.role);
             self.out.extend_from_slice(b";TYPE:");
-            self.line(WriteParams::type_name(path.role));
+            self.line(WriteParams::type_name(bead.role));
             self.width = 0;
         }
-        if self.height != path.height {
-            self.height = path.height;
-            self.annotate(";HEIGHT:", path.height);
+        if self.height != bead.height {
+            self.height = bead.height;
+            self.annotate(";HEIGHT:", bead.height);
         }
-        for (to, length, width) in path.segments() {
-            if (width - self.width).abs() >= LEAST_WIDTH_CHANGE {
-                self.width = width;
-                self.annotate(";WIDTH:", width);
-            }
-            let length = length / UNITS_PER_MM;
-            self.e += self.params.filament(path.role, length, width, path.height);
-            if self.go(to) {
-                self.push_e();
-                self.end_move(feed);
-            }
+        if (bead.width - self.width).abs() >= LEAST_WIDTH_CHANGE {
+            self.width = bead.width;
+            self.annotate(";WIDTH:", bead.width);
         }
-    }
-
-    /// Where a point is on the machine, thousandths of a mm.
-    fn place(&self, p: Point) -> [i64; 2] {
-        let [x, y] = self.params.offset;
-        // Ten units are a thousandth; half away from zero is not needed, only the same everywhere.
-        [(i64::from(p.x) + x + 5).div_euclid(10), (i64::from(p.y) + y + 5).div_euclid(10)]
     }
 
     /// Begins a move to `to` with the words that change; says no if none does.
-    fn go(&mut self, to: Point) -> bool {
-        let [x, y] = self.place(to);
-        if self.x == Some(x) && self.y == Some(y) {
+    fn go(&mut self, to: [i32; 2]) -> bool {
+        if self.at == Some(to) {
             return false;
         }
+        let before = self.at.replace(to);
         self.out.extend_from_slice(b"G1");
-        if self.x != Some(x) {
-            self.x = Some(x);
-            self.out.extend_from_slice(b" X");
-            push_fixed(&mut self.out, x, 3);
-        }
-        if self.y != Some(y) {
-            self.y = Some(y);
-            self.out.extend_from_slice(b" Y");
-            push_fixed(&mut self.out, y, 3);
+        for (axis, word) in [b" X", b" Y"].into_iter().enumerate() {
+            if before.is_none_or(|before| before[axis] != to[axis]) {
+                self.out.extend_from_slice(word);
+                push_fixed(&mut self.out, i64::from(to[axis]), 3);
+            }
         }
         true
     }
@@ -388,12 +223,11 @@ impl<'a> Text<'a> {
     }
 
     /// Ends a move with its feed (mm/min), if that changes.
-    fn end_move(&mut self, feed: f64) {
-        let feed = feed.round().max(1.0) as u64;
-        if self.feed != Some(feed) {
-            self.feed = Some(feed);
+    fn end_move(&mut self, feed: u32) {
+        if self.feed != feed {
+            self.feed = feed;
             self.out.extend_from_slice(b" F");
-            push_integer(&mut self.out, feed);
+            push_integer(&mut self.out, u64::from(feed));
         }
         self.out.push(b'\n');
     }
@@ -418,7 +252,9 @@ fn ticks(mm: f64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{PathPoint, Step};
+    use crate::gcode::usage::Usage;
+    use crate::geom::Point;
+    use crate::plan::{Path, PathPoint, Step, Toolpath};
     use crate::profile;
 
     fn toolpath() -> Toolpath {
@@ -436,9 +272,8 @@ mod tests {
 
     fn text(profile: &str) -> String {
         let settings = profile::load(profile, &[]).unwrap().settings;
-        let params = WriteParams::new(&settings, [150.0, 150.0]);
-        let start = Start { e: 1.0, done: (3, 10) };
-        String::from_utf8(params.layer(&toolpath(), &start)).unwrap()
+        let moves = MoveParams::new(&settings, [150.0, 150.0]).moves(&toolpath());
+        String::from_utf8(WriteParams::new(&settings).layer(&moves, 1.0).text).unwrap()
     }
 
     #[test]
@@ -449,7 +284,6 @@ mod tests {
 ;LAYER_CHANGE
 ;Z:0.8
 ;HEIGHT:0.2
-M73 P30
 G1 E0 F1200
 G1 X150 Y150 F5400
 G1 Z0.8 F1000
@@ -480,7 +314,7 @@ G1 X150 E2.3 F3600
     #[test]
     fn usage_counts_what_is_written() {
         let settings = profile::load("zcube-dual", &[]).unwrap().settings;
-        let usage = WriteParams::new(&settings, [0.0, 0.0]).usage(&toolpath());
+        let usage = Usage::of(&MoveParams::new(&settings, [0.0, 0.0]).moves(&toolpath()));
         assert!((usage.filament() - 1.3).abs() < 1e-9);
         assert_eq!((usage.travels, usage.retractions), (2, 1));
     }

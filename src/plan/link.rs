@@ -5,8 +5,9 @@
 //! lines between show it. Lines that cannot be joined begin a new chain.
 
 use crate::geom::spans::{Rows, Span};
+use crate::geom::{Point, side};
 use crate::region::bend::{self, Joined, Line, LinePoint};
-use crate::region::{Comb, Params};
+use crate::region::{Hatch, Params};
 use crate::units::Coord;
 
 /// Lines joined end to end, in the frame of their raster.
@@ -23,6 +24,12 @@ const FLATTEST_STEP: Coord = 2;
 /// is filled by the lines' round ends.
 const SOLID_JOIN_WIDTH: f64 = 0.25;
 
+/// The same where turns are rounded: arcs cover more than corners do.
+const ROUND_JOIN_WIDTH: f64 = 0.1;
+
+/// Solid lines that turn in an arc reach further by the arc's radius over this.
+const REACH: Coord = 4;
+
 /// Ends of sparse lines further apart than this, in line widths, are not joined: the
 /// joins along a wall would weigh more than the lines, most where lines of several
 /// directions end there.
@@ -30,6 +37,9 @@ const LONGEST_SPARSE_JOIN: i64 = 12;
 
 /// A straight join may leave its region by this much (10 µm): edges are rounded to the grid.
 const SLACK: Coord = 100;
+
+/// Bends of a join along an edge that move it by less, in line widths, are left out.
+const BEND: f64 = 0.125;
 
 /// Lines are joined if their distance is at most this many times the shorter one's length.
 const LONGEST_JOIN: i64 = 4;
@@ -69,9 +79,9 @@ struct Link {
     from: Side,
 }
 
-/// Chains of skin lines, closed up to the walls.
+/// Chains of skin lines, closed up to the walls. Their turns will be rounded with `radius`.
 #[must_use]
-pub fn skin(lines: &[Line], params: &Params) -> Vec<Chain> {
+pub fn skin(lines: &[Line], params: &Params, radius: Coord) -> Vec<Chain> {
     let pitch = params.line_width;
     let rows: Vec<&[Line]> = lines.chunk_by(|a, b| a.row == b.row).collect();
     let solid = |line: &Line| Some(line.span).filter(|s| s.len() >= LEAST_SOLID);
@@ -97,17 +107,30 @@ pub fn skin(lines: &[Line], params: &Params) -> Vec<Chain> {
                 if link.from == Side::Right {
                     points.reverse();
                 }
-                lay(points, &mut chain, pitch);
+                let ends = (k > 0, k + 1 < zigzag.len());
+                reach(&mut points, ends, link.from, radius);
+                lay(points, &mut chain, pitch, radius);
             }
             chain
         })
         .collect()
 }
 
+/// Moves those ends of a line that are joined (the first and the last of `points`, entered
+/// from `side`) outwards, so that the arcs there cover what lies between their corners.
+fn reach(points: &mut [LinePoint], joined: (bool, bool), side: Side, radius: Coord) {
+    let by = if side == Side::Left { radius / REACH } else { -radius / REACH };
+    if let [first, .., last] = points {
+        first.u -= if joined.0 { by } else { 0 };
+        last.u += if joined.1 { by } else { 0 };
+    }
+}
+
 /// Appends a line, given with the widths at its points, to a chain of widths on the
 /// way to them.
-fn lay(points: Vec<LinePoint>, chain: &mut Chain, line_width: Coord) {
-    let join = (f64::from(line_width) * SOLID_JOIN_WIDTH) as Coord;
+fn lay(points: Vec<LinePoint>, chain: &mut Chain, line_width: Coord, radius: Coord) {
+    let share = if radius > 0 { ROUND_JOIN_WIDTH } else { SOLID_JOIN_WIDTH };
+    let join = (f64::from(line_width) * share) as Coord;
     let mut before = None;
     for point in points {
         let width = before.map_or(join, |b: Coord| (b + point.width) / 2);
@@ -116,13 +139,14 @@ fn lay(points: Vec<LinePoint>, chain: &mut Chain, line_width: Coord) {
     }
 }
 
-/// Chains of the lines that `comb` prints of a sparse region; `pitch` is the distance
+/// Chains of the lines that are printed of a sparse region; `pitch` is the distance
 /// of its rows.
 #[must_use]
-pub fn comb(region: &Rows, comb: Comb, pitch: Coord, width: Coord) -> Vec<Chain> {
-    let stride = comb.stride;
+pub fn hatch(hatch: &Hatch, pitch: Coord, line_width: Coord) -> Vec<Chain> {
+    let Hatch { comb, rows: region, width, .. } = hatch;
+    let (stride, width) = (comb.stride, *width);
     let printed = region.iter().filter(|(j, _)| comb.prints(*j));
-    let long = |s: &Span| Some(*s).filter(|s| s.len() >= i64::from(width));
+    let long = |s: &Span| Some(*s).filter(|s| s.len() >= i64::from(line_width));
     let rows = printed.map(|(j, row)| (j, row.iter().map(long).collect()));
     let edges = Edges { region, pitch, width };
     let short = |from: (Coord, i32), to: (Coord, i32)| {
@@ -185,7 +209,33 @@ impl Edges<'_> {
             at = ends.filter(|u| (u - at).abs() <= step).min_by_key(|u| ((u - at).abs(), *u))?;
             points.push(LinePoint { u: at, v: j * self.pitch, width: self.width });
         }
-        ((to - at).abs() <= step).then_some(points)
+        ((to - at).abs() <= step).then(|| {
+            let end = |u, row| LinePoint { u, v: row * self.pitch, width: self.width };
+            let mut kept = Vec::new();
+            keep_bends(&points, end(u, a), end(to, b), f64::from(self.width) * BEND, &mut kept);
+            kept
+        })
+    }
+}
+
+/// Of `points` between `a` and `b`, keeps those that straight lines between the kept ones would
+/// miss by more than `least` (Ramer 1972, Douglas and Peucker 1973).
+fn keep_bends(
+    points: &[LinePoint],
+    a: LinePoint,
+    b: LinePoint,
+    least: f64,
+    kept: &mut Vec<LinePoint>,
+) {
+    let at = |p: LinePoint| Point { x: p.u, y: p.v };
+    let length = at(a).distance(at(b)).max(1.0);
+    let miss = |p: LinePoint| side(at(a), at(b), at(p)).abs() as f64 / length;
+    let worst = (0..points.len())
+        .max_by(|&k, &l| miss(points[k]).total_cmp(&miss(points[l])).then(l.cmp(&k)));
+    if let Some(k) = worst.filter(|&k| miss(points[k]) > least) {
+        keep_bends(&points[..k], a, points[k], least, kept);
+        kept.push(points[k]);
+        keep_bends(&points[k + 1..], points[k], b, least, kept);
     }
 }
 
@@ -258,11 +308,13 @@ fn extend(
 mod tests {
     use super::*;
     use crate::geom::spans::subtract;
+    use crate::region::Comb;
 
     const W: Coord = 4_000;
 
-    fn every(stride: i32) -> Comb {
-        Comb { raster: 0, stride, joined: true }
+    fn every(stride: i32, rows: &Rows) -> Hatch {
+        let comb = Comb { raster: 0, offset: 0, stride, joined: true };
+        Hatch { comb, rows: rows.clone(), layers: 1, width: W }
     }
 
     /// Rows 0 to `count`, 40 mm long, without `hole` on the rows it names.
@@ -287,7 +339,7 @@ mod tests {
 
     #[test]
     fn a_convex_region_is_one_zigzag() {
-        let chains = comb(&region(26, None), every(5), W, W);
+        let chains = hatch(&every(5, &region(26, None)), W, W);
         assert_eq!(chains.len(), 1);
         let ends: Vec<Coord> = chains[0].iter().map(|p| p.u).collect();
         assert_eq!(ends[..6], [0, 400_000, 400_000, 0, 0, 400_000]);
@@ -298,7 +350,7 @@ mod tests {
     fn joins_go_round_a_hole_and_never_across() {
         let hole = (6..14, Span { start: 100_000, end: 300_000 });
         let region = region(26, Some(hole));
-        let chains = comb(&region, every(5), W, W);
+        let chains = hatch(&every(5, &region), W, W);
         chains.iter().for_each(|chain| joins_are_inside(&region, chain));
         let lines: usize = chains.iter().map(|c| c.len() / 2).sum();
         assert_eq!(lines, 7, "six rows, one of them in two pieces: {chains:?}");
@@ -307,13 +359,15 @@ mod tests {
 
     #[test]
     fn lines_of_a_crossing_pattern_are_not_joined() {
-        let chains = comb(&region(26, None), Comb { joined: false, ..every(5) }, W, W);
+        let mut grid = every(5, &region(26, None));
+        grid.comb.joined = false;
+        let chains = hatch(&grid, W, W);
         assert_eq!(chains.len(), 6);
     }
 
     #[test]
     fn sparse_lines_far_apart_are_not_joined() {
-        let chains = comb(&region(41, None), every(20), W, W);
+        let chains = hatch(&every(20, &region(41, None)), W, W);
         assert_eq!(chains.len(), 3);
         assert!(chains.iter().all(|c| c.len() == 2));
     }
@@ -322,6 +376,6 @@ mod tests {
     fn a_sparse_line_shorter_than_wide_is_left_out() {
         let mut rows = Rows::starting_at(0);
         rows.push_row(|out| out.push(Span { start: 0, end: W - 1 }));
-        assert!(comb(&rows, every(1), W, W).is_empty());
+        assert!(hatch(&every(1, &rows), W, W).is_empty());
     }
 }

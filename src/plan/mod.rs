@@ -5,15 +5,19 @@
 
 pub mod link;
 pub mod order;
+pub mod round;
 pub mod travel;
 
 use crate::geom::Point;
 use crate::profile::{RetractWhen, Seam, Settings, WallOrder};
+use crate::region::bend::LinePoint;
 use crate::region::raster::Raster;
 use crate::region::support::SupportParams;
+use crate::region::walls::Wall;
 use crate::region::{Params, Region};
 use crate::slice::Layer;
 use crate::units::{Coord, to_units};
+use round::Rounding;
 
 /// What a path is printed for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -78,10 +82,11 @@ impl Path {
     }
 
     /// A closed wall that starts and ends at the vertex `from`.
-    fn closed(role: Role, contour: &[Point], from: usize, width: Coord, height: Coord) -> Self {
-        let n = contour.len();
-        let points = (0..=n).map(|k| PathPoint { at: contour[(from + k) % n], width }).collect();
-        Self { role, points, height, layers: 1 }
+    fn closed(role: Role, wall: &Wall, from: usize, width: Coord, height: Coord) -> Self {
+        let (path, layers) = (&wall.path, wall.layers);
+        let n = path.len();
+        let points = (0..=n).map(|k| PathPoint { at: path[(from + k) % n], width }).collect();
+        Self { role, points, height: layers as Coord * height, layers }
     }
 
     /// Where it begins.
@@ -143,6 +148,8 @@ pub struct PlanParams {
     retract_always: bool,
     min_travel: Coord,
     retracts: bool,
+    rounding: Rounding,
+    skin_rounding: Rounding,
     region: Params,
     support: Option<SupportParams>,
 }
@@ -151,12 +158,16 @@ impl PlanParams {
     /// The numbers that `settings` mean for this stage.
     #[must_use]
     pub fn new(settings: &Settings, region: &Params, support: Option<SupportParams>) -> Self {
+        // Without a wall the ends of lines are the outside, where nothing gets wider.
+        let radius = if settings.walls == 0 { 0 } else { to_units(settings.corner_radius) };
         Self {
             outer_first: settings.wall_order == WallOrder::OuterFirst,
             seam_rear: settings.seam == Seam::Rear,
             retract_always: settings.retraction.when == RetractWhen::Always,
             min_travel: to_units(settings.retraction.min_travel),
             retracts: settings.retraction.length > 0.0,
+            rounding: Rounding { radius },
+            skin_rounding: Rounding { radius: radius.min(region.line_width / 2) },
             region: region.clone(),
             support,
         }
@@ -179,34 +190,31 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
     let height = region.layer.height;
     let mut add = |role, layers: u32, raster: Raster, links: Vec<link::Chain>| {
         chains.extend(links.into_iter().map(|chain| {
-            Path {
-                role,
-                layers,
-                height: layers as Coord * height,
-                points: chain
-                    .into_iter()
-                    .map(|p| PathPoint {
-                        at: raster.frame.leave(Point { x: p.u, y: p.v }),
-                        width: p.width,
-                    })
-                    .collect(),
-            }
+            let place = |p: LinePoint| raster.frame.leave(Point { x: p.u, y: p.v });
+            let point = |p: LinePoint| PathPoint { at: place(p), width: p.width };
+            let points = chain.into_iter().map(point).collect();
+            let rounding = if role == Role::Skin { params.skin_rounding } else { params.rounding };
+            let points = rounding.round(points);
+            Path { role, layers, height: layers as Coord * height, points }
         }));
     };
-    let skin = &region.skin;
-    let raster = params.region.rasters[skin.raster];
-    add(Role::Skin, 1, raster, link::skin(&skin.lines, &params.region));
-    add(Role::Skin, 1, raster, skin.beads.clone());
+    for skin in &region.skins {
+        let raster = params.region.rasters[skin.raster];
+        let chains = link::skin(&skin.lines, &params.region, params.skin_rounding.radius);
+        add(Role::Skin, skin.layers, raster, chains);
+        add(Role::Skin, skin.layers, raster, skin.beads.clone());
+    }
     for infill in &region.infill {
         let raster = params.region.rasters[infill.comb.raster];
-        let chains = link::comb(&infill.rows, infill.comb, raster.pitch, params.region.line_width);
+        let chains = link::hatch(infill, raster.pitch, params.region.line_width);
         add(Role::Infill, infill.layers, raster, chains);
     }
     if let Some(support) = &params.support {
         let raster = support.raster;
-        let chains =
-            link::comb(&region.support, support.comb(), raster.pitch, params.region.line_width);
-        add(Role::Support, 1, raster, chains);
+        for hatch in &region.support {
+            let chains = link::hatch(hatch, raster.pitch, params.region.line_width);
+            add(Role::Support, hatch.layers, raster, chains);
+        }
     }
     let support = chains.extract_if(.., |c| c.role == Role::Support).collect();
     let islands = order::islands(region.walls.clone(), chains, &region.layer.contours);

@@ -137,7 +137,7 @@ fn order_walls(
         let wall = walls.remove(k);
         let role = if wall.depth == 0 { Role::OuterWall } else { Role::InnerWall };
         *at = wall.path[from];
-        out.push(Path::closed(role, &wall.path, from, params.region.line_width, height));
+        out.push(Path::closed(role, &wall, from, params.region.line_width, height));
     }
 }
 

@@ -69,16 +69,32 @@ fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
             return Err(blame.error(&["line_width", key], &why));
         }
     }
-    let pair = 2.0 * settings.layer_height;
-    if settings.dual.mode == DualMode::Pair && pair > nozzle + SLACK_MM {
-        let why = format!(
-            "two layers of layer_height = {} mm make thick infill taller than machine.nozzle = \
-             {nozzle} mm; use layers of at most half the nozzle, or dual.mode = \"off\"",
-            settings.layer_height
-        );
-        return Err(blame.error(&["layer_height", "dual.mode", "machine.nozzle"], &why));
+    dual(settings, blame)
+}
+
+fn dual(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
+    for key in ["dual.ratio", "dual.parts"] {
+        let given = matches!(blame.origins.get(key), Some(ValueOrigin::Flag(_)));
+        if given && settings.dual.mode == DualMode::Off {
+            return Err(blame.error(&[key], "has no effect while dual.mode is off; add --dual"));
+        }
     }
-    Ok(())
+    let ratio = settings.dual_ratio();
+    let height = settings.layer_height;
+    let tall = f64::from(ratio.max(2)) * height;
+    let most = settings.max_bead_height();
+    if settings.dual.mode == DualMode::Off || ratio >= 2 && tall <= most + SLACK_MM {
+        return Ok(());
+    }
+    let why = format!(
+        "{} layers of layer_height = {height} mm make thick lines taller than the {most} mm that \
+         dual.max_bead_height and machine.nozzle allow; use thinner layers, a lower dual.ratio, \
+         or dual.mode = \"off\"",
+        ratio.max(2)
+    );
+    let keys =
+        ["dual.ratio", "layer_height", "dual.mode", "dual.max_bead_height", "machine.nozzle"];
+    Err(blame.error(&keys, &why))
 }
 
 fn blocks(settings: &Settings, blame: &Blame<'_>) -> Result<()> {

@@ -21,6 +21,22 @@ pub enum Kind {
     },
     /// One of these words.
     Word(&'static [&'static str]),
+    /// Any of these words, in a list.
+    Words(&'static [&'static str]),
+    /// A number within limits, both included, or `auto`.
+    NumberOrAuto {
+        /// Lowest value allowed, in the key's unit.
+        min: f64,
+        /// Highest value allowed, in the key's unit.
+        max: f64,
+    },
+    /// A whole number within limits, both included, or `auto`.
+    CountOrAuto {
+        /// Lowest value allowed.
+        min: u32,
+        /// Highest value allowed.
+        max: u32,
+    },
     /// `true` or `false`.
     Switch,
     /// One line of text without control characters, at most [`MAX_TEXT`] characters.
@@ -98,11 +114,15 @@ pub const KEYS: &[Key] = &[
     number("skin_reach", "mm", 0.0, 20.0, "how far a skin reaches sideways into the infill"),
     number("infill", "%", 0.0, 100.0, "density of the sparse infill"),
     word("pattern", &["rectilinear", "aligned", "grid", "triangles"], "pattern of the sparse infill"),
-    number("angle", "degrees", -360.0, 360.0, "direction of the lines on even layers, from the x axis"),
+    Key { unit: "degrees", ..plain("angle", Kind::NumberOrAuto { min: -360.0, max: 360.0 }, "direction of the lines on even layers, from the x axis; auto has least turns") },
     number("infill_overlap", "line widths", 0.0, 1.0, "how far lines reach into the innermost wall"),
-    word("dual.mode", &["off", "pair"], "pair prints infill on one layer of two, twice as thick"),
+    number("corner_radius", "mm", 0.0, 10.0, "radius of the turns of infill, support and skins; 0 leaves them sharp"),
+    word("dual.mode", &["off", "pair", "interlaced"], "thick lines: none, on the top layer of each group, or shared out evenly among its layers"),
+    plain("dual.ratio", Kind::CountOrAuto { min: 2, max: 50 }, "layers whose lines are printed at once; auto is as many as pay"),
+    number("dual.max_bead_height", "% of the nozzle", 10.0, 200.0, "thick lines are never taller"),
+    plain("dual.parts", Kind::Words(&["infill", "support", "inner-walls", "inner-skin"]), "what is printed thick"),
     word("dual.direction", &["cross", "shorter"], "direction of thick lines: crossing, or the one with less length"),
-    word("dual.remainder", &["thin", "drop"], "infill that one layer of a pair lacks: printed thin, or left out"),
+    word("dual.remainder", &["thin", "drop"], "infill that one layer of a group lacks: printed thin, or left out"),
     plain("support.enabled", Kind::Switch, "whether support is printed"),
     number("support.threshold_angle", "degrees", 0.0, 90.0, "overhangs flatter than this are supported; 90 is every one"),
     number("support.spacing", "mm", 0.1, 50.0, "distance between support lines"),
@@ -138,6 +158,7 @@ pub const KEYS: &[Key] = &[
     number("filament.bed_temperature", "°C", 0.0, 200.0, "temperature of the bed; 0 is cold"),
     number("filament.fan", "%", 0.0, 100.0, "part cooling fan"),
     count("filament.fan_from_layer", "layer", 1, 100_000, "first layer, counted from 1, with the fan on"),
+    number("filament.cost", "money/kg", 0.0, 1_000_000.0, "price of the material; 0 is unknown"),
     plain("machine.name", Kind::Text, "name of the printer"),
     word("machine.dialect", &["makerbot", "marlin", "klipper"], "the G-code it understands"),
     number("machine.bed_width", "mm", 1.0, 5_000.0, "print volume in x"),
@@ -148,8 +169,30 @@ pub const KEYS: &[Key] = &[
     count("machine.tool", "number", 0, 1, "tool that prints"),
     number("machine.acceleration", "mm/s²", 1.0, 100_000.0, "acceleration that {acceleration} stands for"),
     plain("machine.relative_e", Kind::Switch, "E counts from the last move, not from the start"),
+    number("machine.max_volumetric_flow", "mm³/s", 0.1, 1_000.0, "plastic that the hot end can melt"),
     plain("machine.start", Kind::Block, "G-code before the print"),
     plain("machine.end", Kind::Block, "G-code after the print"),
+    number("limits.feed_x", "mm/min", 1.0, 200_000.0, "highest feed in x"),
+    number("limits.feed_y", "mm/min", 1.0, 200_000.0, "highest feed in y"),
+    number("limits.feed_z", "mm/min", 1.0, 200_000.0, "highest feed in z"),
+    number("limits.feed_e", "mm/min", 1.0, 200_000.0, "highest feed of the filament"),
+    number("limits.acceleration_x", "mm/s²", 1.0, 1_000_000.0, "highest acceleration in x"),
+    number("limits.acceleration_y", "mm/s²", 1.0, 1_000_000.0, "highest acceleration in y"),
+    number("limits.acceleration_z", "mm/s²", 1.0, 1_000_000.0, "highest acceleration in z"),
+    number("limits.acceleration_e", "mm/s²", 1.0, 1_000_000.0, "highest acceleration of the filament"),
+    number("limits.travel_acceleration", "mm/s²", 1.0, 1_000_000.0, "acceleration of moves without extrusion"),
+    number("limits.retract_acceleration", "mm/s²", 1.0, 1_000_000.0, "acceleration of the filament alone"),
+    word("limits.junction", &["jerk", "speed-change", "deviation", "square-corner"], "rule for corners: Marlin's jerk, Sailfish's, Marlin's deviation, Klipper's"),
+    number("limits.jerk_x", "mm/s", 0.0, 1_000.0, "sudden change of speed in x, for jerk and speed-change"),
+    number("limits.jerk_y", "mm/s", 0.0, 1_000.0, "sudden change of speed in y, for jerk and speed-change"),
+    number("limits.jerk_z", "mm/s", 0.0, 1_000.0, "sudden change of speed in z, for jerk and speed-change"),
+    number("limits.jerk_e", "mm/s", 0.0, 1_000.0, "sudden change of the filament's speed, for jerk and speed-change"),
+    number("limits.junction_deviation", "mm", 0.0, 10.0, "how far an arc would pass from the corner, for deviation"),
+    number("limits.square_corner_velocity", "mm/s", 0.0, 1_000.0, "speed through a corner of 90 degrees, for square-corner"),
+    number("limits.minimum_cruise_ratio", "times", 0.0, 0.99, "part of a move left for cruising, for square-corner"),
+    number("limits.extruder_corner_velocity", "mm/s", 0.0, 1_000.0, "sudden change of the filament's speed, for square-corner"),
+    count("limits.look_ahead", "blocks", 0, 100_000, "moves that the planner knows of at a time; 0 is the whole file"),
+    number("limits.minimum_speed", "mm/s", 0.0, 1_000.0, "no corner need be slower than this"),
 ];
 
 /// The key of this dotted name.
@@ -167,7 +210,12 @@ impl Key {
             facts.push(self.unit.to_owned());
         }
         match self.kind {
-            Kind::Number { .. } | Kind::Count { .. } | Kind::Word(_) => facts.push(self.allowed()),
+            Kind::Number { .. }
+            | Kind::NumberOrAuto { .. }
+            | Kind::Count { .. }
+            | Kind::CountOrAuto { .. }
+            | Kind::Word(_)
+            | Kind::Words(_) => facts.push(self.allowed()),
             Kind::Switch => facts.push("true | false".to_owned()),
             Kind::Text => facts.push("text".to_owned()),
             Kind::Block => facts.push("G-code with {placeholders}".to_owned()),
@@ -181,7 +229,10 @@ impl Key {
         match self.kind {
             Kind::Number { min, max } => format!("{min} to {max}"),
             Kind::Count { min, max } => format!("{min} to {max}"),
+            Kind::NumberOrAuto { min, max } => format!("{min} to {max} | auto"),
+            Kind::CountOrAuto { min, max } => format!("{min} to {max} | auto"),
             Kind::Word(words) => words.join(" | "),
+            Kind::Words(words) => format!("any of {}", words.join(", ")),
             Kind::Switch => "true or false".to_owned(),
             Kind::Text => format!("one line of at most {MAX_TEXT} characters"),
             Kind::Block => "text".to_owned(),
@@ -194,7 +245,10 @@ impl Key {
     /// Wrong type, out of range, or none of the words.
     pub fn check(&self, value: Value) -> Result<Value, String> {
         match (self.kind, value) {
-            (Kind::Number { min, max }, Value::Integer(whole)) => {
+            (
+                Kind::Number { min, max } | Kind::NumberOrAuto { min, max },
+                Value::Integer(whole),
+            ) => {
                 #[expect(
                     clippy::cast_precision_loss,
                     reason = "far beyond any limit where it is lost"
@@ -202,8 +256,13 @@ impl Key {
                 let number = whole as f64;
                 self.within(number, min, max)
             }
-            (Kind::Number { min, max }, Value::Float(number)) => self.within(number, min, max),
-            (Kind::Count { min, max }, Value::Integer(whole)) => {
+            (Kind::Number { min, max } | Kind::NumberOrAuto { min, max }, Value::Float(number)) => {
+                self.within(number, min, max)
+            }
+            (Kind::NumberOrAuto { .. } | Kind::CountOrAuto { .. }, Value::String(word)) => {
+                self.one_of(&["auto"], word)
+            }
+            (Kind::Count { min, max } | Kind::CountOrAuto { min, max }, Value::Integer(whole)) => {
                 if (i64::from(min)..=i64::from(max)).contains(&whole) {
                     Ok(Value::Integer(whole))
                 } else {
@@ -211,6 +270,12 @@ impl Key {
                 }
             }
             (Kind::Word(words), Value::String(word)) => self.one_of(words, word),
+            (Kind::Words(words), Value::Array(list)) => self.some_of(words, list),
+            // `--set dual.parts=infill,support` needs neither brackets nor quotes.
+            (Kind::Words(words), Value::String(text)) => {
+                let parts = text.split(',').map(str::trim).filter(|part| !part.is_empty());
+                self.some_of(words, parts.map(|part| Value::String(part.to_owned())).collect())
+            }
             (Kind::Text, Value::String(text)) => self.one_line(text),
             (Kind::Switch, Value::Boolean(on)) => Ok(Value::Boolean(on)),
             (Kind::Block, Value::String(text)) => Ok(Value::String(text)),
@@ -239,6 +304,20 @@ impl Key {
         Err(format!("= `{}` is unknown{hint}; it must be {}", word.escape_debug(), self.allowed()))
     }
 
+    /// A list of these words, each once and in the order of the table of keys.
+    fn some_of(&self, words: &[&'static str], list: Vec<Value>) -> Result<Value, String> {
+        let mut found = Vec::new();
+        for value in list {
+            let Value::String(word) = value else {
+                return Err(format!("holds {}; it must be {}", described(&value), self.expected()));
+            };
+            found.push(self.one_of(words, word)?);
+        }
+        let given = |word: &&str| found.iter().any(|one| one.as_str() == Some(word));
+        let words = words.iter().copied().filter(given);
+        Ok(Value::Array(words.map(Value::from).collect()))
+    }
+
     fn one_line(&self, text: String) -> Result<Value, String> {
         if text.chars().count() > MAX_TEXT || text.chars().any(char::is_control) {
             return Err(format!("must be {}", self.allowed()));
@@ -250,6 +329,9 @@ impl Key {
         match self.kind {
             Kind::Number { .. } => format!("a number, {} {}", self.allowed(), self.unit),
             Kind::Count { .. } => format!("a whole number, {}", self.allowed()),
+            Kind::NumberOrAuto { min, max } => format!("a number, {min} to {max}, or auto"),
+            Kind::CountOrAuto { min, max } => format!("a whole number, {min} to {max}, or auto"),
+            Kind::Words(_) => format!("a list of {}", self.allowed()),
             Kind::Word(_) => format!("one of {}", self.allowed()),
             Kind::Switch | Kind::Text | Kind::Block => self.allowed(),
         }

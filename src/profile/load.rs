@@ -370,7 +370,7 @@ mod tests {
     #[test]
     fn combinations_that_cannot_print_blame_the_command_line_first() {
         let message = refused(&[set("dual.mode", "pair"), set("layer_height", "0.3")]);
-        assert!(message.starts_with("--set: two layers of layer_height = 0.3 mm"), "{message}");
+        assert!(message.starts_with("--set: 2 layers of layer_height = 0.3 mm"), "{message}");
         let message = refused(&[set("machine.nozzle", "0.1")]);
         assert!(message.starts_with("--set: layer_height = 0.2 mm is more"), "{message}");
         let message =

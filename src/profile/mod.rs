@@ -1,6 +1,7 @@
 //! Profile names, files and overrides -> Settings, each value with its origin.
 
 mod check;
+mod derived;
 pub mod keys;
 mod load;
 mod parse;

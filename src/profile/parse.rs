@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue};
 pub(super) struct Entry {
     /// Dotted key.
     pub(super) key: String,
-    /// The value; a list or a date where the file has one, which no key takes.
+    /// The value.
     pub(super) value: Value,
     /// Line of the key, from 1.
     pub(super) line: usize,
@@ -70,7 +70,9 @@ fn scalar(value: &DeValue<'_>) -> Value {
         DeValue::String(text) => Value::String(text.to_string()),
         DeValue::Boolean(on) => Value::Boolean(*on),
         DeValue::Datetime(date) => Value::Datetime(*date),
-        DeValue::Array(_) => Value::Array(Vec::new()),
+        DeValue::Array(list) => {
+            Value::Array(list.iter().map(|value| scalar(value.get_ref())).collect())
+        }
         DeValue::Table(_) => Value::Table(toml::Table::new()),
         // A whole number beyond 64 bits is out of every range; as a float it is refused as such.
         DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix())

@@ -46,9 +46,12 @@ pub struct Settings {
     /// Pattern of the sparse infill.
     pub pattern: Pattern,
     /// Direction of the raster lines of even layers, degrees from the x axis; odd layers are turned by 90.
-    pub angle: f64,
+    pub angle: Angle,
     /// How far skin and infill lines reach into the innermost wall, in line widths.
     pub infill_overlap: f64,
+    /// Radius that the turns of infill, support and skin lines are rounded with where there is
+    /// room, mm; 0 leaves them sharp.
+    pub corner_radius: f64,
 
     /// Dual injection: infill on one layer of each pair, twice as thick.
     pub dual: Dual,
@@ -64,6 +67,8 @@ pub struct Settings {
     pub filament: Filament,
     /// The printer.
     pub machine: Machine,
+    /// How fast the printer can move, for estimates of time.
+    pub limits: MotionLimits,
 }
 
 /// See [`Settings::wall_order`].
@@ -100,15 +105,42 @@ pub enum Pattern {
     Triangles,
 }
 
-/// `[dual]`: dual injection.
+/// See [`Settings::angle`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Angle {
+    /// So many degrees.
+    Degrees(f64),
+    /// The one that has least turns, which depends on the model.
+    Auto(Auto),
+}
+
+impl Angle {
+    /// Degrees; half a right angle where no model has decided yet.
+    #[must_use]
+    pub fn degrees(self) -> f64 {
+        match self {
+            Self::Degrees(degrees) => degrees,
+            Self::Auto(_) => 45.0,
+        }
+    }
+}
+
+/// `[dual]`: dual injection. A group is a number of layers one on the other.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Dual {
-    /// Whether infill is printed thick.
+    /// Whether lines are printed thick, and on which layers.
     pub mode: DualMode,
-    /// Which direction a pair's thick lines take.
+    /// How many layers make a group, whose lines are printed at once.
+    pub ratio: DualRatio,
+    /// Thick lines are never taller than this, % of the nozzle's diameter.
+    pub max_bead_height: f64,
+    /// What is printed thick.
+    pub parts: Vec<DualPart>,
+    /// Which direction a group's thick lines take.
     pub direction: DualDirection,
-    /// What happens to infill that only one layer of a pair has.
+    /// What happens to infill that a layer of a group lacks.
     pub remainder: DualRemainder,
 }
 
@@ -116,10 +148,44 @@ pub struct Dual {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DualMode {
-    /// Infill on every layer.
+    /// Every line on every layer.
     Off,
-    /// Infill on the upper layer of each pair, with twice the material.
+    /// Thick lines on the uppermost layer of each group, with the material of all its layers.
     Pair,
+    /// Thick lines shared out among the layers: each layer has its turn with some of them.
+    Interlaced,
+}
+
+/// See [`Dual::ratio`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum DualRatio {
+    /// So many.
+    Layers(u32),
+    /// As many as height and flow allow.
+    Auto(Auto),
+}
+
+/// The word `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Auto {
+    /// The word.
+    Auto,
+}
+
+/// See [`Dual::parts`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DualPart {
+    /// Sparse infill.
+    Infill,
+    /// Support.
+    Support,
+    /// All walls but the outermost.
+    InnerWalls,
+    /// All skin but the layer that is seen.
+    InnerSkin,
 }
 
 /// See [`Dual::direction`].
@@ -136,9 +202,9 @@ pub enum DualDirection {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DualRemainder {
-    /// Only infill that both layers share is printed thick; the rest thin on its own layer.
+    /// Only infill that layers share is printed thick; the rest thin on its own layer.
     Thin,
-    /// One layer's infill is printed thick as a whole, the other's left out (the thesis's rule).
+    /// One layer's infill is printed thick as a whole, the others' left out (the thesis's rule).
     Drop,
 }
 
@@ -270,6 +336,8 @@ pub struct Filament {
     pub fan: f64,
     /// First layer (counted from 1) printed with the fan on.
     pub fan_from_layer: u32,
+    /// Price, money per kg; 0 where it is not known.
+    pub cost: f64,
 }
 
 /// `[machine]`: the printer.
@@ -296,6 +364,8 @@ pub struct Machine {
     pub acceleration: f64,
     /// E counts from the last move instead of from the start.
     pub relative_e: bool,
+    /// Plastic that the hot end can melt, mm³/s.
+    pub max_volumetric_flow: f64,
     /// G-code before the print, with `{placeholders}`.
     pub start: String,
     /// G-code after the print, with `{placeholders}`.
@@ -324,16 +394,65 @@ pub enum Origin {
     FrontLeft,
 }
 
-impl Settings {
-    /// Solid layers at the top.
-    #[must_use]
-    pub fn top_skins(&self) -> u32 {
-        self.top_skin_layers.unwrap_or(self.skin_layers)
-    }
+/// `[limits]`: what the printer's planner holds itself to. It changes no move, only
+/// estimates of time. `machine.acceleration` is the acceleration of moves that extrude.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MotionLimits {
+    /// Highest feed in x, mm/min.
+    pub feed_x: f64,
+    /// Highest feed in y, mm/min.
+    pub feed_y: f64,
+    /// Highest feed in z, mm/min.
+    pub feed_z: f64,
+    /// Highest feed of the filament, mm/min.
+    pub feed_e: f64,
+    /// Highest acceleration in x, mm/s².
+    pub acceleration_x: f64,
+    /// Highest acceleration in y, mm/s².
+    pub acceleration_y: f64,
+    /// Highest acceleration in z, mm/s².
+    pub acceleration_z: f64,
+    /// Highest acceleration of the filament, mm/s².
+    pub acceleration_e: f64,
+    /// Acceleration of moves without extrusion, mm/s².
+    pub travel_acceleration: f64,
+    /// Acceleration of the filament alone, mm/s².
+    pub retract_acceleration: f64,
+    /// Which rule says how fast a corner may be taken.
+    pub junction: JunctionRule,
+    /// `jerk` and `speed-change`: sudden change of speed in x, mm/s.
+    pub jerk_x: f64,
+    /// `jerk` and `speed-change`: sudden change of speed in y, mm/s.
+    pub jerk_y: f64,
+    /// `jerk` and `speed-change`: sudden change of speed in z, mm/s.
+    pub jerk_z: f64,
+    /// `jerk` and `speed-change`: sudden change of the filament's speed, mm/s.
+    pub jerk_e: f64,
+    /// `deviation`: how far an arc would pass from the corner, mm.
+    pub junction_deviation: f64,
+    /// `square-corner`: speed through a corner of 90°, mm/s.
+    pub square_corner_velocity: f64,
+    /// `square-corner`: part of a move, 0 to 0.99, that is left for cruising.
+    pub minimum_cruise_ratio: f64,
+    /// `square-corner`: sudden change of the filament's speed, mm/s.
+    pub extruder_corner_velocity: f64,
+    /// Moves that the planner knows of at a time; 0 is the whole file.
+    pub look_ahead: u32,
+    /// No corner need be slower than this, mm/s.
+    pub minimum_speed: f64,
+}
 
-    /// Solid layers at the bottom.
-    #[must_use]
-    pub fn bottom_skins(&self) -> u32 {
-        self.bottom_skin_layers.unwrap_or(self.skin_layers)
-    }
+/// See [`MotionLimits::junction`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum JunctionRule {
+    /// Marlin's classic jerk.
+    Jerk,
+    /// Sailfish's "maximum speed change".
+    SpeedChange,
+    /// Marlin's junction deviation.
+    Deviation,
+    /// Klipper's square corner velocity.
+    SquareCorner,
 }

@@ -234,7 +234,7 @@ mod tests {
     /// Closes a skin that is all of `contour`, lines along x.
     fn closed(contour: Contour) -> (Vec<Line>, Vec<Vec<LinePoint>>, Params) {
         let mut settings = profile::load("generic-marlin", &[]).unwrap().settings;
-        settings.angle = 0.0;
+        settings.angle = profile::Angle::Degrees(0.0);
         let params = Params::new(&settings);
         let along = Scan::new(std::slice::from_ref(&contour), params.rasters[0]).inside().clone();
         let across = Scan::new(&[contour], params.rasters[1]).inside().clone();

@@ -7,14 +7,19 @@
 //! Guaranteed to the next stage: skin and sparse infill of a layer are disjoint and
 //! together its inset without these beads; rows are sorted, disjoint, never empty.
 
+pub mod angle;
+pub mod audit;
 pub mod bend;
 pub mod classify;
 pub mod close;
 pub mod divide;
 pub mod dual;
+pub mod groups;
+pub mod inner;
 mod near;
 pub mod raster;
 pub mod rings;
+pub mod runs;
 mod stations;
 pub mod support;
 pub mod walls;
@@ -62,7 +67,9 @@ pub struct Params {
 pub struct Comb {
     /// Index in [`Params::rasters`].
     pub raster: usize,
-    /// Lines with an index divisible by this are printed.
+    /// Index of a line that is printed.
+    pub offset: i32,
+    /// From one printed line to the next.
     pub stride: i32,
     /// Neighbouring lines are joined at their ends. Not where lines of several
     /// directions end at the same wall: their joins would lie on each other.
@@ -73,7 +80,7 @@ impl Comb {
     /// Whether line `j` is printed.
     #[must_use]
     pub fn prints(self, j: i32) -> bool {
-        j.rem_euclid(self.stride) == 0
+        (j - self.offset).rem_euclid(self.stride) == 0
     }
 
     /// The length of what is printed of `rows` in pieces at least `least` long, grid units.
@@ -99,8 +106,10 @@ impl Params {
         // Where the walls' inner edge is, seen from the ends of the lines; never quite
         // as far in as they are, so that an upright side needs no skin.
         let cover_inset = (0.5 - overlap).min(fill_inset - 0.25).max(0.0);
-        let skin =
-            |turn: f64| Raster { frame: Frame::new(settings.angle + turn), pitch: to_units(w) };
+        let skin = |turn: f64| Raster {
+            frame: Frame::new(settings.angle.degrees() + turn),
+            pitch: to_units(w),
+        };
         let mut params = Self {
             line_width: to_units(w),
             walls: settings.walls,
@@ -134,7 +143,7 @@ impl Params {
             let spacing = spacing * set.len() as f64;
             let mut combs = Vec::with_capacity(set.len());
             for turn in *set {
-                let comb = self.comb(settings.angle + turn, to_units(spacing));
+                let comb = self.comb(settings.angle.degrees() + turn, to_units(spacing));
                 combs.push(Comb { joined: set.len() == 1, ..comb });
             }
             self.infill.push(combs);
@@ -150,7 +159,7 @@ impl Params {
             self.rasters.push(raster);
             self.rasters.len() - 1
         });
-        Comb { raster: index, stride, joined: true }
+        Comb { raster: index, offset: 0, stride, joined: true }
     }
 
     /// From the middle of the innermost wall (from the contour, if there is none) to
@@ -224,19 +233,22 @@ pub struct Region {
     pub layer: Layer,
     /// Its walls.
     pub walls: Vec<Wall>,
-    /// Its skin: the raster and the lines, closed up to the walls.
-    pub skin: Skin,
+    /// Its skin, closed up to the walls: what is for this layer alone, then what is printed
+    /// for several.
+    pub skins: Vec<Skin>,
     /// Its sparse infill.
-    pub infill: Vec<Infill>,
+    pub infill: Vec<Hatch>,
     /// Its support, on the support raster.
-    pub support: Rows,
+    pub support: Vec<Hatch>,
     /// Area too thin for a wall, which is not printed, mm².
     pub thin_mm2: f64,
 }
 
-/// The skin of one layer.
+/// Skin of one layer that is printed for as many layers.
 #[derive(Debug, Default)]
 pub struct Skin {
+    /// How many layers it is printed for: this one and those below it.
+    pub layers: u32,
     /// Index of its raster in [`Params::rasters`].
     pub raster: usize,
     /// Its lines, row by row; bent and widened along walls.
@@ -245,9 +257,9 @@ pub struct Skin {
     pub beads: Vec<Vec<LinePoint>>,
 }
 
-/// Infill lines of one layer in one direction.
+/// Sparse lines of one layer in one direction: infill or support.
 #[derive(Debug, Clone)]
-pub struct Infill {
+pub struct Hatch {
     /// Which lines of which raster.
     pub comb: Comb,
     /// The region on every line of the raster; only those of the comb are printed.
@@ -255,9 +267,11 @@ pub struct Infill {
     /// How many layers its lines are printed for: this one and those below it, with the
     /// material of all.
     pub layers: u32,
+    /// Width of its lines.
+    pub width: Coord,
 }
 
-impl Infill {
+impl Hatch {
     /// The length of the lines to be printed, grid units: those of the comb that are
     /// at least `least` long.
     #[must_use]

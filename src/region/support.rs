@@ -41,7 +41,7 @@ impl SupportParams {
     /// The lines that are printed.
     #[must_use]
     pub fn comb(&self) -> Comb {
-        Comb { raster: 0, stride: self.stride, joined: true }
+        Comb { raster: 0, offset: 0, stride: self.stride, joined: true }
     }
 
     /// The numbers that `settings` mean for support; none if there is to be none.
@@ -49,7 +49,7 @@ impl SupportParams {
     pub fn new(settings: &Settings) -> Option<Self> {
         let support = &settings.support;
         let (w, spacing) = (to_units(settings.line_width), to_units(support.spacing));
-        let (raster, stride) = Raster::fine(settings.angle, spacing, w);
+        let (raster, stride) = Raster::fine(settings.angle.degrees(), spacing, w);
         let angle = support.threshold_angle.to_radians();
         let lean = if support.threshold_angle >= 90.0 {
             0.0

@@ -1,6 +1,8 @@
 //! Contours -> Walls: loops parallel to the contours, one line width apart.
 
 use super::Params;
+use super::groups::{Block, Grouping};
+use crate::geom::follow::follow;
 use crate::geom::{Contour, double_area, polygon};
 use crate::units::UNITS_PER_MM;
 
@@ -11,6 +13,8 @@ pub struct Wall {
     pub path: Contour,
     /// Counted from the outside; 0 is the outer wall.
     pub depth: u32,
+    /// How many layers it is printed for: this one and those below it.
+    pub layers: u32,
 }
 
 /// The walls of `contours`, from the outside inwards. Where the part is too thin
@@ -24,9 +28,45 @@ pub fn walls(contours: &[Contour], params: &Params) -> Vec<Wall> {
         if distance > 0 {
             ring = polygon::inset(&ring, distance);
         }
-        walls.extend(ring.iter().map(|path| Wall { path: path.clone(), depth }));
+        walls.extend(ring.iter().map(|path| Wall { path: path.clone(), depth, layers: 1 }));
     }
     walls
+}
+
+/// Walls of two layers are printed at once if they are no further apart than one part
+/// in so many of a line's width.
+const ALIKE: i32 = 10;
+
+/// For each wall of each layer of `block`, how many layers it is printed for: none if a
+/// layer above prints it. The outer wall is for its own layer; an inner one goes on in
+/// that of the next layer which runs along it.
+#[must_use]
+pub fn share(
+    block: &Block,
+    layers: &[&[Wall]],
+    grouping: &Grouping,
+    params: &Params,
+) -> Vec<Vec<u32>> {
+    let far = params.line_width / ALIKE;
+    let mut out: Vec<Vec<u32>> = layers.iter().map(|walls| vec![1; walls.len()]).collect();
+    for n in 1..layers.len() {
+        let k = block.layers.start + n;
+        for (i, wall) in layers[n].iter().enumerate().filter(|(_, w)| w.depth > 0) {
+            if grouping.ends(grouping.wall_phase(wall.depth), k - 1, block) {
+                continue;
+            }
+            let goes_on = |&j: &usize| {
+                let below = &layers[n - 1][j];
+                out[n - 1][j] > 0
+                    && below.depth == wall.depth
+                    && follow(&below.path, &wall.path, far)
+            };
+            if let Some(j) = (0..layers[n - 1].len()).find(goes_on) {
+                out[n][i] += std::mem::take(&mut out[n - 1][j]);
+            }
+        }
+    }
+    out
 }
 
 /// Corners of a wall sharper than this (half the turn's tangent) are cut off by the

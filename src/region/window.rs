@@ -1,17 +1,21 @@
 //! Slicer -> Regions, batch by batch: the rolling window of layers that need each other.
 //!
 //! A layer is divided into skin and infill once the layers above that its top
-//! skins look at are there, and is forgotten once no layer above looks at it:
-//! memory holds a block and a few layers, whatever the height of the print.
+//! skins look at are there; a block of layers is handed on once all of it, and what
+//! it shares skins with, is divided. A layer is forgotten once no layer above looks at
+//! it: memory holds a batch and a few layers, whatever the height of the print.
 
-use super::classify::Areas;
+use super::audit::Audit;
 use super::close::{Crossed, close};
 use super::divide::divide;
-use super::dual::{self, LayerAreas, PairStats};
+use super::dual::{self, LayerAreas};
+use super::groups::{Block, Grouping};
+use super::inner::Skins;
 use super::rings::Bead;
-use super::{Infill, Params, Prepared, Region, Skin, walls};
+use super::walls::{self, Wall};
+use super::{Comb, Hatch, Params, Prepared, Region, Skin};
 use crate::geom::spans::Rows;
-use crate::profile::Dual;
+use crate::profile::DualPart;
 use crate::slice::Slicer;
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -21,143 +25,269 @@ use std::collections::VecDeque;
 pub struct Window<'a> {
     slicer: &'a Slicer<'a>,
     params: &'a Params,
-    dual: &'a Dual,
-    /// Support by layer; empty if there is none.
-    supports: Vec<Rows>,
-    /// The next block to be sliced.
-    block: usize,
-    layers: VecDeque<Prepared>,
-    /// Index of the first layer in the window.
-    first: usize,
+    grouping: &'a Grouping,
+    support: Option<Support>,
+    /// The next batch to be sliced.
+    batch: usize,
+    layers: Queue<Prepared>,
+    /// Those divided into skin and infill.
+    divided: Queue<Divided>,
     /// Layers handed on so far.
     done: usize,
-    stats: PairStats,
+    audits: Vec<Audit>,
+}
+
+/// The support of a print.
+#[derive(Debug)]
+pub struct Support {
+    /// Its lines.
+    pub comb: Comb,
+    /// Where they stand, by layer.
+    pub rows: Vec<Rows>,
+}
+
+/// A layer's areas and the beads along its walls.
+#[derive(Debug)]
+struct Divided {
+    areas: LayerAreas,
+    beads: Vec<Bead>,
 }
 
 /// What classification finds for one layer, before it takes its walls along.
 struct Filling {
-    skin: Skin,
-    infill: Vec<Infill>,
+    skins: Vec<Skin>,
+    infill: Vec<Hatch>,
+    support: Vec<Hatch>,
+    /// How many layers each wall is printed for.
+    walls: Vec<u32>,
+}
+
+/// Values of successive layers, of which the first are forgotten.
+#[derive(Debug)]
+struct Queue<T> {
+    first: usize,
+    values: VecDeque<T>,
+}
+
+impl<T> Default for Queue<T> {
+    fn default() -> Self {
+        Self { first: 0, values: VecDeque::new() }
+    }
+}
+
+impl<T> Queue<T> {
+    /// One more than the last layer.
+    fn end(&self) -> usize {
+        self.first + self.values.len()
+    }
+
+    fn get(&self, k: usize) -> Option<&T> {
+        k.checked_sub(self.first).and_then(|k| self.values.get(k))
+    }
+
+    /// Forgets the layers before `k`.
+    fn forget(&mut self, k: usize) {
+        while self.first < k && self.values.pop_front().is_some() {
+            self.first += 1;
+        }
+    }
 }
 
 impl<'a> Window<'a> {
-    /// A window at the bed. `supports` holds the support of every layer, or nothing.
+    /// A window at the bed.
     #[must_use]
     pub fn new(
         slicer: &'a Slicer<'a>,
         params: &'a Params,
-        dual: &'a Dual,
-        supports: Vec<Rows>,
+        grouping: &'a Grouping,
+        support: Option<Support>,
     ) -> Self {
         Self {
             slicer,
             params,
-            dual,
-            supports,
-            block: 0,
-            layers: VecDeque::new(),
-            first: 0,
+            grouping,
+            support,
+            batch: 0,
+            layers: Queue::default(),
+            divided: Queue::default(),
             done: 0,
-            stats: PairStats::default(),
+            audits: Vec::new(),
         }
     }
 
-    /// What dual injection did so far.
+    /// What dual injection did, block by block. Nothing is left of it afterwards.
     #[must_use]
-    pub fn pair_stats(&self) -> PairStats {
-        self.stats
+    pub fn audits(&mut self) -> Vec<Audit> {
+        std::mem::take(&mut self.audits)
     }
 
-    /// Slices and prepares the next block.
+    fn count(&self) -> usize {
+        self.slicer.heights().count
+    }
+
+    /// How many layers up and down a layer's skin may depend on another's.
+    fn skin_reach(&self) -> usize {
+        let shares = self.grouping.shares(DualPart::InnerSkin);
+        if shares { self.grouping.ratio() - 1 } else { 0 }
+    }
+
+    /// Slices and prepares the next batch, and divides the layers whose neighbours are there.
     fn load(&mut self) {
-        let layers = self.slicer.block(self.block);
-        self.block += 1;
+        let layers = self.slicer.block(self.batch);
+        self.batch += 1;
         let prepared: Vec<Prepared> =
             layers.into_par_iter().map(|layer| Prepared::new(layer, self.params)).collect();
-        self.layers.extend(prepared);
+        self.layers.values.extend(prepared);
+        let known = self.layers.end();
+        let all = self.batch == self.slicer.blocks();
+        let until = if all { known } else { known.saturating_sub(self.params.top_skins.max(1)) };
+        let divided: Vec<Divided> =
+            (self.divided.end()..until).into_par_iter().map(|k| self.divide(k)).collect();
+        self.divided.values.extend(divided);
     }
 
-    /// One more than the last layer that has all it needs; even unless the print ends.
-    fn ready(&self) -> usize {
-        let known = self.first + self.layers.len();
-        if self.block == self.slicer.blocks() {
-            return known;
-        }
-        known.saturating_sub(self.params.top_skins.max(1)) / 2 * 2
-    }
-
-    fn layer(&self, k: usize) -> Option<&Prepared> {
-        k.checked_sub(self.first).and_then(|k| self.layers.get(k))
-    }
-
-    /// Divides the layers of a pair (or the single last layer).
-    fn fill(&self, lower: usize, upper: Option<usize>) -> (Vec<Filling>, PairStats) {
-        let count = self.slicer.heights().count;
-        let Some(upper) = upper.filter(|_| dual::is_pair(lower, count, self.dual.mode)) else {
-            let each = |k| {
-                let more = dual::turn(k, self.params).iter().map(|c| c.raster);
-                let (areas, beads) = self.areas(k, more);
-                let infill = dual::plain(k, &areas, self.params);
-                Filling { skin: self.skin(k, (&areas, beads)), infill }
-            };
-            return (
-                [Some(lower), upper].into_iter().flatten().map(each).collect(),
-                PairStats::default(),
-            );
-        };
-        let combs = dual::pair_combs(lower / 2, self.dual, self.params);
-        let (below, below_beads) = self.areas(lower, combs.iter().map(|c| c.raster));
-        let (above, above_beads) = self.areas(upper, combs.iter().map(|c| c.raster));
-        let (infill, stats) = dual::pair(lower / 2, &below, &above, self.dual, self.params);
-        let skins =
-            [self.skin(lower, (&below, below_beads)), self.skin(upper, (&above, above_beads))];
-        let fillings =
-            skins.into_iter().zip(infill).map(|(skin, infill)| Filling { skin, infill }).collect();
-        (fillings, stats)
-    }
-
-    /// The areas of layer `k` on both skin rasters and on those that `more` names, and
+    /// The areas of layer `k` on both skin rasters and on those of its block's infill, and
     /// the beads along its walls.
-    fn areas(&self, k: usize, more: impl Iterator<Item = usize>) -> (LayerAreas, Vec<Bead>) {
-        divide(k, more, &|k| self.layer(k), self.params)
+    fn divide(&self, k: usize) -> Divided {
+        let block = self.grouping.block(k, self.count());
+        let combs = dual::combs(&block, self.grouping, self.params);
+        let rasters = combs.iter().map(|c| c.raster);
+        let (areas, beads) = divide(k, rasters, &|k| self.layers.get(k), self.params);
+        Divided { areas, beads }
     }
 
-    /// The skin of layer `k`, closed up to the walls.
-    fn skin(&self, k: usize, (areas, beads): (&LayerAreas, Vec<Bead>)) -> Skin {
+    /// The next blocks whose layers have all they need.
+    fn ready(&self) -> Vec<Block> {
+        let divided = self.divided.end();
+        let all = divided == self.count();
+        let until = if all { divided } else { divided.saturating_sub(2 * self.skin_reach()) };
+        let mut blocks = Vec::new();
+        let mut from = self.done;
+        while from < until {
+            let block = self.grouping.block(from, self.count());
+            from = block.layers.end;
+            if from <= until {
+                blocks.push(block);
+            }
+        }
+        blocks
+    }
+
+    /// Fills the layers of a block.
+    fn fill(&self, block: &Block) -> (Vec<Filling>, Vec<Audit>) {
+        let none = LayerAreas::new();
+        let layers = block.layers.clone();
+        let areas: Vec<&LayerAreas> =
+            layers.clone().map(|k| self.divided.get(k).map_or(&none, |d| &d.areas)).collect();
+        let (infill, audit) = dual::infill(block, &areas, self.grouping, self.params);
+        let (support, support_audit) = self.share_support(block);
+        let skins: Vec<Vec<Skin>> = layers.into_par_iter().map(|k| self.skins(k)).collect();
+        let lines = infill.into_iter().zip(support).zip(self.share_walls(block));
+        let fillings = skins
+            .into_iter()
+            .zip(lines)
+            .map(|(skins, ((infill, support), walls))| Filling { skins, infill, support, walls });
+        (fillings.collect(), audit.into_iter().chain(support_audit).collect())
+    }
+
+    /// How many layers each wall of each layer of a block is printed for.
+    fn share_walls(&self, block: &Block) -> Vec<Vec<u32>> {
+        let walls = |k| self.layers.get(k).map_or(&[] as &[Wall], |layer| &layer.walls);
+        let layers: Vec<&[Wall]> = block.layers.clone().map(walls).collect();
+        if self.grouping.shares(DualPart::InnerWalls) {
+            walls::share(block, &layers, self.grouping, self.params)
+        } else {
+            layers.iter().map(|walls| vec![1; walls.len()]).collect()
+        }
+    }
+
+    /// The support of each layer of a block.
+    fn share_support(&self, block: &Block) -> (Vec<Vec<Hatch>>, Option<Audit>) {
+        let Some(support) = &self.support else {
+            return (vec![Vec::new(); block.layers.len()], None);
+        };
+        let rows = &support.rows[block.layers.clone()];
+        dual::support(block, rows, support.comb, self.grouping, self.params.line_width)
+    }
+
+    /// The skins of layer `k`, closed up to the walls.
+    fn skins(&self, k: usize) -> Vec<Skin> {
+        let rows = |r: usize| {
+            let areas = self.divided.get(k).and_then(|d| d.areas[r].as_ref());
+            areas.map(|areas| areas.skin.clone()).unwrap_or_default()
+        };
         let (along, across) = self.params.skin_rasters(k);
-        let none = Areas::default();
-        let of = |r: usize| areas[r].as_ref().unwrap_or(&none);
-        let Some(layer) = self.layer(k) else { return Skin::default() };
-        let fill = |r: usize| of(r).fill.as_ref().unwrap_or(&layer.rows[r].fill);
+        if !self.grouping.shares(DualPart::InnerSkin) {
+            return vec![self.skin(k, 1, &rows(along), &rows(across))];
+        }
+        let ((thick, thin), (thick_across, thin_across)) =
+            (self.share_skin(k, along), self.share_skin(k, across));
+        let mut skins = vec![self.skin(k, 1, &thin, &thin_across)];
+        for (layers, rows) in thick {
+            let columns = thick_across.iter().find(|(count, _)| *count == layers);
+            let columns = columns.map(|(_, rows)| rows.clone()).unwrap_or_default();
+            skins.push(self.skin(k, layers, &rows, &columns));
+        }
+        skins
+    }
+
+    /// The skin of layer `k` on raster `r`: what is printed for several layers, and what for
+    /// this one alone.
+    fn share_skin(&self, k: usize, r: usize) -> (Vec<(u32, Rows)>, Rows) {
+        let skin = |k: usize| self.divided.get(k)?.areas.get(r)?.as_ref().map(|areas| &areas.skin);
+        let skins = Skins {
+            layers: |k| self.layers.get(k),
+            skins: skin,
+            raster: r,
+            ratio: self.grouping.ratio(),
+            params: self.params,
+        };
+        skins.share(k)
+    }
+
+    /// The skin of layer `k` on these rows and columns, closed up to the walls.
+    fn skin(&self, k: usize, layers: u32, rows: &Rows, columns: &Rows) -> Skin {
+        let (along, across) = self.params.skin_rasters(k);
+        let Some(layer) = self.layers.get(k) else { return Skin::default() };
+        let divided = self.divided.get(k);
+        let left = |r: usize| divided.and_then(|d| d.areas[r].as_ref()?.fill.as_ref());
+        let fill = |r: usize| left(r).unwrap_or(&layer.rows[r].fill);
         let crossed = Crossed {
-            skin: &of(along).skin,
+            skin: rows,
             fill: fill(along),
-            columns: &of(across).skin,
+            columns,
             fill_columns: fill(across),
             left_turn: along == 0,
         };
         let (lines, slivers) = close(&crossed, self.params);
-        Skin { raster: along, lines, beads: [beads, slivers].concat() }
+        // Beads along walls are for this layer alone.
+        let beads = divided.filter(|_| layers == 1).map_or(&[] as &[Bead], |d| &d.beads);
+        Skin { layers, raster: along, lines, beads: [beads, &slivers].concat() }
     }
 
     /// The regions of the layers that `fillings` were made for, in order.
     fn hand_on(&mut self, fillings: Vec<Filling>) -> Vec<Region> {
         let mut regions = Vec::with_capacity(fillings.len());
-        for Filling { skin, infill } in fillings {
-            let support = self.supports.get_mut(self.done).map(std::mem::take).unwrap_or_default();
-            let prepared = &mut self.layers[self.done - self.first];
+        for Filling { skins, infill, support, walls: printed } in fillings {
+            let prepared = &mut self.layers.values[self.done - self.layers.first];
             // Neighbours look at the rows only.
             let (walls, contours) =
                 (std::mem::take(&mut prepared.walls), std::mem::take(&mut prepared.layer.contours));
             let layer = crate::slice::Layer { contours, ..prepared.layer.clone() };
             let thin_mm2 = walls::thin_area(&layer.contours, &walls, self.params);
-            regions.push(Region { layer, walls, skin, infill, support, thin_mm2 });
+            let walls = walls
+                .into_iter()
+                .zip(printed)
+                .filter(|(_, layers)| *layers > 0)
+                .map(|(wall, layers)| Wall { layers, ..wall })
+                .collect();
+            regions.push(Region { layer, walls, skins, infill, support, thin_mm2 });
             self.done += 1;
         }
-        while self.first + self.params.bottom_skins < self.done {
-            self.layers.pop_front();
-            self.first += 1;
-        }
+        let below = self.skin_reach();
+        let deepest = self.params.bottom_skins.max(if below > 0 { below + 1 } else { 0 });
+        self.divided.forget(self.done.saturating_sub(below));
+        self.layers.forget(self.done.saturating_sub(below + deepest));
         regions
     }
 }
@@ -166,21 +296,18 @@ impl Iterator for Window<'_> {
     type Item = Vec<Region>;
 
     fn next(&mut self) -> Option<Vec<Region>> {
-        while self.block < self.slicer.blocks() && self.ready() <= self.done {
+        let mut blocks = self.ready();
+        while blocks.is_empty() && self.batch < self.slicer.blocks() {
             self.load();
+            blocks = self.ready();
         }
-        let ready = self.ready();
-        if ready <= self.done {
+        if blocks.is_empty() {
             return None;
         }
-        let pairs: Vec<usize> = (self.done..ready).step_by(2).collect();
-        let filled: Vec<_> = pairs
-            .par_iter()
-            .map(|&lower| self.fill(lower, Some(lower + 1).filter(|&k| k < ready)))
-            .collect();
-        let mut fillings = Vec::with_capacity(ready - self.done);
-        for (layers, stats) in filled {
-            self.stats.add(stats);
+        let filled: Vec<_> = blocks.par_iter().map(|block| self.fill(block)).collect();
+        let mut fillings = Vec::new();
+        for (layers, audits) in filled {
+            self.audits.extend(audits);
             fillings.extend(layers);
         }
         Some(self.hand_on(fillings))

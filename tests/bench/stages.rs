@@ -8,10 +8,15 @@
 #![allow(clippy::print_stderr, reason = "says what is not measured")]
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
+use slicer::gcode::moves::{MoveParams, Moves};
+use slicer::gcode::times::Timer;
+use slicer::gcode::write::WriteParams;
 use slicer::geom::Point;
 use slicer::mesh::transform::{Placed, place};
 use slicer::mesh::{Bed, Placement, Unit, stl};
+use slicer::motion::Limits;
 use slicer::profile::{self, Override, Settings, ValueOrigin};
+use slicer::region::groups::Grouping;
 use slicer::region::raster::Scan;
 use slicer::region::window::Window;
 use slicer::region::{Params, Prepared, Region, classify, walls};
@@ -66,6 +71,14 @@ impl Model {
         let heights = Heights::new(first, to_units(self.settings.layer_height), top);
         let tolerance = to_units(self.settings.tolerance);
         Slicer::new(&placed.mesh, &placed.adjacency, heights, tolerance)
+    }
+
+    /// All regions of the print.
+    fn regions(&self) -> Vec<Region> {
+        let placed = self.place();
+        let slicer = self.slicer(&placed);
+        let grouping = Grouping::new(&self.settings.dual, self.settings.dual_ratio());
+        Window::new(&slicer, &self.params, &grouping, None).flatten().collect()
     }
 }
 
@@ -149,10 +162,7 @@ fn scan(layer: &Layer, params: &Params) -> Scan {
 
 /// All regions of a print to linked pieces, to paths in order.
 fn plan(c: &mut Criterion, model: &Model) {
-    let placed = model.place();
-    let slicer = model.slicer(&placed);
-    let window = Window::new(&slicer, &model.params, &model.settings.dual, Vec::new());
-    let regions: Vec<Region> = window.flatten().collect();
+    let regions = model.regions();
     let params = plan::PlanParams::new(&model.settings, &model.params, None);
     let pieces = || regions.iter().map(|r| plan::pieces(r, &params)).collect::<Vec<_>>();
     let mut group = c.benchmark_group("plan");
@@ -171,6 +181,38 @@ fn plan(c: &mut Criterion, model: &Model) {
     group.finish();
 }
 
+/// All toolpaths of a print to moves, to text and to times.
+fn gcode(c: &mut Criterion, model: &Model) {
+    let params = plan::PlanParams::new(&model.settings, &model.params, None);
+    let mut at = None;
+    let toolpath = |region: &Region| {
+        let pieces = plan::pieces(region, &params);
+        let from = at.unwrap_or_default();
+        let paths = plan::order::order(pieces, region.layer.height, from, &params);
+        let end = paths.last().map(plan::Path::end).or(at);
+        plan::toolpath(region, paths, std::mem::replace(&mut at, end), &params)
+    };
+    let toolpaths: Vec<plan::Toolpath> = model.regions().iter().map(toolpath).collect();
+    let params = MoveParams::new(&model.settings, [150.0; 2]);
+    let moves = || toolpaths.iter().map(|layer| params.moves(layer)).collect::<Vec<_>>();
+    let mut group = c.benchmark_group("gcode");
+    group.bench_function(BenchmarkId::new("moves", model.name), |b| b.iter(moves));
+    let layers: Vec<Moves> = moves();
+    let params = WriteParams::new(&model.settings);
+    group.bench_function(BenchmarkId::new("text", model.name), |b| {
+        b.iter(|| layers.iter().map(|layer| params.layer(layer, 0.0).text.len()).sum::<usize>());
+    });
+    group.bench_function(BenchmarkId::new("times", model.name), |b| {
+        b.iter(|| {
+            let mut timer = Timer::new(Limits::new(&model.settings));
+            layers.iter().for_each(|layer| timer.layer(layer));
+            timer.finish();
+            timer.times().total()
+        });
+    });
+    group.finish();
+}
+
 /// From the file to G-code that nobody keeps, on all cores and on one.
 fn whole(c: &mut Criterion, model: &Model) {
     let job = Job {
@@ -180,7 +222,7 @@ fn whole(c: &mut Criterion, model: &Model) {
         profile: "generic-marlin".to_owned(),
         output: PathBuf::from("-"),
     };
-    let run = || slicer::slice(&job, &mut std::io::sink(), &Default::default());
+    let run = || slicer::slice(&job, &mut std::io::empty(), &Default::default());
     let mut group = c.benchmark_group("whole");
     group.bench_function(BenchmarkId::new("all cores", model.name), |b| b.iter(run));
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
@@ -195,6 +237,7 @@ fn all(c: &mut Criterion) {
         mesh_and_slice(c, &model);
         region(c, &model);
         plan(c, &model);
+        gcode(c, &model);
         whole(c, &model);
     }
 }

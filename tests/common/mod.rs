@@ -9,6 +9,7 @@ pub(crate) mod gcode;
 pub(crate) mod raster;
 pub(crate) mod section;
 pub(crate) mod solid;
+pub(crate) mod stack;
 
 use slicer::Job;
 use slicer::error::Result;
@@ -74,9 +75,9 @@ pub(crate) fn slice_file(
         profile: "test".to_owned(),
         output: PathBuf::from("test.gcode"),
     };
-    let mut out = Vec::new();
+    let mut out = std::io::Cursor::new(Vec::new());
     let report = slicer::slice(&job, &mut out, &Progress::default())?;
-    Ok((String::from_utf8(out).unwrap(), report))
+    Ok((String::from_utf8(out.into_inner()).unwrap(), report))
 }
 
 /// Slices `stl` (a file's bytes) in this process, laid out as `placement` says.

@@ -1,0 +1,151 @@
+//! `slicer estimate` -> how long a G-code file takes, as a table or as JSON.
+
+use super::args::{self, EstimateArgs};
+use slicer::error::{Error, Result};
+use slicer::estimate::{self, Estimate, LayerTime, NotCounted, Options};
+use slicer::motion::Limits;
+use slicer::profile;
+use slicer::warning::plural;
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+
+/// Bytes that are read at once.
+const BUFFER: usize = 1 << 18;
+
+/// What standard output gets.
+///
+/// # Errors
+/// A profile or setting that is wrong, a file that cannot be read or holds no move.
+pub(super) fn run(args: &EstimateArgs) -> Result<String> {
+    let profile = profile::load(&args.profile, &args::set_overrides(&args.set)?)?;
+    let settings = &profile.settings;
+    let options =
+        Options { filament_diameter: settings.filament.diameter, fixed_limits: args.fixed_limits };
+    let (name, mut source) = open(&args.file)?;
+    let found = estimate::estimate(&mut source, name, &Limits::new(settings), options)?;
+    if args.json {
+        let text = serde_json::to_string_pretty(&found);
+        return text.map(|text| text + "\n").map_err(|error| Error::input(name, error.to_string()));
+    }
+    let mut text = table(&found);
+    if args.layers {
+        text.push_str(&layers(&found.layers));
+    }
+    Ok(text)
+}
+
+fn open(file: &str) -> Result<(&str, Box<dyn BufRead>)> {
+    if file == "-" {
+        let source = BufReader::with_capacity(BUFFER, std::io::stdin());
+        return Ok(("<stdin>", Box::new(source)));
+    }
+    let source = File::open(file)
+        .map_err(|error| Error::input(file, format!("cannot read: {error}; check the path")))?;
+    Ok((file, Box::new(BufReader::with_capacity(BUFFER, source))))
+}
+
+/// For people.
+fn table(found: &Estimate) -> String {
+    let mut text = row("print time", found.seconds, None, "");
+    for role in &found.roles {
+        let count = plural(role.moves, "move");
+        let moves = format!("{count:>15} {:>12.1} mm", role.length_mm);
+        text.push_str(&row(role.role.name(), role.seconds, Some(found.seconds), &moves));
+    }
+    if found.dwell_seconds > 0.0 {
+        text.push_str(&row("dwell", found.dwell_seconds, Some(found.seconds), ""));
+    }
+    let layer = |number: usize| found.layers.get(number.wrapping_sub(1)).map(|one| (number, one));
+    if let (Some((longest, most)), Some((shortest, least))) =
+        (layer(found.longest_layer), layer(found.shortest_layer))
+    {
+        text.push_str(&format!(
+            "{}: layer {longest} at {} mm takes longest, {:.1} s; layer {shortest} at {} mm least, {:.1} s\n",
+            plural(found.layers.len() as u64, "layer"),
+            millimetres(most),
+            most.seconds,
+            millimetres(least),
+            least.seconds,
+        ));
+    }
+    text.push_str(&format!(
+        "filament {:.1} mm, at most {:.1} mm³/s\n{}",
+        found.filament_mm,
+        found.peak_flow_mm3_s,
+        not_counted(&found.not_counted)
+    ));
+    text
+}
+
+fn row(name: &str, seconds: f64, of: Option<f64>, more: &str) -> String {
+    let share = of.map_or_else(String::new, |all| format!("{:>5.1} %", 100.0 * seconds / all));
+    format!("{name:<12} {:>9} {share}{more}", clock(seconds)).trim_end().to_owned() + "\n"
+}
+
+/// What is in the file but not in the time, in a line of its own, if anything.
+fn not_counted(not: &NotCounted) -> String {
+    let mut parts = Vec::new();
+    for (count, name) in [
+        (not.heating, "wait for heat"),
+        (not.homing, "homing"),
+        (not.firmware_retractions, "firmware retraction"),
+    ] {
+        match (count, name) {
+            (0, _) => {}
+            (1, "wait for heat" | "homing") => parts.push(name.to_owned()),
+            (_, "wait for heat") => parts.push(format!("{count} waits for heat")),
+            (_, "homing") => parts.push(format!("{count} times homing")),
+            _ => parts.push(plural(count, name)),
+        }
+    }
+    if not.unknown_lines > 0 {
+        let lines = plural(not.unknown_lines, "unknown line");
+        parts.push(format!("{lines} (the first is line {})", not.first_unknown_line));
+    }
+    if parts.is_empty() { String::new() } else { format!("not counted: {}\n", parts.join(", ")) }
+}
+
+/// One line a layer: number, height, time.
+fn layers(layers: &[LayerTime]) -> String {
+    let line = |(index, layer): (usize, &LayerTime)| {
+        format!("{:>6} {:>9} mm {:>9.2} s\n", index + 1, millimetres(layer), layer.seconds)
+    };
+    layers.iter().enumerate().map(line).collect()
+}
+
+/// Micrometres are enough for a height, and sums of layers end in long tails.
+fn millimetres(layer: &LayerTime) -> f64 {
+    (layer.z_mm * 1000.0).round() / 1000.0
+}
+
+/// Hours, minutes and seconds.
+fn clock(seconds: f64) -> String {
+    let whole = seconds.round() as u64;
+    format!("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_told_as_on_a_clock() {
+        assert_eq!(clock(0.4), "0:00:00");
+        assert_eq!(clock(59.6), "0:01:00");
+        assert_eq!(clock(360_061.0), "100:01:01");
+    }
+
+    #[test]
+    fn nothing_is_said_of_what_is_not_there() {
+        assert_eq!(not_counted(&NotCounted::default()), "");
+        let not = NotCounted { heating: 2, unknown_lines: 1, first_unknown_line: 7, ..not_any() };
+        assert_eq!(
+            not_counted(&not),
+            "not counted: 2 waits for heat, 1 unknown line (the first is line 7)\n"
+        );
+    }
+
+    fn not_any() -> NotCounted {
+        NotCounted::default()
+    }
+}

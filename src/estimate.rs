@@ -1,0 +1,302 @@
+//! G-code + Limits -> Estimate: how long a print takes, by role and by layer.
+
+use crate::error::{Error, Result};
+use crate::motion::{Clock, Junction, Limits, Move, Timed};
+use crate::reader::{self, Change, Event, Motion, Role, Summary, Wait};
+use serde::Serialize;
+use std::f64::consts::PI;
+use std::io::BufRead;
+
+/// Version of the JSON schema; raised when a field changes its meaning or goes away.
+pub const SCHEMA: u32 = 1;
+
+/// What an estimate depends on besides the file and the machine's limits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Diameter of the filament, mm.
+    pub filament_diameter: f64,
+    /// Whether what the file says of limits is left out, so that files can be compared.
+    pub fixed_limits: bool,
+}
+
+/// How long a print takes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Estimate {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// All moves and dwells, s; neither heating nor homing.
+    pub seconds: f64,
+    /// Of these, before the first layer, s.
+    pub start_seconds: f64,
+    /// Of these, standing still by G4, s.
+    pub dwell_seconds: f64,
+    /// Number of moves; an arc counts as the straight pieces that it is read as.
+    pub moves: u64,
+    /// Filament that has gone in at most, mm.
+    pub filament_mm: f64,
+    /// Largest flow of plastic in a move sideways, mm³/s.
+    pub peak_flow_mm3_s: f64,
+    /// By role, those that occur.
+    pub roles: Vec<RoleTime>,
+    /// By layer, from the first.
+    pub layers: Vec<LayerTime>,
+    /// The layer that takes longest, counted from 1; 0 without layers.
+    pub longest_layer: usize,
+    /// The layer that takes least time, counted from 1; 0 without layers.
+    pub shortest_layer: usize,
+    /// What is in the file but not in the time.
+    pub not_counted: NotCounted,
+}
+
+/// What one role takes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RoleTime {
+    /// The role.
+    pub role: Role,
+    /// Its time, s.
+    pub seconds: f64,
+    /// Number of moves.
+    pub moves: u64,
+    /// Length of the nozzle's way, mm.
+    pub length_mm: f64,
+    /// Filament pushed out less that pulled back, mm.
+    pub filament_mm: f64,
+}
+
+/// What one layer takes.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct LayerTime {
+    /// Height of its first line, mm.
+    pub z_mm: f64,
+    /// Its time with the way to it, s.
+    pub seconds: f64,
+}
+
+/// What is in the file but not in the time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct NotCounted {
+    /// Waits until something is hot.
+    pub heating: u64,
+    /// Homing and probing.
+    pub homing: u64,
+    /// Retractions whose length only the printer knows (G10, G11).
+    pub firmware_retractions: u64,
+    /// Lines of code that mean nothing to the reader.
+    pub unknown_lines: u64,
+    /// The first of them, from 1; 0 if there is none.
+    pub first_unknown_line: u64,
+}
+
+/// Reads G-code from `source` and tells how long it takes on a machine of these limits.
+/// `file` is its name for messages.
+///
+/// # Errors
+/// [`Error::Input`] if it cannot be read or holds no move.
+pub fn estimate(
+    source: &mut dyn BufRead,
+    file: &str,
+    limits: &Limits,
+    options: Options,
+) -> Result<Estimate> {
+    let mut meter = Meter::new(limits, options);
+    let summary = reader::read(source, &mut |event| meter.event(event))
+        .map_err(|error| Error::input(file, format!("cannot read: {error}; check the path")))?;
+    meter.clock.finish();
+    meter.collect();
+    if meter.moves == 0 {
+        let why = "there is no move in it; give a G-code file that a slicer has written";
+        return Err(Error::input(file, why));
+    }
+    Ok(meter.estimate(summary))
+}
+
+/// What a move's time is added to.
+#[derive(Debug, Clone, Copy)]
+struct Tag {
+    /// Place in the list of layers.
+    layer: usize,
+    /// `None` for a dwell.
+    role: Option<Role>,
+    /// Plastic per way of the nozzle, mm³/mm.
+    area: f64,
+}
+
+/// A layer while it is measured.
+#[derive(Debug, Clone, Copy, Default)]
+struct Layer {
+    seconds: f64,
+    /// Of its first line.
+    z: Option<f64>,
+}
+
+/// Sums up.
+struct Meter {
+    clock: Clock<Tag>,
+    options: Options,
+    roles: [RoleTime; Role::ALL.len()],
+    /// The first is what comes before the first layer.
+    layers: Vec<Layer>,
+    /// Where the layers begin that comments mark.
+    first_marked: Option<usize>,
+    dwell: f64,
+    moves: u64,
+    filament: f64,
+    most_filament: f64,
+    peak_flow: f64,
+    not_counted: NotCounted,
+}
+
+impl Meter {
+    fn new(limits: &Limits, options: Options) -> Self {
+        let zero =
+            |role| RoleTime { role, seconds: 0.0, moves: 0, length_mm: 0.0, filament_mm: 0.0 };
+        Self {
+            clock: Clock::new(limits.clone()),
+            options,
+            roles: Role::ALL.map(zero),
+            layers: vec![Layer::default()],
+            first_marked: None,
+            dwell: 0.0,
+            moves: 0,
+            filament: 0.0,
+            most_filament: 0.0,
+            peak_flow: 0.0,
+            not_counted: NotCounted::default(),
+        }
+    }
+
+    fn event(&mut self, event: Event) {
+        let layer = self.layers.len() - 1;
+        match event {
+            Event::Move(motion) => self.motion(&motion, layer),
+            Event::Dwell(seconds) => {
+                self.clock.dwell(seconds, Tag { layer, role: None, area: 0.0 });
+            }
+            Event::Wait(wait) => {
+                self.clock.stop();
+                match wait {
+                    Wait::Heating => self.not_counted.heating += 1,
+                    Wait::Homing => self.not_counted.homing += 1,
+                    Wait::Moves => {}
+                }
+            }
+            Event::Layer { marked } => {
+                if marked && self.first_marked.is_none() {
+                    self.first_marked = Some(self.layers.len());
+                }
+                self.layers.push(Layer::default());
+            }
+            Event::Change(change) if !self.options.fixed_limits => {
+                let mut limits = self.clock.limits().clone();
+                apply(&change, &mut limits);
+                self.clock.set_limits(limits);
+            }
+            Event::Change(_) => {}
+        }
+        self.collect();
+    }
+
+    fn motion(&mut self, motion: &Motion, layer: usize) {
+        let [x, y, z] = std::array::from_fn(|axis| motion.to[axis] - motion.from[axis]);
+        let length = (x * x + y * y + z * z).sqrt();
+        let sum = &mut self.roles[motion.role as usize];
+        sum.moves += 1;
+        sum.length_mm += length;
+        sum.filament_mm += motion.filament;
+        self.moves += 1;
+        self.filament += motion.filament;
+        self.most_filament = self.most_filament.max(self.filament);
+        let mut area = 0.0;
+        if motion.filament > 0.0 && (x != 0.0 || y != 0.0) {
+            let diameter = self.options.filament_diameter;
+            area = motion.filament * PI * diameter * diameter / 4.0 / length;
+            let z = &mut self.layers[layer].z;
+            *z = z.or(Some(motion.to[2]));
+        }
+        let tag = Tag { layer, role: Some(motion.role), area };
+        self.clock.push(Move { delta: [x, y, z, motion.filament], feed: motion.feed, tag });
+    }
+
+    /// Adds up the times that are known by now.
+    fn collect(&mut self) {
+        for Timed { seconds, peak, tag } in self.clock.drain() {
+            match tag.role {
+                Some(role) => self.roles[role as usize].seconds += seconds,
+                None => self.dwell += seconds,
+            }
+            self.layers[tag.layer].seconds += seconds;
+            self.peak_flow = self.peak_flow.max(tag.area * peak);
+        }
+    }
+
+    fn estimate(self, summary: Summary) -> Estimate {
+        let roles: Vec<_> = self.roles.into_iter().filter(|role| role.moves > 0).collect();
+        // Lines drawn before the first comment that marks a layer belong to the start.
+        let first = self.first_marked.unwrap_or(1).min(self.layers.len());
+        let (start, marked) = self.layers.split_at(first);
+        let mut start_seconds: f64 = start.iter().map(|layer| layer.seconds).sum();
+        let mut layers: Vec<LayerTime> = Vec::new();
+        for layer in marked {
+            match (layer.z, layers.last_mut()) {
+                (Some(z_mm), _) => layers.push(LayerTime { z_mm, seconds: layer.seconds }),
+                // A layer without a line is none: its moves count with what lies before.
+                (None, Some(last)) => last.seconds += layer.seconds,
+                (None, None) => start_seconds += layer.seconds,
+            }
+        }
+        let by_time = |a: &usize, b: &usize| layers[*a].seconds.total_cmp(&layers[*b].seconds);
+        // Of equals the first.
+        let longest = (0..layers.len()).rev().max_by(by_time).map_or(0, |index| index + 1);
+        let shortest = (0..layers.len()).min_by(by_time).map_or(0, |index| index + 1);
+        Estimate {
+            schema: SCHEMA,
+            seconds: roles.iter().map(|role| role.seconds).sum::<f64>() + self.dwell,
+            start_seconds,
+            dwell_seconds: self.dwell,
+            moves: self.moves,
+            filament_mm: self.most_filament,
+            peak_flow_mm3_s: self.peak_flow,
+            roles,
+            longest_layer: longest,
+            shortest_layer: shortest,
+            layers,
+            not_counted: NotCounted {
+                firmware_retractions: summary.firmware_retractions,
+                unknown_lines: summary.unknown,
+                first_unknown_line: summary.first_unknown,
+                ..self.not_counted
+            },
+        }
+    }
+}
+
+/// Limits as the file changes them. What does not fit the machine's rule for corners has no effect.
+fn apply(change: &Change, limits: &mut Limits) {
+    let set = |limit: &mut f64, value: Option<f64>| *limit = value.unwrap_or(*limit);
+    for axis in 0..4 {
+        set(&mut limits.feed[axis], change.feed[axis]);
+        set(&mut limits.acceleration[axis], change.acceleration[axis]);
+    }
+    set(&mut limits.print_acceleration, change.print);
+    set(&mut limits.travel_acceleration, change.travel);
+    set(&mut limits.retract_acceleration, change.retract);
+    match &mut limits.junction {
+        Junction::Jerk(jerk) | Junction::SpeedChange(jerk) => {
+            for (jerk, value) in jerk.iter_mut().zip(change.jerk) {
+                set(jerk, value);
+            }
+        }
+        Junction::Deviation(deviation) => set(deviation, change.deviation),
+        Junction::SquareCorner { velocity, minimum_cruise_ratio, .. } => {
+            set(velocity, change.square_corner_velocity);
+            set(minimum_cruise_ratio, change.minimum_cruise_ratio);
+            if let Some(sprint) = change.accel_to_decel {
+                *minimum_cruise_ratio = 1.0 - sprint / limits.print_acceleration.max(sprint);
+            }
+            if !minimum_cruise_ratio.is_finite() {
+                *minimum_cruise_ratio = 0.0;
+            }
+            *minimum_cruise_ratio = minimum_cruise_ratio.clamp(0.0, 1.0);
+        }
+    }
+}

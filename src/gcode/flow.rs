@@ -1,0 +1,120 @@
+//! Bead + feed asked for -> feed: no more filament than the hot end can melt.
+
+use crate::profile::Settings;
+
+/// Part of the limit that is no more than rounding.
+const SLACK: f64 = 1e-9;
+
+/// Lines differ in width by a few per cent: what is slowed down by less than this part is
+/// no news.
+const LEAST_TOLD: f64 = 0.05;
+
+/// What the hot end can melt.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FlowLimit {
+    /// mm³/s.
+    most: f64,
+    /// Cross-section of the filament, mm².
+    area: f64,
+}
+
+impl FlowLimit {
+    pub(super) fn new(settings: &Settings) -> Self {
+        Self { most: settings.machine.max_volumetric_flow, area: settings.filament_area() }
+    }
+
+    /// The feed (mm/min) of a bead that takes `filament` mm for each mm of path, and its
+    /// flow: the feed that is asked for, or the highest at which the filament melts.
+    pub(super) fn feed(self, filament: f64, asked: f64) -> (u32, f64) {
+        // mm³/s for each mm/min.
+        let flow = filament * self.area / 60.0;
+        let whole = whole_feed(asked);
+        let feed = if f64::from(whole) * flow > self.most * (1.0 + SLACK) {
+            // Rounded down, since it is a limit.
+            (self.most / flow).floor().max(1.0) as u32
+        } else {
+            whole
+        };
+        (feed, f64::from(feed) * flow)
+    }
+}
+
+/// A feed as it is written, mm/min.
+pub(super) fn whole_feed(feed: f64) -> u32 {
+    feed.round().max(1.0) as u32
+}
+
+/// The feeds of a role that were lowered by more than a little.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Lowered {
+    /// The highest asked for, mm/min.
+    pub asked: u32,
+    /// The lowest given, mm/min.
+    pub given: u32,
+}
+
+/// How fast filament is molten.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Flows {
+    /// The largest flow, mm³/s.
+    pub largest: f64,
+    /// What was lowered to the limit, by role: lines of one layer's height, then thick ones.
+    pub lowered: [[Option<Lowered>; 2]; 5],
+}
+
+impl Flows {
+    /// Notes a bead's flow, and whether it was slowed down for it.
+    pub(super) fn note(&mut self, role: usize, thick: bool, flow: f64, feeds: Lowered) {
+        self.largest = self.largest.max(flow);
+        if f64::from(feeds.given) < (1.0 - LEAST_TOLD) * f64::from(feeds.asked) {
+            merge(&mut self.lowered[role][usize::from(thick)], Some(feeds));
+        }
+    }
+
+    /// Adds another layer's flows.
+    pub fn add(&mut self, other: &Self) {
+        self.largest = self.largest.max(other.largest);
+        let theirs = other.lowered.as_flattened();
+        for (mine, theirs) in self.lowered.as_flattened_mut().iter_mut().zip(theirs) {
+            merge(mine, *theirs);
+        }
+    }
+}
+
+fn merge(mine: &mut Option<Lowered>, theirs: Option<Lowered>) {
+    *mine = match (*mine, theirs) {
+        (Some(a), Some(b)) => {
+            Some(Lowered { asked: a.asked.max(b.asked), given: a.given.min(b.given) })
+        }
+        (a, b) => a.or(b),
+    };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_feed_is_lowered_to_what_melts_and_no_further() {
+        // A square of 1 mm², so that a mm of filament is a mm³.
+        let limit = FlowLimit { most: 10.0, area: 1.0 };
+        assert_eq!(limit.feed(0.1, 6000.0), (6000, 10.0));
+        assert_eq!(limit.feed(0.1, 6001.0).0, 6000);
+        assert_eq!(limit.feed(0.7, 6000.0).0, 857);
+        assert_eq!(limit.feed(0.0, 0.2), (1, 0.0));
+    }
+
+    #[test]
+    fn the_highest_asked_and_the_lowest_given_are_kept() {
+        let mut flows = Flows::default();
+        flows.note(3, true, 5.0, Lowered { asked: 3600, given: 3000 });
+        flows.note(3, true, 4.0, Lowered { asked: 1800, given: 1800 });
+        flows.note(2, false, 4.0, Lowered { asked: 1800, given: 1750 });
+        let mut all = flows.clone();
+        all.note(3, true, 6.0, Lowered { asked: 4000, given: 3500 });
+        flows.add(&all);
+        assert_eq!(flows.largest, 6.0);
+        assert_eq!(flows.lowered[3][1], Some(Lowered { asked: 4000, given: 3000 }));
+        assert_eq!(flows.lowered.as_flattened().iter().flatten().count(), 1);
+    }
+}

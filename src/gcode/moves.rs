@@ -1,0 +1,270 @@
+//! Toolpath -> Moves: what the machine does on one layer, move by move, as it will be written.
+//!
+//! The text, the sums and the clock all read these moves: a length, a feed and an
+//! amount of filament are worked out once, and the clock times what is written.
+
+use super::flow::{FlowLimit, Flows, Lowered, whole_feed};
+use crate::geom::Point;
+use crate::plan::{Path, Role, Toolpath};
+use crate::profile::{ExtrusionModel, Settings};
+use crate::units::{Coord, UNITS_PER_MM, to_mm, to_units};
+
+/// A straight move to a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Move {
+    /// Where it ends in x and y on the machine, thousandths of a mm.
+    pub to: [i32; 2],
+    /// Where it ends in z, grid units.
+    pub z: Coord,
+    /// mm/min, as written.
+    pub feed: u32,
+    /// Length in x and y before rounding, mm.
+    pub length: f64,
+    /// Filament pushed, or pulled if negative, mm.
+    pub filament: f64,
+    /// What it is for.
+    pub kind: Kind,
+}
+
+/// What a move is for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// To the beginning of a path.
+    Travel,
+    /// Up or down.
+    Z,
+    /// Pulls the filament back.
+    Retract,
+    /// Pushes it forward again.
+    Restore,
+    /// Lays a bead. A stretch shorter than the rounding ends where it began; its
+    /// filament counts all the same.
+    Extrude(Bead),
+}
+
+/// The bead that a move lays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bead {
+    /// What it is for.
+    pub role: Role,
+    /// Printed for more than its own layer.
+    pub thick: bool,
+    /// Height, grid units.
+    pub height: Coord,
+    /// Width, grid units.
+    pub width: Coord,
+}
+
+/// All that the machine does on one layer.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Moves {
+    /// The layer, counted from 0.
+    pub layer: usize,
+    /// Top of the layer above the bed, grid units.
+    pub z: Coord,
+    /// Height of the layer, grid units.
+    pub height: Coord,
+    /// Where the nozzle comes from, thousandths of a mm, if known.
+    pub from: Option<[i32; 2]>,
+    /// The moves, in order.
+    pub moves: Vec<Move>,
+    /// For each path, the first move of the way to it.
+    pub paths: Vec<usize>,
+    /// How fast its filament is molten.
+    pub flows: Flows,
+}
+
+/// The numbers that the moves are made by.
+#[derive(Debug, Clone)]
+pub struct MoveParams {
+    /// Where the layout's middle goes on the machine, grid units.
+    offset: [i64; 2],
+    /// mm of filament for each mm of path, mm of width and mm of height, by role.
+    rates: [f64; 5],
+    /// mm/min, by role, of lines of one layer's height and of thick ones.
+    feeds: [[f64; 2]; 5],
+    /// Factor on the feeds of the first layer.
+    first_layer: f64,
+    travel_feed: f64,
+    z_feed: f64,
+    retract: f64,
+    retract_feed: f64,
+    hop: Coord,
+    limit: FlowLimit,
+}
+
+impl MoveParams {
+    /// The numbers that `settings` mean; `offset` is the layout's middle, mm.
+    #[must_use]
+    pub fn new(settings: &Settings, offset: [f64; 2]) -> Self {
+        let (x, s) = (&settings.extrusion, &settings.speed);
+        let area = settings.filament_area();
+        let rate = |factor: f64| match x.model {
+            ExtrusionModel::Area => x.multiplier / area,
+            ExtrusionModel::Factor => x.multiplier * factor / (x.factor_width * x.factor_height),
+        };
+        let (wall, infill) = (rate(x.wall_factor), rate(x.infill_factor));
+        Self {
+            offset: offset.map(|mm| i64::from(to_units(mm))),
+            rates: [wall, wall, rate(x.skin_factor), infill, rate(x.support_factor)],
+            feeds: [
+                [s.wall; 2],
+                [s.wall; 2],
+                [s.skin; 2],
+                [s.infill, s.thick_infill],
+                [s.support; 2],
+            ],
+            first_layer: s.first_layer / 100.0,
+            travel_feed: s.travel,
+            z_feed: s.z,
+            retract: settings.retraction.length,
+            retract_feed: settings.retraction.feed,
+            hop: to_units(settings.retraction.z_hop),
+            limit: FlowLimit::new(settings),
+        }
+    }
+
+    /// Filament for this length of a bead, mm.
+    fn filament(&self, bead: &Bead, length_mm: f64) -> f64 {
+        self.rates[bead.role as usize] * length_mm * to_mm(bead.width) * to_mm(bead.height)
+    }
+
+    /// The moves of one layer.
+    #[must_use]
+    pub fn moves(&self, layer: &Toolpath) -> Moves {
+        let mut walk = Walk::new(self, layer);
+        for step in &layer.steps {
+            walk.out.paths.push(walk.out.moves.len());
+            walk.approach(step.path.start(), step.retract);
+            walk.path(&step.path);
+        }
+        walk.out
+    }
+
+    /// How far the filament is pulled back once all is printed, mm, and how fast, mm/min.
+    #[must_use]
+    pub fn last_pull(&self) -> (f64, u32) {
+        (self.retract, whole_feed(self.retract_feed))
+    }
+
+    /// Where a point is on the machine, thousandths of a mm.
+    fn place(&self, p: Point) -> [i32; 2] {
+        let [x, y] = self.offset;
+        // Ten units are a thousandth; half away from zero is not needed, only the same everywhere.
+        [(i64::from(p.x) + x + 5).div_euclid(10), (i64::from(p.y) + y + 5).div_euclid(10)]
+            .map(|thousandths| thousandths as i32)
+    }
+}
+
+/// A layer's moves in the making.
+struct Walk<'a> {
+    params: &'a MoveParams,
+    out: Moves,
+    /// Where the nozzle is, on the bed and on the machine.
+    at: Option<(Point, [i32; 2])>,
+    /// Height of the nozzle where this layer has set it.
+    z: Option<Coord>,
+}
+
+impl<'a> Walk<'a> {
+    fn new(params: &'a MoveParams, layer: &Toolpath) -> Self {
+        let at = layer.from.map(|from| (from, params.place(from)));
+        let points: usize = layer.steps.iter().map(|step| step.path.points.len()).sum();
+        // A path has a point more than segments; the rest is for the way to it.
+        let most = points + 3 * layer.steps.len();
+        let out = Moves {
+            layer: layer.layer,
+            z: layer.z,
+            height: layer.height,
+            from: at.map(|(_, place)| place),
+            moves: Vec::with_capacity(most),
+            paths: Vec::with_capacity(layer.steps.len()),
+            flows: Flows::default(),
+        };
+        Self { params, out, at, z: None }
+    }
+
+    /// The way to the beginning of a path.
+    fn approach(&mut self, to: Point, retract: bool) {
+        let z = self.out.z;
+        if retract {
+            self.pull(-self.params.retract, Kind::Retract);
+            if self.params.hop > 0 {
+                self.lift(z + self.params.hop);
+            }
+        }
+        // Up before sideways. The first way of a print goes down at its end instead:
+        // the start block leaves the nozzle above its purge.
+        if self.z.is_none() && self.at.is_some() {
+            self.lift(z);
+        }
+        self.travel(to);
+        if self.z != Some(z) {
+            self.lift(z);
+        }
+        if retract {
+            self.pull(self.params.retract, Kind::Restore);
+        }
+    }
+
+    fn travel(&mut self, to: Point) {
+        let place = self.params.place(to);
+        let length = match self.at {
+            Some((_, from)) if from == place => return,
+            Some((from, _)) => from.distance(to) / UNITS_PER_MM,
+            None => 0.0,
+        };
+        self.at = Some((to, place));
+        self.push(self.params.travel_feed, length, 0.0, Kind::Travel);
+    }
+
+    fn lift(&mut self, z: Coord) {
+        self.z = Some(z);
+        self.push(self.params.z_feed, 0.0, 0.0, Kind::Z);
+    }
+
+    fn pull(&mut self, by: f64, kind: Kind) {
+        self.push(self.params.retract_feed, 0.0, by, kind);
+    }
+
+    /// A move to where the nozzle is now said to be.
+    fn push(&mut self, feed: f64, length: f64, filament: f64, kind: Kind) {
+        let to = self.at.map_or([0, 0], |(_, place)| place);
+        let z = self.z.unwrap_or(self.out.z);
+        self.out.moves.push(Move { to, z, feed: whole_feed(feed), length, filament, kind });
+    }
+
+    fn path(&mut self, path: &Path) {
+        let thick = path.is_thick();
+        let slow = if self.out.layer == 0 { self.params.first_layer } else { 1.0 };
+        let asked = self.params.feeds[path.role as usize][usize::from(thick)] * slow;
+        // No bead has this width: the first one is looked at.
+        let mut bead = Bead { role: path.role, thick, height: path.height, width: -1 };
+        let mut feed = 0;
+        for (to, length, width) in path.segments() {
+            if width != bead.width {
+                bead.width = width;
+                feed = self.feed(&bead, asked);
+            }
+            let length = length / UNITS_PER_MM;
+            self.out.moves.push(Move {
+                to: self.params.place(to),
+                z: self.out.z,
+                feed,
+                length,
+                filament: self.params.filament(&bead, length),
+                kind: Kind::Extrude(bead),
+            });
+        }
+        let end = path.end();
+        self.at = Some((end, self.params.place(end)));
+    }
+
+    /// How fast a bead is laid, mm/min.
+    fn feed(&mut self, bead: &Bead, asked: f64) -> u32 {
+        let (given, flow) = self.params.limit.feed(self.params.filament(bead, 1.0), asked);
+        let feeds = Lowered { asked: whole_feed(asked), given };
+        self.out.flows.note(bead.role as usize, bead.thick, flow, feeds);
+        given
+    }
+}

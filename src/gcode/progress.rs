@@ -1,0 +1,68 @@
+//! Times + text -> `M73`: lines of one length, left open until the time in all is known.
+
+use super::Places;
+use super::dialect::Dialect;
+use super::times::Schedule;
+use super::write::LayerText;
+use crate::error::Result;
+use crate::profile::DialectName;
+
+/// At the latest after so long progress is told again, as far as paths end by then, s.
+const INTERVAL: f64 = 60.0;
+
+/// Where progress is told, and what to say there.
+pub(super) struct Progress {
+    dialect: Dialect,
+    /// Byte of the line, and the time when it is read, s.
+    lines: Vec<(u64, f64)>,
+}
+
+impl Progress {
+    pub(super) fn new(dialect: DialectName) -> Self {
+        Self { dialect: Dialect::new(dialect), lines: Vec::new() }
+    }
+
+    /// Writes a layer, with open lines at its beginning and where the next path would
+    /// end too late for the next line.
+    pub(super) fn layer(
+        &mut self,
+        layer: &LayerText,
+        times: &Schedule,
+        out: &mut Places<'_>,
+    ) -> Result<()> {
+        let mut done = 0;
+        let begins = std::iter::once(&times.start).chain(&times.paths);
+        let ends = times.paths.iter().chain(std::iter::once(&times.end));
+        for (index, ((&cut, &begin), &end)) in layer.cuts.iter().zip(begins).zip(ends).enumerate() {
+            let last = self.lines.last().map_or(f64::NEG_INFINITY, |&(_, last)| last);
+            if index == 0 || (begin > last && end - last > INTERVAL) {
+                out.put(&layer.text[done..cut])?;
+                self.lines.push((out.written, begin));
+                out.put(self.line(0, 0).as_bytes())?;
+                done = cut;
+            }
+        }
+        out.put(&layer.text[done..])
+    }
+
+    /// What says that the print is done, where the end block does not.
+    pub(super) fn done(&self) -> String {
+        if self.dialect.says_done() { self.line(100, 0) } else { String::new() }
+    }
+
+    /// Fills in all lines of a print that takes `total` seconds.
+    pub(super) fn fill_in(&self, total: f64, out: &mut Places<'_>) -> Result<()> {
+        for &(place, at) in &self.lines {
+            let percent = if total > 0.0 { 100.0 * at / total } else { 0.0 };
+            // 100 is for the end, and ends a build for GPX.
+            let percent = (percent as u64).min(99);
+            let minutes = ((total - at) / 60.0).round().max(0.0) as u64;
+            out.put_at(place, self.line(percent, minutes).as_bytes())?;
+        }
+        Ok(())
+    }
+
+    fn line(&self, percent: u64, minutes: u64) -> String {
+        self.dialect.progress(percent, minutes) + "\n"
+    }
+}

@@ -1,0 +1,249 @@
+//! Moves of all layers, in order -> Times: how long each role, each layer and the way to each path take.
+
+use super::moves::{Kind, Move, Moves};
+use crate::motion::{self, Clock, Limits, Timed};
+use crate::units::{Coord, to_mm};
+use std::collections::VecDeque;
+
+/// How long a print takes, without its start and end blocks.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Times {
+    /// Beads, s; by role, lines of one layer's height, then thick ones.
+    pub roles: [[f64; 2]; 5],
+    /// Travels and moves in z, s.
+    pub travel: f64,
+    /// Filament pulled back and pushed forward, s.
+    pub retraction: f64,
+    /// The layers, in order.
+    pub layers: Vec<LayerTime>,
+}
+
+impl Times {
+    /// In all, s.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.layers.iter().map(|layer| layer.seconds).sum()
+    }
+}
+
+/// How long a layer takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LayerTime {
+    /// Its top above the bed, grid units.
+    pub z: Coord,
+    /// s.
+    pub seconds: f64,
+}
+
+/// When a layer is printed, in seconds from the first layer's beginning.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Schedule {
+    /// When it begins.
+    pub start: f64,
+    /// When the way to each of its paths begins.
+    pub paths: Vec<f64>,
+    /// When it ends.
+    pub end: f64,
+}
+
+/// What a move's time counts as.
+#[derive(Debug, Clone, Copy)]
+enum Part {
+    Bead(u8, bool),
+    Travel,
+    Retraction,
+}
+
+/// Something that begins with the move of this number.
+#[derive(Debug, Clone, Copy)]
+struct Mark {
+    at: usize,
+    what: Begins,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Begins {
+    /// The layer with its top here.
+    Layer(Coord),
+    Path,
+}
+
+/// Runs the clock over the moves as they are written.
+pub struct Timer {
+    clock: Clock<Part>,
+    book: Book,
+    /// Where the nozzle is, thousandths of a mm, as far as known.
+    at: Option<[i32; 2]>,
+    /// Its z, grid units, as far as known.
+    z: Option<Coord>,
+    /// Filament of stretches too short to be written, mm: it goes with the next move.
+    held: f64,
+    /// Moves given to the clock.
+    given: usize,
+}
+
+impl Timer {
+    /// A timer for a machine that stands still somewhere.
+    #[must_use]
+    pub fn new(limits: Limits) -> Self {
+        let clock = Clock::new(limits);
+        Self { clock, book: Book::default(), at: None, z: None, held: 0.0, given: 0 }
+    }
+
+    /// The next layer.
+    pub fn layer(&mut self, layer: &Moves) {
+        self.mark(Begins::Layer(layer.z));
+        let mut paths = layer.paths.iter().peekable();
+        for (index, step) in layer.moves.iter().enumerate() {
+            while paths.next_if(|&&first| first == index).is_some() {
+                self.mark(Begins::Path);
+            }
+            self.step(step);
+        }
+        paths.for_each(|_| self.mark(Begins::Path));
+        self.book.read(self.clock.drain());
+    }
+
+    /// The next layer whose times are all known, if there is one. Each comes once.
+    pub fn next_ready(&mut self) -> Option<Schedule> {
+        self.book.ready.pop_front()
+    }
+
+    /// The file is at its end: all layers are ready.
+    pub fn finish(&mut self) {
+        self.clock.finish();
+        self.book.read(self.clock.drain());
+        self.book.pass(usize::MAX);
+        self.book.close();
+    }
+
+    /// The times so far.
+    #[must_use]
+    pub fn times(&self) -> &Times {
+        &self.book.times
+    }
+
+    fn mark(&mut self, what: Begins) {
+        self.book.marks.push_back(Mark { at: self.given, what });
+    }
+
+    fn step(&mut self, step: &Move) {
+        // The way from where the start block leaves the nozzle belongs to that.
+        let at = self.at.unwrap_or(step.to);
+        let [x, y] = [step.to[0] - at[0], step.to[1] - at[1]].map(|d| f64::from(d) / 1000.0);
+        let (delta, part) = match step.kind {
+            Kind::Travel => {
+                self.at = Some(step.to);
+                ([x, y, 0.0, 0.0], Part::Travel)
+            }
+            Kind::Z => {
+                let rise = self.z.replace(step.z).map_or(0.0, |z| to_mm(step.z - z));
+                ([0.0, 0.0, rise, 0.0], Part::Travel)
+            }
+            Kind::Retract | Kind::Restore => ([0.0, 0.0, 0.0, step.filament], Part::Retraction),
+            Kind::Extrude(bead) => {
+                self.at = Some(step.to);
+                self.held += step.filament;
+                if step.to == at {
+                    return;
+                }
+                let e = std::mem::take(&mut self.held);
+                ([x, y, 0.0, e], Part::Bead(bead.role as u8, bead.thick))
+            }
+        };
+        if delta != [0.0; 4] {
+            self.given += 1;
+            self.clock.push(motion::Move { delta, feed: f64::from(step.feed) / 60.0, tag: part });
+        }
+    }
+}
+
+/// What the clock has said so far.
+#[derive(Debug, Default)]
+struct Book {
+    /// What begins with moves that are still in the clock.
+    marks: VecDeque<Mark>,
+    /// Moves whose times are known.
+    done: usize,
+    /// Their time in all, s.
+    now: f64,
+    times: Times,
+    /// The layer that is being timed.
+    current: Option<Schedule>,
+    /// Layers whose times are known and that nobody asked for yet.
+    ready: VecDeque<Schedule>,
+}
+
+impl Book {
+    fn read(&mut self, moves: impl Iterator<Item = Timed<Part>>) {
+        for timed in moves {
+            self.pass(self.done);
+            self.done += 1;
+            self.now += timed.seconds;
+            *match timed.tag {
+                Part::Bead(role, thick) => {
+                    &mut self.times.roles[usize::from(role)][usize::from(thick)]
+                }
+                Part::Travel => &mut self.times.travel,
+                Part::Retraction => &mut self.times.retraction,
+            } += timed.seconds;
+        }
+    }
+
+    /// What begins with the move of this number, or before it, begins now.
+    fn pass(&mut self, number: usize) {
+        while let Some(&Mark { at, what }) = self.marks.front() {
+            if at > number {
+                return;
+            }
+            self.marks.pop_front();
+            match what {
+                Begins::Path => {
+                    self.current.iter_mut().for_each(|layer| layer.paths.push(self.now));
+                }
+                Begins::Layer(z) => {
+                    self.close();
+                    self.times.layers.push(LayerTime { z, seconds: 0.0 });
+                    self.current = Some(Schedule { start: self.now, ..Schedule::default() });
+                }
+            }
+        }
+    }
+
+    /// The layer that is being timed ends now.
+    fn close(&mut self) {
+        let Some(mut layer) = self.current.take() else { return };
+        layer.end = self.now;
+        if let Some(last) = self.times.layers.last_mut() {
+            last.seconds = layer.end - layer.start;
+        }
+        self.ready.push_back(layer);
+    }
+}
+
+/// A time as hosts read it, such as `1d 2h 3m 4s`.
+#[must_use]
+pub fn in_words(seconds: f64) -> String {
+    let seconds = seconds.round().max(0.0) as u64;
+    let (days, hours) = (seconds / 86_400, seconds / 3600 % 24);
+    let (minutes, seconds) = (seconds / 60 % 60, seconds % 60);
+    match (days, hours, minutes) {
+        (0, 0, 0) => format!("{seconds}s"),
+        (0, 0, _) => format!("{minutes}m {seconds}s"),
+        (0, _, _) => format!("{hours}h {minutes}m {seconds}s"),
+        _ => format!("{days}d {hours}h {minutes}m {seconds}s"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_in_words_of_hosts() {
+        let said = [(0.4, "0s"), (59.5, "1m 0s"), (3_723.0, "1h 2m 3s"), (93_784.0, "1d 2h 3m 4s")];
+        for (seconds, words) in said {
+            assert_eq!(in_words(seconds), words);
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Moves -> Usage: lengths and filament, and what filament is in other measures.
+
+use super::flow::Flows;
+use super::moves::{Kind, Moves};
+use crate::profile::Settings;
+
+/// What was extruded in one role: path and filament, mm.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Used {
+    /// Length of path, mm.
+    pub length: f64,
+    /// Filament, mm.
+    pub filament: f64,
+}
+
+/// What a layer, or a print, moves and uses.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Usage {
+    /// By role, in the order of [`Role::ALL`](crate::plan::Role::ALL): lines of one
+    /// layer's height, then thick ones.
+    pub roles: [[Used; 2]; 5],
+    /// Travels.
+    pub travels: usize,
+    /// Their length, mm.
+    pub travel_length: f64,
+    /// How many of them retract.
+    pub retractions: usize,
+    /// How fast filament is molten.
+    pub flows: Flows,
+}
+
+impl Usage {
+    /// What a layer uses.
+    #[must_use]
+    pub fn of(layer: &Moves) -> Self {
+        let mut usage = Self { flows: layer.flows.clone(), ..Self::default() };
+        for step in &layer.moves {
+            match step.kind {
+                Kind::Extrude(bead) => {
+                    let used = &mut usage.roles[bead.role as usize][usize::from(bead.thick)];
+                    used.length += step.length;
+                    used.filament += step.filament;
+                }
+                Kind::Travel => {
+                    usage.travels += 1;
+                    usage.travel_length += step.length;
+                }
+                Kind::Retract => usage.retractions += 1,
+                Kind::Restore | Kind::Z => {}
+            }
+        }
+        usage
+    }
+
+    /// Filament in all, mm.
+    #[must_use]
+    pub fn filament(&self) -> f64 {
+        self.roles.as_flattened().iter().map(|r| r.filament).sum()
+    }
+
+    /// Adds another layer's usage.
+    pub fn add(&mut self, other: &Self) {
+        let theirs = other.roles.as_flattened();
+        for (mine, theirs) in self.roles.as_flattened_mut().iter_mut().zip(theirs) {
+            mine.length += theirs.length;
+            mine.filament += theirs.filament;
+        }
+        self.travels += other.travels;
+        self.travel_length += other.travel_length;
+        self.retractions += other.retractions;
+        self.flows.add(&other.flows);
+    }
+}
+
+/// A length of filament in the measures that people buy it in.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Material {
+    /// Length, mm.
+    pub mm: f64,
+    /// Volume, cm³.
+    pub cm3: f64,
+    /// Weight, g.
+    pub grams: f64,
+    /// Price, in the money of `filament.cost`, if that is known.
+    pub cost: Option<f64>,
+}
+
+impl Material {
+    /// What `mm` of the filament in `settings` are.
+    #[must_use]
+    pub fn new(mm: f64, settings: &Settings) -> Self {
+        let cm3 = mm * settings.filament_area() / 1000.0;
+        let grams = cm3 * settings.filament.density;
+        let per_kg = settings.filament.cost;
+        Self { mm, cm3, grams, cost: (per_kg > 0.0).then_some(per_kg * grams / 1000.0) }
+    }
+}

@@ -1,0 +1,83 @@
+//! Two closed polygons -> verdict: whether each runs along the other.
+
+use super::{Contour, Point, edges};
+use crate::units::Coord;
+
+/// Whether every corner of `a` is at most `far` from `b`, and every corner of `b` from `a`.
+/// Both run the same way round. Takes time in proportion to their corners.
+#[must_use]
+pub fn follow(a: &Contour, b: &Contour, far: Coord) -> bool {
+    near_boxes(a, b, far) && runs_along(a, b, far) && runs_along(b, a, far)
+}
+
+/// Whether the boxes around `a` and `b` are alike, which most that do not follow are not.
+fn near_boxes(a: &Contour, b: &Contour, far: Coord) -> bool {
+    let sides = |c: &Contour| {
+        let xs = || c.iter().map(|p| p.x);
+        let ys = || c.iter().map(|p| p.y);
+        [xs().min(), xs().max(), ys().min(), ys().max()].map(Option::unwrap_or_default)
+    };
+    // Corners of an offset may be cut off: twice as far there.
+    sides(a).iter().zip(sides(b)).all(|(p, q)| (p - q).abs() <= 2 * far)
+}
+
+/// Whether every corner of `a` is near some edge of `b`. Both run the same way round, so
+/// that the search for the next edge goes on where the last one ended.
+fn runs_along(a: &Contour, b: &Contour, far: Coord) -> bool {
+    let b: Vec<(Point, Point)> = edges(b).collect();
+    let limit = f64::from(far) * f64::from(far);
+    let mut at = 0;
+    a.iter().all(|&p| {
+        let found = (at..at + b.len()).find(|&k| distance2(p, b[k % b.len()]) <= limit);
+        at = found.unwrap_or_default() % b.len().max(1);
+        found.is_some()
+    })
+}
+
+/// The squared distance from `p` to an edge, grid units².
+fn distance2(p: Point, (a, b): (Point, Point)) -> f64 {
+    let vector = |to: Point| (f64::from(to.x) - f64::from(a.x), f64::from(to.y) - f64::from(a.y));
+    let ((px, py), (bx, by)) = (vector(p), vector(b));
+    let t = ((px * bx + py * by) / (bx * bx + by * by).max(1.0)).clamp(0.0, 1.0);
+    let (dx, dy) = (px - t * bx, py - t * by);
+    dx * dx + dy * dy
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(side: Coord, at: Coord) -> Contour {
+        let p = |x, y| Point { x: x + at, y: y + at };
+        vec![p(0, 0), p(side, 0), p(side, side), p(0, side)]
+    }
+
+    #[test]
+    fn a_shift_is_followed_as_far_as_it_may() {
+        let a = square(10_000, 0);
+        assert!(follow(&a, &square(10_000, 0), 10));
+        assert!(follow(&a, &square(10_000, 50), 71));
+        assert!(!follow(&a, &square(10_000, 50), 40));
+        assert!(!follow(&a, &square(10_100, 0), 40));
+    }
+
+    #[test]
+    fn other_corners_and_another_beginning_make_no_difference() {
+        let a = square(10_000, 0);
+        let mut b = square(10_000, 0);
+        b.insert(1, Point { x: 3_000, y: 5 });
+        b.insert(4, Point { x: 7_000, y: 10_000 });
+        b.rotate_left(3);
+        assert!(follow(&a, &b, 10));
+    }
+
+    #[test]
+    fn a_notch_is_seen_from_either_side() {
+        let a = square(10_000, 0);
+        let mut b = square(10_000, 0);
+        let p = |x, y| Point { x, y };
+        b.splice(1..1, [p(4_000, 0), p(4_000, 900), p(5_000, 900), p(5_000, 0)]);
+        assert!(!follow(&a, &b, 100));
+        assert!(!follow(&b, &a, 100));
+    }
+}

@@ -1,0 +1,154 @@
+//! Two successive moves -> the highest speed between them, by each firmware's rule.
+
+use super::block::Course;
+
+/// Where two moves are in line or turn back, as far as rounding can tell: cosine of the angle between them.
+const STRAIGHT: f64 = 0.999_999;
+
+/// The share by which a shared speed must be better than stopping at the corner.
+const WORTH_COASTING: f64 = 0.99;
+
+/// Marlin: moves shorter than this are taken as pieces of an arc, mm.
+const SHORT: f64 = 1.0;
+
+/// Marlin: cosine of 135°, from which on two short moves are taken as pieces of an arc.
+const ARC: f64 = -std::f64::consts::FRAC_1_SQRT_2;
+
+/// The speed that no axis minds as a sudden start from rest, mm/s. `inverse` is 1 / jerk.
+pub(super) fn from_rest(direction: &[f64; 4], cruise: f64, inverse: &[f64; 4]) -> f64 {
+    let mut worst = 0.0_f64;
+    for (direction, inverse) in direction.iter().zip(inverse) {
+        worst = worst.max(direction.abs() * inverse);
+    }
+    cruise.min(1.0 / worst)
+}
+
+/// Marlin's classic jerk, mm/s: the speed at which no axis changes its own by more than
+/// its jerk. `inverse` is 1 / jerk.
+pub(super) fn jerk(before: &Course, after: &Course, inverse: &[f64; 4]) -> f64 {
+    let shared = before.cruise.min(after.cruise);
+    let mut worst = 1.0_f64;
+    for (axis, inverse) in inverse.iter().enumerate() {
+        // As the firmware has it: only the move before is slowed down to what both can do.
+        let leaving = before.direction[axis] * shared;
+        let entering = after.direction[axis] * after.cruise;
+        let apart = (leaving - entering).abs();
+        // Turning back, or one of them stands still: it may come in and leave at its jerk.
+        let turning = leaving.abs().max(entering.abs());
+        let change = if leaving * entering > 0.0 { apart } else { turning };
+        worst = worst.max(change * inverse);
+    }
+    let speed = shared / worst;
+    let threshold = speed * WORTH_COASTING;
+    if before.rest > threshold && after.rest > threshold {
+        // No gain in coasting through: stop and start again.
+        return after.rest.min(before.cruise);
+    }
+    speed
+}
+
+/// Sailfish's "maximum speed change": the share of its speed at which the move after begins,
+/// so that no axis changes its own by more than this from what the move before began with.
+/// An axis that turns back or comes to a halt makes it nothing.
+pub(super) fn speed_change(before: &Course, after: &Course, most: &[f64; 4]) -> f64 {
+    let smallest = most.iter().copied().fold(f64::INFINITY, f64::min);
+    if after.cruise <= smallest {
+        return 1.0;
+    }
+    let mut share = 1.0_f64;
+    for (axis, most) in most.iter().enumerate() {
+        let was = before.direction[axis] * before.cruise * before.slowed;
+        let will = after.direction[axis] * after.cruise;
+        if (will - was).abs() > *most {
+            if will == 0.0 {
+                return 0.0;
+            }
+            let bound = if will > was { was + most } else { was - most };
+            share = share.min(bound / will);
+        }
+    }
+    share.max(0.0)
+}
+
+/// Marlin's junction deviation, squared speed: the corner as an arc that passes the
+/// corner at this distance, at no more than the acceleration towards its middle.
+pub(super) fn deviation(before: &Course, after: &Course, acceleration: &[f64; 4]) -> f64 {
+    let (from, to) = (unit(&before.direction), unit(&after.direction));
+    let cosine = -dot(&from, &to);
+    if cosine > STRAIGHT {
+        return 0.0;
+    }
+    let across = unit(&std::array::from_fn(|axis| to[axis] - from[axis]));
+    let mut most = after.acceleration;
+    for (direction, limit) in across.iter().zip(acceleration) {
+        if direction.abs() * most > *limit {
+            most = limit / direction.abs();
+        }
+    }
+    // In line: the half angle's sine is one, and any speed will do.
+    let sine = half_sine(cosine);
+    let mut squared = f64::INFINITY;
+    if sine < 1.0 {
+        squared = most * after.deviation * sine / (1.0 - sine);
+    }
+    if after.distance < SHORT && cosine < ARC {
+        let turn = small_turn(cosine);
+        if turn > 0.0 {
+            squared = squared.min(after.distance * most / turn);
+        }
+    }
+    squared
+}
+
+/// Klipper's rule, squared speed: an arc as above, one that either move is long enough
+/// for, and no sudden change of the filament's speed.
+pub(super) fn square_corner(before: &Course, after: &Course, extruder_velocity: f64) -> f64 {
+    if !before.moves_nozzle || !after.moves_nozzle {
+        return 0.0;
+    }
+    let mut squared = f64::INFINITY;
+    let change = (after.direction[3] - before.direction[3]).abs();
+    if change > 0.0 {
+        let speed = extruder_velocity / change;
+        squared = speed * speed;
+    }
+    let cosine = -(before.direction[0] * after.direction[0]
+        + before.direction[1] * after.direction[1]
+        + before.direction[2] * after.direction[2]);
+    let sine = half_sine(cosine);
+    let half_cosine = (0.5 * (1.0 + cosine)).max(0.0).sqrt();
+    if sine < 1.0 && half_cosine > 0.0 {
+        let arc = sine / (1.0 - sine);
+        let tangent = 0.5 * sine / half_cosine;
+        for course in [before, after] {
+            squared = squared.min(arc * course.deviation * course.acceleration);
+            squared = squared.min(course.distance * course.acceleration * tangent);
+        }
+    }
+    squared
+}
+
+/// Sine of half the angle whose cosine this is.
+fn half_sine(cosine: f64) -> f64 {
+    (0.5 * (1.0 - cosine)).max(0.0).sqrt()
+}
+
+/// The angle in radians by which the path turns, if by no more than 45°. `cosine` is that of
+/// the angle between the two moves. The first terms of the arc sine are right to 10⁻⁵.
+fn small_turn(cosine: f64) -> f64 {
+    let half = (0.5 * (1.0 + cosine)).max(0.0).sqrt();
+    let square = half * half;
+    let series = 1.0 + square * (1.0 / 6.0 + square * (3.0 / 40.0 + square * (15.0 / 336.0)));
+    2.0 * half * series
+}
+
+fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+}
+
+/// The vector of length one in this direction; nothing stays nothing.
+fn unit(vector: &[f64; 4]) -> [f64; 4] {
+    let length = dot(vector, vector).sqrt();
+    let inverse = 1.0 / length;
+    if length > 0.0 { vector.map(|part| part * inverse) } else { *vector }
+}

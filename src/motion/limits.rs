@@ -1,0 +1,174 @@
+//! Settings -> Limits: what a machine's planner holds itself to.
+
+use crate::profile::{JunctionRule, Settings};
+
+/// Feeds are in mm/min where people set them.
+const SECONDS_PER_MINUTE: f64 = 60.0;
+
+/// What a machine's planner holds itself to. Arrays are x, y, z, e.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limits {
+    /// Highest speed of each axis, mm/s.
+    pub feed: [f64; 4],
+    /// Highest acceleration of each axis, mm/s². A move along several axes gets
+    /// what leaves each within its own.
+    pub acceleration: [f64; 4],
+    /// Acceleration along the path of moves that extrude, mm/s².
+    pub print_acceleration: f64,
+    /// Acceleration along the path of moves that do not extrude, mm/s².
+    pub travel_acceleration: f64,
+    /// Acceleration of moves of the filament alone, mm/s².
+    pub retract_acceleration: f64,
+    /// How fast a corner may be taken.
+    pub junction: Junction,
+    /// Blocks that the planner knows of at a time: the oldest one's plan is final
+    /// when so many are there, with the youngest ending at rest. `None` is the
+    /// whole file. [`Junction::SquareCorner`] always takes the whole file.
+    pub look_ahead: Option<usize>,
+    /// No corner need be slower than this, mm/s.
+    pub minimum_speed: f64,
+}
+
+/// How fast the corner between two moves may be taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Junction {
+    /// Marlin's classic jerk: the sudden change of speed that each axis bears, mm/s.
+    /// An axis that turns back may come in and leave at its jerk. Moves begin
+    /// and end at rest with the same sudden change.
+    Jerk([f64; 4]),
+    /// Sailfish's "maximum speed change" of each axis, mm/s: the corner is slowed down by
+    /// the share that each axis changes its speed too much. Moves begin and end at rest
+    /// at the minimum speed.
+    SpeedChange([f64; 4]),
+    /// Marlin's junction deviation: how far a corner's arc would be from the corner, mm.
+    Deviation(f64),
+    /// Klipper's rule.
+    SquareCorner {
+        /// Speed through a corner of 90°, mm/s.
+        velocity: f64,
+        /// Part of a move, 0 to below 1, that must be left for cruising: what is
+        /// gained by speeding up for a moment only is not worth the shaking.
+        minimum_cruise_ratio: f64,
+        /// Sudden change of the filament's speed that is allowed, mm/s.
+        extruder_corner_velocity: f64,
+    },
+}
+
+/// A limit of nothing would stop the clock: the least that is taken, mm/s or mm/s².
+const LEAST: f64 = 1e-3;
+
+/// No jerk at all is this much, mm/s: nothing, but not for a division.
+const LEAST_JERK: f64 = 1e-12;
+
+/// [`Limits`] with what every move needs of them worked out.
+#[derive(Debug, Clone)]
+pub(super) struct Rates {
+    pub(super) limits: Limits,
+    /// 1 / feed.
+    feed_inverse: [f64; 4],
+    /// 1 / acceleration.
+    acceleration_inverse: [f64; 4],
+    /// 1 / jerk.
+    pub(super) jerk_inverse: [f64; 4],
+    /// How far a corner's arc would be from the corner, mm.
+    pub(super) deviation: f64,
+    /// Klipper's acceleration for short sprints, mm/s². It is a part of the machine's,
+    /// so that moves which an axis holds back to less have nothing to lose.
+    pub(super) sprint: f64,
+    /// Klipper knows limits of the filament only where it moves alone.
+    filament_alone: bool,
+}
+
+impl Limits {
+    /// The limits of the machine that these settings are for.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        let limits = &settings.limits;
+        let jerk = [limits.jerk_x, limits.jerk_y, limits.jerk_z, limits.jerk_e];
+        let per_minute = [limits.feed_x, limits.feed_y, limits.feed_z, limits.feed_e];
+        Self {
+            feed: per_minute.map(|feed| feed / SECONDS_PER_MINUTE),
+            acceleration: [
+                limits.acceleration_x,
+                limits.acceleration_y,
+                limits.acceleration_z,
+                limits.acceleration_e,
+            ],
+            print_acceleration: settings.machine.acceleration,
+            travel_acceleration: limits.travel_acceleration,
+            retract_acceleration: limits.retract_acceleration,
+            junction: match limits.junction {
+                JunctionRule::Jerk => Junction::Jerk(jerk),
+                JunctionRule::SpeedChange => Junction::SpeedChange(jerk),
+                JunctionRule::Deviation => Junction::Deviation(limits.junction_deviation),
+                JunctionRule::SquareCorner => Junction::SquareCorner {
+                    velocity: limits.square_corner_velocity,
+                    minimum_cruise_ratio: limits.minimum_cruise_ratio,
+                    extruder_corner_velocity: limits.extruder_corner_velocity,
+                },
+            },
+            look_ahead: (limits.look_ahead > 0).then_some(limits.look_ahead as usize),
+            minimum_speed: limits.minimum_speed,
+        }
+    }
+}
+
+impl Rates {
+    pub(super) fn new(limits: Limits) -> Self {
+        let inverse = |values: [f64; 4]| values.map(|value| 1.0 / value.max(LEAST));
+        let deviation = match limits.junction {
+            Junction::Jerk(_) | Junction::SpeedChange(_) => 0.0,
+            Junction::Deviation(deviation) => deviation.max(0.0),
+            Junction::SquareCorner { velocity, .. } => {
+                let root_of_two = std::f64::consts::SQRT_2;
+                velocity * velocity * (root_of_two - 1.0) / limits.print_acceleration.max(LEAST)
+            }
+        };
+        let sprint = match limits.junction {
+            Junction::SquareCorner { minimum_cruise_ratio, .. } => {
+                limits.print_acceleration.max(LEAST) * (1.0 - minimum_cruise_ratio)
+            }
+            _ => f64::INFINITY,
+        };
+        Self {
+            sprint,
+            jerk_inverse: match limits.junction {
+                Junction::Jerk(jerk) => jerk.map(|jerk| 1.0 / jerk.max(LEAST_JERK)),
+                _ => [0.0; 4],
+            },
+            feed_inverse: inverse(limits.feed),
+            acceleration_inverse: inverse(limits.acceleration),
+            deviation,
+            filament_alone: matches!(limits.junction, Junction::SquareCorner { .. }),
+            limits,
+        }
+    }
+
+    /// Speed (mm/s) and acceleration (mm/s²) along the path of a move of this length, mm.
+    pub(super) fn of_move(&self, delta: &[f64; 4], distance: f64, feed: f64) -> (f64, f64) {
+        let limits = &self.limits;
+        let moves_nozzle = moves_nozzle(delta);
+        let wanted = if !moves_nozzle {
+            limits.retract_acceleration
+        } else if delta[3] == 0.0 {
+            limits.travel_acceleration
+        } else {
+            limits.print_acceleration
+        };
+        let axes = if moves_nozzle && self.filament_alone { 3 } else { 4 };
+        let (mut slowest, mut laziest) = (0.0_f64, 0.0_f64);
+        for (axis, length) in delta.iter().enumerate().take(axes) {
+            let length = length.abs();
+            slowest = slowest.max(length * self.feed_inverse[axis]);
+            laziest = laziest.max(length * self.acceleration_inverse[axis]);
+        }
+        // `max` drops a feed that is not a number.
+        let speed = feed.max(LEAST).min(distance / slowest);
+        (speed, wanted.max(LEAST).min(distance / laziest))
+    }
+}
+
+/// Whether more than the filament moves.
+pub(super) fn moves_nozzle(delta: &[f64; 4]) -> bool {
+    delta[0] != 0.0 || delta[1] != 0.0 || delta[2] != 0.0
+}

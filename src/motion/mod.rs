@@ -1,0 +1,33 @@
+//! Moves + machine limits -> seconds of each move, as the printer's own planner would drive it.
+//!
+//! A planner looks at each pair of successive moves and decides how fast the
+//! corner between them may be taken ([`Junction`]). It then sees to it that
+//! every move can slow down in time for what follows, and speeds up and slows
+//! down at constant acceleration in between: a trapezoid of speed over time.
+//! [`Clock`] does the same and says how long each move takes.
+//!
+//! Only sums, products, quotients and square roots are used, in a fixed order:
+//! the same moves take the same time on every platform.
+
+mod block;
+mod clock;
+mod junction;
+mod limits;
+mod plan;
+
+pub use clock::{Clock, Timed};
+pub use limits::{Junction, Limits};
+
+/// The axes' places in every array of four.
+pub const AXES: [&str; 4] = ["x", "y", "z", "e"];
+
+/// A straight move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Move<T> {
+    /// How far x, y, z and the filament go, mm.
+    pub delta: [f64; 4],
+    /// Feed asked for, mm/s: along the path, or of the filament where only that moves.
+    pub feed: f64,
+    /// Comes out again with the move's time.
+    pub tag: T,
+}

@@ -1,0 +1,105 @@
+//! G2 and G3 -> points on the arc, about a millimetre apart.
+
+use std::f64::consts::TAU;
+
+/// Length of the straight pieces, mm: what Marlin takes.
+const PIECE_MM: f64 = 1.0;
+
+/// An arc in 1 of so many pieces at most, whatever its radius.
+const MOST_PIECES: f64 = 100_000.0;
+
+/// An arc in the plane, from `from` to `to` around `middle`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Arc {
+    pub(super) from: [f64; 2],
+    pub(super) to: [f64; 2],
+    pub(super) middle: [f64; 2],
+    pub(super) clockwise: bool,
+}
+
+impl Arc {
+    /// The arc of this radius; a negative one is the long way round. `None` if the ends are
+    /// the same or too far apart.
+    pub(super) fn by_radius(
+        from: [f64; 2],
+        to: [f64; 2],
+        radius: f64,
+        clockwise: bool,
+    ) -> Option<Self> {
+        let chord = [to[0] - from[0], to[1] - from[1]];
+        let square = chord[0] * chord[0] + chord[1] * chord[1];
+        let beside = radius * radius / square - 0.25;
+        if !(square > 0.0 && beside >= 0.0) {
+            return None;
+        }
+        let side = if clockwise == (radius > 0.0) { -beside.sqrt() } else { beside.sqrt() };
+        let middle =
+            [0.5 * (from[0] + to[0]) - chord[1] * side, 0.5 * (from[1] + to[1]) + chord[0] * side];
+        Some(Self { from, to, middle, clockwise })
+    }
+
+    /// The ends of its pieces; the last one is `to`, exactly. Ends that are the same make a full circle.
+    pub(super) fn points(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
+        let arc = *self;
+        let arm = |point: [f64; 2]| [point[0] - arc.middle[0], point[1] - arc.middle[1]];
+        let (start, end) = (arm(arc.from), arm(arc.to));
+        let mut turn = libm::atan2(
+            start[0] * end[1] - start[1] * end[0],
+            start[0] * end[0] + start[1] * end[1],
+        );
+        if arc.from == arc.to {
+            turn = 0.0;
+        }
+        if arc.clockwise && turn >= 0.0 {
+            turn -= TAU;
+        } else if !arc.clockwise && turn <= 0.0 {
+            turn += TAU;
+        }
+        let radius = (start[0] * start[0] + start[1] * start[1]).sqrt();
+        let pieces = (turn.abs() * radius / PIECE_MM).ceil().clamp(1.0, MOST_PIECES);
+        let count = pieces as u32;
+        (1..=count).map(move |k| {
+            if k == count {
+                return arc.to;
+            }
+            let (sin, cos) = libm::sincos(turn * f64::from(k) / f64::from(count));
+            let x = arc.middle[0] + start[0] * cos - start[1] * sin;
+            [x, arc.middle[1] + start[0] * sin + start[1] * cos]
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn length(arc: &Arc) -> f64 {
+        let mut at = arc.from;
+        let mut sum = 0.0;
+        for to in arc.points() {
+            sum += ((to[0] - at[0]).powi(2) + (to[1] - at[1]).powi(2)).sqrt();
+            at = to;
+        }
+        assert_eq!(at, arc.to);
+        sum
+    }
+
+    #[test]
+    fn lengths_of_arcs() {
+        let quarter =
+            |clockwise| Arc { from: [10.0, 0.0], to: [0.0, 10.0], middle: [0.0, 0.0], clockwise };
+        let about = |a: f64, b: f64| assert!((a - b).abs() < 0.002 * b, "{a} {b}");
+        about(length(&quarter(false)), TAU * 2.5);
+        about(length(&quarter(true)), TAU * 7.5);
+        let circle = Arc { to: [10.0, 0.0], ..quarter(true) };
+        about(length(&circle), TAU * 10.0);
+        for (radius, clockwise, turn) in
+            [(10.0, false, 2.5), (-10.0, false, 7.5), (10.0, true, 2.5), (-10.0, true, 7.5)]
+        {
+            let arc = Arc::by_radius([10.0, 0.0], [0.0, 10.0], radius, clockwise).unwrap();
+            about(length(&arc), TAU * turn);
+        }
+        assert!(Arc::by_radius([0.0, 0.0], [10.0, 0.0], 4.0, true).is_none());
+        assert!(Arc::by_radius([0.0, 0.0], [0.0, 0.0], 4.0, true).is_none());
+    }
+}

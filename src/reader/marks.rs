@@ -1,0 +1,55 @@
+//! Comments -> what slicers mark with them: roles, layers, widths and heights of lines.
+
+use super::role::Role;
+use super::words;
+
+/// What a comment says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Mark {
+    /// `;TYPE:`, `;FEATURE:`: what follows prints this.
+    Role(Role),
+    /// `;LAYER_CHANGE`, `;LAYER:7`: a layer begins.
+    Layer,
+    /// `;WIDTH:`, mm.
+    Width(f64),
+    /// `;HEIGHT:`, mm.
+    Height(f64),
+}
+
+/// What the comment says, without its `;`.
+pub(super) fn mark(comment: &[u8]) -> Option<Mark> {
+    // Nearly all comments are none of these.
+    let comment = comment.trim_ascii();
+    let after = |prefix: &[u8]| comment.strip_prefix(prefix).map(<[u8]>::trim_ascii);
+    match comment.first()? {
+        b'T' => after(b"TYPE:").map(Role::of_name).map(Mark::Role),
+        b'F' => after(b"FEATURE:").map(Role::of_name).map(Mark::Role),
+        b'L' if comment == b"LAYER_CHANGE" => Some(Mark::Layer),
+        b'L' => after(b"LAYER:").map(|_| Mark::Layer),
+        b'C' => (comment == b"CHANGE_LAYER").then_some(Mark::Layer),
+        b'W' => length(after(b"WIDTH:")?).map(Mark::Width),
+        b'H' => length(after(b"HEIGHT:")?).map(Mark::Height),
+        _ => None,
+    }
+}
+
+fn length(text: &[u8]) -> Option<f64> {
+    words::number(text).0.filter(|length| *length > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_are_told_from_talk() {
+        assert_eq!(mark(b"TYPE:Perimeter"), Some(Mark::Role(Role::InnerWall)));
+        assert_eq!(mark(b" FEATURE: Sparse infill"), Some(Mark::Role(Role::Infill)));
+        assert_eq!(mark(b"LAYER:-2"), Some(Mark::Layer));
+        assert_eq!(mark(b"LAYER_COUNT:80"), None);
+        assert_eq!(mark(b"HEIGHT:0.2"), Some(Mark::Height(0.2)));
+        assert_eq!(mark(b"WIDTH:x"), None);
+        assert_eq!(mark(b"This is LAYER:1"), None);
+        assert_eq!(mark(b""), None);
+    }
+}

@@ -1,0 +1,91 @@
+//! G-code bytes -> events in their order: moves, waits, layers, and what changes a machine's limits.
+//!
+//! The reader takes the output of any slicer and never fails on what a file
+//! holds: a line that it does not know is counted. It shares nothing with the
+//! code that writes G-code, so that it is a witness of its own.
+
+mod arc;
+mod change;
+mod lines;
+mod marks;
+mod role;
+mod state;
+mod words;
+
+pub use change::Change;
+pub use role::Role;
+
+use std::io::{self, BufRead};
+
+/// What a G-code file says, bit by bit.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Event {
+    /// A straight move.
+    Move(Motion),
+    /// G4: the printer stands still for so many seconds.
+    Dwell(f64),
+    /// The moves so far end before anything else happens.
+    Wait(Wait),
+    /// A layer begins.
+    Layer {
+        /// Whether a comment says so; otherwise it is told from an extruding move at a new height.
+        marked: bool,
+    },
+    /// The machine is told to hold itself to other limits.
+    Change(Change),
+}
+
+/// Why the printer waits for an unknown time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wait {
+    /// Until something is hot.
+    Heating,
+    /// While it looks for its end stops.
+    Homing,
+    /// Only until the moves so far have ended.
+    Moves,
+}
+
+/// A straight move as the file has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion {
+    /// Where the nozzle is before it, mm.
+    pub from: [f64; 3],
+    /// Where the nozzle is after it, mm.
+    pub to: [f64; 3],
+    /// Filament pushed out, mm; below 0 it is pulled back.
+    pub filament: f64,
+    /// Feed asked for, mm/s.
+    pub feed: f64,
+    /// What it prints, if anything.
+    pub role: Role,
+    /// Width of the line by the file's comments, mm.
+    pub width: Option<f64>,
+    /// Height of the line by the file's comments, mm.
+    pub height: Option<f64>,
+    /// Line of the file, from 1.
+    pub line: u64,
+}
+
+/// What was read besides the events.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Summary {
+    /// Lines in all.
+    pub lines: u64,
+    /// Lines with code that means nothing to the reader.
+    pub unknown: u64,
+    /// The first of them, from 1; 0 if there is none.
+    pub first_unknown: u64,
+    /// Moves of the filament by the printer's own settings (G10, G11), whose length is not in the file.
+    pub firmware_retractions: u64,
+}
+
+/// Reads G-code and hands each event to `sink`, in the file's order.
+///
+/// # Errors
+/// Only what reading the bytes gives: no content is an error.
+pub fn read(source: &mut dyn BufRead, sink: &mut dyn FnMut(Event)) -> io::Result<Summary> {
+    let mut state = state::State::default();
+    lines::each(source, &mut |line| state.line(line, sink))?;
+    Ok(state.summary)
+}

@@ -1,0 +1,317 @@
+//! Words -> where the nozzle goes: modes, units, positions and feeds as a firmware keeps them.
+
+use super::arc::Arc;
+use super::marks::{Mark, mark};
+use super::words::{self, Code, Words};
+use super::{Change, Event, Motion, Role, Summary, Wait};
+
+/// Feed before the file names one, mm/s: Marlin's.
+const FIRST_FEED: f64 = 25.0;
+
+/// Heights that differ by less are the same, mm.
+const SAME_HEIGHT: f64 = 1e-4;
+
+/// Millimetres in an inch.
+const INCH: f64 = 25.4;
+
+/// Commands that move nothing and wait for nothing.
+const HARMLESS: &[u32] = &[
+    17, 18, 20, 21, 27, 31, 42, 70, 72, 73, 75, 76, 77, 82, 83, 84, 85, 92, 104, 105, 106, 107,
+    108, 110, 111, 113, 114, 115, 117, 118, 119, 120, 121, 126, 127, 130, 132, 136, 137, 140, 141,
+    142, 150, 155, 200, 207, 208, 209, 211, 217, 218, 221, 240, 250, 280, 290, 300, 301, 302, 304,
+    350, 351, 355, 412, 413, 420, 422, 425, 486, 500, 501, 502, 503, 555, 572, 592, 593, 851, 862,
+    900, 906, 907, 910, 911, 912, 913, 914, 915, 950, 955, 970, 971, 973, 974, 975, 981, 982, 983,
+    991, 1002,
+];
+
+pub(super) struct State {
+    /// Where the nozzle is, mm; `None` where only the printer knows.
+    at: [Option<f64>; 3],
+    /// Where the filament is, mm.
+    filament: f64,
+    /// mm/s.
+    feed: f64,
+    /// M220, as a factor.
+    feed_factor: f64,
+    /// Millimetres in a unit of the file.
+    unit: f64,
+    relative: bool,
+    relative_filament: bool,
+    role: Role,
+    width: Option<f64>,
+    height: Option<f64>,
+    /// Whether comments say where layers begin.
+    marked: bool,
+    /// Height of the last layer told from a move, mm.
+    layer_height: Option<f64>,
+    pub(super) summary: Summary,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self {
+            at: [Some(0.0); 3],
+            filament: 0.0,
+            feed: FIRST_FEED,
+            feed_factor: 1.0,
+            unit: 1.0,
+            relative: false,
+            relative_filament: false,
+            role: Role::Other,
+            width: None,
+            height: None,
+            marked: false,
+            layer_height: None,
+            summary: Summary::default(),
+        }
+    }
+}
+
+/// The words that a move may have.
+#[derive(Default)]
+struct Target {
+    axes: [Option<f64>; 3],
+    filament: Option<f64>,
+    /// I, J and R of an arc.
+    arc: [Option<f64>; 3],
+}
+
+impl State {
+    /// Takes one line of the file.
+    pub(super) fn line(&mut self, line: &[u8], sink: &mut dyn FnMut(Event)) {
+        self.summary.lines += 1;
+        let (code, comment) = words::split(line);
+        if !code.is_empty() {
+            self.code(code, sink);
+        }
+        if let Some(mark) = comment.and_then(mark) {
+            match mark {
+                Mark::Role(role) => self.role = role,
+                Mark::Width(width) => self.width = Some(width),
+                Mark::Height(height) => self.height = Some(height),
+                Mark::Layer => {
+                    self.marked = true;
+                    sink(Event::Layer { marked: true });
+                }
+            }
+        }
+    }
+
+    fn code(&mut self, code: &[u8], sink: &mut dyn FnMut(Event)) {
+        if code[0] == b'(' || code[0] == b'%' {
+            return;
+        }
+        if let Some((command, words)) = words::command(code) {
+            let known = !command.has_part && self.command(command, words, sink);
+            // Parts of a family, such as M862.1, are all of one kind.
+            if known || (command.has_part && is_harmless(command)) {
+                return;
+            }
+        } else if let Some(words) = klipper(code, b"SET_VELOCITY_LIMIT") {
+            return sink(Event::Change(Change::of_klipper(words)));
+        }
+        self.summary.unknown += 1;
+        if self.summary.first_unknown == 0 {
+            self.summary.first_unknown = self.summary.lines;
+        }
+    }
+
+    /// Returns whether the command is known.
+    fn command(&mut self, code: Code, words: Words<'_>, sink: &mut dyn FnMut(Event)) -> bool {
+        match (code.letter, code.number) {
+            (b'G', 0 | 1) => self.straight(words, sink),
+            (b'G', 2 | 3) => self.arc(words, code.number == 2, sink),
+            (b'G', 4) => sink(Event::Dwell(dwell(words))),
+            (b'G', 10 | 11) => self.summary.firmware_retractions += 1,
+            (b'G', 20) => self.unit = INCH,
+            (b'G', 21) => self.unit = 1.0,
+            (b'G', 28) => self.home(words, Some(0.0), sink),
+            (b'G', 161 | 162) => self.home(words, None, sink),
+            (b'G', 90) => self.relative = false,
+            (b'G', 91) => self.relative = true,
+            (b'G', 92) => self.set_position(words),
+            (b'G', 29 | 34 | 80) => sink(Event::Wait(Wait::Homing)),
+            (b'G', 17 | 54 | 130) | (b'T', _) => {}
+            (b'M', 82) => self.relative_filament = false,
+            (b'M', 83) => self.relative_filament = true,
+            // What the printer remembers of the end stops' places is not in the file.
+            (b'M', 132) => self.forget(words, None),
+            (b'M', 6 | 109 | 116 | 190 | 191 | 133 | 134 | 303) => {
+                sink(Event::Wait(Wait::Heating));
+            }
+            (b'M', 0 | 1 | 25 | 226 | 400 | 600 | 601) => sink(Event::Wait(Wait::Moves)),
+            (b'M', 201 | 203 | 204 | 205) => {
+                if let Some(change) = Change::of_code(code.number, words) {
+                    sink(Event::Change(change));
+                }
+            }
+            (b'M', 220) => self.set_factor(words),
+            _ => return is_harmless(code),
+        }
+        true
+    }
+
+    fn straight(&mut self, words: Words<'_>, sink: &mut dyn FnMut(Event)) {
+        let target = self.target(words);
+        let to = self.to(&target);
+        let filament = self.push_filament(target.filament);
+        self.go(to, filament, sink);
+    }
+
+    fn arc(&mut self, words: Words<'_>, clockwise: bool, sink: &mut dyn FnMut(Event)) {
+        let target = self.target(words);
+        let from = self.at.map(Option::unwrap_or_default);
+        let to = self.to(&target);
+        let end = [to[0].unwrap_or_default(), to[1].unwrap_or_default()];
+        let filament = self.push_filament(target.filament);
+        let start = [from[0], from[1]];
+        let arc = match target.arc {
+            [None, None, Some(radius)] => Arc::by_radius(start, end, radius, clockwise),
+            [None, None, None] => None,
+            [i, j, _] => {
+                let middle = [from[0] + i.unwrap_or(0.0), from[1] + j.unwrap_or(0.0)];
+                Some(Arc { from: start, to: end, middle, clockwise })
+            }
+        };
+        let Some(arc) = arc else { return self.go(to, filament, sink) };
+        let count = arc.points().count() as f64;
+        let top = to[2].unwrap_or_default();
+        for (k, [x, y]) in arc.points().enumerate() {
+            let z = from[2] + (top - from[2]) * (k + 1) as f64 / count;
+            self.go([Some(x), Some(y), Some(z)], filament / count, sink);
+        }
+    }
+
+    /// The words of a move; F takes effect at once.
+    fn target(&mut self, words: Words<'_>) -> Target {
+        let mut target = Target::default();
+        for (letter, value) in words {
+            let Some(value) = value.map(|value| value * self.unit) else { continue };
+            match letter {
+                b'X' => target.axes[0] = Some(value),
+                b'Y' => target.axes[1] = Some(value),
+                b'Z' => target.axes[2] = Some(value),
+                // The two extruders of Sailfish by their own names.
+                b'E' | b'A' | b'B' => target.filament = Some(value),
+                b'I' => target.arc[0] = Some(value),
+                b'J' => target.arc[1] = Some(value),
+                b'R' => target.arc[2] = Some(value),
+                b'F' if value > 0.0 => self.feed = value / 60.0,
+                _ => {}
+            }
+        }
+        target
+    }
+
+    /// Where a move with these words ends.
+    fn to(&self, target: &Target) -> [Option<f64>; 3] {
+        std::array::from_fn(|axis| match (target.axes[axis], self.at[axis]) {
+            (None, at) => at,
+            (Some(by), at) if self.relative => at.map(|at| at + by),
+            (to, _) => to,
+        })
+    }
+
+    /// How far the filament is to move, mm.
+    fn push_filament(&mut self, value: Option<f64>) -> f64 {
+        let Some(value) = value else { return 0.0 };
+        if self.relative || self.relative_filament {
+            self.filament += value;
+            return value;
+        }
+        value - std::mem::replace(&mut self.filament, value)
+    }
+
+    fn go(&mut self, to: [Option<f64>; 3], filament: f64, sink: &mut dyn FnMut(Event)) {
+        let from = std::mem::replace(&mut self.at, to);
+        // From a place that only the printer knows, the way is not known either: none is counted.
+        let to = to.map(Option::unwrap_or_default);
+        let from: [f64; 3] = std::array::from_fn(|axis| from[axis].unwrap_or(to[axis]));
+        let sideways = from[0] != to[0] || from[1] != to[1];
+        let role = match (from != to, filament > 0.0) {
+            (true, true) => self.role,
+            (true, false) => Role::Travel,
+            (false, _) if filament != 0.0 => Role::Retraction,
+            (false, _) => return,
+        };
+        if sideways && filament > 0.0 && !self.marked && from[2] == to[2] {
+            let same = |height: f64| (height - to[2]).abs() < SAME_HEIGHT;
+            if !self.layer_height.is_some_and(same) {
+                self.layer_height = Some(to[2]);
+                sink(Event::Layer { marked: false });
+            }
+        }
+        let (width, height) = (self.width, self.height);
+        let (feed, line) = (self.feed * self.feed_factor, self.summary.lines);
+        sink(Event::Move(Motion { from, to, filament, feed, role, width, height, line }));
+    }
+
+    fn home(&mut self, words: Words<'_>, at: Option<f64>, sink: &mut dyn FnMut(Event)) {
+        self.forget(words, at);
+        sink(Event::Wait(Wait::Homing));
+    }
+
+    /// The axes named, or all, are now at `at`.
+    fn forget(&mut self, words: Words<'_>, at: Option<f64>) {
+        let mut any = false;
+        for (letter, _) in words {
+            if let Some(axis) = b"XYZ".iter().position(|&axis| axis == letter) {
+                self.at[axis] = at;
+                any = true;
+            }
+        }
+        if !any {
+            self.at = [at; 3];
+        }
+    }
+
+    fn set_position(&mut self, words: Words<'_>) {
+        let mut any = false;
+        for (letter, value) in words {
+            let value = value.unwrap_or(0.0) * self.unit;
+            match letter {
+                b'X' => self.at[0] = Some(value),
+                b'Y' => self.at[1] = Some(value),
+                b'Z' => self.at[2] = Some(value),
+                b'E' | b'A' | b'B' => self.filament = value,
+                _ => continue,
+            }
+            any = true;
+        }
+        if !any {
+            (self.at, self.filament) = ([Some(0.0); 3], 0.0);
+        }
+    }
+
+    fn set_factor(&mut self, words: Words<'_>) {
+        for (letter, value) in words {
+            if let (b'S', Some(percent)) = (letter, value.filter(|percent| *percent > 0.0)) {
+                self.feed_factor = percent / 100.0;
+            }
+        }
+    }
+}
+
+/// Seconds that G4 waits: P in milliseconds, S in seconds.
+fn dwell(words: Words<'_>) -> f64 {
+    let mut seconds = 0.0;
+    for (letter, value) in words {
+        match (letter, value) {
+            (b'P', Some(value)) => seconds = value / 1000.0,
+            (b'S', Some(value)) => seconds = value,
+            _ => {}
+        }
+    }
+    f64::max(seconds, 0.0)
+}
+
+fn is_harmless(code: Code) -> bool {
+    code.letter == b'M' && HARMLESS.contains(&code.number)
+}
+
+/// What follows the word `name`, in any case.
+fn klipper<'a>(code: &'a [u8], name: &[u8]) -> Option<&'a [u8]> {
+    let (word, rest) = code.split_at_checked(name.len())?;
+    let ends = rest.first().is_none_or(u8::is_ascii_whitespace);
+    (ends && word.eq_ignore_ascii_case(name)).then_some(rest)
+}

@@ -1,0 +1,102 @@
+//! Mesh -> angle: the direction in which its raster lines have least ends, and so least turns.
+//!
+//! A straight side of length `l` in a layer ends `l·|sin|` of the lines that it stands
+//! askew to, over their distance, and `l·|cos|` of those across. So the lines of both
+//! directions have as many ends as the sides are long, measured along the two
+//! directions (the "taxicab" length). A face whose normal, as long as its area, is `N`
+//! makes sides of the length `|Nxy|` at right angles to `Nxy`, summed over all heights: the sum over
+//! all faces needs no layers.
+
+use crate::mesh::Mesh;
+use crate::units::sin_cos;
+
+/// Directions differ by less than a right angle: one bin for each degree.
+const BINS: usize = 90;
+
+/// Usual, and so taken unless another direction has fewer ends by a fiftieth.
+const USUAL: f64 = 45.0;
+
+/// See [`USUAL`].
+const GAIN: f64 = 0.98;
+
+/// Angles are rounded to this part of a degree: faces of a turned box differ by less.
+const STEPS: f64 = 100.0;
+
+/// The best direction for the lines of even layers (odd ones run across), degrees from
+/// the x axis, 0 to 90.
+#[must_use]
+pub fn least_turns(mesh: &Mesh) -> f64 {
+    let bins = bins(mesh);
+    let ends = |degrees: f64| -> f64 {
+        let (sin, cos) = sin_cos(degrees);
+        bins.iter().map(|&[x, y]| (x * cos + y * sin).abs() + (y * cos - x * sin).abs()).sum()
+    };
+    let sides = bins.iter().filter(|b| **b != [0.0; 2]).map(|&[x, y]| libm::atan2(y, x));
+    let exact = sides.map(|angle| (angle.to_degrees() * STEPS).round() / STEPS % 90.0);
+    let whole = (0..BINS).map(|degrees| degrees as f64);
+    let best = whole
+        .chain(exact)
+        .map(|degrees| (ends(degrees), degrees))
+        .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    best.filter(|(least, _)| *least < GAIN * ends(USUAL)).map_or(USUAL, |(_, degrees)| degrees)
+}
+
+/// The faces' normals, seen from above and turned into the first quarter, summed by
+/// their direction. Sums are of whole numbers, so that the order of faces does not matter.
+fn bins(mesh: &Mesh) -> Vec<[f64; 2]> {
+    let mut bins = vec![[0_i128; 2]; BINS];
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|k| mesh.vertices[k as usize].map(i64::from));
+        let (p, q) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
+        let [mut x, mut y] = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2]];
+        while x < 0 || y < 0 || x == 0 && y != 0 {
+            (x, y) = (y, -x);
+        }
+        let bin = libm::atan2(y as f64, x as f64).to_degrees() as usize;
+        let sum = &mut bins[bin.min(BINS - 1)];
+        *sum = [sum[0] + i128::from(x), sum[1] + i128::from(y)];
+    }
+    bins.into_iter().map(|sum| sum.map(|s| s as f64)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::to_units;
+
+    /// A box of 30 by 20 by 10 mm, turned by `degrees` about z.
+    fn turned(degrees: f64) -> Mesh {
+        let (sin, cos) = sin_cos(degrees);
+        let corner = |k: usize| {
+            let (x, y) = ([0.0, 30.0][k & 1], [0.0, 20.0][k >> 1 & 1]);
+            [x * cos - y * sin, x * sin + y * cos, [0.0, 10.0][k >> 2]].map(to_units)
+        };
+        let faces =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [3, 2, 6, 7], [1, 3, 7, 5], [2, 0, 4, 6]];
+        let halves = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        Mesh { vertices: (0..8).map(corner).collect(), triangles: halves.collect() }
+    }
+
+    #[test]
+    fn lines_run_along_the_sides_of_a_box() {
+        for (turn, angle) in [(0.0, 0.0), (90.0, 0.0), (10.0, 10.0), (20.25, 20.25), (-15.0, 75.0)]
+        {
+            assert!((least_turns(&turned(turn)) - angle).abs() < 0.011, "{turn}");
+        }
+    }
+
+    #[test]
+    fn the_order_of_faces_makes_no_difference() {
+        let mut mesh = turned(33.3);
+        let angle = least_turns(&mesh);
+        mesh.triangles.reverse();
+        mesh.triangles.iter_mut().for_each(|t| t.rotate_left(1));
+        assert!((least_turns(&mesh) - angle).abs() < 1e-12);
+    }
+
+    #[test]
+    fn without_upright_sides_the_usual_angle_is_taken() {
+        let mesh = Mesh { vertices: Vec::new(), triangles: Vec::new() };
+        assert!((least_turns(&mesh) - USUAL).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,459 @@
+//! Laws of dual injection, for groups of any number of layers, on random stacks of layers and on whole prints.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+use common::solid::circle;
+use common::stack::{stack, stacks};
+use common::{Kind, Run, Solid, fixture, settings, slice};
+use proptest::prelude::*;
+use slicer::geom::spans::{Rows, Span, total};
+use slicer::profile::Settings;
+use slicer::region::divide::divide;
+use slicer::region::dual::{self, LayerAreas};
+use slicer::region::groups::{Block, Grouping};
+use slicer::region::inner::Skins;
+use slicer::region::{Comb, Hatch, Params, Prepared};
+use std::collections::{BTreeMap, BTreeSet};
+
+const MODES: [&str; 2] = ["pair", "interlaced"];
+const PATTERNS: [&str; 4] = ["rectilinear", "aligned", "grid", "triangles"];
+
+fn all_areas(k: usize, layers: &[Prepared], params: &Params) -> LayerAreas {
+    divide(k, 0..params.rasters.len(), &|k| layers.get(k), params).0
+}
+
+/// The blocks that `count` layers make.
+fn blocks(grouping: &Grouping, count: usize) -> Vec<Block> {
+    let mut blocks: Vec<Block> = Vec::new();
+    while let Some(from) =
+        Some(blocks.last().map_or(0, |b| b.layers.end)).filter(|&from| from < count)
+    {
+        blocks.push(grouping.block(from, count));
+    }
+    blocks
+}
+
+fn grouping(settings: &Settings) -> Grouping {
+    Grouping::new(&settings.dual, settings.dual_ratio())
+}
+
+/// Settings of groups of `ratio` layers, as thin as they have to be.
+fn grouped(mode: &str, ratio: u32, pattern: &str) -> Settings {
+    let (ratio, height) = (ratio.to_string(), (0.4 / f64::from(ratio)).to_string());
+    let set = [
+        ("dual.mode", mode),
+        ("dual.ratio", &ratio),
+        ("layer_height", &height),
+        ("pattern", pattern),
+        ("skin_layers", "1"),
+    ];
+    settings("generic-marlin", &set)
+}
+
+/// The length of the lines of a comb on `rows`, however short.
+fn length(comb: Comb, rows: &Rows) -> i64 {
+    let printed = |j: i32| (j - comb.offset).rem_euclid(comb.stride) == 0;
+    rows.iter().filter(|(j, _)| printed(*j)).map(|(_, row)| total(row)).sum()
+}
+
+/// The infill of every layer: what it prints, and what it has.
+struct Filled {
+    hatches: Vec<Vec<Hatch>>,
+    areas: Vec<LayerAreas>,
+    blocks: Vec<Block>,
+}
+
+fn fill(layers: &[Prepared], params: &Params, grouping: &Grouping) -> Filled {
+    let areas: Vec<LayerAreas> = (0..layers.len()).map(|k| all_areas(k, layers, params)).collect();
+    let blocks = blocks(grouping, layers.len());
+    let infill = |block: &Block| dual::infill(block, &of_block(&areas, block), grouping, params).0;
+    let hatches = blocks.iter().flat_map(infill).collect();
+    Filled { hatches, areas, blocks }
+}
+
+fn of_block<'a>(areas: &'a [LayerAreas], block: &Block) -> Vec<&'a LayerAreas> {
+    areas[block.layers.clone()].iter().collect()
+}
+
+fn infill_of(areas: &LayerAreas, raster: usize) -> &Rows {
+    &areas[raster].as_ref().unwrap().infill
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn every_place_of_every_layer_is_printed_once_and_no_line_lies_over_nothing(
+        outlines in stacks(), mode in 0..2_usize, ratio in 2..6_u32, pattern in 0..4_usize,
+    ) {
+        let settings = grouped(MODES[mode], ratio, PATTERNS[pattern]);
+        let (params, grouping) = (Params::new(&settings), grouping(&settings));
+        let layers = stack(&params, &outlines);
+        let filled = fill(&layers, &params, &grouping);
+        for block in &filled.blocks {
+            for lane in dual::turn(block.turn, &params).iter().flat_map(|&c| grouping.lanes(c)) {
+                let comb = lane.comb;
+                // What is left of each layer's lines when what is printed is taken away.
+                let mut left: BTreeMap<usize, Rows> = block.layers.clone()
+                    .map(|k| (k, infill_of(&filled.areas[k], comb.raster).clone()))
+                    .collect();
+                for k in block.layers.clone() {
+                    for hatch in filled.hatches[k].iter().filter(|h| h.comb == comb) {
+                        prop_assert!((1..=ratio).contains(&hatch.layers));
+                        for down in k + 1 - hatch.layers as usize..=k {
+                            let rest = left.get_mut(&down);
+                            prop_assert!(rest.is_some(), "a line reaches out of its block");
+                            let rest = rest.unwrap();
+                            prop_assert!(hatch.rows.minus(rest).is_empty(), "over nothing, or twice");
+                            *rest = rest.minus(&hatch.rows);
+                        }
+                    }
+                }
+                prop_assert!(left.values().all(Rows::is_empty), "a hollow place");
+            }
+        }
+    }
+
+    #[test]
+    fn the_material_is_that_of_all_layers(
+        outlines in stacks(), mode in 0..2_usize, ratio in 2..6_u32, pattern in 0..4_usize,
+    ) {
+        let settings = grouped(MODES[mode], ratio, PATTERNS[pattern]);
+        let (params, grouping) = (Params::new(&settings), grouping(&settings));
+        let layers = stack(&params, &outlines);
+        let filled = fill(&layers, &params, &grouping);
+        for block in &filled.blocks {
+            let printed: i64 = block.layers.clone().flat_map(|k| &filled.hatches[k])
+                .map(|h| i64::from(h.layers) * length(h.comb, &h.rows))
+                .sum();
+            let combs = dual::turn(block.turn, &params);
+            let plain: i64 = block.layers.clone()
+                .flat_map(|k| combs.iter().map(move |&c| (k, c)))
+                .map(|(k, comb)| length(comb, infill_of(&filled.areas[k], comb.raster)))
+                .sum();
+            prop_assert_eq!(printed, plain, "block {:?}", block);
+            let areas = of_block(&filled.areas, block);
+            let (_, audit) = dual::infill(block, &areas, &grouping, &params);
+            let audit = audit.unwrap();
+            // Lines too short to be printed are made up for by at most a twentieth.
+            let lost = (audit.plain - audit.material) as f64;
+            let thick: i64 = block.layers.clone().flat_map(|k| &filled.hatches[k])
+                .filter(|h| h.layers > 1)
+                .map(|h| i64::from(h.layers) * h.length(params.line_width))
+                .sum();
+            if thick > 0 && lost > 0.001 * audit.plain as f64 {
+                let widest = params.line_width + params.line_width / 20;
+                let at_most = |h: &Hatch| h.layers == 1 || h.width == widest;
+                prop_assert!(block.layers.clone().flat_map(|k| &filled.hatches[k]).all(at_most));
+            }
+            prop_assert!(lost >= -0.001 * audit.plain as f64, "{:?}", audit);
+        }
+    }
+
+    #[test]
+    fn what_all_layers_of_a_group_share_is_printed_for_all(
+        outlines in stacks(), ratio in 2..6_u32,
+    ) {
+        let settings = grouped("pair", ratio, "rectilinear");
+        let (params, grouping) = (Params::new(&settings), grouping(&settings));
+        let layers = stack(&params, &outlines);
+        let filled = fill(&layers, &params, &grouping);
+        for block in filled.blocks.iter().filter(|b| b.layers.len() > 1) {
+            let comb = dual::turn(block.turn, &params)[0];
+            let of = |k: usize| infill_of(&filled.areas[k], comb.raster);
+            let mut shared = of(block.layers.start).clone();
+            let long = |_, s: Span| s.len() >= i64::from(params.line_width);
+            for k in block.layers.clone().skip(1) {
+                shared = shared.and(of(k)).filter(long);
+            }
+            let count = block.layers.len() as u32;
+            let top = &filled.hatches[block.layers.end - 1];
+            let whole = top.iter().find(|h| h.layers == count);
+            let rows = whole.map_or_else(Rows::default, |h| h.rows.clone());
+            prop_assert!(shared.minus(&rows).is_empty() && rows.minus(&shared).is_empty());
+        }
+    }
+
+    #[test]
+    fn every_place_of_every_skin_is_printed_once_and_what_is_seen_for_itself(
+        outlines in stacks(), ratio in 2..5_u32, top in 0..6_usize, bottom in 0..6_usize,
+    ) {
+        let (top, bottom) = (top.to_string(), bottom.to_string());
+        let set = [("top_skin_layers", top.as_str()), ("bottom_skin_layers", &bottom)];
+        let params = Params::new(&settings("generic-marlin", &set));
+        let layers = stack(&params, &outlines);
+        let areas: Vec<LayerAreas> =
+            (0..layers.len()).map(|k| all_areas(k, &layers, &params)).collect();
+        for raster in 0..2 {
+            let of = |k: usize| Some(&areas.get(k)?[raster].as_ref().unwrap().skin);
+            let skins = Skins {
+                layers: |k| layers.get(k),
+                skins: of,
+                raster,
+                ratio: ratio as usize,
+                params: &params,
+            };
+            let shared: Vec<_> = (0..layers.len()).map(|k| skins.share(k)).collect();
+            let mut left: Vec<Rows> = (0..layers.len()).map(|k| of(k).unwrap().clone()).collect();
+            for (k, (thick, thin)) in shared.iter().enumerate() {
+                prop_assert!(thin.minus(&left[k]).is_empty(), "thin lines on thick ones");
+                left[k] = left[k].minus(thin);
+                for (count, rows) in thick {
+                    prop_assert!(*count > 1 && *count <= ratio);
+                    let down = k + 1 - *count as usize;
+                    for (down, left) in left.iter_mut().enumerate().take(k + 1).skip(down) {
+                        prop_assert!(rows.minus(left).is_empty(), "over nothing, or twice");
+                        *left = left.minus(rows);
+                        // What is seen from above or below is in no thick line.
+                        for next in [down.checked_sub(1), Some(down + 1)] {
+                            let next = next.and_then(|n| layers.get(n));
+                            let cover = next.map_or_else(Rows::default, |n| n.rows[raster].cover.clone());
+                            let bare = rows.minus(&cover);
+                            let longest = bare.iter().flat_map(|(_, row)| row).map(|s| s.len()).max();
+                            prop_assert!(longest.unwrap_or(0) < 500, "{:?} of {} is seen", longest, down);
+                        }
+                    }
+                }
+            }
+            prop_assert!(left.iter().all(Rows::is_empty), "a hollow place");
+        }
+    }
+
+    #[test]
+    fn the_thesis_prints_the_shorter_layer_thick_and_drops_the_other(outlines in stacks()) {
+        let settings = settings("thesis", &[("skin_layers", "1")]);
+        let (params, grouping) = (Params::new(&settings), grouping(&settings));
+        let layers = stack(&params, &outlines);
+        let filled = fill(&layers, &params, &grouping);
+        for block in filled.blocks.iter().filter(|b| b.layers.len() == 2) {
+            let (below, above) = (block.layers.start, block.layers.start + 1);
+            // Lines shorter than they are wide are not printed and not counted.
+            let printed =
+                |all: &[Hatch]| -> i64 { all.iter().map(|h| h.length(params.line_width)).sum() };
+            let plain = [below, above].map(|k| {
+                printed(&dual::plain(dual::turn(k, &params), &filled.areas[k], &params))
+            });
+            prop_assert!(filled.hatches[above].iter().all(|h| h.layers == 2));
+            prop_assert!(filled.hatches[below].is_empty());
+            prop_assert_eq!(printed(&filled.hatches[above]), plain[0].min(plain[1]));
+        }
+    }
+}
+
+#[test]
+fn directions_of_blocks_cross_whatever_their_lengths() {
+    for mode in MODES {
+        let settings = settings("generic-marlin", &[("dual.mode", mode)]);
+        let (params, grouping) = (Params::new(&settings), grouping(&settings));
+        let blocks = blocks(&grouping, 200);
+        assert_eq!(blocks.last().unwrap().layers.end, 200);
+        let rasters: Vec<usize> =
+            blocks.iter().map(|b| dual::turn(b.turn, &params)[0].raster).collect();
+        assert!(rasters.windows(2).skip(1).all(|w| w[0] != w[1]), "{mode}: {rasters:?}");
+    }
+}
+
+#[test]
+fn each_interlaced_layer_prints_its_share_of_the_lines() {
+    for ratio in 2..5 {
+        let settings = grouped("interlaced", ratio, "rectilinear");
+        let (params, grouping) = (Params::new(&settings), grouping(&settings));
+        let block = grouping.block(100 / ratio as usize * ratio as usize, 1000);
+        let comb = dual::turn(block.turn, &params)[0];
+        let lanes = grouping.lanes(comb);
+        // Every line belongs to one lane.
+        for j in -40..40 {
+            let lanes = lanes.iter().filter(|l| l.comb.prints(j)).count();
+            assert_eq!(lanes, usize::from(comb.prints(j)), "line {j}");
+        }
+        for k in block.layers.clone() {
+            let ends = lanes.iter().filter(|&&l| grouping.ends(l.phase, k, &block)).count();
+            let is_last = k + 1 == block.layers.end;
+            assert_eq!(ends, if is_last { ratio as usize } else { 1 }, "layer {k}");
+        }
+    }
+}
+
+/// A block with a base that is wider, on which groups cannot share everything.
+fn stepped() -> Vec<u8> {
+    let base = Solid::cuboid([0.0; 3], [30.0, 24.0, 5.0]);
+    base.and(&Solid::cuboid([6.0, 4.0, 4.5], [22.0, 18.0, 9.0])).stl()
+}
+
+/// Layers that print beads of a kind, with how many layers high they are.
+fn heights(run: &Run, kind: Kind) -> BTreeSet<(usize, u32)> {
+    run.print
+        .of(kind)
+        .map(|m| {
+            let k = m.layer.unwrap();
+            (k, (m.height / run.print.layers[k].height).round() as u32)
+        })
+        .collect()
+}
+
+#[test]
+fn groups_of_four_thin_layers_print_what_they_share_on_the_fourth() {
+    let set = [("dual.mode", "pair"), ("dual.ratio", "auto"), ("layer_height", "0.1")];
+    let run = slice(&stepped(), "generic-marlin", &set);
+    let dual = run.report.dual.as_ref().unwrap();
+    assert_eq!(dual.ratio, 4);
+    let infill = heights(&run, Kind::Infill);
+    assert!(infill.iter().any(|&(_, n)| n == 4));
+    for (k, n) in infill {
+        // A group ends with each fourth layer; those that are higher end no later.
+        assert!(k / 4 == (k + 1 - n as usize) / 4, "{n} layers on layer {k}");
+        assert!(n < 4 || k % 4 == 3, "{n} layers on layer {k}");
+    }
+    assert!((dual.volume_ratio - 1.0).abs() < 0.001, "{}", dual.volume_ratio);
+}
+
+#[test]
+fn the_audit_accounts_for_every_group() {
+    for name in ["bracket.stl", "sphere_20.stl", "two_shells.stl", "cavity.stl"] {
+        for mode in MODES {
+            let set = [("dual.mode", mode), ("support.enabled", "true")];
+            let run = slice(&fixture(name), "generic-marlin", &set);
+            let dual = run.report.dual.as_ref().unwrap();
+            assert!((dual.volume_ratio - 1.0).abs() < 0.001, "{name}: {}", dual.volume_ratio);
+            let sum = |of: fn(&slicer::report::BlockReport) -> f64| -> f64 {
+                dual.audit.iter().map(of).sum()
+            };
+            assert!((sum(|b| b.thick_length_mm) - dual.thick_length_mm).abs() < 1e-6);
+            assert!((sum(|b| b.thin_length_mm) - dual.thin_length_mm).abs() < 1e-6);
+            for block in dual.audit.iter().filter(|b| b.thick_length_mm > 20.0) {
+                let off = (block.volume_ratio - 1.0).abs();
+                assert!(off < 0.001, "{name} {mode}: {block:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn support_is_thick_where_a_group_shares_it() {
+    let set = [("dual.mode", "pair"), ("support.enabled", "true")];
+    let run = slice(&fixture("overhang.stl"), "generic-marlin", &set);
+    let support = heights(&run, Kind::Support);
+    assert!(support.iter().any(|&(k, n)| n == 2 && k % 2 == 1 && k > 1));
+    assert!(support.iter().all(|&(k, n)| n == 1 || n == 2 && k % 2 == 1 && k > 1));
+    let alone = [set[0], set[1], ("dual.parts", "infill")];
+    let run = slice(&fixture("overhang.stl"), "generic-marlin", &alone);
+    assert!(heights(&run, Kind::Support).iter().all(|&(_, n)| n == 1));
+}
+
+/// Filament of the beads of a kind, mm.
+fn filament(run: &Run, kind: Kind) -> f64 {
+    run.print.of(kind).map(|m| m.e).sum()
+}
+
+#[test]
+fn inner_skins_are_printed_for_the_group_and_those_that_are_seen_are_not() {
+    let parts = ("dual.parts", "inner-skin");
+    let plain = slice(&fixture("cube_20.stl"), "generic-marlin", &[]);
+    for mode in MODES {
+        let run = slice(&fixture("cube_20.stl"), "generic-marlin", &[("dual.mode", mode), parts]);
+        assert_eq!(
+            heights(&run, Kind::Skin).into_iter().collect::<Vec<_>>(),
+            [(0, 1), (2, 2), (98, 2), (99, 1)],
+            "{mode}"
+        );
+        let ratio = filament(&run, Kind::Skin) / filament(&plain, Kind::Skin);
+        assert!((ratio - 1.0).abs() < 0.01, "{mode}: {ratio}");
+    }
+    let set = [("skin_layers", "5"), ("dual.mode", "pair"), parts];
+    let run = slice(&fixture("cube_20.stl"), "generic-marlin", &set);
+    assert_eq!(
+        heights(&run, Kind::Skin).into_iter().collect::<Vec<_>>(),
+        [(0, 1), (2, 2), (4, 2), (96, 2), (98, 2), (99, 1)]
+    );
+}
+
+#[test]
+fn inner_walls_of_upright_sides_are_printed_for_the_group() {
+    let plain = slice(&fixture("cube_20.stl"), "generic-marlin", &[("walls", "3")]);
+    for mode in MODES {
+        let set = [("walls", "3"), ("dual.mode", mode), ("dual.parts", "inner-walls")];
+        let run = slice(&fixture("cube_20.stl"), "generic-marlin", &set);
+        assert!(heights(&run, Kind::OuterWall).iter().all(|&(_, n)| n == 1));
+        let thick = heights(&run, Kind::InnerWall).iter().filter(|(_, n)| *n == 2).count();
+        // 49 pairs; interlaced, the two walls have their turns on layers of their own.
+        assert!(thick >= if mode == "pair" { 49 } else { 90 }, "{mode}: {thick}");
+        let ratio = filament(&run, Kind::InnerWall) / filament(&plain, Kind::InnerWall);
+        assert!((ratio - 1.0).abs() < 1e-4, "{mode}: {ratio}");
+    }
+}
+
+#[test]
+fn inner_walls_of_slopes_are_printed_on_every_layer() {
+    let set = [("walls", "3"), ("dual.mode", "pair"), ("dual.parts", "inner-walls")];
+    let cone = Solid::tower(&[(circle(12.0, 60), 0.0), (circle(6.0, 60), 8.0)]);
+    let run = slice(&cone.stl(), "generic-marlin", &set);
+    assert!(heights(&run, Kind::InnerWall).iter().all(|&(_, n)| n == 1));
+    // What stands upright beside the slope still is.
+    let both = cone.and(&Solid::cuboid([20.0, 0.0, 0.0], [30.0, 10.0, 8.0]));
+    let run = slice(&both.stl(), "generic-marlin", &set);
+    let heights = heights(&run, Kind::InnerWall);
+    assert!(heights.iter().any(|&(_, n)| n == 2) && heights.iter().any(|&(_, n)| n == 1));
+}
+
+#[test]
+fn walls_and_skins_are_those_of_the_plain_print() {
+    for name in ["bracket.stl", "sphere_20.stl", "cavity.stl", "overhang.stl"] {
+        // Where the beads lie, and how much material they are on each layer. Widths are told
+        // only where they change by 0.01 mm, which depends on what was printed before.
+        let outside = |set: &[(&str, &str)]| -> (Vec<_>, BTreeMap<_, f64>) {
+            let run = slice(&fixture(name), "generic-marlin", set);
+            let kinds = [Kind::OuterWall, Kind::InnerWall, Kind::Skin];
+            let mut material = BTreeMap::new();
+            let mut beads = Vec::new();
+            for m in run.print.beads().filter(|m| kinds.contains(&m.kind)) {
+                let place = |p: [f64; 2]| p.map(|x| (x * 1000.0).round() as i64);
+                let ends = [place(m.a()), place(m.b())];
+                let height = (m.height * 1000.0) as i64;
+                beads.push((
+                    m.layer,
+                    ends.iter().min().copied(),
+                    ends.iter().max().copied(),
+                    height,
+                ));
+                *material.entry(m.layer).or_default() += m.e;
+            }
+            beads.sort_unstable();
+            (beads, material)
+        };
+        let plain = outside(&[]);
+        for mode in MODES {
+            let dual = outside(&[("dual.mode", mode)]);
+            assert!(dual.0 == plain.0, "{name} {mode}");
+            for (layer, e) in &plain.1 {
+                assert!((dual.1[layer] / e - 1.0).abs() < 1e-3, "{name} {mode} {layer:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn compare_tells_every_way_and_what_it_saves() {
+    let bracket = common::fixtures().join("bracket.stl");
+    let run = |more: &[&str]| {
+        let mut command = assert_cmd::Command::cargo_bin("slicer").unwrap();
+        command.arg("compare").arg(&bracket).args(["-p", "generic-marlin"]).args(more);
+        String::from_utf8(command.assert().success().get_output().stdout.clone()).unwrap()
+    };
+    let table = run(&["--layer-height", "0.1"]);
+    let flags: Vec<&str> = table.lines().skip(1).map(|l| l.split("  ").next().unwrap()).collect();
+    let ways = ["(plain)", "--dual", "--dual-mode interlaced", "--dual --dual-ratio 3"];
+    assert!(flags.starts_with(&ways), "{table}");
+    let found: serde_json::Value = serde_json::from_str(&run(&["--json"])).unwrap();
+    let ways = found["ways"].as_array().unwrap();
+    let of = |way: &serde_json::Value, key: &str| way[key].as_f64().unwrap();
+    let (plain, pair) = (&ways[0], &ways[1]);
+    let saved = 100.0 * (1.0 - of(pair, "time_s") / of(plain, "time_s"));
+    assert!((saved - of(pair, "saved_percent")).abs() < 1e-9 && saved > 5.0);
+    assert!((of(pair, "filament_mm") / of(plain, "filament_mm") - 1.0).abs() < 0.02);
+    assert!(ways.iter().all(|way| of(way, "time_s") <= of(plain, "time_s")));
+    // As slicing itself tells it.
+    let report = slice(&fixture("bracket.stl"), "generic-marlin", &[("dual.mode", "pair")]).report;
+    assert!((report.time.total_s - of(pair, "time_s")).abs() < 1e-9);
+}
