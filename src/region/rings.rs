@@ -205,3 +205,87 @@ fn keep_bends(arc: &[Place], a: usize, b: usize, kept: &mut Vec<usize>) {
         keep_bends(arc, k, b, kept);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::polygon;
+    use crate::profile;
+    use crate::region::raster::Scan;
+
+    /// The beads of a part with one wall whose skin is exposed up to `covered` from its
+    /// contour; lines along x.
+    fn beads(part: &[Contour], covered: Coord) -> (Vec<Bead>, Params) {
+        let mut settings = profile::load("generic-marlin", &[]).unwrap().settings;
+        settings.angle = profile::Angle::Degrees(0.0);
+        settings.walls = 1;
+        let params = Params::new(&settings);
+        let rows = |r: usize| {
+            let scan = Scan::new(part, params.rasters[r]);
+            let fill = scan.inset(params.fill_inset);
+            (fill.minus(&scan.inset(covered)), fill)
+        };
+        let ((skin, fill), (columns, fill_columns)) = (rows(0), rows(1));
+        let crossed = Crossed {
+            skin: &skin,
+            fill: &fill,
+            columns: &columns,
+            fill_columns: &fill_columns,
+            left_turn: true,
+        };
+        let walls = polygon::inset(part, params.outer_inset);
+        (rings(&walls, &crossed, &params), params)
+    }
+
+    fn block(width: Coord, depth: Coord) -> Vec<Contour> {
+        let p = |x, y| Point { x, y };
+        vec![vec![p(0, 0), p(width, 0), p(width, depth), p(0, depth)]]
+    }
+
+    #[test]
+    fn a_ring_of_skin_is_a_closed_bead_beside_the_wall() {
+        // Exposed as far as 1 mm from the contour: 0.6 mm from the wall's inner edge.
+        let (beads, params) = beads(&block(200_000, 150_000), 10_000);
+        assert_eq!(beads.len(), 1, "{beads:?}");
+        assert_eq!(beads[0].first().map(|p| (p.u, p.v)), beads[0].last().map(|p| (p.u, p.v)));
+        for p in &beads[0] {
+            let away = p.u.min(p.v).min(200_000 - p.u).min(150_000 - p.v);
+            assert!((p.width - 6_000).abs() <= 2, "{p:?}");
+            assert!((away - params.line_width - p.width / 2).abs() <= 2, "{p:?}");
+        }
+    }
+
+    #[test]
+    fn deeper_skin_takes_more_beads_and_wide_skin_none() {
+        let lay = |covered: Coord| beads(&block(200_000, 150_000), covered).0.len();
+        assert_eq!([lay(14_000), lay(20_000), lay(26_000), lay(60_000)], [2, 3, 0, 0]);
+    }
+
+    #[test]
+    fn a_solid_layer_has_no_beads_not_even_in_its_corners() {
+        let (beads, _) = beads(&block(200_000, 150_000), 100_000);
+        assert!(beads.is_empty(), "{beads:?}");
+    }
+
+    #[test]
+    fn both_sides_of_a_strip_share_its_width() {
+        // 1.7 mm with walls, 0.9 mm within: one closed bead that turns at the ends.
+        let (beads, _) = beads(&block(300_000, 17_000), 10_000);
+        assert_eq!(beads.len(), 1, "{beads:?}");
+        for p in beads.iter().flatten().filter(|p| p.u > 20_000 && p.u < 280_000) {
+            assert!((p.width - 4_500).abs() <= 2, "{p:?}");
+            assert!([6_250, 10_750].iter().any(|v| (p.v - v).abs() <= 2), "{p:?}");
+        }
+    }
+
+    #[test]
+    fn a_strip_too_thin_for_two_gets_one_bead_along_its_middle() {
+        let (beads, _) = beads(&block(300_000, 13_000), 10_000);
+        assert_eq!(beads.len(), 1, "{beads:?}");
+        for p in &beads[0] {
+            assert!((p.width - 5_000).abs() <= 2 && (p.v - 6_500).abs() <= 2, "{p:?}");
+        }
+        let length = beads[0][0].u - beads[0].last().unwrap().u;
+        assert!(length.abs() > 280_000, "{length}");
+    }
+}

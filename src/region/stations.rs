@@ -36,7 +36,7 @@ const ROUND: f64 = 1.2;
 
 /// Stretches that seem deep are narrow all the same if narrow skin follows within this
 /// many line widths: near a corner the depth is that along the other wall.
-const CORNER: f64 = 8.0;
+const CORNER: f64 = 11.0;
 
 /// Beads and gaps closed in them are no further than this many line widths from a
 /// station that has beads.
