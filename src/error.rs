@@ -16,10 +16,10 @@ pub enum Error {
     #[error("{0}")]
     Config(String),
 
-    /// A model that cannot be read or is no usable mesh (exit 3).
+    /// A model that cannot be read or is no usable mesh, or a file that is no G-code (exit 3).
     #[error("{file}: {reason}")]
     Input {
-        /// The model's file as the user named it, `<stdin>` for `-`.
+        /// The file as the user named it, `<stdin>` for `-`.
         file: String,
         /// Where, what and what to do.
         reason: String,

@@ -10,10 +10,15 @@
 //! - [`plan`]: regions -> paths in order, with travels
 //! - [`gcode`]: paths -> text
 //!
+//! Another way, from any slicer's G-code to its time: [`reader`] (text -> moves), [`motion`] (moves and
+//! limits -> seconds), [`mod@estimate`] (seconds by role and layer).
+//!
 //! Beside the way: [`job`] (what a run is asked for), [`geom`] and [`units`] (plane geometry on the integer grid),
-//! [`profile`] (settings), [`report`], [`progress`], [`warning`] and [`error`].
+//! [`profile`] (settings), [`motion`] (moves -> time), [`reader`] and [`mod@estimate`] (G-code of any slicer -> time),
+//! [`mod@compare`] (ways to print -> what each saves), [`report`], [`progress`], [`warning`] and [`error`].
 //! The command line is the binary's own.
 
+pub mod compare;
 pub mod error;
 pub mod estimate;
 pub mod gcode;

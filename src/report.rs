@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::gcode::Sums;
 use crate::gcode::flow::Flows;
 use crate::gcode::times::{LayerTime, Times};
-use crate::gcode::usage::{Material, filament_area};
+use crate::gcode::usage::Material;
 use crate::job::{self, Job};
 use crate::mesh::MeshReport;
 use crate::mesh::transform::Placed;
@@ -288,7 +288,7 @@ pub fn report(
 }
 
 fn roles(sums: &Sums, settings: &Settings) -> Vec<RoleReport> {
-    let area = filament_area(settings);
+    let area = settings.filament_area();
     let mut roles = Vec::new();
     for (index, role) in Role::ALL.iter().enumerate() {
         // An outer wall is never thick.

@@ -13,6 +13,7 @@ use slicer::profile::Settings;
 use slicer::region::classify;
 use slicer::region::dual::{self, LayerAreas};
 use slicer::region::groups::{Block, Grouping};
+use slicer::region::inner::Skins;
 use slicer::region::{Comb, Hatch, Params, Prepared};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -68,10 +69,13 @@ struct Filled {
 fn fill(layers: &[Prepared], params: &Params, grouping: &Grouping) -> Filled {
     let areas: Vec<LayerAreas> = (0..layers.len()).map(|k| all_areas(k, layers, params)).collect();
     let blocks = blocks(grouping, layers.len());
-    let infill =
-        |block: &Block| dual::infill(block, &areas[block.layers.clone()], grouping, params).0;
+    let infill = |block: &Block| dual::infill(block, &of_block(&areas, block), grouping, params).0;
     let hatches = blocks.iter().flat_map(infill).collect();
     Filled { hatches, areas, blocks }
+}
+
+fn of_block<'a>(areas: &'a [LayerAreas], block: &Block) -> Vec<&'a LayerAreas> {
+    areas[block.layers.clone()].iter().collect()
 }
 
 fn infill_of(areas: &LayerAreas, raster: usize) -> &Rows {
@@ -131,8 +135,8 @@ proptest! {
                 .map(|(k, comb)| length(comb, infill_of(&filled.areas[k], comb.raster)))
                 .sum();
             prop_assert_eq!(printed, plain, "block {:?}", block);
-            let areas = &filled.areas[block.layers.clone()];
-            let (_, audit) = dual::infill(block, areas, &grouping, &params);
+            let areas = of_block(&filled.areas, block);
+            let (_, audit) = dual::infill(block, &areas, &grouping, &params);
             let audit = audit.unwrap();
             // Lines too short to be printed are made up for by at most a twentieth.
             let lost = (audit.plain - audit.material) as f64;
@@ -170,6 +174,51 @@ proptest! {
             let whole = top.iter().find(|h| h.layers == count);
             let rows = whole.map_or_else(Rows::default, |h| h.rows.clone());
             prop_assert!(shared.minus(&rows).is_empty() && rows.minus(&shared).is_empty());
+        }
+    }
+
+    #[test]
+    fn every_place_of_every_skin_is_printed_once_and_what_is_seen_for_itself(
+        outlines in stacks(), ratio in 2..5_u32, top in 0..6_usize, bottom in 0..6_usize,
+    ) {
+        let (top, bottom) = (top.to_string(), bottom.to_string());
+        let set = [("top_skin_layers", top.as_str()), ("bottom_skin_layers", &bottom)];
+        let params = Params::new(&settings("generic-marlin", &set));
+        let layers = stack(&params, &outlines);
+        let areas: Vec<LayerAreas> =
+            (0..layers.len()).map(|k| all_areas(k, &layers, &params)).collect();
+        for raster in 0..2 {
+            let of = |k: usize| Some(&areas.get(k)?[raster].as_ref().unwrap().skin);
+            let skins = Skins {
+                layers: |k| layers.get(k),
+                skins: of,
+                raster,
+                ratio: ratio as usize,
+                params: &params,
+            };
+            let shared: Vec<_> = (0..layers.len()).map(|k| skins.share(k)).collect();
+            let mut left: Vec<Rows> = (0..layers.len()).map(|k| of(k).unwrap().clone()).collect();
+            for (k, (thick, thin)) in shared.iter().enumerate() {
+                prop_assert!(thin.minus(&left[k]).is_empty(), "thin lines on thick ones");
+                left[k] = left[k].minus(thin);
+                for (count, rows) in thick {
+                    prop_assert!(*count > 1 && *count <= ratio);
+                    let down = k + 1 - *count as usize;
+                    for (down, left) in left.iter_mut().enumerate().take(k + 1).skip(down) {
+                        prop_assert!(rows.minus(left).is_empty(), "over nothing, or twice");
+                        *left = left.minus(rows);
+                        // What is seen from above or below is in no thick line.
+                        for next in [down.checked_sub(1), Some(down + 1)] {
+                            let next = next.and_then(|n| layers.get(n));
+                            let cover = next.map_or_else(Rows::default, |n| n.rows[raster].cover.clone());
+                            let bare = rows.minus(&cover);
+                            let longest = bare.iter().flat_map(|(_, row)| row).map(|s| s.len()).max();
+                            prop_assert!(longest.unwrap_or(0) < 500, "{:?} of {} is seen", longest, down);
+                        }
+                    }
+                }
+            }
+            prop_assert!(left.iter().all(Rows::is_empty), "a hollow place");
         }
     }
 
@@ -294,9 +343,31 @@ fn support_is_thick_where_a_group_shares_it() {
     assert!(heights(&run, Kind::Support).iter().all(|&(_, n)| n == 1));
 }
 
-/// Filament of the inner walls, mm.
-fn inner_walls(run: &Run) -> f64 {
-    run.print.of(Kind::InnerWall).map(|m| m.e).sum()
+/// Filament of the beads of a kind, mm.
+fn filament(run: &Run, kind: Kind) -> f64 {
+    run.print.of(kind).map(|m| m.e).sum()
+}
+
+#[test]
+fn inner_skins_are_printed_for_the_group_and_those_that_are_seen_are_not() {
+    let parts = ("dual.parts", "inner-skin");
+    let plain = slice(&fixture("cube_20.stl"), "generic-marlin", &[]);
+    for mode in MODES {
+        let run = slice(&fixture("cube_20.stl"), "generic-marlin", &[("dual.mode", mode), parts]);
+        assert_eq!(
+            heights(&run, Kind::Skin).into_iter().collect::<Vec<_>>(),
+            [(0, 1), (2, 2), (98, 2), (99, 1)],
+            "{mode}"
+        );
+        let ratio = filament(&run, Kind::Skin) / filament(&plain, Kind::Skin);
+        assert!((ratio - 1.0).abs() < 0.01, "{mode}: {ratio}");
+    }
+    let set = [("skin_layers", "5"), ("dual.mode", "pair"), parts];
+    let run = slice(&fixture("cube_20.stl"), "generic-marlin", &set);
+    assert_eq!(
+        heights(&run, Kind::Skin).into_iter().collect::<Vec<_>>(),
+        [(0, 1), (2, 2), (4, 2), (96, 2), (98, 2), (99, 1)]
+    );
 }
 
 #[test]
@@ -309,7 +380,7 @@ fn inner_walls_of_upright_sides_are_printed_for_the_group() {
         let thick = heights(&run, Kind::InnerWall).iter().filter(|(_, n)| *n == 2).count();
         // 49 pairs; interlaced, the two walls have their turns on layers of their own.
         assert!(thick >= if mode == "pair" { 49 } else { 90 }, "{mode}: {thick}");
-        let ratio = inner_walls(&run) / inner_walls(&plain);
+        let ratio = filament(&run, Kind::InnerWall) / filament(&plain, Kind::InnerWall);
         assert!((ratio - 1.0).abs() < 1e-4, "{mode}: {ratio}");
     }
 }
@@ -361,4 +432,29 @@ fn walls_and_skins_are_those_of_the_plain_print() {
             }
         }
     }
+}
+
+#[test]
+fn compare_tells_every_way_and_what_it_saves() {
+    let bracket = common::fixtures().join("bracket.stl");
+    let run = |more: &[&str]| {
+        let mut command = assert_cmd::Command::cargo_bin("slicer").unwrap();
+        command.arg("compare").arg(&bracket).args(["-p", "generic-marlin"]).args(more);
+        String::from_utf8(command.assert().success().get_output().stdout.clone()).unwrap()
+    };
+    let table = run(&["--layer-height", "0.1"]);
+    let flags: Vec<&str> = table.lines().skip(1).map(|l| l.split("  ").next().unwrap()).collect();
+    let ways = ["(plain)", "--dual", "--dual-mode interlaced", "--dual --dual-ratio 3"];
+    assert!(flags.starts_with(&ways), "{table}");
+    let found: serde_json::Value = serde_json::from_str(&run(&["--json"])).unwrap();
+    let ways = found["ways"].as_array().unwrap();
+    let of = |way: &serde_json::Value, key: &str| way[key].as_f64().unwrap();
+    let (plain, pair) = (&ways[0], &ways[1]);
+    let saved = 100.0 * (1.0 - of(pair, "time_s") / of(plain, "time_s"));
+    assert!((saved - of(pair, "saved_percent")).abs() < 1e-9 && saved > 5.0);
+    assert!((of(pair, "filament_mm") / of(plain, "filament_mm") - 1.0).abs() < 0.02);
+    assert!(ways.iter().all(|way| of(way, "time_s") <= of(plain, "time_s")));
+    // As slicing itself tells it.
+    let report = slice(&fixture("bracket.stl"), "generic-marlin", &[("dual.mode", "pair")]).report;
+    assert!((report.time.total_s - of(pair, "time_s")).abs() < 1e-9);
 }

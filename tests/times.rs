@@ -5,6 +5,8 @@
 mod common;
 
 use common::{Run, fixture, slice};
+use slicer::estimate::{Options, estimate};
+use slicer::motion::Limits;
 use slicer::warning::Warning;
 
 /// The values of each `M73`: whether it stands at a layer's beginning, P and R.
@@ -170,4 +172,33 @@ fn a_price_makes_a_cost() {
     let cost = 25.0 * paid.report.filament.weight_g / 1000.0;
     assert!((paid.report.filament.cost.unwrap() - cost).abs() < 1e-9);
     assert_eq!(line(&paid), Some(format!("{cost:.2}")));
+}
+
+#[test]
+fn an_estimate_of_the_file_agrees() {
+    let profiles = ["generic-marlin", "generic-klipper", "zcube-dual", "thesis", "witbox-1"];
+    for profile in profiles {
+        for (model, hop) in [("bracket.stl", "0"), ("overhang.stl", "0.3")] {
+            let set = [("dual.mode", "pair"), ("retraction.z_hop", hop)];
+            let run = slice(&fixture(model), profile, &set);
+            // Without the end block, which would count as part of the last layer.
+            let end = run.text.rfind(";TYPE:Custom").unwrap();
+            let options =
+                Options { filament_diameter: run.settings.filament.diameter, fixed_limits: false };
+            let limits = Limits::new(&run.settings);
+            let text = &run.text.as_bytes()[..end];
+            let read = estimate(&mut &text[..], "test", &limits, options).unwrap();
+            let time = &run.report.time;
+            // Where the first way of a print begins, only the start block knows.
+            let read_s = read.seconds - read.start_seconds - read.layers[0].seconds;
+            let said_s = time.total_s - time.layers[0].time_s;
+            let what = format!("{model} {profile}: {read_s} s of {said_s} s");
+            assert!((read_s / said_s - 1.0).abs() < 0.005, "{what}");
+            for (read, said) in read.layers.iter().zip(&time.layers) {
+                // Axes that go down to the first layer may be slow.
+                let most = 0.01 * said.time_s + if said.z_mm < 0.3 { 6.0 } else { 0.2 };
+                assert!((read.seconds - said.time_s).abs() < most, "{what}: {read:?} {said:?}");
+            }
+        }
+    }
 }

@@ -16,6 +16,7 @@ Examples:
   slicer part.stl -p ./mine.toml --copies 4 --report part.json -o part.gcode
   slicer - -o - < part.stl > part.gcode
   slicer profile show generic-marlin > mine.toml
+  slicer estimate part.gcode -p ./mine.toml
 
 A model whose file is named like a subcommand is given as ./profile.";
 
@@ -24,7 +25,7 @@ Exit codes:
     0  done
     1  done, but there were warnings and --strict was given
     2  wrong arguments, profile or setting
-    3  a model cannot be read, does not fit, or leaves nothing to print
+    3  a model or G-code file cannot be read; a model does not fit, or leaves nothing to print
     4  an output cannot be written
   130  interrupted
 Only the product goes to standard output, everything else to standard error.
@@ -63,6 +64,8 @@ pub(crate) enum Command {
     Profile(ProfileCommand),
     /// Say how long a G-code file takes
     Estimate(EstimateArgs),
+    /// Tell what each way of dual injection saves on a model
+    Compare(Box<CompareArgs>),
     /// Print completions for a shell
     Completions {
         /// The shell
@@ -112,12 +115,33 @@ pub(crate) struct EstimateArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// Tell every layer's time, too
+    /// List every layer with its time (JSON always does)
     #[arg(long)]
     pub(crate) layers: bool,
     /// Leave out what the file itself says of limits (M201, M203, M204, M205, SET_VELOCITY_LIMIT)
     #[arg(long)]
     pub(crate) fixed_limits: bool,
+}
+
+/// Arguments of `compare`.
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    /// STL files, binary or ASCII
+    #[arg(value_name = "INPUT", required = true)]
+    pub(crate) inputs: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Built-in profile, or a file if it has a `/` or ends in .toml
+    #[arg(short, long, value_name = "NAME", default_value = DEFAULT, help_heading = "Settings")]
+    pub(crate) profile: String,
+    /// Change any setting of the profile, such as speed.wall=1500 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
+    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) settings: SettingArgs,
+    #[command(flatten)]
+    pub(crate) place: PlaceArgs,
 }
 
 /// Arguments of slicing.
@@ -291,7 +315,7 @@ pub(crate) fn set_overrides(words: &[String]) -> Result<Vec<Override>> {
 }
 
 /// `all` is short for every part there is.
-fn parts(list: &str) -> String {
+pub(crate) fn parts(list: &str) -> String {
     let all = || words("dual.parts").join(",");
     if list.trim() == "all" { all() } else { list.to_owned() }
 }

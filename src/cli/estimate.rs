@@ -22,11 +22,8 @@ pub(super) fn run(args: &EstimateArgs) -> Result<String> {
     let options =
         Options { filament_diameter: settings.filament.diameter, fixed_limits: args.fixed_limits };
     let (name, mut source) = open(&args.file)?;
-    let mut found = estimate::estimate(&mut source, name, &Limits::new(settings), options)?;
+    let found = estimate::estimate(&mut source, name, &Limits::new(settings), options)?;
     if args.json {
-        if !args.layers {
-            found.layers.clear();
-        }
         let text = serde_json::to_string_pretty(&found);
         return text.map(|text| text + "\n").map_err(|error| Error::input(name, error.to_string()));
     }
@@ -51,7 +48,8 @@ fn open(file: &str) -> Result<(&str, Box<dyn BufRead>)> {
 fn table(found: &Estimate) -> String {
     let mut text = row("print time", found.seconds, None, "");
     for role in &found.roles {
-        let moves = format!("{:>9} moves {:>12.1} mm", role.moves, role.length_mm);
+        let count = plural(role.moves, "move");
+        let moves = format!("{count:>15} {:>12.1} mm", role.length_mm);
         text.push_str(&row(role.role.name(), role.seconds, Some(found.seconds), &moves));
     }
     if found.dwell_seconds > 0.0 {

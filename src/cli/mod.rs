@@ -1,6 +1,7 @@
 //! Arguments -> products and exit code: the only place that prints.
 
 mod args;
+mod compare;
 mod estimate;
 mod interrupt;
 mod output;
@@ -178,6 +179,7 @@ fn other(command: &Command) -> Result<()> {
             profile::load(&if file { format!("./{name}") } else { name.clone() }, &[])?;
             format!("{name}: good\n")
         }
+        Command::Compare(args) => compare::run(args)?,
         Command::Estimate(args) => estimate::run(args)?,
         Command::Completions { shell } => {
             let mut text = Vec::new();

@@ -36,7 +36,9 @@ pub(super) fn check(args: &SliceArgs, out: &Path) -> Result<()> {
 pub(super) fn meant(word: &str) -> Option<String> {
     let commands = super::args::Arguments::command();
     let names = commands.get_subcommands().map(clap::Command::get_name).chain(["--help"]);
-    let name = suggest::nearest(word, names).filter(|_| !Path::new(word).exists())?;
+    // A command that is known lacks something of its own.
+    let unknown = |name: &&str| *name != word && !Path::new(word).exists();
+    let name = suggest::nearest(word, names).filter(unknown)?;
     Some(format!("there is no command {word}; did you mean `slicer {name}`?"))
 }
 

@@ -1,6 +1,5 @@
 //! Bead + feed asked for -> feed: no more filament than the hot end can melt.
 
-use super::usage::filament_area;
 use crate::profile::Settings;
 
 /// Part of the limit that is no more than rounding.
@@ -21,7 +20,7 @@ pub(super) struct FlowLimit {
 
 impl FlowLimit {
     pub(super) fn new(settings: &Settings) -> Self {
-        Self { most: settings.machine.max_volumetric_flow, area: filament_area(settings) }
+        Self { most: settings.machine.max_volumetric_flow, area: settings.filament_area() }
     }
 
     /// The feed (mm/min) of a bead that takes `filament` mm for each mm of path, and its

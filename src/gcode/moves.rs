@@ -4,7 +4,6 @@
 //! amount of filament are worked out once, and the clock times what is written.
 
 use super::flow::{FlowLimit, Flows, Lowered, whole_feed};
-use super::usage::filament_area;
 use crate::geom::Point;
 use crate::plan::{Path, Role, Toolpath};
 use crate::profile::{ExtrusionModel, Settings};
@@ -99,7 +98,7 @@ impl MoveParams {
     #[must_use]
     pub fn new(settings: &Settings, offset: [f64; 2]) -> Self {
         let (x, s) = (&settings.extrusion, &settings.speed);
-        let area = filament_area(settings);
+        let area = settings.filament_area();
         let rate = |factor: f64| match x.model {
             ExtrusionModel::Area => x.multiplier / area,
             ExtrusionModel::Factor => x.multiplier * factor / (x.factor_width * x.factor_height),

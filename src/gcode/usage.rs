@@ -3,7 +3,6 @@
 use super::flow::Flows;
 use super::moves::{Kind, Moves};
 use crate::profile::Settings;
-use std::f64::consts::PI;
 
 /// What was extruded in one role: path and filament, mm.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -90,15 +89,9 @@ impl Material {
     /// What `mm` of the filament in `settings` are.
     #[must_use]
     pub fn new(mm: f64, settings: &Settings) -> Self {
-        let cm3 = mm * filament_area(settings) / 1000.0;
+        let cm3 = mm * settings.filament_area() / 1000.0;
         let grams = cm3 * settings.filament.density;
         let per_kg = settings.filament.cost;
         Self { mm, cm3, grams, cost: (per_kg > 0.0).then_some(per_kg * grams / 1000.0) }
     }
-}
-
-/// The cross-section of the filament, mm².
-#[must_use]
-pub fn filament_area(settings: &Settings) -> f64 {
-    PI * settings.filament.diameter * settings.filament.diameter / 4.0
 }

@@ -37,22 +37,20 @@ impl Course {
         let (cruise, acceleration) = rates.of_move(&given.delta, distance, given.feed);
         let per_mm = 1.0 / distance;
         let direction = given.delta.map(|length| length * per_mm);
-        let mut course = Self {
+        let rest = match rates.limits.junction {
+            Junction::Jerk(_) => junction::from_rest(&direction, cruise, &rates.jerk_inverse),
+            _ => 0.0,
+        };
+        Some(Self {
             direction,
             distance,
             cruise,
             acceleration,
-            rest: 0.0,
+            rest: rest.max(rates.limits.minimum_speed).min(cruise),
             moves_nozzle,
             slowed: 1.0,
             deviation: rates.deviation,
-        };
-        let rest = match rates.limits.junction {
-            Junction::Jerk(jerk) => junction::from_rest(&course, &jerk),
-            _ => 0.0,
-        };
-        course.rest = rest.max(rates.limits.minimum_speed).min(cruise);
-        Some(course)
+        })
     }
 }
 
@@ -66,7 +64,7 @@ pub(super) struct Block<T> {
     pub(super) acceleration: f64,
     /// Most that the squared speed can change within it: 2 · acceleration · distance.
     pub(super) change: f64,
-    /// [`Block::change`] by the part of the acceleration that is used for short sprints.
+    /// [`Block::change`] by no more than the acceleration for short sprints.
     pub(super) smooth_change: f64,
     /// Highest speed, squared.
     pub(super) cruise: f64,
@@ -86,15 +84,15 @@ pub(super) struct Block<T> {
 
 impl<T> Block<T> {
     /// The block of `course` after a block that may end at `before` (squared), with a
-    /// corner that allows `corner` (squared).
-    pub(super) fn new(course: &Course, corner: f64, before: Reach, ratio: f64, tag: T) -> Self {
+    /// corner that allows `corner` (squared). `sprint` is the acceleration for short sprints, mm/s².
+    pub(super) fn new(course: &Course, corner: f64, before: Reach, sprint: f64, tag: T) -> Self {
         let change = 2.0 * course.acceleration * course.distance;
         let most_entry = corner.min(before.full);
         Self {
             distance: course.distance,
             acceleration: course.acceleration,
             change,
-            smooth_change: change * (1.0 - ratio),
+            smooth_change: change.min(2.0 * sprint * course.distance),
             cruise: course.cruise * course.cruise,
             rest: course.rest * course.rest,
             most_entry,
@@ -136,6 +134,6 @@ impl<T> Block<T> {
 pub(super) struct Reach {
     /// With the whole acceleration.
     pub(super) full: f64,
-    /// With the part that is used for short sprints.
+    /// With that for short sprints.
     pub(super) smooth: f64,
 }

@@ -9,7 +9,7 @@ use std::vec::Drain;
 
 /// Blocks that are planned at once where the whole file is looked at: enough
 /// for the pass back to be seldom, few enough to stay in the cache.
-const BATCH: usize = 1024;
+const BATCH: usize = 256;
 
 /// How long a move takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,13 +79,9 @@ impl<T> Clock<T> {
         let Some(mut course) = Course::new(&given, &self.rates) else {
             return self.push_empty(given.tag);
         };
-        let ratio = match self.rates.limits.junction {
-            Junction::SquareCorner { minimum_cruise_ratio, .. } => minimum_cruise_ratio,
-            _ => 0.0,
-        };
         let corner = self.corner(&mut course);
         let before = self.reach().unwrap_or(Reach { full: corner, smooth: corner });
-        let block = Block::new(&course, corner, before, ratio, given.tag);
+        let block = Block::new(&course, corner, before, self.rates.sprint, given.tag);
         self.before = Some(course);
         self.pending.push_back(block);
         self.plan();
@@ -140,8 +136,8 @@ impl<T> Clock<T> {
         let Some(before) = &self.before else { return course.rest * course.rest };
         let limits = &self.rates.limits;
         let corner = match &limits.junction {
-            Junction::Jerk(jerk) => {
-                let speed = junction::jerk(before, course, jerk);
+            Junction::Jerk(_) => {
+                let speed = junction::jerk(before, course, &self.rates.jerk_inverse);
                 speed * speed
             }
             Junction::SpeedChange(most) => {
@@ -163,7 +159,8 @@ impl<T> Clock<T> {
     fn plan(&mut self) {
         let smooth = matches!(self.rates.limits.junction, Junction::SquareCorner { .. });
         if let (Some(most), false) = (self.rates.limits.look_ahead, smooth) {
-            plan::back_from_last(&mut self.pending);
+            let least = self.rates.limits.minimum_speed;
+            plan::back_from_last(&mut self.pending, least * least);
             while self.pending.len() >= most.max(2) {
                 self.settle(1);
                 plan::settle_first(&mut self.pending);

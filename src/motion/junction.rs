@@ -14,36 +14,31 @@ const SHORT: f64 = 1.0;
 /// Marlin: cosine of 135°, from which on two short moves are taken as pieces of an arc.
 const ARC: f64 = -std::f64::consts::FRAC_1_SQRT_2;
 
-/// The speed that no axis minds as a sudden start from rest, mm/s.
-pub(super) fn from_rest(course: &Course, jerk: &[f64; 4]) -> f64 {
-    let mut speed = course.cruise;
-    for (direction, jerk) in course.direction.iter().zip(jerk) {
-        if direction.abs() * speed > *jerk {
-            speed = jerk / direction.abs();
-        }
+/// The speed that no axis minds as a sudden start from rest, mm/s. `inverse` is 1 / jerk.
+pub(super) fn from_rest(direction: &[f64; 4], cruise: f64, inverse: &[f64; 4]) -> f64 {
+    let mut worst = 0.0_f64;
+    for (direction, inverse) in direction.iter().zip(inverse) {
+        worst = worst.max(direction.abs() * inverse);
     }
-    speed
+    cruise.min(1.0 / worst)
 }
 
-/// Marlin's classic jerk, mm/s: the speed at which no axis changes its own by more than its jerk.
-pub(super) fn jerk(before: &Course, after: &Course, jerk: &[f64; 4]) -> f64 {
+/// Marlin's classic jerk, mm/s: the speed at which no axis changes its own by more than
+/// its jerk. `inverse` is 1 / jerk.
+pub(super) fn jerk(before: &Course, after: &Course, inverse: &[f64; 4]) -> f64 {
     let shared = before.cruise.min(after.cruise);
-    let mut factor = 1.0;
-    for (axis, jerk) in jerk.iter().enumerate() {
+    let mut worst = 1.0_f64;
+    for (axis, inverse) in inverse.iter().enumerate() {
         // As the firmware has it: only the move before is slowed down to what both can do.
-        let leaving = before.direction[axis] * shared * factor;
-        let entering = after.direction[axis] * after.cruise * factor;
-        let change = if leaving * entering > 0.0 {
-            (leaving - entering).abs()
-        } else {
-            // Turning back, or one of them stands still: it may come in and leave at its jerk.
-            leaving.abs().max(entering.abs())
-        };
-        if change > *jerk {
-            factor *= jerk / change;
-        }
+        let leaving = before.direction[axis] * shared;
+        let entering = after.direction[axis] * after.cruise;
+        let apart = (leaving - entering).abs();
+        // Turning back, or one of them stands still: it may come in and leave at its jerk.
+        let turning = leaving.abs().max(entering.abs());
+        let change = if leaving * entering > 0.0 { apart } else { turning };
+        worst = worst.max(change * inverse);
     }
-    let speed = shared * factor;
+    let speed = shared / worst;
     let threshold = speed * WORTH_COASTING;
     if before.rest > threshold && after.rest > threshold {
         // No gain in coasting through: stop and start again.
@@ -154,5 +149,6 @@ fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
 /// The vector of length one in this direction; nothing stays nothing.
 fn unit(vector: &[f64; 4]) -> [f64; 4] {
     let length = dot(vector, vector).sqrt();
-    if length > 0.0 { vector.map(|part| part / length) } else { *vector }
+    let inverse = 1.0 / length;
+    if length > 0.0 { vector.map(|part| part * inverse) } else { *vector }
 }

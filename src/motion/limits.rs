@@ -57,6 +57,9 @@ pub enum Junction {
 /// A limit of nothing would stop the clock: the least that is taken, mm/s or mm/s².
 const LEAST: f64 = 1e-3;
 
+/// No jerk at all is this much, mm/s: nothing, but not for a division.
+const LEAST_JERK: f64 = 1e-12;
+
 /// [`Limits`] with what every move needs of them worked out.
 #[derive(Debug, Clone)]
 pub(super) struct Rates {
@@ -65,8 +68,13 @@ pub(super) struct Rates {
     feed_inverse: [f64; 4],
     /// 1 / acceleration.
     acceleration_inverse: [f64; 4],
+    /// 1 / jerk.
+    pub(super) jerk_inverse: [f64; 4],
     /// How far a corner's arc would be from the corner, mm.
     pub(super) deviation: f64,
+    /// Klipper's acceleration for short sprints, mm/s². It is a part of the machine's,
+    /// so that moves which an axis holds back to less have nothing to lose.
+    pub(super) sprint: f64,
     /// Klipper knows limits of the filament only where it moves alone.
     filament_alone: bool,
 }
@@ -116,7 +124,18 @@ impl Rates {
                 velocity * velocity * (root_of_two - 1.0) / limits.print_acceleration.max(LEAST)
             }
         };
+        let sprint = match limits.junction {
+            Junction::SquareCorner { minimum_cruise_ratio, .. } => {
+                limits.print_acceleration.max(LEAST) * (1.0 - minimum_cruise_ratio)
+            }
+            _ => f64::INFINITY,
+        };
         Self {
+            sprint,
+            jerk_inverse: match limits.junction {
+                Junction::Jerk(jerk) => jerk.map(|jerk| 1.0 / jerk.max(LEAST_JERK)),
+                _ => [0.0; 4],
+            },
             feed_inverse: inverse(limits.feed),
             acceleration_inverse: inverse(limits.acceleration),
             deviation,

@@ -23,9 +23,10 @@ pub(super) fn back<T>(blocks: &mut VecDeque<Block<T>>) -> usize {
     decided.unwrap_or(0)
 }
 
-/// Plans anew after a block was added, as far back as anything changes.
-pub(super) fn back_from_last<T>(blocks: &mut VecDeque<Block<T>>) {
-    let mut next = blocks.back().map_or(0.0, |last| last.rest);
+/// Plans anew after a block was added, as far back as anything changes. It may have to
+/// end at `least`, squared: the corner after it is not known yet.
+pub(super) fn back_from_last<T>(blocks: &mut VecDeque<Block<T>>, least: f64) {
+    let mut next = blocks.back().map_or(0.0, |last| last.rest.min(least));
     for block in blocks.iter_mut().rev() {
         let entry = block.most_entry.min(next + block.change);
         if entry == block.entry {

@@ -205,15 +205,12 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
             Path { role, layers, height: layers as Coord * height, points }
         }));
     };
-    let skin = &region.skin;
-    let raster = params.region.rasters[skin.raster];
-    add(
-        Role::Skin,
-        1,
-        raster,
-        link::skin(&skin.lines, &params.region, params.skin_rounding.radius),
-    );
-    add(Role::Skin, 1, raster, skin.slivers.clone());
+    for skin in &region.skins {
+        let raster = params.region.rasters[skin.raster];
+        let chains = link::skin(&skin.lines, &params.region, params.skin_rounding.radius);
+        add(Role::Skin, skin.layers, raster, chains);
+        add(Role::Skin, skin.layers, raster, skin.slivers.clone());
+    }
     for infill in &region.infill {
         let raster = params.region.rasters[infill.comb.raster];
         let chains = link::hatch(infill, raster.pitch, params.region.line_width);

@@ -1,10 +1,10 @@
 //! Profile names, files and overrides -> Settings, each value with its origin.
 
 mod check;
+mod derived;
 pub mod keys;
 mod load;
 mod parse;
-mod ratio;
 mod settings;
 mod show;
 pub mod suggest;

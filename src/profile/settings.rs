@@ -456,17 +456,3 @@ pub enum JunctionRule {
     /// Klipper's square corner velocity.
     SquareCorner,
 }
-
-impl Settings {
-    /// Solid layers at the top.
-    #[must_use]
-    pub fn top_skins(&self) -> u32 {
-        self.top_skin_layers.unwrap_or(self.skin_layers)
-    }
-
-    /// Solid layers at the bottom.
-    #[must_use]
-    pub fn bottom_skins(&self) -> u32 {
-        self.bottom_skin_layers.unwrap_or(self.skin_layers)
-    }
-}

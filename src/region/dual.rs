@@ -45,7 +45,7 @@ pub fn combs(block: &Block, grouping: &Grouping, params: &Params) -> Vec<Comb> {
 #[must_use]
 pub fn infill(
     block: &Block,
-    layers: &[LayerAreas],
+    layers: &[&LayerAreas],
     grouping: &Grouping,
     params: &Params,
 ) -> (Vec<Vec<Hatch>>, Option<Audit>) {
@@ -108,7 +108,7 @@ fn rows(comb: Comb, areas: &LayerAreas) -> Rows {
 
 /// Which layer of the block has the least length of lines, in its own direction if
 /// directions are free; the upper one of equals.
-fn shortest(block: &Block, layers: &[LayerAreas], grouping: &Grouping, params: &Params) -> usize {
+fn shortest(block: &Block, layers: &[&LayerAreas], grouping: &Grouping, params: &Params) -> usize {
     let length = |n: usize| -> i64 {
         let turn_of = if grouping.shorter { block.layers.start + n } else { block.turn };
         let of = |comb: &Comb| {
@@ -125,7 +125,7 @@ fn shortest(block: &Block, layers: &[LayerAreas], grouping: &Grouping, params: &
 /// The thesis's rule: one layer's infill for all, the others' left out.
 fn dropped(
     block: &Block,
-    layers: &[LayerAreas],
+    layers: &[&LayerAreas],
     combs: &[Comb],
     kept: usize,
     params: &Params,
@@ -134,7 +134,7 @@ fn dropped(
     let count = layers.len();
     let mut audit = Audit::new(DualPart::Infill, block.layers.clone());
     let mut out = vec![Vec::new(); count];
-    for hatch in plain(combs, &layers[kept], params) {
+    for hatch in plain(combs, layers[kept], params) {
         for areas in layers {
             audit.plain(hatch.comb, &rows(hatch.comb, areas), w);
         }

@@ -72,19 +72,19 @@ impl Grouping {
         self.mode != DualMode::Off && self.parts.contains(&part)
     }
 
-    /// The block that layer `first` of `count` begins. The first layer is always on its
-    /// own: a thick bead on the bare bed does not hold.
+    /// The block that has layer `k` of `count`. The first layer is always on its own: a
+    /// thick bead on the bare bed does not hold.
     #[must_use]
-    pub fn block(&self, first: usize, count: usize) -> Block {
+    pub fn block(&self, k: usize, count: usize) -> Block {
         if self.mode == DualMode::Off {
-            return Block { turn: first, layers: first..first + 1 };
+            return Block { turn: k, layers: k..k + 1 };
         }
-        if first == 0 {
+        if k == 0 {
             return Block { turn: 1, layers: 0..1 };
         }
         let size = self.ratio * if self.is_interlaced() { INTERLACED_GROUPS } else { 1 };
-        let turn = first / size;
-        Block { turn, layers: first..((turn + 1) * size).min(count) }
+        let turn = k / size;
+        Block { turn, layers: (turn * size).max(1)..((turn + 1) * size).min(count) }
     }
 
     /// The lanes that the lines of `comb` are divided into.

@@ -14,6 +14,7 @@ pub mod classify;
 pub mod close;
 pub mod dual;
 pub mod groups;
+pub mod inner;
 pub mod raster;
 pub mod runs;
 pub mod support;
@@ -211,8 +212,9 @@ pub struct Region {
     pub layer: Layer,
     /// Its walls.
     pub walls: Vec<Wall>,
-    /// Its skin: the raster and the lines, closed up to the walls.
-    pub skin: Skin,
+    /// Its skin, closed up to the walls: what is for this layer alone, then what is printed
+    /// for several.
+    pub skins: Vec<Skin>,
     /// Its sparse infill.
     pub infill: Vec<Hatch>,
     /// Its support, on the support raster.
@@ -221,9 +223,11 @@ pub struct Region {
     pub thin_mm2: f64,
 }
 
-/// The skin of one layer.
+/// Skin of one layer that is printed for as many layers.
 #[derive(Debug, Default)]
 pub struct Skin {
+    /// How many layers it is printed for: this one and those below it.
+    pub layers: u32,
     /// Index of its raster in [`Params::rasters`].
     pub raster: usize,
     /// Its lines, row by row; bent and widened along walls.

@@ -1,14 +1,16 @@
 //! Slicer -> Regions, batch by batch: the rolling window of layers that need each other.
 //!
 //! A layer is divided into skin and infill once the layers above that its top
-//! skins look at are there, and is forgotten once no layer above looks at it:
-//! memory holds a block and a few layers, whatever the height of the print.
+//! skins look at are there; a block of layers is handed on once all of it, and what
+//! it shares skins with, is divided. A layer is forgotten once no layer above looks at
+//! it: memory holds a batch and a few layers, whatever the height of the print.
 
 use super::audit::Audit;
-use super::classify::{Areas, areas};
+use super::classify::areas;
 use super::close::{Crossed, close};
 use super::dual::{self, LayerAreas};
 use super::groups::{Block, Grouping};
+use super::inner::Skins;
 use super::walls::{self, Wall};
 use super::{Comb, Hatch, Params, Prepared, Region, Skin};
 use crate::geom::spans::Rows;
@@ -26,9 +28,9 @@ pub struct Window<'a> {
     support: Option<Support>,
     /// The next batch to be sliced.
     batch: usize,
-    layers: VecDeque<Prepared>,
-    /// Index of the first layer in the window.
-    first: usize,
+    layers: Queue<Prepared>,
+    /// Those divided into skin and infill.
+    divided: Queue<LayerAreas>,
     /// Layers handed on so far.
     done: usize,
     audits: Vec<Audit>,
@@ -45,11 +47,42 @@ pub struct Support {
 
 /// What classification finds for one layer, before it takes its walls along.
 struct Filling {
-    skin: Skin,
+    skins: Vec<Skin>,
     infill: Vec<Hatch>,
     support: Vec<Hatch>,
     /// How many layers each wall is printed for.
     walls: Vec<u32>,
+}
+
+/// Values of successive layers, of which the first are forgotten.
+#[derive(Debug)]
+struct Queue<T> {
+    first: usize,
+    values: VecDeque<T>,
+}
+
+impl<T> Default for Queue<T> {
+    fn default() -> Self {
+        Self { first: 0, values: VecDeque::new() }
+    }
+}
+
+impl<T> Queue<T> {
+    /// One more than the last layer.
+    fn end(&self) -> usize {
+        self.first + self.values.len()
+    }
+
+    fn get(&self, k: usize) -> Option<&T> {
+        k.checked_sub(self.first).and_then(|k| self.values.get(k))
+    }
+
+    /// Forgets the layers before `k`.
+    fn forget(&mut self, k: usize) {
+        while self.first < k && self.values.pop_front().is_some() {
+            self.first += 1;
+        }
+    }
 }
 
 impl<'a> Window<'a> {
@@ -67,8 +100,8 @@ impl<'a> Window<'a> {
             grouping,
             support,
             batch: 0,
-            layers: VecDeque::new(),
-            first: 0,
+            layers: Queue::default(),
+            divided: Queue::default(),
             done: 0,
             audits: Vec::new(),
         }
@@ -80,25 +113,53 @@ impl<'a> Window<'a> {
         std::mem::take(&mut self.audits)
     }
 
-    /// Slices and prepares the next batch.
+    fn count(&self) -> usize {
+        self.slicer.heights().count
+    }
+
+    /// How many layers up and down a layer's skin may depend on another's.
+    fn skin_reach(&self) -> usize {
+        let shares = self.grouping.shares(DualPart::InnerSkin);
+        if shares { self.grouping.ratio() - 1 } else { 0 }
+    }
+
+    /// Slices and prepares the next batch, and divides the layers whose neighbours are there.
     fn load(&mut self) {
         let layers = self.slicer.block(self.batch);
         self.batch += 1;
         let prepared: Vec<Prepared> =
             layers.into_par_iter().map(|layer| Prepared::new(layer, self.params)).collect();
-        self.layers.extend(prepared);
+        self.layers.values.extend(prepared);
+        let known = self.layers.end();
+        let all = self.batch == self.slicer.blocks();
+        let until = if all { known } else { known.saturating_sub(self.params.top_skins.max(1)) };
+        let divided: Vec<LayerAreas> =
+            (self.divided.end()..until).into_par_iter().map(|k| self.divide(k)).collect();
+        self.divided.values.extend(divided);
+    }
+
+    /// The areas of layer `k` on both skin rasters and on those of its block's infill.
+    fn divide(&self, k: usize) -> LayerAreas {
+        let block = self.grouping.block(k, self.count());
+        let combs = dual::combs(&block, self.grouping, self.params);
+        let mut out: LayerAreas = vec![None; self.params.rasters.len()];
+        for r in [0, 1].into_iter().chain(combs.iter().map(|c| c.raster)) {
+            if out[r].is_none() {
+                out[r] = Some(areas(k, r, &|k| self.layers.get(k), self.params));
+            }
+        }
+        out
     }
 
     /// The next blocks whose layers have all they need.
     fn ready(&self) -> Vec<Block> {
-        let count = self.slicer.heights().count;
-        let known = self.first + self.layers.len();
-        let all = self.batch == self.slicer.blocks();
-        let until = if all { known } else { known.saturating_sub(self.params.top_skins.max(1)) };
+        let divided = self.divided.end();
+        let all = divided == self.count();
+        let until = if all { divided } else { divided.saturating_sub(2 * self.skin_reach()) };
         let mut blocks = Vec::new();
         let mut from = self.done;
         while from < until {
-            let block = self.grouping.block(from, count);
+            let block = self.grouping.block(from, self.count());
             from = block.layers.end;
             if from <= until {
                 blocks.push(block);
@@ -107,36 +168,26 @@ impl<'a> Window<'a> {
         blocks
     }
 
-    fn layer(&self, k: usize) -> Option<&Prepared> {
-        k.checked_sub(self.first).and_then(|k| self.layers.get(k))
-    }
-
-    /// Divides the layers of a block.
+    /// Fills the layers of a block.
     fn fill(&self, block: &Block) -> (Vec<Filling>, Vec<Audit>) {
-        let combs = dual::combs(block, self.grouping, self.params);
-        let areas: Vec<LayerAreas> = block
-            .layers
-            .clone()
-            .into_par_iter()
-            .map(|k| self.areas(k, combs.iter().map(|c| c.raster)))
-            .collect();
+        let none = LayerAreas::new();
+        let layers = block.layers.clone();
+        let areas: Vec<&LayerAreas> =
+            layers.clone().map(|k| self.divided.get(k).unwrap_or(&none)).collect();
         let (infill, audit) = dual::infill(block, &areas, self.grouping, self.params);
         let (support, support_audit) = self.share_support(block);
+        let skins: Vec<Vec<Skin>> = layers.into_par_iter().map(|k| self.skins(k)).collect();
         let lines = infill.into_iter().zip(support).zip(self.share_walls(block));
-        let fillings = block.layers.clone().zip(&areas).zip(lines).map(
-            |((k, areas), ((infill, support), walls))| Filling {
-                skin: self.skin(k, areas),
-                infill,
-                support,
-                walls,
-            },
-        );
+        let fillings = skins
+            .into_iter()
+            .zip(lines)
+            .map(|(skins, ((infill, support), walls))| Filling { skins, infill, support, walls });
         (fillings.collect(), audit.into_iter().chain(support_audit).collect())
     }
 
     /// How many layers each wall of each layer of a block is printed for.
     fn share_walls(&self, block: &Block) -> Vec<Vec<u32>> {
-        let walls = |k| self.layer(k).map_or(&[] as &[Wall], |layer| &layer.walls);
+        let walls = |k| self.layers.get(k).map_or(&[] as &[Wall], |layer| &layer.walls);
         let layers: Vec<&[Wall]> = block.layers.clone().map(walls).collect();
         if self.grouping.shares(DualPart::InnerWalls) {
             walls::share(block, &layers, self.grouping, self.params)
@@ -154,39 +205,61 @@ impl<'a> Window<'a> {
         dual::support(block, rows, support.comb, self.grouping, self.params.line_width)
     }
 
-    /// The areas of layer `k` on both skin rasters and on those that `more` names.
-    fn areas(&self, k: usize, more: impl Iterator<Item = usize>) -> LayerAreas {
-        let mut out: LayerAreas = vec![None; self.params.rasters.len()];
-        for r in [0, 1].into_iter().chain(more) {
-            if out[r].is_none() {
-                out[r] = Some(areas(k, r, &|k| self.layer(k), self.params));
-            }
+    /// The skins of layer `k`, closed up to the walls.
+    fn skins(&self, k: usize) -> Vec<Skin> {
+        let rows = |r: usize| {
+            let areas = self.divided.get(k).and_then(|areas| areas[r].as_ref());
+            areas.map(|areas| areas.skin.clone()).unwrap_or_default()
+        };
+        let (along, across) = self.params.skin_rasters(k);
+        if !self.grouping.shares(DualPart::InnerSkin) {
+            return vec![self.skin(k, 1, &rows(along), &rows(across))];
         }
-        out
+        let ((thick, thin), (thick_across, thin_across)) =
+            (self.share_skin(k, along), self.share_skin(k, across));
+        let mut skins = vec![self.skin(k, 1, &thin, &thin_across)];
+        for (layers, rows) in thick {
+            let columns = thick_across.iter().find(|(count, _)| *count == layers);
+            let columns = columns.map(|(_, rows)| rows.clone()).unwrap_or_default();
+            skins.push(self.skin(k, layers, &rows, &columns));
+        }
+        skins
     }
 
-    /// The skin of layer `k`, closed up to the walls.
-    fn skin(&self, k: usize, areas: &LayerAreas) -> Skin {
+    /// The skin of layer `k` on raster `r`: what is printed for several layers, and what for
+    /// this one alone.
+    fn share_skin(&self, k: usize, r: usize) -> (Vec<(u32, Rows)>, Rows) {
+        let skin = |k: usize| self.divided.get(k)?.get(r)?.as_ref().map(|areas| &areas.skin);
+        let skins = Skins {
+            layers: |k| self.layers.get(k),
+            skins: skin,
+            raster: r,
+            ratio: self.grouping.ratio(),
+            params: self.params,
+        };
+        skins.share(k)
+    }
+
+    /// The skin of layer `k` on these rows and columns, closed up to the walls.
+    fn skin(&self, k: usize, layers: u32, rows: &Rows, columns: &Rows) -> Skin {
         let (along, across) = self.params.skin_rasters(k);
-        let none = Areas::default();
-        let of = |r: usize| areas[r].as_ref().unwrap_or(&none);
-        let Some(layer) = self.layer(k) else { return Skin::default() };
+        let Some(layer) = self.layers.get(k) else { return Skin::default() };
         let crossed = Crossed {
-            skin: &of(along).skin,
+            skin: rows,
             fill: &layer.rows[along].fill,
-            columns: &of(across).skin,
+            columns,
             fill_columns: &layer.rows[across].fill,
             left_turn: along == 0,
         };
         let (lines, slivers) = close(&crossed, self.params);
-        Skin { raster: along, lines, slivers }
+        Skin { layers, raster: along, lines, slivers }
     }
 
     /// The regions of the layers that `fillings` were made for, in order.
     fn hand_on(&mut self, fillings: Vec<Filling>) -> Vec<Region> {
         let mut regions = Vec::with_capacity(fillings.len());
-        for Filling { skin, infill, support, walls: printed } in fillings {
-            let prepared = &mut self.layers[self.done - self.first];
+        for Filling { skins, infill, support, walls: printed } in fillings {
+            let prepared = &mut self.layers.values[self.done - self.layers.first];
             // Neighbours look at the rows only.
             let (walls, contours) =
                 (std::mem::take(&mut prepared.walls), std::mem::take(&mut prepared.layer.contours));
@@ -198,13 +271,13 @@ impl<'a> Window<'a> {
                 .filter(|(_, layers)| *layers > 0)
                 .map(|(wall, layers)| Wall { layers, ..wall })
                 .collect();
-            regions.push(Region { layer, walls, skin, infill, support, thin_mm2 });
+            regions.push(Region { layer, walls, skins, infill, support, thin_mm2 });
             self.done += 1;
         }
-        while self.first + self.params.bottom_skins < self.done {
-            self.layers.pop_front();
-            self.first += 1;
-        }
+        let below = self.skin_reach();
+        let deepest = self.params.bottom_skins.max(if below > 0 { below + 1 } else { 0 });
+        self.divided.forget(self.done.saturating_sub(below));
+        self.layers.forget(self.done.saturating_sub(below + deepest));
         regions
     }
 }

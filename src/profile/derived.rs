@@ -1,0 +1,100 @@
+//! Settings -> what follows from them together: sizes and counts that no single key holds.
+
+use super::{DualRatio, ExtrusionModel, Settings};
+use std::f64::consts::PI;
+
+/// Slack for comparing lengths that were written as decimals, mm.
+const SLACK_MM: f64 = 1e-9;
+
+impl Settings {
+    /// Solid layers at the top.
+    #[must_use]
+    pub fn top_skins(&self) -> u32 {
+        self.top_skin_layers.unwrap_or(self.skin_layers)
+    }
+
+    /// Solid layers at the bottom.
+    #[must_use]
+    pub fn bottom_skins(&self) -> u32 {
+        self.bottom_skin_layers.unwrap_or(self.skin_layers)
+    }
+
+    /// The cross-section of the filament, mm².
+    #[must_use]
+    pub fn filament_area(&self) -> f64 {
+        PI * self.filament.diameter * self.filament.diameter / 4.0
+    }
+
+    /// The tallest line that dual injection may print, mm.
+    #[must_use]
+    pub fn max_bead_height(&self) -> f64 {
+        self.dual.max_bead_height / 100.0 * self.machine.nozzle
+    }
+
+    /// How many layers dual injection prints at once: as asked for, or with `auto` as many
+    /// as pay. Those are no more than the tallest line has, and no more than bring thick
+    /// lines to the hot end's limit: beyond it they would only be laid more slowly. Less
+    /// than 2 means that nothing can be doubled.
+    #[must_use]
+    pub fn dual_ratio(&self) -> u32 {
+        match self.dual.ratio {
+            DualRatio::Layers(layers) => layers,
+            DualRatio::Auto(_) => {
+                let tall = ((self.max_bead_height() + SLACK_MM) / self.layer_height).floor();
+                let melts = (self.machine.max_volumetric_flow / self.layer_flow()).ceil();
+                tall.min(melts.max(2.0)) as u32
+            }
+        }
+    }
+
+    /// What each layer adds to the flow of thick infill at its feed, mm³/s.
+    fn layer_flow(&self) -> f64 {
+        let extrusion = &self.extrusion;
+        let area = match extrusion.model {
+            ExtrusionModel::Area => self.line_width * self.layer_height,
+            ExtrusionModel::Factor => {
+                let width = self.line_width / extrusion.factor_width;
+                let height = self.layer_height / extrusion.factor_height;
+                extrusion.infill_factor * self.filament_area() * width * height
+            }
+        };
+        extrusion.multiplier * area * self.speed.thick_infill / 60.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::profile::{Override, ValueOrigin, load};
+
+    /// The ratio that `auto` comes to.
+    fn auto(profile: &str, set: &[(&str, &str)]) -> u32 {
+        let given = |(key, value): &(&str, &str)| Override {
+            key: (*key).to_owned(),
+            value: (*value).to_owned(),
+            origin: ValueOrigin::Set,
+        };
+        let mut overrides: Vec<Override> = set.iter().map(given).collect();
+        overrides.push(given(&("dual.ratio", "auto")));
+        load(profile, &overrides).unwrap().settings.dual_ratio()
+    }
+
+    #[test]
+    fn auto_is_as_many_layers_as_the_tallest_line_has() {
+        assert_eq!(auto("generic-marlin", &[]), 2);
+        assert_eq!(auto("generic-marlin", &[("layer_height", "0.1")]), 4);
+        assert_eq!(auto("generic-marlin", &[("layer_height", "0.15")]), 2);
+        let lower = [("layer_height", "0.1"), ("dual.max_bead_height", "80")];
+        assert_eq!(auto("generic-marlin", &lower), 3);
+    }
+
+    #[test]
+    fn auto_stops_where_more_layers_only_mean_slower_lines() {
+        // 0.4 mm x 0.1 mm x 60 mm/s are 2.4 mm³/s a layer.
+        let slow = [("layer_height", "0.1"), ("machine.max_volumetric_flow", "6")];
+        assert_eq!(auto("generic-marlin", &slow), 3);
+        let slower = [("layer_height", "0.1"), ("machine.max_volumetric_flow", "2")];
+        assert_eq!(auto("generic-marlin", &slower), 2);
+        // The thesis's factor: 0.04 mm of 1.75 mm filament at 60 mm/s are 5.8 mm³/s a layer.
+        assert_eq!(auto("zcube-dual", &[]), 2);
+    }
+}

@@ -1,0 +1,134 @@
+//! `slicer estimate`: times worked out by hand, changes of limits in the file, and errors.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use assert_cmd::Command;
+use slicer::estimate::{Estimate, Options, estimate};
+use slicer::motion::{Junction, Limits};
+use slicer::reader::Role;
+
+const CLOCK: &str = "fixtures/clock.gcode";
+
+fn slicer(words: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("slicer").unwrap();
+    command.args(words);
+    command
+}
+
+fn limits() -> Limits {
+    Limits {
+        feed: [300.0; 4],
+        acceleration: [1000.0; 4],
+        print_acceleration: 1000.0,
+        travel_acceleration: 1000.0,
+        retract_acceleration: 1000.0,
+        junction: Junction::Jerk([0.0; 4]),
+        look_ahead: None,
+        minimum_speed: 0.0,
+    }
+}
+
+fn of_text(text: &str, limits: &Limits, fixed_limits: bool) -> Estimate {
+    let options = Options { filament_diameter: 1.75, fixed_limits };
+    estimate(&mut text.as_bytes(), "x.gcode", limits, options).unwrap()
+}
+
+/// A move from rest to rest at 1000 mm/s².
+fn alone(distance: f64, feed: f64) -> f64 {
+    let reached = feed.min((1000.0 * distance).sqrt());
+    2.0 * reached / 1000.0 + (distance - reached * reached / 1000.0) / reached
+}
+
+fn near(a: f64, b: f64) {
+    assert!((a - b).abs() < 1e-9 * b.max(1.0), "{a} is not {b}");
+}
+
+#[test]
+fn times_by_role_and_by_layer_are_those_worked_out_by_hand() {
+    let found = of_text(include_str!("../fixtures/clock.gcode"), &limits(), false);
+    let z = alone(10.0, 100.0);
+    let start = z + alone(10.0, 10.0);
+    let first =
+        alone(9.8, 10.0) + 2.0 * alone(100.0, 50.0) + alone(100.0, 100.0) + alone(1.0, 20.0);
+    let up = alone(0.2, 10.0);
+    let second = up + alone(100.0, 150.0) + alone(1.0, 20.0) + alone(100.0, 50.0) + 0.5;
+    // The wall from x = 10 to 110, and so on: all sides are 100 mm.
+    near(found.start_seconds, start);
+    assert_eq!(found.layers.len(), 2);
+    near(found.layers[0].seconds, first);
+    near(found.layers[1].seconds, second);
+    near(found.seconds, start + first + second);
+    near(found.dwell_seconds, 0.5);
+    assert_eq!((found.layers[0].z_mm, found.layers[1].z_mm), (0.2, 0.4));
+    let of = |role| found.roles.iter().find(|one| one.role == role).unwrap();
+    near(of(Role::OuterWall).seconds, 3.0 * alone(100.0, 50.0));
+    near(of(Role::Infill).seconds, alone(100.0, 100.0));
+    near(of(Role::Retraction).seconds, 2.0 * alone(1.0, 20.0));
+    assert_eq!(of(Role::Retraction).moves, 2);
+    near(found.filament_mm, 17.0);
+    near(found.peak_flow_mm3_s, 0.04 * 100.0 * std::f64::consts::PI * 1.75 * 1.75 / 4.0 * 1.0);
+    let not = found.not_counted;
+    assert_eq!((not.heating, not.homing, not.unknown_lines), (1, 2, 1));
+    let all: f64 = found.roles.iter().map(|role| role.seconds).sum();
+    near(all + found.dwell_seconds, found.seconds);
+}
+
+#[test]
+fn limits_in_the_file_hold_from_there_on_unless_told_otherwise() {
+    let text = "G1 X100 F6000\nM204 P500 T500\nG1 X0\nM203 X10\nM201 X100\nG1 X100";
+    near(of_text(text, &limits(), true).seconds, 3.0 * 1.1);
+    let changed = 1.1 + 1.2 + (10.0 + 0.1);
+    near(of_text(text, &limits(), false).seconds, changed);
+    let klipper = "SET_VELOCITY_LIMIT ACCEL=500 VELOCITY=50\nG1 X100 F6000";
+    near(of_text(klipper, &limits(), false).seconds, 2.1);
+}
+
+#[test]
+fn the_table_is_for_people_and_json_for_programs() {
+    let told = slicer(&["estimate", CLOCK, "-p", "generic-marlin", "--layers"]).assert().success();
+    let text = String::from_utf8(told.get_output().stdout.clone()).unwrap();
+    assert!(text.starts_with("print time"), "{text}");
+    for part in [
+        "outer wall",
+        "2 layers: ",
+        "not counted: wait for heat, 2 times homing, 1 unknown line (the first is line 30)",
+    ] {
+        assert!(text.contains(part), "{part} is not in {text}");
+    }
+    let told = slicer(&["estimate", "-", "--json"]).pipe_stdin(CLOCK).unwrap().assert().success();
+    let json: serde_json::Value = serde_json::from_slice(&told.get_output().stdout).unwrap();
+    assert_eq!(json["schema"], 1);
+    assert_eq!(json["layers"].as_array().unwrap().len(), 2);
+    assert_eq!(json["roles"][0]["role"], "outer-wall");
+}
+
+#[test]
+fn errors_name_the_file_the_cause_and_what_to_do() {
+    for (words, code, part) in [
+        (&["estimate", "no.gcode"][..], 3, "error: no.gcode: cannot read: "),
+        (&["estimate", "fixtures/cube_20.stl"], 3, "there is no move in it; give a G-code file"),
+        (
+            &["estimate", CLOCK, "--set", "limits.jerk_x=-1"],
+            2,
+            "limits.jerk_x = -1 is out of range",
+        ),
+        (&["estimate"], 2, "see `slicer --help`"),
+    ] {
+        let failed = slicer(words).assert().code(code);
+        let text = String::from_utf8(failed.get_output().stderr.clone()).unwrap();
+        assert!(text.contains(part) && text.lines().count() == 1, "{text}");
+    }
+    slicer(&["estimate", "-"]).write_stdin("").assert().code(3);
+}
+
+#[test]
+fn what_this_program_writes_is_read_to_the_last_line() {
+    for name in ["tile@zcube-dual", "tile@generic-marlin", "tile@thesis"] {
+        let profile = name.split('@').nth(1).unwrap();
+        let file = format!("fixtures/golden/{name}.gcode");
+        let told = slicer(&["estimate", &file, "-p", profile, "--json"]).assert().success();
+        let json: serde_json::Value = serde_json::from_slice(&told.get_output().stdout).unwrap();
+        assert_eq!(json["not_counted"]["unknown_lines"], 0, "{file}");
+        assert!(json["seconds"].as_f64().unwrap() > 1.0);
+    }
+}

@@ -1,0 +1,155 @@
+//! G-code text -> events: units, modes, arcs and layers, and bytes that are no G-code.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use proptest::prelude::*;
+use slicer::reader::{self, Event, Motion, Role, Summary, Wait};
+
+fn read(bytes: &[u8]) -> (Vec<Event>, Summary) {
+    let mut events = Vec::new();
+    let mut source = bytes;
+    let summary = reader::read(&mut source, &mut |event| events.push(event)).unwrap();
+    (events, summary)
+}
+
+fn moves(text: &str) -> Vec<Motion> {
+    let only_moves = |event| match event {
+        Event::Move(motion) => Some(motion),
+        _ => None,
+    };
+    read(text.as_bytes()).0.into_iter().filter_map(only_moves).collect()
+}
+
+fn ends(text: &str) -> Vec<[f64; 3]> {
+    moves(text).iter().map(|motion| motion.to).collect()
+}
+
+fn filament(text: &str) -> Vec<f64> {
+    moves(text).iter().map(|motion| motion.filament).collect()
+}
+
+#[test]
+fn positions_are_absolute_or_relative_in_inches_or_not() {
+    assert_eq!(
+        ends("G1 X1 Y2\nG91\nG1 X1\nG90\nG1 X1 Z3"),
+        [[1.0, 2.0, 0.0], [2.0, 2.0, 0.0], [1.0, 2.0, 3.0]]
+    );
+    assert_eq!(ends("G20\nG1 X1\nG21\ng01y1"), [[25.4, 0.0, 0.0], [25.4, 1.0, 0.0]]);
+    assert_eq!(ends("G1 X5\nG92 X0\nG1 X1"), [[5.0, 0.0, 0.0], [1.0, 0.0, 0.0]]);
+    let moved = moves("G20\nG1 X1 F60");
+    assert!((moved[0].feed - 25.4).abs() < 1e-9);
+    assert_eq!(moves("M220 S50\nG1 X1 F60")[0].feed, 0.5);
+}
+
+#[test]
+fn filament_is_absolute_or_relative_too() {
+    assert_eq!(filament("G1 X1 E2\nG1 X2 E3\nG92 E0\nG1 X3 E0.5"), [2.0, 1.0, 0.5]);
+    assert_eq!(filament("M83\nG1 X1 E2\nG1 X2 E3\nM82\nG1 X3 E6"), [2.0, 3.0, 1.0]);
+    assert_eq!(filament("G91\nG1 X1 E2\nG1 X1 E2\nG90\nM83\nG1 X9 E1"), [2.0, 2.0, 1.0]);
+    // Sailfish names its extruders.
+    assert_eq!(filament("G92 A0 B0\nG1 X1 B2\nG1 X2 B3"), [2.0, 1.0]);
+}
+
+#[test]
+fn roles_come_from_comments_and_from_what_moves() {
+    let text = "G1 X1 E1\n;TYPE:WALL-OUTER\nG1 X2 E2\nG1 X3\nG1 E1\nG1 X4 E1\n;TYPE:odd\nG1 X5 E2";
+    let roles: Vec<_> = moves(text).iter().map(|motion| motion.role).collect();
+    use Role::{Other, OuterWall, Retraction, Travel};
+    assert_eq!(roles, [Other, OuterWall, Travel, Retraction, Travel, Other]);
+    let motion = moves(";WIDTH:0.5\n;HEIGHT:0.3\nG1 X1 E1")[0];
+    assert_eq!((motion.width, motion.height, motion.line), (Some(0.5), Some(0.3), 3));
+}
+
+#[test]
+fn layers_are_marked_or_told_from_heights() {
+    let layers = |text: &str| {
+        let (events, _) = read(text.as_bytes());
+        let marked = |event: &Event| match event {
+            Event::Layer { marked } => Some(*marked),
+            _ => None,
+        };
+        events.iter().filter_map(marked).collect::<Vec<_>>()
+    };
+    // Lifting the nozzle for a travel is no layer.
+    let plain = "G1 Z0.2\nG1 X1 E1\nG1 Z5\nG1 X2\nG1 Z0.2\nG1 X3 E2\nG1 Z0.4\nG1 X1 E3";
+    assert_eq!(layers(plain), [false, false]);
+    assert_eq!(layers(";LAYER:0\nG1 X1 Z0.2 E1\n;LAYER:1\nG1 Z0.4\nG1 X2 E2"), [true, true]);
+}
+
+#[test]
+fn arcs_are_as_long_as_they_are() {
+    let length = |text: &str| -> f64 {
+        let step = |motion: &Motion| {
+            let way = |axis: usize| (motion.to[axis] - motion.from[axis]).powi(2);
+            (way(0) + way(1) + way(2)).sqrt()
+        };
+        moves(text).iter().map(step).sum()
+    };
+    let quarter = std::f64::consts::PI * 5.0;
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 0.003 * b, "{a} {b}");
+    near(length("G1 X10\nG3 X0 Y10 I-10 J0 E3"), 10.0 + quarter);
+    near(length("G1 X10\nG2 X0 Y10 I-10 J0"), 10.0 + 3.0 * quarter);
+    near(length("G1 X10\nG3 X0 Y10 R10"), 10.0 + quarter);
+    near(length("G1 X10\nG3 X10 Y0 I-10 J0"), 10.0 + 4.0 * quarter);
+    // A helix.
+    near(length("G3 X0 Y0 I10 J0 Z30"), (16.0 * quarter * quarter + 900.0).sqrt());
+    let pushed: f64 = filament("G1 X10\nG3 X0 Y10 I-10 J0 E3").iter().sum();
+    assert!((pushed - 3.0).abs() < 1e-9);
+}
+
+#[test]
+fn waits_are_told_apart_and_unknown_lines_counted() {
+    let text =
+        "M109 S200\nG28\nG4 P1500\nG4 S2\nM400\nT1\nM862.3 P \"MK3\"\nFOO BAR=1\nG999\n%\n(x)";
+    let (events, summary) = read(text.as_bytes());
+    assert_eq!(
+        events,
+        [
+            Event::Wait(Wait::Heating),
+            Event::Wait(Wait::Homing),
+            Event::Dwell(1.5),
+            Event::Dwell(2.0),
+            Event::Wait(Wait::Moves),
+        ]
+    );
+    assert_eq!((summary.lines, summary.unknown, summary.first_unknown), (11, 2, 8));
+    assert_eq!(read(b"G10\nG11").1.firmware_retractions, 2);
+}
+
+#[test]
+fn the_way_from_an_unknown_place_is_not_counted() {
+    let motion = moves("G162 X Y F2500\nG161 Z F1100\nM132 X Y Z\nG1 X0 Y-74 Z50 F3300\nG1 X10");
+    assert_eq!(motion.len(), 1);
+    assert_eq!(motion[0].from, [0.0, -74.0, 50.0]);
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_are_too_odd(bytes in prop::collection::vec(any::<u8>(), 0..600)) {
+        read(&bytes);
+    }
+
+    #[test]
+    fn no_words_are_too_odd(
+        words in prop::collection::vec("[GMTXYZEFIJRSPN;( ]-?[0-9.]{0,24}[ \n]?", 0..200)
+    ) {
+        let (events, _) = read(words.concat().as_bytes());
+        for event in events {
+            if let Event::Move(motion) = event {
+                let numbers = motion.from.iter().chain(&motion.to);
+                prop_assert!(numbers.chain([&motion.filament, &motion.feed]).all(|n| n.is_finite()));
+                prop_assert!(motion.feed > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_damaged_file_is_read_all_the_same(places in prop::collection::vec((0.0..1.0_f64, any::<u8>()), 1..40)) {
+        let mut bytes = include_bytes!("../fixtures/clock.gcode").to_vec();
+        for (place, byte) in places {
+            let index = (place * bytes.len() as f64) as usize;
+            bytes[index] = byte;
+        }
+        read(&bytes);
+    }
+}
