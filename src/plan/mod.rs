@@ -6,6 +6,7 @@
 pub mod link;
 pub mod order;
 pub mod round;
+pub mod tour;
 pub mod travel;
 
 use crate::geom::Point;
@@ -16,7 +17,7 @@ use crate::region::support::SupportParams;
 use crate::region::walls::Wall;
 use crate::region::{Params, Region};
 use crate::slice::Layer;
-use crate::units::{Coord, to_units};
+use crate::units::{Coord, UNITS_PER_MM, to_units};
 use round::Rounding;
 
 /// What a path is printed for.
@@ -148,6 +149,7 @@ pub struct PlanParams {
     retract_always: bool,
     min_travel: Coord,
     retracts: bool,
+    times: travel::Times,
     rounding: Rounding,
     skin_rounding: Rounding,
     region: Params,
@@ -166,6 +168,11 @@ impl PlanParams {
             retract_always: settings.retraction.when == RetractWhen::Always,
             min_travel: to_units(settings.retraction.min_travel),
             retracts: settings.retraction.length > 0.0,
+            times: travel::Times {
+                feed: settings.speed.travel / 60.0 * UNITS_PER_MM,
+                acceleration: settings.limits.travel_acceleration * UNITS_PER_MM,
+                retraction: 120.0 * settings.retraction.length / settings.retraction.feed,
+            },
             rounding: Rounding { radius },
             skin_rounding: Rounding { radius: radius.min(region.line_width / 2) },
             region: region.clone(),

@@ -1,9 +1,10 @@
-//! Ordered paths -> Steps: which travels pull the filament back.
+//! Ordered paths -> Steps: the order improved, and which travels pull the filament back.
 //!
 //! A travel inside the part may ooze unseen; one that crosses an outer wall
 //! draws a string on the outside. So travels that cross a contour of the layer,
 //! and those outside of it, retract.
 
+use super::tour::{self, Cost};
 use super::{Path, PlanParams, Step};
 use crate::geom::{Contour, Point, edges, encloses, side};
 use crate::units::Coord;
@@ -11,7 +12,67 @@ use crate::units::Coord;
 /// Bands that the edges of a layer are sorted into, at most.
 const MOST_BANDS: usize = 256;
 
-/// Adds to each path whether the travel to it retracts, starting from `at`.
+/// How long travels take.
+#[derive(Debug, Clone, Copy)]
+pub struct Times {
+    /// Feed, grid units per s.
+    pub feed: f64,
+    /// Acceleration, grid units per s².
+    pub acceleration: f64,
+    /// Pulling the filament back and pushing it again, s.
+    pub retraction: f64,
+}
+
+impl Times {
+    /// Time of a travel over `distance` grid units from stop to stop, s.
+    fn travel(&self, distance: f64) -> f64 {
+        let Self { feed, acceleration, .. } = *self;
+        if distance * acceleration < feed * feed {
+            2.0 * (distance / acceleration).sqrt()
+        } else {
+            distance / feed + feed / acceleration
+        }
+    }
+
+    /// How far a travel of `time` s leads at most, grid units.
+    fn reach(&self, time: f64) -> f64 {
+        (self.acceleration * time * time / 4.0).min(self.feed * time)
+    }
+}
+
+/// The travels of one layer.
+struct Travels<'a> {
+    crossings: Crossings,
+    params: &'a PlanParams,
+}
+
+impl Travels<'_> {
+    /// Whether the filament is pulled back on the way.
+    fn retracts(&self, from: Point, to: Point) -> bool {
+        let least = i64::from(self.params.min_travel).pow(2);
+        self.params.retracts
+            && from != to
+            && from.distance2(to) >= least
+            && (self.params.retract_always || self.crossings.leaves(from, to))
+    }
+}
+
+impl Cost for Travels<'_> {
+    fn least(&self, from: Point, to: Point) -> f64 {
+        self.params.times.travel(from.distance(to))
+    }
+
+    fn whole(&self, from: Point, to: Point) -> f64 {
+        let pull = if self.retracts(from, to) { self.params.times.retraction } else { 0.0 };
+        self.least(from, to) + pull
+    }
+
+    fn reach(&self, time: f64) -> f64 {
+        self.params.times.reach(time)
+    }
+}
+
+/// Puts the paths in an order that takes less time, and adds to each whether the travel to it retracts, starting from `at`.
 #[must_use]
 pub fn steps(
     paths: Vec<Path>,
@@ -19,18 +80,15 @@ pub fn steps(
     mut at: Option<Point>,
     params: &PlanParams,
 ) -> Vec<Step> {
-    let crossings = Crossings::new(contours);
-    let least = i64::from(params.min_travel).pow(2);
-    paths
+    let travels = Travels { crossings: Crossings::new(contours), params };
+    tour::improve(paths, at, &travels)
         .into_iter()
         .map(|path| {
             let to = path.start();
-            let retract = params.retracts
-                && at.is_none_or(|from| {
-                    from != to
-                        && from.distance2(to) >= least
-                        && (params.retract_always || crossings.leaves(from, to))
-                });
+            let retract = match at {
+                Some(from) => travels.retracts(from, to),
+                None => params.retracts,
+            };
             at = Some(path.end());
             Step { retract, path }
         })
