@@ -36,11 +36,11 @@ pub enum Junction {
     /// An axis that turns back may come in and leave at its jerk. Moves begin
     /// and end at rest with the same sudden change.
     Jerk([f64; 4]),
-    /// Marlin's jerk before 1.1, and that of many slicers' estimates: the sudden change of
-    /// speed in x and y as one vector, and in z, mm/s. The filament follows the nozzle
-    /// and has a say only beside moves of it alone, which with no jerk of its own stop
-    /// the nozzle. Where the jerks of x and y differ, each counts in its direction.
-    /// Moves begin and end at rest at the minimum speed.
+    /// The jerk of Marlin before 1.1 and of `CuraEngine`'s estimates: the sudden change of
+    /// speed in x and y as one vector, and in z, mm/s. Where x and y bear different ones,
+    /// each counts in its direction. Simpler than theirs in three things: both moves pass
+    /// the corner at one speed, moves begin and end at rest at the minimum speed, and the
+    /// filament counts only beside moves of it alone. With no jerk it stops the nozzle there.
     VectorJerk([f64; 4]),
     /// Sailfish's "maximum speed change" of each axis, mm/s: the corner is slowed down by
     /// the share that each axis changes its speed too much. Moves begin and end at rest
