@@ -77,8 +77,10 @@ bar_I|bar I|129|80|38|9.820|8.350'
 
 thesis() {
     [ $# = 1 ] && [ -d "$1" ] || die "give the folder with the stand-ins"
-    local stand_in name traditional dual saved metres dual_metres
-    echo "Minutes. Traditional: 20 % honeycomb, of PrusaSlicer / Slic3r here; so are what is saved and the points. Filament of the first two."
+    local peer stand_in name traditional dual saved metres dual_metres
+    local bases=''
+    for peer in "${peers[@]}"; do [ "$peer" = cura ] || bases+="${bases:+ / }${title[$peer]}"; done
+    echo "Minutes, and m of filament (traditional / \`--dual\`). Traditional here is 20 % honeycomb of ${bases:-nobody}; the better of \`--dual\` and all parts saves so many points more than the thesis."
     echo
     echo "| part | thesis: traditional | dual | saved | m, both | here: traditional | \`--dual\` | saved | all parts | saved | points more | m, both |"
     echo "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|"
