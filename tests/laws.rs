@@ -188,7 +188,7 @@ proptest! {
 
     #[test]
     fn beads_along_walls_run_where_lines_may_and_keep_off_the_walls(
-        outlines in stacks(), walls in 0..3_u32, profile in 0..2_usize,
+        outlines in stacks(), walls in 1..4_u32, profile in 0..2_usize,
     ) {
         let walls = walls.to_string();
         let profile = ["generic-marlin", "thesis"][profile];
@@ -201,7 +201,7 @@ proptest! {
             for w in beads.iter().flat_map(|b| b.windows(2)) {
                 let (low, high) = if w[0].v < w[1].v { (w[0], w[1]) } else { (w[1], w[0]) };
                 // Half the bead, less what strips of uneven width may take.
-                let edge = params.fill_inset - params.wall_to_fill() + params.wall_edge();
+                let edge = params.fill_inset - params.wall_to_fill() + params.line_width / 2;
                 let clear = edge + w[1].width / 2 - params.line_width / 3;
                 let free = scan.inset(clear.max(0));
                 for j in low.v.div_euclid(500) + 1..high.v.div_euclid(500) + 1 {

@@ -4,6 +4,7 @@ use super::classify::{areas, areas_beside, exposed};
 use super::close::Crossed;
 use super::dual::LayerAreas;
 use super::rings::{Bead, rings, taken};
+use super::walls::Wall;
 use super::{Params, Prepared};
 use crate::geom::Contour;
 use crate::geom::spans::Rows;
@@ -50,7 +51,8 @@ pub fn divide<'a>(
 /// The beads along the walls of layer `k`, whose skin is exposed where `skins` says on
 /// the two skin rasters.
 fn beads(k: usize, layer: &Prepared, skins: &[Rows; 2], params: &Params) -> Vec<Bead> {
-    if skins.iter().all(Rows::is_empty) {
+    // Without walls the ends of the lines are the part's outside, all of them alike.
+    if params.walls == 0 || skins.iter().all(Rows::is_empty) {
         return Vec::new();
     }
     let (along, across) = params.skin_rasters(k);
@@ -62,10 +64,8 @@ fn beads(k: usize, layer: &Prepared, skins: &[Rows; 2], params: &Params) -> Vec<
         left_turn: along == 0,
     };
     let frame = params.rasters[along].frame;
-    let enter = |c: &Contour| c.iter().map(|&p| frame.enter(p)).collect();
-    let walls: Vec<Contour> = match params.walls {
-        0 => layer.layer.contours.iter().map(enter).collect(),
-        n => layer.walls.iter().filter(|w| w.depth + 1 == n).map(|w| enter(&w.path)).collect(),
-    };
+    let innermost = layer.walls.iter().filter(|w| w.depth + 1 == params.walls);
+    let enter = |w: &Wall| -> Contour { w.path.iter().map(|&p| frame.enter(p)).collect() };
+    let walls: Vec<Contour> = innermost.map(enter).collect();
     rings(&walls, &crossed, params)
 }

@@ -162,21 +162,11 @@ impl Params {
         Comb { raster: index, offset: 0, stride, joined: true }
     }
 
-    /// From the middle of the innermost wall (from the contour, if there is none) to
-    /// where lines end.
+    /// From the middle of the innermost wall to where lines end; there is a wall.
     #[must_use]
     pub fn wall_to_fill(&self) -> Coord {
-        match self.walls {
-            0 => self.fill_inset,
-            walls => self.fill_inset - self.outer_inset - (walls as Coord - 1) * self.line_width,
-        }
-    }
-
-    /// From the middle of the innermost wall (from the contour, if there is none) to
-    /// its inner edge.
-    #[must_use]
-    pub fn wall_edge(&self) -> Coord {
-        if self.walls > 0 { self.line_width / 2 } else { 0 }
+        // The middles of the walls are a line apart.
+        self.fill_inset - self.outer_inset - (self.walls as Coord - 1) * self.line_width
     }
 
     /// The raster of the skin of layer `k`, and the one across it.

@@ -54,8 +54,7 @@ struct Place {
 }
 
 /// The beads that cover the narrow parts of the exposed skin `crossed` along `walls`:
-/// the innermost walls, or the contours of a part without any, in the frame of the
-/// raster that is printed.
+/// the innermost walls, in the frame of the raster that is printed.
 #[must_use]
 pub fn rings(walls: &[Contour], crossed: &Crossed<'_>, params: &Params) -> Vec<Bead> {
     if crossed.skin.is_empty() && crossed.columns.is_empty() {
@@ -66,7 +65,7 @@ pub fn rings(walls: &[Contour], crossed: &Crossed<'_>, params: &Params) -> Vec<B
     for lap in &laps {
         for index in 0..MOST_BEADS {
             for arc in arcs(lap, index, &near, params) {
-                out.push(bead(&arc, params));
+                out.push(bead(&arc));
             }
         }
     }
@@ -80,7 +79,7 @@ fn place(station: &Station, index: usize, near: &Near, params: &Params) -> Optio
     if index >= station.beads {
         return None;
     }
-    let edge = f64::from(params.wall_edge());
+    let edge = w / 2.0;
     let single = station.shared && 2.0 * station.depth < SINGLE * w;
     let (width, from) = if single {
         // One of the two walls lays the bead between them.
@@ -93,8 +92,7 @@ fn place(station: &Station, index: usize, near: &Near, params: &Params) -> Optio
     };
     let away = edge + from + width / 2.0;
     let [x, y] = [0, 1].map(|k| station.at[k] + away * station.normal[k]);
-    // Without a wall there is nothing to lie on, only an outside to stay within.
-    let clear = away - if params.walls > 0 { SLACK * w } else { LEAST_BEND };
+    let clear = away - SLACK * w;
     near.is_free([x, y], clear).then_some(Place { at: [x, y], width, clear })
 }
 
@@ -160,7 +158,7 @@ fn length(arc: &[Place]) -> f64 {
 }
 
 /// The points of a bead, only those where it bends or changes its width.
-fn bead(arc: &[Place], params: &Params) -> Bead {
+fn bead(arc: &[Place]) -> Bead {
     let mut kept = vec![0];
     keep_bends(arc, 0, arc.len() - 1, &mut kept);
     kept.push(arc.len() - 1);
@@ -169,8 +167,6 @@ fn bead(arc: &[Place], params: &Params) -> Bead {
         .map(|k| {
             let Place { at: [u, v], width, .. } = arc[k];
             let mean = f64::midpoint(before, width);
-            // On its way to a narrow end a bead lies on the wall a little, if there is one.
-            let mean = if params.walls > 0 { mean } else { mean.min(before.min(width)) };
             before = width;
             LinePoint {
                 u: nearest(u) as Coord,

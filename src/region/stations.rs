@@ -97,7 +97,7 @@ impl Station {
     /// Keeps no beads where the wall at the other end of the row is not beside this one:
     /// beyond the middle of a strip the other wall is the nearer one, in a corner it is not.
     fn confirm(&mut self, near: &Near, params: &Params) {
-        let across = 2.0 * (self.depth + f64::from(params.wall_edge()));
+        let across = 2.0 * (self.depth + f64::from(params.line_width) / 2.0);
         let beyond = [0, 1].map(|k| self.at[k] + BEYOND * across * self.normal[k]);
         if near.is_free(beyond, (1.0 - BEYOND + SLOPE) * across) {
             self.shared = false;
@@ -227,7 +227,7 @@ impl Behind {
     /// `blank` with what is behind it; `sine` is that of the angle at which the row crosses.
     fn station(&self, blank: Station, sine: f64, params: &Params) -> Station {
         let w = f64::from(params.line_width);
-        let lead = f64::from(params.wall_to_fill() - params.wall_edge());
+        let lead = f64::from(params.wall_to_fill()) - w / 2.0;
         let skin = self.skin > 0 || self.other > 0;
         let depth = |length: i64| length as f64 * sine + lead;
         // What a bead covers at least of either side.
