@@ -281,7 +281,7 @@ fn apply(change: &Change, limits: &mut Limits) {
     set(&mut limits.travel_acceleration, change.travel);
     set(&mut limits.retract_acceleration, change.retract);
     match &mut limits.junction {
-        Junction::Jerk(jerk) | Junction::SpeedChange(jerk) => {
+        Junction::Jerk(jerk) | Junction::VectorJerk(jerk) | Junction::SpeedChange(jerk) => {
             for (jerk, value) in jerk.iter_mut().zip(change.jerk) {
                 set(jerk, value);
             }

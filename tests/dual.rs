@@ -10,7 +10,7 @@ use common::{Kind, Run, Solid, fixture, settings, slice};
 use proptest::prelude::*;
 use slicer::geom::spans::{Rows, Span, total};
 use slicer::profile::Settings;
-use slicer::region::classify;
+use slicer::region::divide::divide;
 use slicer::region::dual::{self, LayerAreas};
 use slicer::region::groups::{Block, Grouping};
 use slicer::region::inner::Skins;
@@ -21,8 +21,7 @@ const MODES: [&str; 2] = ["pair", "interlaced"];
 const PATTERNS: [&str; 4] = ["rectilinear", "aligned", "grid", "triangles"];
 
 fn all_areas(k: usize, layers: &[Prepared], params: &Params) -> LayerAreas {
-    let of = |r| Some(classify::areas(k, r, &|k| layers.get(k), params));
-    (0..params.rasters.len()).map(of).collect()
+    divide(k, 0..params.rasters.len(), &|k| layers.get(k), params).0
 }
 
 /// The blocks that `count` layers make.

@@ -103,6 +103,20 @@ fn the_table_is_for_people_and_json_for_programs() {
 }
 
 #[test]
+fn the_clock_for_comparing_files_minds_corners_and_retractions_only() {
+    // 100 mm/s on each axis, the last from 0 to 100 mm of z, and a retraction between the two.
+    let text = "M204 P9\nG1 X100 F6000\nG1 Y100\nG1 E-1 F1200\nG1 Z100 F6000\n";
+    let clock = ["estimate", "-", "-p", "tests/bench/clock.toml", "--fixed-limits", "--json"];
+    let told = slicer(&clock).write_stdin(text).assert().success();
+    let json: serde_json::Value = serde_json::from_slice(&told.get_output().stdout).unwrap();
+    // The corner of 90° is taken at 15 / √2 mm/s: that much sooner there, on both sides.
+    let corner = 15.0 / 2.0_f64.sqrt();
+    let gained = corner / 1000.0 - corner * corner / 2000.0 / 100.0;
+    let seconds = 3.0 * alone(100.0, 100.0) + alone(1.0, 20.0) - 2.0 * gained;
+    near(json["seconds"].as_f64().unwrap(), seconds);
+}
+
+#[test]
 fn errors_name_the_file_the_cause_and_what_to_do() {
     for (words, code, part) in [
         (&["estimate", "no.gcode"][..], 3, "error: no.gcode: cannot read: "),

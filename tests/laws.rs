@@ -15,7 +15,8 @@ use slicer::geom::spans::{Rows, Span, total};
 use slicer::geom::{Contour, Point, double_area, polygon};
 use slicer::mesh::{Bed, stl, transform};
 use slicer::region::Params;
-use slicer::region::classify::{self, Areas};
+use slicer::region::classify::Areas;
+use slicer::region::divide::divide;
 use slicer::region::raster::{Raster, Scan};
 use slicer::slice::{Heights, Layer, Slicer};
 use slicer::units::{Coord, UNITS_PER_MM, to_units};
@@ -156,10 +157,14 @@ proptest! {
         let params = Params::new(&settings("generic-marlin", &set));
         let layers = stack(&params, &outlines);
         for k in 0..layers.len() {
-            for r in 0..params.rasters.len() {
-                let Areas { skin, infill } =
-                    classify::areas(k, r, &|k| layers.get(k), &params);
-                let fill = &layers[k].rows[r].fill;
+            let (areas, beads) = divide(k, 0..params.rasters.len(), &|k| layers.get(k), &params);
+            for (r, areas) in areas.into_iter().enumerate() {
+                let Areas { skin, infill, fill } = areas.unwrap();
+                // Beads along the walls take a part of the fill rows, or nothing.
+                let whole = &layers[k].rows[r].fill;
+                prop_assert_eq!(fill.is_none(), beads.is_empty());
+                let fill = &fill.unwrap_or_else(|| whole.clone());
+                prop_assert!(fill.minus(whole).is_empty());
                 prop_assert!(is_tidy(&skin) && is_tidy(&infill));
                 prop_assert!(skin.and(&infill).is_empty(), "layer {} raster {}", k, r);
                 prop_assert_eq!(skin.total() + infill.total(), fill.total());
@@ -176,6 +181,33 @@ proptest! {
                         let longest = bare.iter().flat_map(|(_, row)| row).map(|s| s.len()).max();
                         prop_assert!(longest.unwrap_or(0) < 500, "bare infill of {:?}", longest);
                     }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn beads_along_walls_run_where_lines_may_and_keep_off_the_walls(
+        outlines in stacks(), walls in 0..3_u32, profile in 0..2_usize,
+    ) {
+        let walls = walls.to_string();
+        let profile = ["generic-marlin", "thesis"][profile];
+        let params = Params::new(&settings(profile, &[("walls", &walls)]));
+        let layers = stack(&params, &outlines);
+        for k in 0..layers.len() {
+            let (_, beads) = divide(k, 0..2, &|k| layers.get(k), &params);
+            let raster = params.rasters[params.skin_rasters(k).0];
+            let scan = Scan::new(&layers[k].layer.contours, Raster { pitch: 500, ..raster });
+            for w in beads.iter().flat_map(|b| b.windows(2)) {
+                let (low, high) = if w[0].v < w[1].v { (w[0], w[1]) } else { (w[1], w[0]) };
+                // Half the bead, less what strips of uneven width may take.
+                let edge = params.fill_inset - params.wall_to_fill() + params.wall_edge();
+                let clear = edge + w[1].width / 2 - params.line_width / 3;
+                let free = scan.inset(clear.max(0));
+                for j in low.v.div_euclid(500) + 1..high.v.div_euclid(500) + 1 {
+                    let t = f64::from(j * 500 - low.v) / f64::from(high.v - low.v);
+                    let u = low.u + (t * f64::from(high.u - low.u)) as Coord;
+                    prop_assert!(holds(free.row(j), u), "layer {} at {} {}: {:?}", k, u, j * 500, w);
                 }
             }
         }

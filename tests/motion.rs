@@ -82,6 +82,45 @@ fn a_square_corner_is_taken_at_the_jerk_and_a_u_turn_too() {
 }
 
 #[test]
+fn jerk_as_a_vector_holds_x_and_y_together() {
+    let jerk = Junction::VectorJerk([15.0, 15.0, 1.0, 0.0]);
+    let limits = Limits { junction: jerk, ..limits() };
+    // Begins and ends at rest.
+    near(total(&limits, &[(x(100.0), 100.0)]), 1.1);
+    // At 90° the change is √2 times the speed, at a U-turn twice the speed.
+    let root = 2.0_f64.sqrt();
+    near(total(&limits, &[(x(100.0), 100.0), (y(100.0), 100.0)]), two_sides(15.0 / root));
+    near(total(&limits, &[(x(100.0), 100.0), (x(-100.0), 100.0)]), two_sides(7.5));
+    // Straight on, and from 50 to 60 mm/s: no corner.
+    near(total(&limits, &[(x(100.0), 100.0), (x(100.0), 100.0)]), 2.1);
+    let line = total(&limits, &[(x(100.0), 50.0), (x(100.0), 60.0)]);
+    let second = 0.01 + 0.06 + (100.0 - (1100.0 + 3600.0) / 2000.0) / 60.0;
+    near(line, 0.05 + (100.0 - 1.25) / 50.0 + second);
+    // From flat to a slope of 3 in 5, z jumps by 0.6 of the speed: 1/0.6 mm/s.
+    near(
+        total(&limits, &[(x(100.0), 100.0), ([80.0, 0.0, 60.0, 0.0], 100.0)]),
+        two_sides(1.0 / 0.6),
+    );
+    // Half the jerk in y: the turn is 1 / 15 by 1 / 7.5 of a jerk for each mm/s.
+    let uneven = Limits { junction: Junction::VectorJerk([15.0, 7.5, 1.0, 0.0]), ..limits };
+    let corner = 1.0 / (1.0_f64 / 225.0 + 1.0 / 56.25).sqrt();
+    near(total(&uneven, &[(x(100.0), 100.0), (y(100.0), 100.0)]), two_sides(corner));
+}
+
+#[test]
+fn jerk_as_a_vector_minds_the_filament_only_where_it_moves_alone() {
+    let of = |e| Limits { junction: Junction::VectorJerk([15.0, 15.0, 1.0, e]), ..limits() };
+    let extruding = ([100.0, 0.0, 0.0, 5.0], 100.0);
+    near(total(&of(0.0), &[(x(100.0), 100.0), extruding]), 2.1);
+    let alone = ([0.0, 0.0, 0.0, -1.0], 10.0);
+    // A stop: 0.11 s for the filament.
+    near(total(&of(0.0), &[(x(100.0), 100.0), alone, (x(100.0), 100.0)]), 2.2 + 0.11);
+    // 2 mm/s are left on both sides; the filament needs no more than 8 ms for the rest.
+    let both = two_sides(2.0) + 2.0 * 0.008 + (1.0 - 2.0 * 0.048) / 10.0;
+    near(total(&of(2.0), &[(x(100.0), 100.0), alone, (x(100.0), 100.0)]), both);
+}
+
+#[test]
 fn sailfish_stops_an_axis_that_stands_still_next() {
     let limits =
         Limits { junction: Junction::SpeedChange([20.0; 4]), minimum_speed: 2.0, ..limits() };
@@ -209,6 +248,7 @@ fn a_move_of_no_length_takes_no_time_and_stops_nobody() {
 fn junction() -> impl Strategy<Value = Junction> {
     prop_oneof![
         (0.0..30.0_f64).prop_map(|jerk| Junction::Jerk([jerk, jerk, 0.1 * jerk, jerk])),
+        (0.0..30.0_f64).prop_map(|jerk| Junction::VectorJerk([jerk, jerk, 0.1 * jerk, jerk])),
         (0.0..30.0_f64).prop_map(|most| Junction::SpeedChange([most; 4])),
         (0.0..0.2_f64).prop_map(Junction::Deviation),
         (0.0..20.0_f64, 0.0..0.9_f64).prop_map(|(velocity, minimum_cruise_ratio)| {
@@ -289,7 +329,12 @@ fn batches_do_not_change_the_plan() {
         minimum_cruise_ratio: 0.5,
         extruder_corner_velocity: 1.0,
     };
-    for junction in [Junction::Jerk([8.0; 4]), Junction::Deviation(0.02), square] {
+    for junction in [
+        Junction::Jerk([8.0; 4]),
+        Junction::VectorJerk([8.0; 4]),
+        Junction::Deviation(0.02),
+        square,
+    ] {
         let limits = Limits { junction, ..limits() };
         let streamed = times(&limits, &moves);
         // The same moves from 1 on, after a first one: batches end elsewhere.

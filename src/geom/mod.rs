@@ -53,7 +53,8 @@ pub fn double_area(contour: &[Point]) -> i128 {
 
 /// The edges of a closed polygon, from each point to the next.
 pub fn edges(contour: &[Point]) -> impl Iterator<Item = (Point, Point)> {
-    contour.iter().copied().zip(contour.iter().copied().cycle().skip(1))
+    let last = contour.last().copied().zip(contour.first().copied());
+    contour.windows(2).map(|w| (w[0], w[1])).chain(last)
 }
 
 /// Twice the area of the triangle a b c: positive if `c` is left of a–b.

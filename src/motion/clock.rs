@@ -140,6 +140,10 @@ impl<T> Clock<T> {
                 let speed = junction::jerk(before, course, &self.rates.jerk_inverse);
                 speed * speed
             }
+            Junction::VectorJerk(_) => {
+                let speed = junction::vector_jerk(before, course, &self.rates.jerk_inverse);
+                speed * speed
+            }
             Junction::SpeedChange(most) => {
                 course.slowed = junction::speed_change(before, course, most);
                 let speed = course.cruise * course.slowed;

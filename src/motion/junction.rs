@@ -47,6 +47,21 @@ pub(super) fn jerk(before: &Course, after: &Course, inverse: &[f64; 4]) -> f64 {
     speed
 }
 
+/// Jerk as a vector, mm/s: the highest speed that both moves can have at which the change in
+/// x and y together, and in z, is within the jerk. `inverse` is 1 / jerk.
+pub(super) fn vector_jerk(before: &Course, after: &Course, inverse: &[f64; 4]) -> f64 {
+    let shared = before.cruise.min(after.cruise);
+    // In jerks, per mm/s of the shared speed.
+    let [x, y, z, e]: [f64; 4] = std::array::from_fn(|axis| {
+        (after.direction[axis] - before.direction[axis]) * inverse[axis]
+    });
+    let mut change = (x * x + y * y).sqrt().max(z.abs());
+    if !(before.moves_nozzle && after.moves_nozzle) {
+        change = change.max(e.abs());
+    }
+    shared / (shared * change).max(1.0)
+}
+
 /// Sailfish's "maximum speed change": the share of its speed at which the move after begins,
 /// so that no axis changes its own by more than this from what the move before began with.
 /// An axis that turns back or comes to a halt makes it nothing.

@@ -36,6 +36,12 @@ pub enum Junction {
     /// An axis that turns back may come in and leave at its jerk. Moves begin
     /// and end at rest with the same sudden change.
     Jerk([f64; 4]),
+    /// The jerk of Marlin before 1.1 and of `CuraEngine`'s estimates: the sudden change of
+    /// speed in x and y as one vector, and in z, mm/s. Where x and y bear different ones,
+    /// each counts in its direction. Simpler than theirs in three things: both moves pass
+    /// the corner at one speed, moves begin and end at rest at the minimum speed, and the
+    /// filament counts only beside moves of it alone. With no jerk it stops the nozzle there.
+    VectorJerk([f64; 4]),
     /// Sailfish's "maximum speed change" of each axis, mm/s: the corner is slowed down by
     /// the share that each axis changes its speed too much. Moves begin and end at rest
     /// at the minimum speed.
@@ -99,6 +105,7 @@ impl Limits {
             retract_acceleration: limits.retract_acceleration,
             junction: match limits.junction {
                 JunctionRule::Jerk => Junction::Jerk(jerk),
+                JunctionRule::VectorJerk => Junction::VectorJerk(jerk),
                 JunctionRule::SpeedChange => Junction::SpeedChange(jerk),
                 JunctionRule::Deviation => Junction::Deviation(limits.junction_deviation),
                 JunctionRule::SquareCorner => Junction::SquareCorner {
@@ -117,7 +124,7 @@ impl Rates {
     pub(super) fn new(limits: Limits) -> Self {
         let inverse = |values: [f64; 4]| values.map(|value| 1.0 / value.max(LEAST));
         let deviation = match limits.junction {
-            Junction::Jerk(_) | Junction::SpeedChange(_) => 0.0,
+            Junction::Jerk(_) | Junction::VectorJerk(_) | Junction::SpeedChange(_) => 0.0,
             Junction::Deviation(deviation) => deviation.max(0.0),
             Junction::SquareCorner { velocity, .. } => {
                 let root_of_two = std::f64::consts::SQRT_2;
@@ -133,7 +140,9 @@ impl Rates {
         Self {
             sprint,
             jerk_inverse: match limits.junction {
-                Junction::Jerk(jerk) => jerk.map(|jerk| 1.0 / jerk.max(LEAST_JERK)),
+                Junction::Jerk(jerk) | Junction::VectorJerk(jerk) => {
+                    jerk.map(|jerk| 1.0 / jerk.max(LEAST_JERK))
+                }
                 _ => [0.0; 4],
             },
             feed_inverse: inverse(limits.feed),

@@ -209,7 +209,7 @@ pub fn pieces(region: &Region, params: &PlanParams) -> Pieces {
         let raster = params.region.rasters[skin.raster];
         let chains = link::skin(&skin.lines, &params.region, params.skin_rounding.radius);
         add(Role::Skin, skin.layers, raster, chains);
-        add(Role::Skin, skin.layers, raster, skin.slivers.clone());
+        add(Role::Skin, skin.layers, raster, skin.beads.clone());
     }
     for infill in &region.infill {
         let raster = params.region.rasters[infill.comb.raster];

@@ -421,13 +421,13 @@ pub struct MotionLimits {
     pub retract_acceleration: f64,
     /// Which rule says how fast a corner may be taken.
     pub junction: JunctionRule,
-    /// `jerk` and `speed-change`: sudden change of speed in x, mm/s.
+    /// The jerks and `speed-change`: sudden change of speed in x, mm/s.
     pub jerk_x: f64,
-    /// `jerk` and `speed-change`: sudden change of speed in y, mm/s.
+    /// The jerks and `speed-change`: sudden change of speed in y, mm/s.
     pub jerk_y: f64,
-    /// `jerk` and `speed-change`: sudden change of speed in z, mm/s.
+    /// The jerks and `speed-change`: sudden change of speed in z, mm/s.
     pub jerk_z: f64,
-    /// `jerk` and `speed-change`: sudden change of the filament's speed, mm/s.
+    /// The jerks and `speed-change`: sudden change of the filament's speed, mm/s.
     pub jerk_e: f64,
     /// `deviation`: how far an arc would pass from the corner, mm.
     pub junction_deviation: f64,
@@ -449,6 +449,8 @@ pub struct MotionLimits {
 pub enum JunctionRule {
     /// Marlin's classic jerk.
     Jerk,
+    /// Jerk in x and y as one vector: Marlin's before 1.1.
+    VectorJerk,
     /// Sailfish's "maximum speed change".
     SpeedChange,
     /// Marlin's junction deviation.

@@ -14,30 +14,52 @@ use crate::units::Coord;
 /// Skin shorter than this along its line is noise of the contours, not shape (50 µm).
 const LEAST_SKIN: Coord = 500;
 
-/// Skin and sparse infill of one layer on one raster: disjoint, together the layer's fill rows.
+/// Skin and sparse infill of one layer on one raster: disjoint, together the layer's
+/// fill rows without what beads along the walls take.
 #[derive(Debug, Clone, Default)]
 pub struct Areas {
     /// Solid lines.
     pub skin: Rows,
     /// Sparse lines.
     pub infill: Rows,
+    /// Where both may go, if beads along the walls take some of the fill rows.
+    pub fill: Option<Rows>,
 }
 
-/// Divides layer `k` of `layers` on raster `r`. `layers(k)` is `None` outside the part.
+/// Where a neighbour of layer `k` leaves it bare on raster `r`. `layers(k)` is `None`
+/// outside the part.
 #[must_use]
-pub fn areas<'a>(
+pub fn exposed<'a>(
     k: usize,
     r: usize,
     layers: &impl Fn(usize) -> Option<&'a Prepared>,
     params: &Params,
-) -> Areas {
-    let Some(fill) = layers(k).map(|p| &p.rows[r].fill) else { return Areas::default() };
+) -> Rows {
+    let Some(fill) = layers(k).map(|p| &p.rows[r].fill) else { return Rows::default() };
     let covered = covered(fill, k, r, layers, params);
-    let exposed = fill.minus(&covered).filter(|_, span| span.len() >= i64::from(LEAST_SKIN));
-    let pitch = params.rasters[r].pitch;
+    fill.minus(&covered).filter(|_, span| span.len() >= i64::from(LEAST_SKIN))
+}
+
+/// Divides the `fill` rows of a layer on a raster whose rows lie `pitch` apart.
+#[must_use]
+pub fn areas(fill: &Rows, exposed: &Rows, pitch: Coord, params: &Params) -> Areas {
     let skin = fill.and(&exposed.dilate(params.reach, pitch));
     let infill = fill.minus(&skin);
     bridge_gaps(fill, skin, infill, 2 * params.line_width)
+}
+
+/// Divides what beads along the walls leave of a layer: `taken` is where no line may end.
+#[must_use]
+pub fn areas_beside(
+    taken: &Rows,
+    fill: &Rows,
+    exposed: &Rows,
+    pitch: Coord,
+    params: &Params,
+) -> Areas {
+    let fill = fill.minus(taken);
+    let left = exposed.minus(taken).filter(|_, span| span.len() >= i64::from(LEAST_SKIN));
+    Areas { fill: Some(fill.clone()), ..areas(&fill, &left, pitch, params) }
 }
 
 /// Where all neighbours within the skins' reach cover `fill`.
@@ -78,8 +100,8 @@ fn bridge_gaps(fill: &Rows, skin: Rows, infill: Rows, least: Coord) -> Areas {
             && skin.row(j).iter().any(|s| s.start == span.end)
     };
     if !infill.iter().any(|(j, row)| row.iter().any(|&s| is_gap(j, s))) {
-        return Areas { skin, infill };
+        return Areas { skin, infill, fill: None };
     }
     let infill = infill.filter(|j, span| !is_gap(j, span));
-    Areas { skin: fill.minus(&infill), infill }
+    Areas { skin: fill.minus(&infill), infill, fill: None }
 }

@@ -3,20 +3,24 @@
 //! Everything but the walls comes from one pass over raster lines: each layer's
 //! contours are laid under the lines of every raster once ([`Prepared`]), and
 //! each layer then combines its own spans with its neighbours' by 1-D booleans
-//! ([`classify`]). Guaranteed to the next stage: skin and sparse infill of a
-//! layer are disjoint and together its inset; rows are sorted, disjoint, never
-//! empty.
+//! ([`classify`]). Where skin is narrow it becomes beads along the walls ([`rings`]).
+//! Guaranteed to the next stage: skin and sparse infill of a layer are disjoint and
+//! together its inset without these beads; rows are sorted, disjoint, never empty.
 
 pub mod angle;
 pub mod audit;
 pub mod bend;
 pub mod classify;
 pub mod close;
+pub mod divide;
 pub mod dual;
 pub mod groups;
 pub mod inner;
+mod near;
 pub mod raster;
+pub mod rings;
 pub mod runs;
+mod stations;
 pub mod support;
 pub mod walls;
 pub mod window;
@@ -158,6 +162,23 @@ impl Params {
         Comb { raster: index, offset: 0, stride, joined: true }
     }
 
+    /// From the middle of the innermost wall (from the contour, if there is none) to
+    /// where lines end.
+    #[must_use]
+    pub fn wall_to_fill(&self) -> Coord {
+        match self.walls {
+            0 => self.fill_inset,
+            walls => self.fill_inset - self.outer_inset - (walls as Coord - 1) * self.line_width,
+        }
+    }
+
+    /// From the middle of the innermost wall (from the contour, if there is none) to
+    /// its inner edge.
+    #[must_use]
+    pub fn wall_edge(&self) -> Coord {
+        if self.walls > 0 { self.line_width / 2 } else { 0 }
+    }
+
     /// The raster of the skin of layer `k`, and the one across it.
     #[must_use]
     pub fn skin_rasters(&self, k: usize) -> (usize, usize) {
@@ -232,8 +253,8 @@ pub struct Skin {
     pub raster: usize,
     /// Its lines, row by row; bent and widened along walls.
     pub lines: Vec<Line>,
-    /// Beads along strips too thin for a line.
-    pub slivers: Vec<Vec<LinePoint>>,
+    /// Beads along narrow skin: at walls, and along strips too thin for a line.
+    pub beads: Vec<Vec<LinePoint>>,
 }
 
 /// Sparse lines of one layer in one direction: infill or support.

@@ -100,6 +100,24 @@ impl Scan {
     }
 }
 
+/// Where the lines of `raster` are within the radius that is given with each of `edges`;
+/// these are in the raster's frame.
+#[must_use]
+pub fn around(edges: &[(Point, Point, Coord)], raster: Raster) -> Rows {
+    let mut found = Vec::new();
+    for &(p, q, r) in edges {
+        cut(p, q, r, raster, &mut found);
+    }
+    let rows = || found.iter().map(|(j, _)| *j);
+    let Some((first, last)) = rows().min().zip(rows().max()) else { return Rows::default() };
+    let mut chords = Buckets::new(first..last + 1, &found);
+    let mut out = Rows::starting_at(first);
+    for j in chords.range() {
+        out.push_row(|spans| merge(chords.row(j), spans));
+    }
+    out
+}
+
 /// Lowest and highest `v` of the contours.
 fn extent(contours: &[Contour]) -> Option<(Coord, Coord)> {
     let mut all = contours.iter().flatten().map(|p| p.y);
@@ -208,12 +226,18 @@ fn chords(contours: &[Contour], raster: Raster, r: Coord) -> Buckets<Span> {
     let Some((low, high)) = extent(contours) else { return Buckets::new(0..0, &[]) };
     let mut found = Vec::new();
     for (p, q) in contours.iter().flat_map(|c| edges(c)) {
-        let capsule = Capsule::new(p, q, r);
-        for j in raster.rows(p.y.min(q.y) - r, p.y.max(q.y) + r) {
-            found.extend(capsule.chord(j * raster.pitch).map(|chord| (j, chord)));
-        }
+        cut(p, q, r, raster, &mut found);
     }
     Buckets::new(raster.rows(low - r, high + r), &found)
+}
+
+/// Adds the chords that the rows cut from the capsule of radius `r` around an edge.
+#[inline]
+fn cut(p: Point, q: Point, r: Coord, raster: Raster, found: &mut Vec<(i32, Span)>) {
+    let capsule = Capsule::new(p, q, r);
+    for j in raster.rows(p.y.min(q.y) - r, p.y.max(q.y) + r) {
+        found.extend(capsule.chord(j * raster.pitch).map(|chord| (j, chord)));
+    }
 }
 
 /// All points within `r` of the edge from `low` to `high` (`low.y <= high.y`).

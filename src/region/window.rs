@@ -6,11 +6,12 @@
 //! it: memory holds a batch and a few layers, whatever the height of the print.
 
 use super::audit::Audit;
-use super::classify::areas;
 use super::close::{Crossed, close};
+use super::divide::divide;
 use super::dual::{self, LayerAreas};
 use super::groups::{Block, Grouping};
 use super::inner::Skins;
+use super::rings::Bead;
 use super::walls::{self, Wall};
 use super::{Comb, Hatch, Params, Prepared, Region, Skin};
 use crate::geom::spans::Rows;
@@ -30,7 +31,7 @@ pub struct Window<'a> {
     batch: usize,
     layers: Queue<Prepared>,
     /// Those divided into skin and infill.
-    divided: Queue<LayerAreas>,
+    divided: Queue<Divided>,
     /// Layers handed on so far.
     done: usize,
     audits: Vec<Audit>,
@@ -43,6 +44,13 @@ pub struct Support {
     pub comb: Comb,
     /// Where they stand, by layer.
     pub rows: Vec<Rows>,
+}
+
+/// A layer's areas and the beads along its walls.
+#[derive(Debug)]
+struct Divided {
+    areas: LayerAreas,
+    beads: Vec<Bead>,
 }
 
 /// What classification finds for one layer, before it takes its walls along.
@@ -133,22 +141,19 @@ impl<'a> Window<'a> {
         let known = self.layers.end();
         let all = self.batch == self.slicer.blocks();
         let until = if all { known } else { known.saturating_sub(self.params.top_skins.max(1)) };
-        let divided: Vec<LayerAreas> =
+        let divided: Vec<Divided> =
             (self.divided.end()..until).into_par_iter().map(|k| self.divide(k)).collect();
         self.divided.values.extend(divided);
     }
 
-    /// The areas of layer `k` on both skin rasters and on those of its block's infill.
-    fn divide(&self, k: usize) -> LayerAreas {
+    /// The areas of layer `k` on both skin rasters and on those of its block's infill, and
+    /// the beads along its walls.
+    fn divide(&self, k: usize) -> Divided {
         let block = self.grouping.block(k, self.count());
         let combs = dual::combs(&block, self.grouping, self.params);
-        let mut out: LayerAreas = vec![None; self.params.rasters.len()];
-        for r in [0, 1].into_iter().chain(combs.iter().map(|c| c.raster)) {
-            if out[r].is_none() {
-                out[r] = Some(areas(k, r, &|k| self.layers.get(k), self.params));
-            }
-        }
-        out
+        let rasters = combs.iter().map(|c| c.raster);
+        let (areas, beads) = divide(k, rasters, &|k| self.layers.get(k), self.params);
+        Divided { areas, beads }
     }
 
     /// The next blocks whose layers have all they need.
@@ -173,7 +178,7 @@ impl<'a> Window<'a> {
         let none = LayerAreas::new();
         let layers = block.layers.clone();
         let areas: Vec<&LayerAreas> =
-            layers.clone().map(|k| self.divided.get(k).unwrap_or(&none)).collect();
+            layers.clone().map(|k| self.divided.get(k).map_or(&none, |d| &d.areas)).collect();
         let (infill, audit) = dual::infill(block, &areas, self.grouping, self.params);
         let (support, support_audit) = self.share_support(block);
         let skins: Vec<Vec<Skin>> = layers.into_par_iter().map(|k| self.skins(k)).collect();
@@ -208,7 +213,7 @@ impl<'a> Window<'a> {
     /// The skins of layer `k`, closed up to the walls.
     fn skins(&self, k: usize) -> Vec<Skin> {
         let rows = |r: usize| {
-            let areas = self.divided.get(k).and_then(|areas| areas[r].as_ref());
+            let areas = self.divided.get(k).and_then(|d| d.areas[r].as_ref());
             areas.map(|areas| areas.skin.clone()).unwrap_or_default()
         };
         let (along, across) = self.params.skin_rasters(k);
@@ -229,7 +234,7 @@ impl<'a> Window<'a> {
     /// The skin of layer `k` on raster `r`: what is printed for several layers, and what for
     /// this one alone.
     fn share_skin(&self, k: usize, r: usize) -> (Vec<(u32, Rows)>, Rows) {
-        let skin = |k: usize| self.divided.get(k)?.get(r)?.as_ref().map(|areas| &areas.skin);
+        let skin = |k: usize| self.divided.get(k)?.areas.get(r)?.as_ref().map(|areas| &areas.skin);
         let skins = Skins {
             layers: |k| self.layers.get(k),
             skins: skin,
@@ -244,15 +249,20 @@ impl<'a> Window<'a> {
     fn skin(&self, k: usize, layers: u32, rows: &Rows, columns: &Rows) -> Skin {
         let (along, across) = self.params.skin_rasters(k);
         let Some(layer) = self.layers.get(k) else { return Skin::default() };
+        let divided = self.divided.get(k);
+        let left = |r: usize| divided.and_then(|d| d.areas[r].as_ref()?.fill.as_ref());
+        let fill = |r: usize| left(r).unwrap_or(&layer.rows[r].fill);
         let crossed = Crossed {
             skin: rows,
-            fill: &layer.rows[along].fill,
+            fill: fill(along),
             columns,
-            fill_columns: &layer.rows[across].fill,
+            fill_columns: fill(across),
             left_turn: along == 0,
         };
         let (lines, slivers) = close(&crossed, self.params);
-        Skin { layers, raster: along, lines, slivers }
+        // Beads along walls are for this layer alone.
+        let beads = divided.filter(|_| layers == 1).map_or(&[] as &[Bead], |d| &d.beads);
+        Skin { layers, raster: along, lines, beads: [beads, &slivers].concat() }
     }
 
     /// The regions of the layers that `fillings` were made for, in order.

@@ -146,7 +146,11 @@ fn region(c: &mut Criterion, model: &Model) {
     });
     let prepared: Vec<Prepared> = layers.iter().map(|l| Prepared::new(l.clone(), params)).collect();
     group.bench_function(BenchmarkId::new("classify", model.name), |b| {
-        let areas = |k| classify::areas(k, 0, &|k| prepared.get(k), params).skin.total();
+        let areas = |k: usize| {
+            let fill = &prepared[k].rows[0].fill;
+            let exposed = classify::exposed(k, 0, &|k| prepared.get(k), params);
+            classify::areas(fill, &exposed, params.rasters[0].pitch, params).skin.total()
+        };
         b.iter(|| (0..prepared.len()).map(areas).sum::<i64>());
     });
     group.finish();

@@ -1,0 +1,131 @@
+//! Walls -> Near: whether a place keeps its distance from all of them.
+
+use crate::geom::{Contour, Point, edges};
+
+/// Cells along each side of an area, at most.
+const MOST_CELLS: f64 = 256.0;
+
+/// A box around some places, grid units.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Area {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Area {
+    /// Around `places`, with `margin` on all sides.
+    pub(super) fn around(places: impl Iterator<Item = [f64; 2]>, margin: f64) -> Self {
+        let none = Self { low: [f64::MAX; 2], high: [f64::MIN; 2] };
+        let mut out = places.fold(none, |area, p| Self {
+            low: [0, 1].map(|k| area.low[k].min(p[k])),
+            high: [0, 1].map(|k| area.high[k].max(p[k])),
+        });
+        out.low = out.low.map(|x| x - margin);
+        out.high = out.high.map(|x| x + margin);
+        out
+    }
+
+    fn meets(&self, [p, q]: &[[f64; 2]; 2]) -> bool {
+        (0..2).all(|k| p[k].min(q[k]) <= self.high[k] && p[k].max(q[k]) >= self.low[k])
+    }
+}
+
+/// The edges of closed walls that meet an area, sorted into square cells.
+#[derive(Debug)]
+pub(super) struct Near {
+    edges: Vec<[[f64; 2]; 2]>,
+    low: [f64; 2],
+    side: f64,
+    /// Columns and rows of cells.
+    size: [usize; 2],
+    /// Where each cell begins in `items`; one more than there are cells.
+    starts: Vec<u32>,
+    /// Indices of edges whose boxes meet the cell.
+    items: Vec<u32>,
+}
+
+impl Near {
+    /// Cells of side `side`, larger where they would be too many.
+    pub(super) fn new(walls: &[Contour], area: Area, side: f64) -> Self {
+        let point = |p: Point| [f64::from(p.x), f64::from(p.y)];
+        let all = walls.iter().flat_map(|w| edges(w)).map(|(p, q)| [point(p), point(q)]);
+        let edges: Vec<[[f64; 2]; 2]> = all.filter(|edge| area.meets(edge)).collect();
+        let extent = [0, 1].map(|k| (area.high[k] - area.low[k]).max(0.0));
+        let side = side.max(extent[0].max(extent[1]) / MOST_CELLS);
+        let size = extent.map(|x| (x / side) as usize + 1);
+        let starts = vec![0; size[0] * size[1] + 1];
+        let mut near = Self { edges, low: area.low, side, size, starts, items: Vec::new() };
+        near.sort();
+        near
+    }
+
+    /// Sorts the edges into the cells by counting.
+    fn sort(&mut self) {
+        let mut next = vec![0_u32; self.starts.len()];
+        for [p, q] in &self.edges {
+            self.cells(*p, *q).for_each(|cell| next[cell + 1] += 1);
+        }
+        for k in 1..next.len() {
+            next[k] += next[k - 1];
+        }
+        self.starts.clone_from(&next);
+        let mut items = vec![0; next.last().map_or(0, |&n| n as usize)];
+        for (k, [p, q]) in (0..).zip(&self.edges) {
+            for cell in self.cells(*p, *q) {
+                items[next[cell] as usize] = k;
+                next[cell] += 1;
+            }
+        }
+        self.items = items;
+    }
+
+    /// The cells that meet the box with corners `p` and `q`.
+    fn cells(&self, p: [f64; 2], q: [f64; 2]) -> impl Iterator<Item = usize> + use<> {
+        // Casts to unsigned numbers hold below zero; what is beyond the area counts to its edge.
+        let at =
+            |x: f64, k: usize| (((x - self.low[k]) / self.side) as usize).min(self.size[k] - 1);
+        let range = |k: usize| at(p[k].min(q[k]), k)..=at(p[k].max(q[k]), k);
+        let (columns, rows, width) = (range(0), range(1), self.size[0]);
+        rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
+    }
+
+    /// Whether no wall is nearer to `p`, within the area, than `distance`.
+    pub(super) fn is_free(&self, p: [f64; 2], distance: f64) -> bool {
+        let (low, high) = (p.map(|x| x - distance), p.map(|x| x + distance));
+        self.cells(low, high).all(|cell| {
+            let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
+            let mut edges = self.items[range].iter().map(|&k| self.edges[k as usize]);
+            edges.all(|edge| distance2(p, edge) >= distance * distance)
+        })
+    }
+}
+
+/// The squared distance from `p` to an edge.
+fn distance2(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let from = [p[0] - a[0], p[1] - a[1]];
+    let square = (along[0] * along[0] + along[1] * along[1]).max(1.0);
+    let t = ((from[0] * along[0] + from[1] * along[1]) / square).clamp(0.0, 1.0);
+    let off = [from[0] - t * along[0], from[1] - t * along[1]];
+    off[0] * off[0] + off[1] * off[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_is_free_up_to_its_distance_from_the_nearest_wall() {
+        let p = |x, y| Point { x, y };
+        let square = vec![p(0, 0), p(40_000, 0), p(40_000, 40_000), p(0, 40_000)];
+        let area = Area::around([[0.0; 2], [40_000.0; 2]].into_iter(), 10_000.0);
+        let near = Near::new(&[square], area, 4_000.0);
+        for (at, far) in [([20_000.0, 3_000.0], 3_000.0), ([39_000.0, 20_000.0], 1_000.0)] {
+            assert!(near.is_free(at, far));
+            assert!(!near.is_free(at, far + 1.0));
+        }
+        // Around a corner it is the corner itself that counts.
+        assert!(near.is_free([43_000.0, 44_000.0], 5_000.0));
+        assert!(!near.is_free([43_000.0, 44_000.0], 5_001.0));
+    }
+}

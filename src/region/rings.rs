@@ -1,0 +1,291 @@
+//! Walls and exposed rows of two crossing rasters -> Beads: narrow skin along the walls.
+//!
+//! On a slope the skin is a ring hardly wider than a line just inside the wall, on
+//! a blade it is a strip. Zig-zags there are all turns. Where a row crosses the inner
+//! edge of the walls it tells exactly how deep the skin is behind it, and how far it
+//! is to the wall on the other side; of the two rasters one always crosses the wall at
+//! 45° or steeper. What one to three beads can cover is laid along the wall; what is
+//! deeper stays for lines. Between two walls the beads of both sides share the width.
+
+use super::Params;
+use super::bend::LinePoint;
+use super::close::Crossed;
+use super::near::Near;
+use super::raster::{Raster, around};
+use super::stations::{Station, stations};
+use crate::geom::frame::Frame;
+use crate::geom::spans::Rows;
+use crate::geom::{Contour, Point};
+use crate::units::{Coord, nearest};
+
+/// A bead that follows a wall, in the frame of the skin's raster.
+pub type Bead = Vec<LinePoint>;
+
+/// At most this many beads beside each other along one wall.
+pub(super) const MOST_BEADS: usize = 3;
+
+/// A bead along a wall is at least this many line widths wide, where there is room.
+pub(super) const NARROWEST: f64 = 0.75;
+
+/// A strip between two walls up to this many line widths wide gets one bead.
+const SINGLE: f64 = 1.6;
+
+/// Beads may be this much nearer to a wall than asked for, in line widths: walls on
+/// both sides of a strip are not quite parallel.
+const SLACK: f64 = 0.15;
+
+/// Beads shorter than this many line widths are left to the lines, and gaps in a bead
+/// shorter than this are closed.
+pub(super) const SHORT: f64 = 2.5;
+
+/// Changes of place below this are not worth a corner (10 µm).
+const LEAST_BEND: f64 = 100.0;
+
+/// Changes of width weigh this many times less.
+const WIDTH_TO_PLACE: f64 = 3.0;
+
+/// A place on the way of a bead.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Place {
+    at: [f64; 2],
+    width: f64,
+    /// How far all walls have to be away.
+    clear: f64,
+}
+
+/// The beads that cover the narrow parts of the exposed skin `crossed` along `walls`:
+/// the innermost walls, or the contours of a part without any, in the frame of the
+/// raster that is printed.
+#[must_use]
+pub fn rings(walls: &[Contour], crossed: &Crossed<'_>, params: &Params) -> Vec<Bead> {
+    if crossed.skin.is_empty() && crossed.columns.is_empty() {
+        return Vec::new();
+    }
+    let Some((laps, near)) = stations(walls, crossed, params) else { return Vec::new() };
+    let mut out = Vec::new();
+    for lap in &laps {
+        for index in 0..MOST_BEADS {
+            for arc in arcs(lap, index, &near, params) {
+                out.push(bead(&arc, params));
+            }
+        }
+    }
+    out
+}
+
+/// Where the bead with `index`, counted from the wall, runs at a station; none if there
+/// is none, or if another wall is too near.
+fn place(station: &Station, index: usize, near: &Near, params: &Params) -> Option<Place> {
+    let w = f64::from(params.line_width);
+    if index >= station.beads {
+        return None;
+    }
+    let edge = f64::from(params.wall_edge());
+    let single = station.shared && 2.0 * station.depth < SINGLE * w;
+    let (width, from) = if single {
+        // One of the two walls lays the bead between them.
+        let [x, y] = station.normal;
+        (2.0 * station.depth, (x > 0.0 || (x == 0.0 && y > 0.0)).then_some(0.0)?)
+    } else {
+        let even = station.depth / station.beads as f64;
+        let width = if station.shared { even } else { even.max(NARROWEST * w) };
+        (width, index as f64 * width)
+    };
+    let away = edge + from + width / 2.0;
+    let [x, y] = [0, 1].map(|k| station.at[k] + away * station.normal[k]);
+    // Without a wall there is nothing to lie on, only an outside to stay within.
+    let clear = away - if params.walls > 0 { SLACK * w } else { LEAST_BEND };
+    near.is_free([x, y], clear).then_some(Place { at: [x, y], width, clear })
+}
+
+/// The stretches of a lap around a wall that bead `index` takes, long enough to be
+/// worth it. One that goes all round ends where it begins.
+fn arcs(lap: &[Station], index: usize, near: &Near, params: &Params) -> Vec<Vec<Place>> {
+    let short = SHORT * f64::from(params.line_width);
+    // Begins where there is no such bead, so that no arc is cut in two; else once more at its end.
+    let bare = lap.iter().position(|s| s.beads <= index);
+    let around = lap.iter().cycle().skip(bare.unwrap_or(0));
+    let around = around.take(lap.len() + usize::from(bare.is_none()));
+    let mut arcs: Vec<Vec<Place>> = Vec::new();
+    let mut open = false;
+    for station in around {
+        if station.beads <= index {
+            open = false;
+            continue;
+        }
+        // What is too near to another wall is left out: the corner of a bead is where
+        // its two sides meet.
+        let Some(place) = place(station, index, near, params) else { continue };
+        let last = arcs.last_mut().filter(|_| open);
+        match last.filter(|a| a.last().is_some_and(|l| joins(l, &place, near, params))) {
+            Some(arc) => arc.push(place),
+            None => arcs.push(vec![place]),
+        }
+        open = true;
+    }
+    arcs.retain(|arc| length(arc) >= short);
+    arcs
+}
+
+/// Whether a bead may go straight from one place to the next: not far, and not across
+/// a wall that pokes in between.
+fn joins(a: &Place, b: &Place, near: &Near, params: &Params) -> bool {
+    let w = f64::from(params.line_width);
+    let far = distance(a.at, b.at);
+    let middle = [0, 1].map(|k| f64::midpoint(a.at[k], b.at[k]));
+    far <= w / 2.0 || far <= SHORT * w && near.is_free(middle, a.clear.min(b.clear) - SLACK * w)
+}
+
+/// Where on `raster` no line may end because of `beads`, which are in `frame`: lines
+/// reach into them as they do into walls.
+#[must_use]
+pub fn taken(beads: &[Bead], frame: Frame, raster: Raster, params: &Params) -> Rows {
+    let enter = |p: &LinePoint| raster.frame.enter(frame.leave(Point { x: p.u, y: p.v }));
+    let more = params.line_width / 2 - params.overlap;
+    let edges: Vec<(Point, Point, Coord)> = beads
+        .iter()
+        .flat_map(|b| b.windows(2))
+        .map(|w| (enter(&w[0]), enter(&w[1]), (w[1].width / 2 + more).max(0)))
+        .collect();
+    around(&edges, raster)
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (x, y) = (b[0] - a[0], b[1] - a[1]);
+    (x * x + y * y).sqrt()
+}
+
+fn length(arc: &[Place]) -> f64 {
+    arc.windows(2).map(|w| distance(w[0].at, w[1].at)).sum()
+}
+
+/// The points of a bead, only those where it bends or changes its width.
+fn bead(arc: &[Place], params: &Params) -> Bead {
+    let mut kept = vec![0];
+    keep_bends(arc, 0, arc.len() - 1, &mut kept);
+    kept.push(arc.len() - 1);
+    let mut before = arc[0].width;
+    kept.into_iter()
+        .map(|k| {
+            let Place { at: [u, v], width, .. } = arc[k];
+            let mean = f64::midpoint(before, width);
+            // On its way to a narrow end a bead lies on the wall a little, if there is one.
+            let mean = if params.walls > 0 { mean } else { mean.min(before.min(width)) };
+            before = width;
+            LinePoint {
+                u: nearest(u) as Coord,
+                v: nearest(v) as Coord,
+                width: nearest(mean) as Coord,
+            }
+        })
+        .collect()
+}
+
+/// Between places `a` and `b`, keeps those that a straight bead from `a` to `b` would
+/// miss (Ramer 1972, Douglas and Peucker 1973).
+fn keep_bends(arc: &[Place], a: usize, b: usize, kept: &mut Vec<usize>) {
+    let (first, last) = (arc[a], arc[b]);
+    let chord = [0, 1].map(|k| last.at[k] - first.at[k]);
+    let square = chord[0] * chord[0] + chord[1] * chord[1];
+    let miss = |k: usize| {
+        let from = [0, 1].map(|i| arc[k].at[i] - first.at[i]);
+        let t = (from[0] * chord[0] + from[1] * chord[1]) / square.max(1.0);
+        let t = t.clamp(0.0, 1.0);
+        let foot = [0, 1].map(|i| first.at[i] + t * chord[i]);
+        let width = first.width + t * (last.width - first.width);
+        distance(foot, arc[k].at).max((width - arc[k].width).abs() / WIDTH_TO_PLACE)
+    };
+    let worst = (a + 1..b)
+        .map(|k| (miss(k), k))
+        .max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1)))
+        .filter(|(miss, _)| *miss > LEAST_BEND);
+    if let Some((_, k)) = worst {
+        keep_bends(arc, a, k, kept);
+        kept.push(k);
+        keep_bends(arc, k, b, kept);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::polygon;
+    use crate::profile;
+    use crate::region::raster::Scan;
+
+    /// The beads of a part with one wall whose skin is exposed up to `covered` from its
+    /// contour; lines along x.
+    fn beads(part: &[Contour], covered: Coord) -> (Vec<Bead>, Params) {
+        let mut settings = profile::load("generic-marlin", &[]).unwrap().settings;
+        settings.angle = profile::Angle::Degrees(0.0);
+        settings.walls = 1;
+        let params = Params::new(&settings);
+        let rows = |r: usize| {
+            let scan = Scan::new(part, params.rasters[r]);
+            let fill = scan.inset(params.fill_inset);
+            (fill.minus(&scan.inset(covered)), fill)
+        };
+        let ((skin, fill), (columns, fill_columns)) = (rows(0), rows(1));
+        let crossed = Crossed {
+            skin: &skin,
+            fill: &fill,
+            columns: &columns,
+            fill_columns: &fill_columns,
+            left_turn: true,
+        };
+        let walls = polygon::inset(part, params.outer_inset);
+        (rings(&walls, &crossed, &params), params)
+    }
+
+    fn block(width: Coord, depth: Coord) -> Vec<Contour> {
+        let p = |x, y| Point { x, y };
+        vec![vec![p(0, 0), p(width, 0), p(width, depth), p(0, depth)]]
+    }
+
+    #[test]
+    fn a_ring_of_skin_is_a_closed_bead_beside_the_wall() {
+        // Exposed as far as 1 mm from the contour: 0.6 mm from the wall's inner edge.
+        let (beads, params) = beads(&block(200_000, 150_000), 10_000);
+        assert_eq!(beads.len(), 1, "{beads:?}");
+        assert_eq!(beads[0].first().map(|p| (p.u, p.v)), beads[0].last().map(|p| (p.u, p.v)));
+        for p in &beads[0] {
+            let away = p.u.min(p.v).min(200_000 - p.u).min(150_000 - p.v);
+            assert!((p.width - 6_000).abs() <= 2, "{p:?}");
+            assert!((away - params.line_width - p.width / 2).abs() <= 2, "{p:?}");
+        }
+    }
+
+    #[test]
+    fn deeper_skin_takes_more_beads_and_wide_skin_none() {
+        let lay = |covered: Coord| beads(&block(200_000, 150_000), covered).0.len();
+        assert_eq!([lay(14_000), lay(20_000), lay(26_000), lay(60_000)], [2, 3, 0, 0]);
+    }
+
+    #[test]
+    fn a_solid_layer_has_no_beads_not_even_in_its_corners() {
+        let (beads, _) = beads(&block(200_000, 150_000), 100_000);
+        assert!(beads.is_empty(), "{beads:?}");
+    }
+
+    #[test]
+    fn both_sides_of_a_strip_share_its_width() {
+        // 1.7 mm with walls, 0.9 mm within: one closed bead that turns at the ends.
+        let (beads, _) = beads(&block(300_000, 17_000), 10_000);
+        assert_eq!(beads.len(), 1, "{beads:?}");
+        for p in beads.iter().flatten().filter(|p| p.u > 20_000 && p.u < 280_000) {
+            assert!((p.width - 4_500).abs() <= 2, "{p:?}");
+            assert!([6_250, 10_750].iter().any(|v| (p.v - v).abs() <= 2), "{p:?}");
+        }
+    }
+
+    #[test]
+    fn a_strip_too_thin_for_two_gets_one_bead_along_its_middle() {
+        let (beads, _) = beads(&block(300_000, 13_000), 10_000);
+        assert_eq!(beads.len(), 1, "{beads:?}");
+        for p in &beads[0] {
+            assert!((p.width - 5_000).abs() <= 2 && (p.v - 6_500).abs() <= 2, "{p:?}");
+        }
+        let length = beads[0][0].u - beads[0].last().unwrap().u;
+        assert!(length.abs() > 280_000, "{length}");
+    }
+}

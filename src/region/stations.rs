@@ -1,0 +1,387 @@
+//! Wall and exposed rows -> Stations: how deep the exposed skin is behind each place of a wall.
+
+use super::Params;
+use super::close::Crossed;
+use super::near::{Area, Near};
+use super::rings::{MOST_BEADS, NARROWEST, SHORT};
+use crate::geom::spans::{Rows, Span};
+use crate::geom::{Contour, Point, edges};
+use crate::units::{Coord, between};
+
+/// A bead takes a depth of up to this many line widths on its own.
+const WIDEST: f64 = 1.5;
+
+/// Strips between two walls get beads if they are no wider than twice this many line
+/// widths, one along either wall: wider ones taper too much for more.
+const SHARED: f64 = 1.6;
+
+/// A bead is stretched to this many line widths to spare another one on a short way.
+const STRETCHED: f64 = 1.75;
+
+/// Depths up to this many line widths more than the beads cover are left open: the
+/// walls of the layer that ends there reach over it.
+const OPEN: f64 = 0.1;
+
+/// Between skin along two walls, this many line widths are not worth any infill.
+const GAP: f64 = 2.0;
+
+/// A place beyond the middle of a strip, as a share of its width.
+const BEYOND: f64 = 0.6;
+
+/// How much further away the other wall may be there, as a share of the strip's width.
+const SLOPE: f64 = 0.1;
+
+/// How far out the middle of a round corner lies, so that its chords keep their distance.
+const ROUND: f64 = 1.2;
+
+/// Stretches that seem deep are narrow all the same if narrow skin follows within this
+/// many line widths: near a corner the depth is that along the other wall.
+const CORNER: f64 = 11.0;
+
+/// Beads and gaps closed in them are no further than this many line widths from a
+/// station that has beads.
+const MARGIN: f64 = CORNER + 8.0;
+
+/// A place of a wall, and the skin behind it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Station {
+    /// On the wall.
+    pub at: [f64; 2],
+    /// What leads away from the wall: its length is that of a mitre, 1 where the wall is straight.
+    pub normal: [f64; 2],
+    /// How deep the skin is, from the walls' inner edge.
+    pub depth: f64,
+    /// The depth ends half-way to another wall, which lays beads as well.
+    pub shared: bool,
+    /// How many beads it takes; 0 where there is no skin or too much.
+    pub beads: usize,
+    /// Distance from the wall's first point along the wall.
+    way: f64,
+    /// There is skin, whether or not beads can cover it.
+    skin: bool,
+}
+
+/// The stations of closed walls in the order of their points; none where beads cover
+/// nothing. Also all edges of the walls, if there are stations.
+pub(super) fn stations(
+    walls: &[Contour],
+    crossed: &Crossed<'_>,
+    params: &Params,
+) -> Option<(Vec<Vec<Station>>, Near)> {
+    let mut laps: Vec<Vec<Station>> = walls.iter().map(|w| measured(w, crossed, params)).collect();
+    if laps.iter().flatten().all(|s| s.beads == 0) {
+        return None;
+    }
+    let with_beads = laps.iter().flatten().filter(|s| s.beads > 0).map(|s| s.at);
+    let w = f64::from(params.line_width);
+    let near = Near::new(walls, Area::around(with_beads, MARGIN * w), 2.0 * w);
+    for (lap, wall) in laps.iter_mut().zip(walls) {
+        lap.iter_mut().filter(|s| s.shared).for_each(|s| s.confirm(&near, params));
+        *lap = settled(wall, std::mem::take(lap), params);
+    }
+    Some((laps, near))
+}
+
+/// The stations of a wall without short changes, with the wall's own corners.
+fn settled(wall: &Contour, mut found: Vec<Station>, params: &Params) -> Vec<Station> {
+    if found.iter().all(|s| s.beads == 0) {
+        return Vec::new();
+    }
+    let round = edges(wall).map(|(p, q)| p.distance(q)).sum::<f64>();
+    bridge(&mut found, round, params);
+    calm(&mut found, round, params);
+    with_corners(wall, &found, round, params)
+}
+
+impl Station {
+    /// Keeps no beads where the wall at the other end of the row is not beside this one:
+    /// beyond the middle of a strip the other wall is the nearer one, in a corner it is not.
+    fn confirm(&mut self, near: &Near, params: &Params) {
+        let across = 2.0 * (self.depth + f64::from(params.wall_edge()));
+        let beyond = [0, 1].map(|k| self.at[k] + BEYOND * across * self.normal[k]);
+        if near.is_free(beyond, (1.0 - BEYOND + SLOPE) * across) {
+            self.shared = false;
+            self.beads = 0;
+        }
+    }
+}
+
+/// Where rows cross the inner edge of the walls: each edge of the wall under the raster
+/// whose rows it crosses at 45° or steeper.
+fn measured(wall: &Contour, crossed: &Crossed<'_>, params: &Params) -> Vec<Station> {
+    let turned = |p: Point| {
+        if crossed.left_turn { Point { x: p.y, y: -p.x } } else { Point { x: -p.y, y: p.x } }
+    };
+    let mut out = Vec::with_capacity(wall.len());
+    let mut way = 0.0;
+    for (p, q) in edges(wall) {
+        let steep = (q.y - p.y).abs() >= (q.x - p.x).abs();
+        let edge = Edge::new(p, q, way);
+        way += edge.length;
+        if steep {
+            edge.measure((p, q), (crossed.fill, crossed.skin), params, &mut out);
+        } else {
+            let ends = (turned(p), turned(q));
+            edge.measure(ends, (crossed.fill_columns, crossed.columns), params, &mut out);
+        }
+    }
+    out
+}
+
+/// An edge of a wall.
+struct Edge {
+    from: [f64; 2],
+    /// Its direction; the solid is on its left.
+    along: [f64; 2],
+    length: f64,
+    way: f64,
+}
+
+impl Edge {
+    fn new(p: Point, q: Point, way: f64) -> Self {
+        let length = p.distance(q);
+        let [x, y] = [f64::from(q.x) - f64::from(p.x), f64::from(q.y) - f64::from(p.y)];
+        let from = [f64::from(p.x), f64::from(p.y)];
+        Self { from, along: [x / length.max(1.0), y / length.max(1.0)], length, way }
+    }
+
+    fn normal(&self) -> [f64; 2] {
+        [-self.along[1], self.along[0]]
+    }
+
+    /// Adds the stations where the rows of `fill` and `exposed` cross this edge, which
+    /// is `p` to `q` in their frame.
+    fn measure(
+        &self,
+        (p, q): (Point, Point),
+        (fill, exposed): (&Rows, &Rows),
+        params: &Params,
+        out: &mut Vec<Station>,
+    ) {
+        let inset = f64::from(params.wall_to_fill());
+        let rise = f64::from(q.y) - f64::from(p.y);
+        let run = f64::from(q.x) - f64::from(p.x);
+        let by = |part: f64| (inset * part / self.length.max(1.0)).round() as Coord;
+        let moved = |p: Point| Point { x: p.x - by(rise), y: p.y + by(run) };
+        let (a, b) = (moved(p), moved(q));
+        let up = a.y < b.y;
+        let (low, high) = if up { (a, b) } else { (b, a) };
+        let pitch = params.line_width;
+        let sine = rise.abs() / self.length.max(1.0);
+        let first = out.len();
+        for j in low.y.div_euclid(pitch) + 1..high.y.div_euclid(pitch) + 1 {
+            let v = j * pitch;
+            let u = between(low.x, high.x, (v, low.y, high.y));
+            let t = f64::from(v - a.y) / f64::from(b.y - a.y);
+            let at = [0, 1].map(|k| self.from[k] + t * self.length * self.along[k]);
+            let blank = Station {
+                at,
+                normal: self.normal(),
+                depth: 0.0,
+                shared: false,
+                beads: 0,
+                way: self.way + t * self.length,
+                skin: false,
+            };
+            if exposed.row(j).is_empty() {
+                out.push(blank);
+                continue;
+            }
+            let behind = Behind::new(fill.row(j), exposed.row(j), u, !up, pitch);
+            out.extend(behind.map(|b| b.station(blank, sine, params)));
+        }
+        if !up {
+            out[first..].reverse();
+        }
+    }
+}
+
+/// What a row meets behind the inner edge of the walls.
+struct Behind {
+    /// Length of the exposed skin from there on.
+    skin: i64,
+    /// Length of the exposed skin at the other end.
+    other: i64,
+    /// To the walls at the other end.
+    room: i64,
+}
+
+impl Behind {
+    /// For a row that crosses the edge at about `u`, entering to the right or to the left.
+    fn new(fill: &[Span], exposed: &[Span], u: Coord, right: bool, pitch: Coord) -> Option<Self> {
+        let end = |s: &Span| if right { s.start } else { s.end };
+        let near = |s: &&Span| (end(s) - u).abs() <= pitch / 4;
+        let fill = fill.iter().filter(near).min_by_key(|s| (end(s) - u).abs())?;
+        let from = exposed.partition_point(|s| s.end <= fill.start);
+        let to = exposed.partition_point(|s| s.start < fill.end);
+        let here = exposed.get(from..to).unwrap_or_default().iter();
+        let distance = |a: Coord, b: Coord| i64::from(b) - i64::from(a);
+        let from_start = |s: &Span| (distance(fill.start, s.start), distance(fill.start, s.end));
+        let from_end = |s: &Span| (distance(s.end, fill.end), distance(s.start, fill.end));
+        let at_start = reach(here.clone().map(from_start), pitch);
+        let at_end = reach(here.rev().map(from_end), pitch);
+        let (skin, other) = if right { (at_start, at_end) } else { (at_end, at_start) };
+        Some(Self { skin, other, room: fill.len() })
+    }
+
+    /// `blank` with what is behind it; `sine` is that of the angle at which the row crosses.
+    fn station(&self, blank: Station, sine: f64, params: &Params) -> Station {
+        let w = f64::from(params.line_width);
+        let lead = f64::from(params.wall_to_fill() - params.wall_edge());
+        let skin = self.skin > 0 || self.other > 0;
+        let depth = |length: i64| length as f64 * sine + lead;
+        // What a bead covers at least of either side.
+        let taken = |length: i64| if length > 0 { depth(length).max(NARROWEST * w) } else { 0.0 };
+        let across = depth(self.room) + lead;
+        if skin && across - taken(self.skin) - taken(self.other) <= GAP * w {
+            let depth = across / 2.0;
+            let beads = usize::from(depth <= SHARED * w);
+            return Station { depth, shared: true, beads, skin: true, ..blank };
+        }
+        if self.skin == 0 {
+            return blank;
+        }
+        let depth = depth(self.skin);
+        Station { depth, beads: beads(depth, w), skin: true, ..blank }
+    }
+}
+
+/// How far stretches reach that begin at zero; what is covered between two of them is
+/// a speck if it is shorter than half a `pitch`.
+fn reach(stretches: impl Iterator<Item = (i64, i64)>, pitch: Coord) -> i64 {
+    let mut end = 0;
+    for (from, to) in stretches {
+        if from > end + i64::from(pitch / 2) {
+            break;
+        }
+        end = to;
+    }
+    end
+}
+
+/// How many beads cover a depth; none if it is too deep.
+fn beads(depth: f64, w: f64) -> usize {
+    let count = (((depth - OPEN * w) / (WIDEST * w)).ceil() as usize).max(1);
+    if count <= MOST_BEADS { count } else { 0 }
+}
+
+/// The stretches of stations with the same value of `key` as index ranges around the
+/// wall, which go on beyond the last station into the first ones.
+fn stretches<K: PartialEq>(
+    stations: &[Station],
+    key: impl Fn(&Station) -> K,
+) -> Vec<(usize, usize)> {
+    let n = stations.len();
+    let differs = |k: usize| key(&stations[k % n]) != key(&stations[(k + n - 1) % n]);
+    let starts: Vec<usize> = (0..n).filter(|&k| differs(k)).collect();
+    let ends = starts.iter().skip(1).copied().chain(starts.first().map(|k| k + n));
+    starts.iter().copied().zip(ends).collect()
+}
+
+/// The way from the station before a stretch to the one behind it.
+fn span(stations: &[Station], (from, to): (usize, usize), round: f64) -> f64 {
+    let n = stations.len();
+    let way = stations[to % n].way - stations[(from + n - 1) % n].way;
+    if way > 0.0 { way } else { way + round }
+}
+
+/// Gives beads to short stretches without between two with beads.
+fn bridge(stations: &mut [Station], round: f64, params: &Params) {
+    let (n, w) = (stations.len(), f64::from(params.line_width));
+    for (from, to) in stretches(stations, |s| s.beads > 0) {
+        let (before, after) = (stations[(from + n - 1) % n], stations[to % n]);
+        if stations[from % n].beads > 0 {
+            continue;
+        }
+        let deep = (from..to).any(|k| stations[k % n].skin);
+        let most = if deep { CORNER } else { SHORT } * w;
+        if span(stations, (from, to), round) > most {
+            continue;
+        }
+        let model = if before.depth <= after.depth { before } else { after };
+        for k in from..to {
+            let station = &mut stations[k % n];
+            let Station { depth, shared, beads, .. } = model;
+            *station = Station { depth, shared, beads, ..*station };
+        }
+    }
+}
+
+/// Spares beads on short stretches, and closes short gaps in them.
+fn calm(stations: &mut [Station], round: f64, params: &Params) {
+    let (n, w) = (stations.len(), f64::from(params.line_width));
+    for (from, to) in stretches(stations, |s| s.beads) {
+        let (before, after) = (stations[(from + n - 1) % n].beads, stations[to % n].beads);
+        let here = stations[from % n].beads;
+        let (fewer, more) = (before.min(after), before.max(after));
+        let other = match here {
+            0 => continue,
+            _ if here < fewer => fewer,
+            _ if here > more => more,
+            _ => continue,
+        };
+        if other == 0 || span(stations, (from, to), round) > SHORT * w {
+            continue;
+        }
+        let fits = |s: &Station| s.depth <= other as f64 * STRETCHED * w;
+        if (from..to).all(|k| fits(&stations[k % n])) {
+            (from..to).for_each(|k| stations[k % n].beads = other);
+        }
+    }
+}
+
+/// Adds the wall's own corners to the stations found, with the skin of the nearest one.
+fn with_corners(wall: &Contour, found: &[Station], round: f64, params: &Params) -> Vec<Station> {
+    let most = SHORT * f64::from(params.line_width);
+    let n = wall.len();
+    let mut out = Vec::with_capacity(found.len() + n);
+    let mut way = 0.0;
+    let mut next = 0;
+    for (k, (p, q)) in edges(wall).enumerate() {
+        let (before, edge) = (Edge::new(wall[(k + n - 1) % n], p, 0.0), Edge::new(p, q, way));
+        let near = |k: usize| {
+            let station = found[k % found.len()];
+            let away = (station.way - way).abs();
+            (away.min(round - away), station)
+        };
+        let (a, b) = (near(next + found.len() - 1), near(next));
+        let nearest = if a.0 <= b.0 { a } else { b };
+        let gap = a.0 + b.0;
+        let alike = a.1.beads == b.1.beads && a.1.shared == b.1.shared;
+        let depth = if alike && gap > 0.0 {
+            (a.1.depth * b.0 + b.1.depth * a.0) / gap
+        } else {
+            nearest.1.depth
+        };
+        let beads = if nearest.0 <= most { nearest.1.beads } else { 0 };
+        let corner = Station { at: edge.from, way, depth, beads, ..nearest.1 };
+        add_corner(&before, &edge, corner, &mut out);
+        way += edge.length;
+        while let Some(station) = found.get(next).filter(|s| s.way <= way) {
+            out.push(*station);
+            next += 1;
+        }
+    }
+    // Of places without beads one in a row is enough.
+    out.dedup_by(|b, a| a.beads == 0 && b.beads == 0);
+    out
+}
+
+/// Adds a corner between two edges: on its mitre, or round in three points where that
+/// would reach far.
+fn add_corner(before: &Edge, after: &Edge, corner: Station, out: &mut Vec<Station>) {
+    let (a, b) = (before.normal(), after.normal());
+    let cosine = a[0] * b[0] + a[1] * b[1];
+    if cosine >= 0.0 {
+        let normal = [0, 1].map(|k| (a[k] + b[k]) / (1.0 + cosine));
+        out.push(Station { normal, ..corner });
+        return;
+    }
+    // Between the edges, or straight on where the wall turns back.
+    let length = (2.0 + 2.0 * cosine).max(0.0).sqrt();
+    let middle = [0, 1].map(|k| {
+        let ahead = if length > 0.1 { (a[k] + b[k]) / length } else { before.along[k] };
+        ahead * ROUND
+    });
+    out.extend([a, middle, b].map(|normal| Station { normal, ..corner }));
+}
