@@ -1,7 +1,7 @@
 //! Path -> Path: sharp turns cut into a few flat ones, which the nozzle takes without stopping.
 //!
 //! A machine brakes for a corner the more, the sharper it is, and a zig-zag is
-//! nothing but lines and corners. Each corner sharper than [`SHARPEST`] gives way
+//! nothing but lines and corners. Each corner sharper than `SHARPEST` gives way
 //! to equal ones along an arc within the triangle that it spans. The arc is shorter
 //! than the way round the corner; the material that this saves is spread over the
 //! whole path, since a wider arc would be more at once than a hot end melts.
