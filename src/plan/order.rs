@@ -4,8 +4,9 @@
 //! it. Within an island the order is walls, skin, infill; support comes last on
 //! the layer. Each step goes to the piece whose start or end is nearest; ties
 //! go to the piece that comes first in the list, so that the order is fixed.
+//! The last chains of a layer are also tried backwards from where the next one begins.
 
-use super::{Path, Pieces, PlanParams, Role};
+use super::{Path, Pieces, PlanParams, Role, tour};
 use crate::geom::{Contour, Point, double_area, edges, encloses};
 use crate::region::walls::Wall;
 use crate::units::Coord;
@@ -24,6 +25,9 @@ pub fn order(pieces: Pieces, height: Coord, mut at: Point, params: &PlanParams) 
         }
     }
     order_chains(support, &mut at, &mut out);
+    if params.seam_rear {
+        lead_back(&mut out);
+    }
     out
 }
 
@@ -143,16 +147,113 @@ fn order_walls(
 
 /// Orders chains nearest first from either end.
 fn order_chains(chains: Vec<Path>, at: &mut Point, out: &mut Vec<Path>) {
-    let mut ends: Vec<(Point, Point)> = chains.iter().map(|c| (c.start(), c.end())).collect();
-    let mut left = chains;
-    let from = |at: Point, (a, b): &(Point, Point)| a.distance2(at).min(b.distance2(at));
-    while let Some(k) = nearest(ends.iter().map(|e| from(*at, e))) {
-        let (start, end) = ends.swap_remove(k);
-        let mut path = left.swap_remove(k);
-        if end.distance2(*at) < start.distance2(*at) {
-            path.reverse();
+    let first = out.len();
+    out.extend(pick(chains, |ends| nearest_first(ends, *at)));
+    *at = out[first..].last().map_or(*at, Path::end);
+}
+
+/// Where a chain begins and ends.
+type Ends = (Point, Point);
+
+/// Which chain is next, and whether it is printed the other way round.
+type Pick = (usize, bool);
+
+/// The chains in the order that `order` makes of their ends.
+fn pick(chains: Vec<Path>, order: impl FnOnce(&[Ends]) -> Vec<Pick>) -> Vec<Path> {
+    let ends: Vec<Ends> = chains.iter().map(|c| (c.start(), c.end())).collect();
+    let mut chains: Vec<Option<Path>> = chains.into_iter().map(Some).collect();
+    let take = |(k, turned): Pick| {
+        let mut chain = chains[k].take()?;
+        if turned {
+            chain.reverse();
         }
-        *at = path.end();
-        out.push(path);
+        Some(chain)
+    };
+    order(&ends).into_iter().filter_map(take).collect()
+}
+
+/// The order that goes from `at` to the nearest end each time.
+fn nearest_first(ends: &[Ends], mut at: Point) -> Vec<Pick> {
+    let mut left: Vec<(usize, Ends)> = ends.iter().copied().enumerate().collect();
+    let mut picks = Vec::with_capacity(left.len());
+    let far = |at: Point, (a, b): Ends| a.distance2(at).min(b.distance2(at));
+    while let Some(k) = nearest(left.iter().map(|(_, e)| far(at, *e))) {
+        let (index, (start, end)) = left.swap_remove(k);
+        let turned = end.distance2(at) < start.distance2(at);
+        at = if turned { start } else { end };
+        picks.push((index, turned));
+    }
+    picks
+}
+
+/// Orders the last chains of a layer nearest first backwards from where its first wall
+/// begins, if that is the shorter way: with all seams at the rear, that is near where the
+/// next layer begins.
+fn lead_back(paths: &mut Vec<Path>) {
+    let kind = paths.last().and_then(tour::free);
+    let first = paths.iter().rposition(|p| tour::free(p) != kind).map_or(0, |k| k + 1);
+    let before = first.checked_sub(1).filter(|_| kind.is_some()).map(|k| paths[k].end());
+    let (Some(home), Some(before)) = (paths.first().map(Path::start), before) else { return };
+    let chains = paths.split_off(first);
+    let order = |ends: &[Ends]| {
+        let mut back = nearest_first(ends, home);
+        back.reverse();
+        back.iter_mut().for_each(|(_, turned)| *turned = !*turned);
+        let kept: Vec<Pick> = (0..ends.len()).map(|k| (k, false)).collect();
+        let shorter = way(&back, ends, (before, home)) < way(&kept, ends, (before, home));
+        if shorter { back } else { kept }
+    };
+    paths.extend(pick(chains, order));
+}
+
+/// The length of all travels between chains, from `before` and to `home`.
+fn way(picks: &[Pick], ends: &[Ends], (before, home): Ends) -> f64 {
+    let mut at = before;
+    let mut sum = 0.0;
+    for &(k, turned) in picks {
+        let (start, end) = if turned { (ends[k].1, ends[k].0) } else { ends[k] };
+        sum += at.distance(start);
+        at = end;
+    }
+    sum + at.distance(home)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::PathPoint;
+
+    fn line(x: Coord, role: Role) -> Path {
+        let point = |y| PathPoint { at: Point { x, y }, width: 4_000 };
+        Path { role, points: vec![point(0), point(10_000)], height: 2_000, layers: 1 }
+    }
+
+    fn places(paths: &[Path]) -> Vec<Coord> {
+        paths.iter().map(|p| p.start().x).collect()
+    }
+
+    #[test]
+    fn chains_come_nearest_first_each_of_them_once() {
+        let chains = [90, 20, 50, 10].map(|x| line(x * 1_000, Role::Infill)).to_vec();
+        let (mut at, mut out) = (Point { x: 40_000, y: 10_000 }, Vec::new());
+        order_chains(chains, &mut at, &mut out);
+        assert_eq!(places(&out), [50_000, 20_000, 10_000, 90_000]);
+        assert_eq!(out[0].start().y, 10_000, "entered at the nearer end");
+        assert_eq!(out.last().map(Path::end), Some(at));
+    }
+
+    #[test]
+    fn the_last_chains_lead_back_to_where_the_layer_began() {
+        let wall = line(0, Role::OuterWall);
+        let out = |xs: [Coord; 4]| xs.map(|x| line(x, Role::Infill)).to_vec();
+        let mut paths = vec![wall.clone()];
+        paths.extend(out([20_000, 30_000, 80_000, 90_000]));
+        paths[0].points.push(PathPoint { at: Point { x: 85_000, y: 0 }, width: 4_000 });
+        lead_back(&mut paths);
+        assert_eq!(places(&paths), [0, 90_000, 80_000, 30_000, 20_000]);
+        // Walls alone are left as they are.
+        let mut walls = vec![wall.clone(), wall];
+        lead_back(&mut walls);
+        assert_eq!(places(&walls), [0, 0]);
     }
 }

@@ -36,6 +36,9 @@ const MOST_TANGENT: f64 = 1.2;
 /// A path gets at most this many times as wide to carry what its arcs save.
 const MOST_MORE: f64 = 1.04;
 
+/// Joins up to this many radii long are laid with one width together with the arcs at their ends.
+const LONGEST_LEVELLED: f64 = 2.5;
+
 /// A way of rounding corners.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rounding {
@@ -63,11 +66,17 @@ impl Rounding {
         };
         let mut out = Vec::with_capacity(4 * points.len());
         out.extend(points.first());
+        let mut last = 0;
         for (k, corner) in points.windows(3).enumerate() {
+            let first = out.len();
             // A line's end without a corner keeps half of it for itself.
             let half = lines[k].length.min(lines[k + 1].length) / 2.0;
             let t = (wanted[k] * share(k).min(share(k + 1))).min(half);
             round_off(corner, (lines[k], lines[k + 1]), t, &mut out);
+            if k > 0 && lines[k].length <= LONGEST_LEVELLED * f64::from(self.radius) {
+                level(&mut out[last..]);
+            }
+            last = first;
         }
         out.extend(points.last());
         let more = (volume(&points) / volume(&out)).clamp(1.0, MOST_MORE);
@@ -86,6 +95,13 @@ impl Rounding {
         // tan(θ/2) of the turn θ.
         f64::from(self.radius) * ((1.0 - cos) / (1.0 + cos)).sqrt().min(MOST_TANGENT)
     }
+}
+
+/// Lays two arcs and the join between them with one width: the flow need not change within.
+fn level(turn: &mut [PathPoint]) {
+    let length: f64 = turn.windows(2).map(|w| w[0].at.distance(w[1].at)).sum();
+    let width = nearest(volume(turn) / length.max(1.0)) as Coord;
+    turn.iter_mut().skip(1).for_each(|p| p.width = width);
 }
 
 /// Length times width of all of a path, grid units².

@@ -62,13 +62,17 @@ pub fn improve(paths: Vec<Path>, from: Option<Point>, cost: &impl Cost) -> Vec<P
     paths.into_iter().flatten().collect()
 }
 
-/// Runs of paths whose order is free, of two and more, without the layer's last path.
-fn runs(paths: &[Path]) -> Vec<Range<usize>> {
-    let free = |p: &Path| match p.role {
+/// Which paths may change places with `path`: those of the same kind; none with walls.
+pub(super) fn free(path: &Path) -> Option<bool> {
+    match path.role {
         Role::OuterWall | Role::InnerWall => None,
         Role::Skin | Role::Infill => Some(false),
         Role::Support => Some(true),
-    };
+    }
+}
+
+/// Runs of paths whose order is free, of two and more, without the layer's last path.
+fn runs(paths: &[Path]) -> Vec<Range<usize>> {
     let mut runs = Vec::new();
     let mut start = 0;
     for run in paths.chunk_by(|a, b| free(a) == free(b)) {
