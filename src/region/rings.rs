@@ -41,6 +41,9 @@ pub(super) const SHORT: f64 = 2.5;
 /// Changes of place below this are not worth a corner (10 µm).
 const LEAST_BEND: f64 = 100.0;
 
+/// Changes of width between two points above this are divided (0.08 mm).
+const MOST_STEP: f64 = 800.0;
+
 /// Changes of width weigh this many times less.
 const WIDTH_TO_PLACE: f64 = 3.0;
 
@@ -194,8 +197,11 @@ fn keep_bends(arc: &[Place], a: usize, b: usize, kept: &mut Vec<usize>) {
     let worst = (a + 1..b)
         .map(|k| (miss(k), k))
         .max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1)))
-        .filter(|(miss, _)| *miss > LEAST_BEND);
-    if let Some((_, k)) = worst {
+        .filter(|(miss, _)| *miss > LEAST_BEND)
+        .map(|(_, k)| k);
+    // Between two points a bead has one width: a long taper needs steps.
+    let tapers = (first.width - last.width).abs() > MOST_STEP && b - a > 1;
+    if let Some(k) = worst.or_else(|| tapers.then_some(usize::midpoint(a, b))) {
         keep_bends(arc, a, k, kept);
         kept.push(k);
         keep_bends(arc, k, b, kept);
