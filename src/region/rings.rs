@@ -133,8 +133,10 @@ fn arcs(lap: &[Station], index: usize, near: &Near, params: &Params) -> Vec<Vec<
 fn joins(a: &Place, b: &Place, near: &Near, params: &Params) -> bool {
     let w = f64::from(params.line_width);
     let far = distance(a.at, b.at);
-    let middle = [0, 1].map(|k| f64::midpoint(a.at[k], b.at[k]));
-    far <= w / 2.0 || far <= SHORT * w && near.is_free(middle, a.clear.min(b.clear) - SLACK * w)
+    let clear = a.clear.min(b.clear) - SLACK * w;
+    let on_the_way = |t: f64| [0, 1].map(|k| a.at[k] + t * (b.at[k] - a.at[k]));
+    far <= w / 2.0
+        || far <= SHORT * w && [0.25, 0.5, 0.75].iter().all(|&t| near.is_free(on_the_way(t), clear))
 }
 
 /// Where on `raster` no line may end because of `beads`, which are in `frame`: lines
