@@ -397,40 +397,80 @@ fn inner_walls_of_slopes_are_printed_on_every_layer() {
     assert!(heights.iter().any(|&(_, n)| n == 2) && heights.iter().any(|&(_, n)| n == 1));
 }
 
+/// Where beads of these kinds lie on the layers that `keep` names, whichever way they are laid:
+/// layer, ends and height, µm; and the material on each layer, mm. Widths are told only where they
+/// change by 0.01 mm, which depends on what was printed before.
+type Laid = (Vec<(usize, [[i64; 2]; 2], i64)>, BTreeMap<usize, f64>);
+
+fn laid(run: &Run, kinds: &[Kind], keep: impl Fn(usize) -> bool) -> Laid {
+    let micrometres = |mm: f64| (mm * 1000.0).round() as i64;
+    let (mut beads, mut material) = (Vec::new(), BTreeMap::<usize, f64>::new());
+    for m in run.print.beads().filter(|m| kinds.contains(&m.kind) && keep(m.layer.unwrap())) {
+        let layer = m.layer.unwrap();
+        let mut ends = [m.a(), m.b()].map(|p| p.map(micrometres));
+        ends.sort_unstable();
+        beads.push((layer, ends, micrometres(m.height)));
+        *material.entry(layer).or_default() += m.e;
+    }
+    beads.sort_unstable();
+    (beads, material)
+}
+
+fn assert_alike(a: &Laid, b: &Laid, what: &str) {
+    assert!(a.0 == b.0, "{what}");
+    for (layer, e) in &a.1 {
+        assert!((b.1[layer] / e - 1.0).abs() < 1e-3, "{what}, layer {layer}");
+    }
+}
+
 #[test]
 fn walls_and_skins_are_those_of_the_plain_print() {
     for name in ["bracket.stl", "sphere_20.stl", "cavity.stl", "overhang.stl"] {
-        // Where the beads lie, and how much material they are on each layer. Widths are told
-        // only where they change by 0.01 mm, which depends on what was printed before.
-        let outside = |set: &[(&str, &str)]| -> (Vec<_>, BTreeMap<_, f64>) {
-            let run = slice(&fixture(name), "generic-marlin", set);
-            let kinds = [Kind::OuterWall, Kind::InnerWall, Kind::Skin];
-            let mut material = BTreeMap::new();
-            let mut beads = Vec::new();
-            for m in run.print.beads().filter(|m| kinds.contains(&m.kind)) {
-                let place = |p: [f64; 2]| p.map(|x| (x * 1000.0).round() as i64);
-                let ends = [place(m.a()), place(m.b())];
-                let height = (m.height * 1000.0) as i64;
-                beads.push((
-                    m.layer,
-                    ends.iter().min().copied(),
-                    ends.iter().max().copied(),
-                    height,
-                ));
-                *material.entry(m.layer).or_default() += m.e;
-            }
-            beads.sort_unstable();
-            (beads, material)
+        let kinds = [Kind::OuterWall, Kind::InnerWall, Kind::Skin];
+        let outside = |set: &[(&str, &str)]| {
+            laid(&slice(&fixture(name), "generic-marlin", set), &kinds, |_| true)
         };
         let plain = outside(&[]);
         for mode in MODES {
-            let dual = outside(&[("dual.mode", mode)]);
-            assert!(dual.0 == plain.0, "{name} {mode}");
-            for (layer, e) in &plain.1 {
-                assert!((dual.1[layer] / e - 1.0).abs() < 1e-3, "{name} {mode} {layer:?}");
-            }
+            assert_alike(&outside(&[("dual.mode", mode)]), &plain, &format!("{name} {mode}"));
         }
     }
+}
+
+#[test]
+fn what_is_seen_is_that_of_the_plain_print_whatever_is_thick() {
+    let all = ("dual.parts", "infill,support,inner-walls,inner-skin");
+    for name in ["bracket.stl", "cube_20.stl", "tile.stl", "overhang.stl"] {
+        let plain = slice(&fixture(name), "generic-marlin", &[]);
+        let last = plain.print.layers.len() - 1;
+        for mode in MODES {
+            let run = slice(&fixture(name), "generic-marlin", &[("dual.mode", mode), all]);
+            let walls = |run: &Run| laid(run, &[Kind::OuterWall], |_| true);
+            assert_alike(&walls(&run), &walls(&plain), &format!("{name} {mode}: walls"));
+            let ends = |run: &Run| laid(run, &[Kind::Skin], |k| k == 0 || k == last);
+            assert_alike(
+                &ends(&run),
+                &ends(&plain),
+                &format!("{name} {mode}: first and last skin"),
+            );
+        }
+    }
+}
+
+#[test]
+fn interlaced_layers_take_a_third_of_the_spread_of_groups() {
+    // A block without the layers that are all skin.
+    let block = Solid::cuboid([0.0; 3], [40.0, 40.0, 20.0]).stl();
+    let spread = |mode| {
+        let run = slice(&block, "generic-marlin", &[("dual.mode", mode), ("walls", "1")]);
+        let times: Vec<f64> = run.report.time.layers.iter().map(|l| l.time_s).collect();
+        let times = &times[4..times.len() - 4];
+        let mean = times.iter().sum::<f64>() / times.len() as f64;
+        let variance = times.iter().map(|t| (t - mean).powi(2)).sum::<f64>() / times.len() as f64;
+        variance.sqrt() / mean
+    };
+    let (pair, interlaced) = (spread("pair"), spread("interlaced"));
+    assert!(interlaced <= pair / 3.0, "{interlaced} interlaced, {pair} in groups");
 }
 
 #[test]

@@ -202,7 +202,7 @@ proptest! {
                 let (low, high) = if w[0].v < w[1].v { (w[0], w[1]) } else { (w[1], w[0]) };
                 // Half the bead, less what strips of uneven width may take.
                 let edge = params.fill_inset - params.wall_to_fill() + params.line_width / 2;
-                let clear = edge + w[1].width / 2 - params.line_width * 1 / 2;
+                let clear = edge + w[1].width / 2 - params.line_width / 2;
                 let free = scan.inset(clear.max(0));
                 for j in low.v.div_euclid(500) + 1..high.v.div_euclid(500) + 1 {
                     let t = f64::from(j * 500 - low.v) / f64::from(high.v - low.v);
