@@ -12,7 +12,7 @@ use super::bend::LinePoint;
 use super::close::Crossed;
 use super::near::Near;
 use super::raster::{Raster, around};
-use super::stations::{Station, stations};
+use super::stations::{MOST_BEADS, NARROWEST, SHORT, Station, stations};
 use crate::geom::frame::Frame;
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
@@ -21,22 +21,12 @@ use crate::units::{Coord, nearest};
 /// A bead that follows a wall, in the frame of the skin's raster.
 pub type Bead = Vec<LinePoint>;
 
-/// At most this many beads beside each other along one wall.
-pub(super) const MOST_BEADS: usize = 3;
-
-/// A bead along a wall is at least this many line widths wide, where there is room.
-pub(super) const NARROWEST: f64 = 0.75;
-
 /// A strip between two walls up to this many line widths wide gets one bead.
 const SINGLE: f64 = 1.6;
 
 /// Beads may be this much nearer to a wall than asked for, in line widths: walls on
 /// both sides of a strip are not quite parallel.
 const SLACK: f64 = 0.15;
-
-/// Beads shorter than this many line widths are left to the lines, and gaps in a bead
-/// shorter than this are closed.
-pub(super) const SHORT: f64 = 2.5;
 
 /// Changes of place below this are not worth a corner (10 µm).
 const LEAST_BEND: f64 = 100.0;

@@ -3,10 +3,19 @@
 use super::Params;
 use super::close::Crossed;
 use super::near::{Area, Near};
-use super::rings::{MOST_BEADS, NARROWEST, SHORT};
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, Point, edges};
 use crate::units::{Coord, between};
+
+/// At most this many beads beside each other along one wall.
+pub(super) const MOST_BEADS: usize = 3;
+
+/// A bead along a wall is at least this many line widths wide, where there is room.
+pub(super) const NARROWEST: f64 = 0.75;
+
+/// Beads shorter than this many line widths are left to the lines, and gaps in a bead
+/// shorter than this are closed.
+pub(super) const SHORT: f64 = 2.5;
 
 /// A bead takes a depth of up to this many line widths on its own.
 const WIDEST: f64 = 1.5;
