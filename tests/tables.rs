@@ -7,10 +7,7 @@
 
 mod common;
 
-use common::{Solid, fixtures};
-use slicer::Job;
-use slicer::profile::{Override, ValueOrigin, load};
-use slicer::progress::Progress;
+use common::{Solid, as_it_is, fixtures, settings, slice_file};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
@@ -46,23 +43,8 @@ fn time(stl: &[u8], set: &[(&str, &str)]) -> (f64, f64) {
     let path = folder.path().join("part.stl");
     fs::write(&path, stl).unwrap();
     let clock = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/bench/clock.toml");
-    let overrides: Vec<Override> = set
-        .iter()
-        .map(|(key, value)| Override {
-            key: (*key).to_owned(),
-            value: (*value).to_owned(),
-            origin: ValueOrigin::Set,
-        })
-        .collect();
-    let profile = load(clock.to_str().unwrap(), &overrides).unwrap();
-    let job = Job {
-        models: vec![path.to_str().unwrap().to_owned()],
-        placement: common::as_it_is(),
-        settings: profile.settings,
-        profile: profile.name,
-        output: PathBuf::from("-"),
-    };
-    let report = slicer::slice(&job, &mut std::io::empty(), &Progress::default()).unwrap();
+    let settings = settings(clock.to_str().unwrap(), set);
+    let (_, report) = slice_file(&path, &settings, &as_it_is()).unwrap();
     (report.time.total_s, report.filament.length_mm)
 }
 

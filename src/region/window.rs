@@ -6,6 +6,7 @@
 //! it: memory holds a batch and a few layers, whatever the height of the print.
 
 use super::audit::Audit;
+use super::classify::Areas;
 use super::close::{Crossed, close};
 use super::divide::divide;
 use super::dual::{self, LayerAreas};
@@ -210,15 +211,18 @@ impl<'a> Window<'a> {
         dual::support(block, rows, support.comb, self.grouping, self.params.line_width)
     }
 
+    /// The areas of layer `k` on raster `r`, if it is divided.
+    fn areas(&self, k: usize, r: usize) -> Option<&Areas> {
+        self.divided.get(k)?.areas.get(r)?.as_ref()
+    }
+
     /// The skins of layer `k`, closed up to the walls.
     fn skins(&self, k: usize) -> Vec<Skin> {
-        let rows = |r: usize| {
-            let areas = self.divided.get(k).and_then(|d| d.areas[r].as_ref());
-            areas.map(|areas| areas.skin.clone()).unwrap_or_default()
-        };
         let (along, across) = self.params.skin_rasters(k);
         if !self.grouping.shares(DualPart::InnerSkin) {
-            return vec![self.skin(k, 1, &rows(along), &rows(across))];
+            let none = Rows::default();
+            let rows = |r: usize| self.areas(k, r).map_or(&none, |areas| &areas.skin);
+            return vec![self.skin(k, 1, rows(along), rows(across))];
         }
         let ((thick, thin), (thick_across, thin_across)) =
             (self.share_skin(k, along), self.share_skin(k, across));
@@ -234,10 +238,9 @@ impl<'a> Window<'a> {
     /// The skin of layer `k` on raster `r`: what is printed for several layers, and what for
     /// this one alone.
     fn share_skin(&self, k: usize, r: usize) -> (Vec<(u32, Rows)>, Rows) {
-        let skin = |k: usize| self.divided.get(k)?.areas.get(r)?.as_ref().map(|areas| &areas.skin);
         let skins = Skins {
             layers: |k| self.layers.get(k),
-            skins: skin,
+            skins: |k| self.areas(k, r).map(|areas| &areas.skin),
             raster: r,
             ratio: self.grouping.ratio(),
             params: self.params,
@@ -249,8 +252,7 @@ impl<'a> Window<'a> {
     fn skin(&self, k: usize, layers: u32, rows: &Rows, columns: &Rows) -> Skin {
         let (along, across) = self.params.skin_rasters(k);
         let Some(layer) = self.layers.get(k) else { return Skin::default() };
-        let divided = self.divided.get(k);
-        let left = |r: usize| divided.and_then(|d| d.areas[r].as_ref()?.fill.as_ref());
+        let left = |r: usize| self.areas(k, r).and_then(|areas| areas.fill.as_ref());
         let fill = |r: usize| left(r).unwrap_or(&layer.rows[r].fill);
         let crossed = Crossed {
             skin: rows,
@@ -261,7 +263,8 @@ impl<'a> Window<'a> {
         };
         let (lines, slivers) = close(&crossed, self.params);
         // Beads along walls are for this layer alone.
-        let beads = divided.filter(|_| layers == 1).map_or(&[] as &[Bead], |d| &d.beads);
+        let beads =
+            self.divided.get(k).filter(|_| layers == 1).map_or(&[] as &[Bead], |d| &d.beads);
         Skin { layers, raster: along, lines, beads: [beads, &slivers].concat() }
     }
 
