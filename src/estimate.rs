@@ -99,7 +99,7 @@ pub fn estimate(
     options: Options,
 ) -> Result<Estimate> {
     let mut meter = Meter::new(limits, options);
-    let summary = reader::read(source, &mut |event| meter.event(event))
+    let summary = reader::read(source, &mut |_, event| meter.event(event))
         .map_err(|error| Error::input(file, format!("cannot read: {error}; check the path")))?;
     meter.clock.finish();
     meter.collect();
@@ -191,7 +191,10 @@ impl Meter {
                 apply(&change, &mut limits);
                 self.clock.set_limits(limits);
             }
-            Event::Change(_) => {}
+            // Telling a heater takes no time; waiting for it is counted above.
+            Event::Change(_) | Event::Heating(_) | Event::Comment(_) => {}
+            // Both are in the reader's summary.
+            Event::FirmwareRetraction { .. } | Event::Unknown(_) => {}
         }
         self.collect();
     }

@@ -3,12 +3,12 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use proptest::prelude::*;
-use slicer::reader::{self, Event, Motion, Role, Summary, Wait};
+use slicer::reader::{self, Event, Heater, Heating, Motion, Role, Summary, Wait};
 
 fn read(bytes: &[u8]) -> (Vec<Event>, Summary) {
     let mut events = Vec::new();
     let mut source = bytes;
-    let summary = reader::read(&mut source, &mut |event| events.push(event)).unwrap();
+    let summary = reader::read(&mut source, &mut |_, event| events.push(event)).unwrap();
     (events, summary)
 }
 
@@ -57,7 +57,7 @@ fn roles_come_from_comments_and_from_what_moves() {
     use Role::{Other, OuterWall, Retraction, Travel};
     assert_eq!(roles, [Other, OuterWall, Travel, Retraction, Travel, Other]);
     let motion = moves(";WIDTH:0.5\n;HEIGHT:0.3\nG1 X1 E1")[0];
-    assert_eq!((motion.width, motion.height, motion.line), (Some(0.5), Some(0.3), 3));
+    assert_eq!((motion.width, motion.height), (Some(0.5), Some(0.3)));
 }
 
 #[test]
@@ -102,18 +102,25 @@ fn waits_are_told_apart_and_unknown_lines_counted() {
     let text =
         "M109 S200\nG28\nG4 P1500\nG4 S2\nM400\nT1\nM862.3 P \"MK3\"\nFOO BAR=1\nG999\n%\n(x)";
     let (events, summary) = read(text.as_bytes());
+    let hot = Heating { heater: Heater::Nozzle(None), celsius: Some(200.0), waits: true };
     assert_eq!(
         events,
         [
+            Event::Heating(hot),
             Event::Wait(Wait::Heating),
             Event::Wait(Wait::Homing),
             Event::Dwell(1.5),
             Event::Dwell(2.0),
             Event::Wait(Wait::Moves),
+            Event::Unknown(b"FOO BAR=1".to_vec()),
+            Event::Unknown(b"G999".to_vec()),
         ]
     );
     assert_eq!((summary.lines, summary.unknown, summary.first_unknown), (11, 2, 8));
-    assert_eq!(read(b"G10\nG11").1.firmware_retractions, 2);
+    let (events, summary) = read(b"G10\nG11 ; back ");
+    let firmware = |back| Event::FirmwareRetraction { back };
+    assert_eq!(events, [firmware(true), firmware(false), Event::Comment(b" back ".to_vec())]);
+    assert_eq!(summary.firmware_retractions, 2);
 }
 
 #[test]

@@ -1,16 +1,12 @@
 //! `slicer estimate` -> how long a G-code file takes, as a table or as JSON.
 
 use super::args::{self, EstimateArgs};
+use super::input;
 use slicer::error::{Error, Result};
 use slicer::estimate::{self, Estimate, LayerTime, NotCounted, Options};
 use slicer::motion::Limits;
 use slicer::profile;
 use slicer::warning::plural;
-use std::fs::File;
-use std::io::{BufRead, BufReader};
-
-/// Bytes that are read at once.
-const BUFFER: usize = 1 << 18;
 
 /// What standard output gets.
 ///
@@ -21,7 +17,7 @@ pub(super) fn run(args: &EstimateArgs) -> Result<String> {
     let settings = &profile.settings;
     let options =
         Options { filament_diameter: settings.filament.diameter, fixed_limits: args.fixed_limits };
-    let (name, mut source) = open(&args.file)?;
+    let (name, mut source) = input::open(&args.file)?;
     let found = estimate::estimate(&mut source, name, &Limits::new(settings), options)?;
     if args.json {
         let text = serde_json::to_string_pretty(&found);
@@ -32,16 +28,6 @@ pub(super) fn run(args: &EstimateArgs) -> Result<String> {
         text.push_str(&layers(&found.layers));
     }
     Ok(text)
-}
-
-fn open(file: &str) -> Result<(&str, Box<dyn BufRead>)> {
-    if file == "-" {
-        let source = BufReader::with_capacity(BUFFER, std::io::stdin());
-        return Ok(("<stdin>", Box::new(source)));
-    }
-    let source = File::open(file)
-        .map_err(|error| Error::input(file, format!("cannot read: {error}; check the path")))?;
-    Ok((file, Box::new(BufReader::with_capacity(BUFFER, source))))
 }
 
 /// For people.

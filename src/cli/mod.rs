@@ -3,6 +3,7 @@
 mod args;
 mod compare;
 mod estimate;
+mod input;
 mod interrupt;
 mod output;
 mod progress;

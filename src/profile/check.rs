@@ -40,7 +40,7 @@ impl Blame<'_> {
         let rank = |origin: &&ValueOrigin| match origin {
             ValueOrigin::Flag(_) => 0,
             ValueOrigin::Set => 1,
-            ValueOrigin::File { .. } => 2,
+            ValueOrigin::File { .. } | ValueOrigin::Recorded => 2,
         };
         let origin = keys.iter().filter_map(|key| self.origins.get(*key)).min_by_key(rank);
         Error::Config(origin.map_or_else(|| why.to_owned(), |origin| format!("{origin}: {why}")))

@@ -48,6 +48,8 @@ pub enum ValueOrigin {
     Set,
     /// A flag of its own, such as `--layer-height`.
     Flag(&'static str),
+    /// The comments of a G-code file.
+    Recorded,
 }
 
 impl fmt::Display for ValueOrigin {
@@ -56,6 +58,7 @@ impl fmt::Display for ValueOrigin {
             Self::File { name, line } => write!(f, "{name}:{line}"),
             Self::Set => f.write_str("--set"),
             Self::Flag(flag) => f.write_str(flag),
+            Self::Recorded => f.write_str("the file's own settings"),
         }
     }
 }

@@ -5,11 +5,13 @@ mod derived;
 pub mod keys;
 mod load;
 mod parse;
+mod recorded;
 mod settings;
 mod show;
 pub mod suggest;
 pub mod template;
 
 pub use load::{DEFAULT, Override, Profile, ValueOrigin, builtin_names, load};
+pub use recorded::recorded;
 pub use settings::*;
 pub use show::{document, dump};

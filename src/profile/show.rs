@@ -8,7 +8,7 @@ use toml::Value;
 /// Keys that are left out of G-code files: blocks would make lines longer than
 /// GPX's limit of 1023 bytes and stand in the file anyway; the description
 /// says nothing of the print.
-const NOT_DUMPED: &[&str] = &["description", "machine.start", "machine.end"];
+pub(super) const NOT_DUMPED: &[&str] = &["description", "machine.start", "machine.end"];
 
 /// All settings but the description and the blocks, as dotted key and TOML
 /// value on one line of less than 900 bytes, in the order of

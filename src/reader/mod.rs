@@ -6,13 +6,17 @@
 
 mod arc;
 mod change;
+mod heat;
 mod lines;
 mod marks;
+pub mod print;
 mod role;
 mod state;
 mod words;
 
 pub use change::Change;
+pub use heat::{Heater, Heating};
+pub use print::Print;
 pub use role::Role;
 
 use std::io::{self, BufRead};
@@ -33,6 +37,17 @@ pub enum Event {
     },
     /// The machine is told to hold itself to other limits.
     Change(Change),
+    /// Something is told how hot to be, or waited for.
+    Heating(Heating),
+    /// G10 and G11: the filament is pulled back, or pushed out again, by the printer's own length.
+    FirmwareRetraction {
+        /// Whether it is pulled back.
+        back: bool,
+    },
+    /// A comment that marks nothing, without its `;`.
+    Comment(Vec<u8>),
+    /// A line of code that means nothing to the reader.
+    Unknown(Vec<u8>),
 }
 
 /// Why the printer waits for an unknown time.
@@ -63,8 +78,6 @@ pub struct Motion {
     pub width: Option<f64>,
     /// Height of the line by the file's comments, mm.
     pub height: Option<f64>,
-    /// Line of the file, from 1.
-    pub line: u64,
 }
 
 /// What was read besides the events.
@@ -80,12 +93,16 @@ pub struct Summary {
     pub firmware_retractions: u64,
 }
 
-/// Reads G-code and hands each event to `sink`, in the file's order.
+/// Reads G-code and hands each event to `sink` with its line, counted from 1, in the file's order.
 ///
 /// # Errors
 /// Only what reading the bytes gives: no content is an error.
-pub fn read(source: &mut dyn BufRead, sink: &mut dyn FnMut(Event)) -> io::Result<Summary> {
+pub fn read(source: &mut dyn BufRead, sink: &mut dyn FnMut(u64, Event)) -> io::Result<Summary> {
     let mut state = state::State::default();
-    lines::each(source, &mut |line| state.line(line, sink))?;
+    let mut number = 0;
+    lines::each(source, &mut |line| {
+        number += 1;
+        state.line(line, &mut |event| sink(number, event));
+    })?;
     Ok(state.summary)
 }

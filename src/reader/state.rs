@@ -1,6 +1,7 @@
 //! Words -> where the nozzle goes: modes, units, positions and feeds as a firmware keeps them.
 
 use super::arc::Arc;
+use super::heat;
 use super::marks::{Mark, mark};
 use super::words::{self, Code, Words};
 use super::{Change, Event, Motion, Role, Summary, Wait};
@@ -16,12 +17,11 @@ const INCH: f64 = 25.4;
 
 /// Commands that move nothing and wait for nothing.
 const HARMLESS: &[u32] = &[
-    17, 18, 20, 21, 27, 31, 42, 70, 72, 73, 75, 76, 77, 82, 83, 84, 85, 92, 104, 105, 106, 107,
-    108, 110, 111, 113, 114, 115, 117, 118, 119, 120, 121, 126, 127, 130, 132, 136, 137, 140, 141,
-    142, 150, 155, 200, 207, 208, 209, 211, 217, 218, 221, 240, 250, 280, 290, 300, 301, 302, 304,
-    350, 351, 355, 412, 413, 420, 422, 425, 486, 500, 501, 502, 503, 555, 572, 592, 593, 851, 862,
-    900, 906, 907, 910, 911, 912, 913, 914, 915, 950, 955, 970, 971, 973, 974, 975, 981, 982, 983,
-    991, 1002,
+    17, 18, 20, 21, 27, 31, 42, 70, 72, 73, 75, 76, 77, 82, 83, 84, 85, 92, 105, 106, 107, 108,
+    110, 111, 113, 114, 115, 117, 118, 119, 120, 121, 126, 127, 130, 132, 136, 137, 141, 142, 150,
+    155, 200, 207, 208, 209, 211, 217, 218, 221, 240, 250, 280, 290, 300, 301, 302, 304, 350, 351,
+    355, 412, 413, 420, 422, 425, 486, 500, 501, 502, 503, 555, 572, 592, 593, 851, 862, 900, 906,
+    907, 910, 911, 912, 913, 914, 915, 950, 955, 970, 971, 973, 974, 975, 981, 982, 983, 991, 1002,
 ];
 
 pub(super) struct State {
@@ -84,21 +84,28 @@ impl State {
         if !code.is_empty() {
             self.code(code, sink);
         }
-        if let Some(mark) = comment.and_then(mark) {
-            match mark {
-                Mark::Role(role) => self.role = role,
-                Mark::Width(width) => self.width = Some(width),
-                Mark::Height(height) => self.height = Some(height),
-                Mark::Layer => {
-                    self.marked = true;
-                    sink(Event::Layer { marked: true });
-                }
+        let Some(comment) = comment else { return };
+        match mark(comment) {
+            Some(Mark::Role(role)) => self.role = role,
+            Some(Mark::Width(width)) => self.width = Some(width),
+            Some(Mark::Height(height)) => self.height = Some(height),
+            Some(Mark::Layer) => {
+                self.marked = true;
+                sink(Event::Layer { marked: true });
             }
+            None => sink(Event::Comment(comment.to_vec())),
         }
     }
 
     fn code(&mut self, code: &[u8], sink: &mut dyn FnMut(Event)) {
         if code[0] == b'(' || code[0] == b'%' {
+            return;
+        }
+        if let Some(heating) = heat::heating(code) {
+            sink(Event::Heating(heating));
+            if heating.waits {
+                sink(Event::Wait(Wait::Heating));
+            }
             return;
         }
         if let Some((command, words)) = words::command(code) {
@@ -110,6 +117,7 @@ impl State {
         } else if let Some(words) = klipper(code, b"SET_VELOCITY_LIMIT") {
             return sink(Event::Change(Change::of_klipper(words)));
         }
+        sink(Event::Unknown(code.to_vec()));
         self.summary.unknown += 1;
         if self.summary.first_unknown == 0 {
             self.summary.first_unknown = self.summary.lines;
@@ -122,7 +130,10 @@ impl State {
             (b'G', 0 | 1) => self.straight(words, sink),
             (b'G', 2 | 3) => self.arc(words, code.number == 2, sink),
             (b'G', 4) => sink(Event::Dwell(dwell(words))),
-            (b'G', 10 | 11) => self.summary.firmware_retractions += 1,
+            (b'G', 10 | 11) => {
+                self.summary.firmware_retractions += 1;
+                sink(Event::FirmwareRetraction { back: code.number == 10 });
+            }
             (b'G', 20) => self.unit = INCH,
             (b'G', 21) => self.unit = 1.0,
             (b'G', 28) => self.home(words, Some(0.0), sink),
@@ -136,9 +147,7 @@ impl State {
             (b'M', 83) => self.relative_filament = true,
             // What the printer remembers of the end stops' places is not in the file.
             (b'M', 132) => self.forget(words, None),
-            (b'M', 6 | 109 | 116 | 190 | 191 | 133 | 134 | 303) => {
-                sink(Event::Wait(Wait::Heating));
-            }
+            (b'M', 191 | 303) => sink(Event::Wait(Wait::Heating)),
             (b'M', 0 | 1 | 25 | 226 | 400 | 600 | 601) => sink(Event::Wait(Wait::Moves)),
             (b'M', 201 | 203 | 204 | 205) => {
                 if let Some(change) = Change::of_code(code.number, words) {
@@ -242,8 +251,8 @@ impl State {
             }
         }
         let (width, height) = (self.width, self.height);
-        let (feed, line) = (self.feed * self.feed_factor, self.summary.lines);
-        sink(Event::Move(Motion { from, to, filament, feed, role, width, height, line }));
+        let feed = self.feed * self.feed_factor;
+        sink(Event::Move(Motion { from, to, filament, feed, role, width, height }));
     }
 
     fn home(&mut self, words: Words<'_>, at: Option<f64>, sink: &mut dyn FnMut(Event)) {

@@ -1,0 +1,45 @@
+//! Comments of a G-code file -> Profile: the settings that this program writes at its end.
+
+use super::keys::KEYS;
+use super::load::{DEFAULT, Override, Profile, ValueOrigin, load};
+use super::show::NOT_DUMPED;
+use crate::error::Result;
+
+/// The settings that a file of ours was made with, read from its comments `key = value`;
+/// `None` if it holds none of them. What a file never holds, such as the start block, is
+/// that of the default profile.
+///
+/// # Errors
+/// As [`load`]: a value that is out of range, such as of a file of another version.
+pub fn recorded(comments: &[(String, String)]) -> Result<Option<Profile>> {
+    let value = |name: &str| comments.iter().rev().find(|(key, _)| key == name);
+    // Two that no other slicer writes, so that a stray `infill = 20` is not taken for ours.
+    if value("machine.dialect").is_none() || value("limits.junction").is_none() {
+        return Ok(None);
+    }
+    let dumped = KEYS.iter().filter(|key| !NOT_DUMPED.contains(&key.name));
+    let overrides: Vec<Override> = dumped
+        .filter_map(|key| {
+            let (key, value) = value(key.name)?.clone();
+            Some(Override { key, value, origin: ValueOrigin::Recorded })
+        })
+        .collect();
+    load(DEFAULT, &overrides).map(Some)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::{builtin_names, dump};
+
+    #[test]
+    fn what_a_file_holds_gives_the_settings_back() {
+        for name in builtin_names() {
+            let made = load(name, &[]).unwrap().settings;
+            let read = recorded(&dump(&made)).unwrap().unwrap().settings;
+            assert_eq!(dump(&read), dump(&made));
+        }
+        let stray = vec![("infill".to_owned(), "20".to_owned())];
+        assert!(recorded(&stray).unwrap().is_none());
+    }
+}

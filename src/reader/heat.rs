@@ -1,0 +1,102 @@
+//! Code -> Heating: what is told how hot to be, and what is waited for.
+
+use super::words;
+
+/// Something that gets hot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Heater {
+    /// The nozzle of this tool; `None` is the one in use.
+    Nozzle(Option<u32>),
+    /// The bed.
+    Bed,
+    /// Whatever has been told to get hot.
+    All,
+}
+
+/// A heater is told something.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Heating {
+    /// Which one.
+    pub heater: Heater,
+    /// How hot it shall be, °C; `None` leaves it as it is.
+    pub celsius: Option<f64>,
+    /// Whether the print goes on only when it is hot.
+    pub waits: bool,
+}
+
+/// What `code` tells a heater, in the words of Marlin, Sailfish or Klipper.
+pub(super) fn heating(code: &[u8]) -> Option<Heating> {
+    // Nearly all lines are moves.
+    if code[0].eq_ignore_ascii_case(&b'G') {
+        return None;
+    }
+    let Some((command, words)) = words::command(code) else { return klipper(code) };
+    if command.letter != b'M' || command.has_part {
+        return None;
+    }
+    let (mut celsius, mut tool) = (None, None);
+    for (letter, value) in words {
+        match letter {
+            b'S' | b'R' => celsius = value,
+            b'T' => tool = value.filter(|value| *value >= 0.0).map(|value| value as u32),
+            _ => {}
+        }
+    }
+    let told = |heater, waits| Some(Heating { heater, celsius, waits });
+    // M6, M116, M133 and M134 only wait.
+    let waited = |heater| Some(Heating { heater, celsius: None, waits: true });
+    match command.number {
+        104 => told(Heater::Nozzle(tool), false),
+        109 => told(Heater::Nozzle(tool), true),
+        140 => told(Heater::Bed, false),
+        190 => told(Heater::Bed, true),
+        133 => waited(Heater::Nozzle(tool)),
+        134 => waited(Heater::Bed),
+        6 | 116 => waited(Heater::All),
+        _ => None,
+    }
+}
+
+/// SET_HEATER_TEMPERATURE and TEMPERATURE_WAIT.
+fn klipper(code: &[u8]) -> Option<Heating> {
+    let mut words = code.split(u8::is_ascii_whitespace);
+    let waits = match words.next()?.to_ascii_uppercase().as_slice() {
+        b"SET_HEATER_TEMPERATURE" => false,
+        b"TEMPERATURE_WAIT" => true,
+        _ => return None,
+    };
+    let (mut heater, mut celsius) = (None, None);
+    for word in words {
+        let mut halves = word.splitn(2, |&byte| byte == b'=');
+        let (Some(name), Some(value)) = (halves.next(), halves.next()) else { continue };
+        match name.to_ascii_uppercase().as_slice() {
+            b"HEATER" | b"SENSOR" if value == b"heater_bed" => heater = Some(Heater::Bed),
+            b"HEATER" | b"SENSOR" if value == b"extruder" => heater = Some(Heater::Nozzle(None)),
+            b"TARGET" | b"MINIMUM" => celsius = words::number(value).0,
+            _ => {}
+        }
+    }
+    // A wait names a threshold, not a target.
+    Some(Heating { heater: heater?, celsius: celsius.filter(|_| !waits), waits })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_firmware_has_its_words() {
+        let of = |code: &str| heating(code.as_bytes());
+        let nozzle =
+            |tool, celsius, waits| Some(Heating { heater: Heater::Nozzle(tool), celsius, waits });
+        assert_eq!(of("M104 S200 T1"), nozzle(Some(1), Some(200.0), false));
+        assert_eq!(of("M109 R210"), nozzle(None, Some(210.0), true));
+        assert_eq!(of("M133 T0"), nozzle(Some(0), None, true));
+        assert_eq!(of("M6 T1"), Some(Heating { heater: Heater::All, celsius: None, waits: true }));
+        let klipper = "SET_HEATER_TEMPERATURE HEATER=extruder TARGET=205";
+        assert_eq!(of(klipper), nozzle(None, Some(205.0), false));
+        assert_eq!(of("temperature_wait sensor=extruder minimum=200"), nozzle(None, None, true));
+        assert_eq!(of("M107"), None);
+        assert_eq!(of("START_PRINT EXTRUDER=200"), None);
+    }
+}

@@ -1,0 +1,309 @@
+//! Events -> Print: a whole G-code file as layers of moves, held compactly.
+
+use super::{Event, Heating, Motion, Role, Summary};
+use std::f64::consts::{FRAC_PI_4, PI};
+use std::io::{self, BufRead};
+use std::ops::Range;
+
+/// Bytes of a comment that are kept.
+const LONGEST_COMMENT: usize = 4096;
+
+/// Comments of a file that are kept: more than any slicer writes settings.
+const MOST_COMMENTS: usize = 10_000;
+
+/// Heights that differ by less are the same, mm.
+const SAME_HEIGHT: f64 = 1e-4;
+
+/// Height of a bead where nothing tells it, mm.
+const SOME_HEIGHT: f64 = 0.2;
+
+/// A whole G-code file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Print {
+    /// All moves, in the file's order.
+    pub moves: Vec<Step>,
+    /// Moves before the first layer: the start block and what it draws.
+    pub start: Range<usize>,
+    /// The layers from the bed up. Each ends where the next begins; the last
+    /// holds what comes after the print as well.
+    pub layers: Vec<Layer>,
+    /// What lies between the moves, in the file's order.
+    pub notes: Vec<Note>,
+    /// `key = value` in comments: settings and sums that slicers write, in the file's order.
+    pub values: Vec<(String, String)>,
+    /// The file's first comments, up to the first line that is something else.
+    pub head: Vec<String>,
+    /// Whether comments say where layers begin.
+    pub marked: bool,
+    /// Whether comments tell widths of lines.
+    pub tells_width: bool,
+    /// Whether comments tell heights of lines.
+    pub tells_height: bool,
+    /// What was read besides the moves.
+    pub summary: Summary,
+}
+
+/// One layer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layer {
+    /// Its part of [`Print::moves`].
+    pub moves: Range<usize>,
+    /// Height of the nozzle at its first line, mm.
+    pub z: f64,
+    /// How far it lies above the layer below, or the bed, mm.
+    pub height: f64,
+}
+
+/// A straight move.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    /// Where the nozzle is before it, mm.
+    pub from: [f32; 3],
+    /// Where the nozzle is after it, mm.
+    pub to: [f32; 3],
+    /// Filament pushed out, mm; below 0 it is pulled back.
+    pub filament: f32,
+    /// Feed asked for, mm/s.
+    pub feed: f32,
+    /// Width of the line, mm: by the file's comments, else by its plastic; 0 for what is no line.
+    pub width: f32,
+    /// Height of the line, mm: by the file's comments, else that of its layer; 0 for what is no line.
+    pub height: f32,
+    /// What it prints, if anything.
+    pub role: Role,
+    /// Line of the file, from 1.
+    pub line: u32,
+}
+
+/// Something that happens between two moves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Note {
+    /// How many moves come before it.
+    pub at: usize,
+    /// Line of the file, from 1.
+    pub line: u64,
+    /// What.
+    pub what: What,
+}
+
+/// See [`Note`].
+#[derive(Debug, Clone, PartialEq)]
+pub enum What {
+    /// A heater is told something.
+    Heating(Heating),
+    /// G10 (back) or G11.
+    FirmwareRetraction {
+        /// Whether filament is pulled back.
+        back: bool,
+    },
+    /// Code that means nothing to the reader.
+    Unknown(String),
+}
+
+impl Step {
+    /// Way of the nozzle, mm.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        let way = |axis: usize| f64::from(self.to[axis]) - f64::from(self.from[axis]);
+        (way(0) * way(0) + way(1) * way(1) + way(2) * way(2)).sqrt()
+    }
+
+    /// Whether it lays down a line: it goes sideways and pushes filament.
+    #[must_use]
+    pub fn is_line(&self) -> bool {
+        self.filament > 0.0 && (self.from[0] != self.to[0] || self.from[1] != self.to[1])
+    }
+}
+
+impl Print {
+    /// Reads a whole file; `filament_diameter` in mm tells how wide lines are
+    /// whose comments do not.
+    ///
+    /// # Errors
+    /// Only what reading the bytes gives: no content is an error.
+    pub fn read(source: &mut dyn BufRead, filament_diameter: f64) -> io::Result<Self> {
+        let mut builder = Builder::default();
+        let summary = super::read(source, &mut |line, event| builder.event(line, event))?;
+        Ok(builder.print(summary, filament_diameter))
+    }
+
+    /// The moves of a layer.
+    #[must_use]
+    pub fn moves_of(&self, layer: &Layer) -> &[Step] {
+        &self.moves[layer.moves.clone()]
+    }
+
+    /// The last of the values with this key.
+    #[must_use]
+    pub fn value(&self, key: &str) -> Option<&str> {
+        self.values.iter().rev().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
+    }
+}
+
+/// Collects events.
+#[derive(Default)]
+struct Builder {
+    print: Print,
+    /// Where layers begin: place in the moves, and whether a comment says so.
+    begins: Vec<(usize, bool)>,
+    /// Whether the head goes on.
+    past_head: bool,
+}
+
+impl Builder {
+    fn event(&mut self, line: u64, event: Event) {
+        let at = self.print.moves.len();
+        let mut note = |what| self.print.notes.push(Note { at, line, what });
+        match event {
+            Event::Move(motion) => self.motion(line, &motion),
+            Event::Layer { marked } => {
+                self.print.marked |= marked;
+                self.begins.push((at, marked));
+            }
+            Event::Heating(heating) => note(What::Heating(heating)),
+            Event::FirmwareRetraction { back } => note(What::FirmwareRetraction { back }),
+            Event::Unknown(code) => {
+                note(What::Unknown(String::from_utf8_lossy(&code).into_owned()));
+            }
+            Event::Comment(comment) => return self.comment(&comment),
+            Event::Dwell(_) | Event::Wait(_) | Event::Change(_) => {}
+        }
+        self.past_head = true;
+    }
+
+    fn motion(&mut self, line: u64, motion: &Motion) {
+        self.print.tells_width |= motion.width.is_some();
+        self.print.tells_height |= motion.height.is_some();
+        let narrow = |at: [f64; 3]| at.map(|at| at as f32);
+        self.print.moves.push(Step {
+            from: narrow(motion.from),
+            to: narrow(motion.to),
+            filament: motion.filament as f32,
+            feed: motion.feed as f32,
+            width: motion.width.unwrap_or(0.0) as f32,
+            height: motion.height.unwrap_or(0.0) as f32,
+            role: motion.role,
+            line: u32::try_from(line).unwrap_or(u32::MAX),
+        });
+    }
+
+    fn comment(&mut self, comment: &[u8]) {
+        let short = &comment[..comment.len().min(LONGEST_COMMENT)];
+        let text = || String::from_utf8_lossy(short).trim().to_owned();
+        if !self.past_head && self.print.head.len() < MOST_COMMENTS {
+            self.print.head.push(text());
+        }
+        if short.windows(3).any(|three| three == b" = ") && self.print.values.len() < MOST_COMMENTS
+        {
+            let text = text();
+            if let Some((key, value)) = text.split_once(" = ") {
+                self.print.values.push((key.trim().to_owned(), value.trim().to_owned()));
+            }
+        }
+    }
+
+    fn print(mut self, summary: Summary, diameter: f64) -> Print {
+        self.print.summary = summary;
+        self.divide();
+        let area = PI * diameter * diameter / 4.0;
+        let print = &mut self.print;
+        let start = (&print.start, SOME_HEIGHT);
+        let layers = print.layers.iter().map(|layer| (&layer.moves, layer.height));
+        for (range, height) in std::iter::once(start).chain(layers) {
+            print.moves[range.clone()].iter_mut().for_each(|step| step.measure(height, area));
+        }
+        self.print
+    }
+
+    /// Lays the moves out in layers. What comes before the first mark is no layer, and what
+    /// has no line belongs to the layer before.
+    fn divide(&mut self) {
+        let print = &mut self.print;
+        let marked = print.marked;
+        let begins: Vec<usize> = self
+            .begins
+            .iter()
+            .filter(|(_, by_mark)| *by_mark || !marked)
+            .map(|(at, _)| *at)
+            .collect();
+        let mut below = 0.0;
+        for (k, &first) in begins.iter().enumerate() {
+            let end = begins.get(k + 1).copied().unwrap_or(print.moves.len());
+            let line = print.moves[first..end].iter().find(|step| step.is_line());
+            let (Some(line), last) = (line, print.layers.last_mut()) else {
+                if let Some(last) = print.layers.last_mut() {
+                    last.moves.end = end;
+                }
+                continue;
+            };
+            let z = f64::from(line.to[2]);
+            let height = match (z - below, last) {
+                (rise, _) if rise > SAME_HEIGHT => rise,
+                // Beside the layer before, or a part of its own.
+                (_, Some(last)) => last.height,
+                (_, None) => SOME_HEIGHT,
+            };
+            below = z;
+            print.layers.push(Layer { moves: first..end, z, height });
+        }
+        print.start = 0..print.layers.first().map_or(print.moves.len(), |layer| layer.moves.start);
+    }
+}
+
+impl Step {
+    /// Fills in what comments do not tell; `layer` is the layer's height, `area` the
+    /// filament's cross-section.
+    fn measure(&mut self, layer: f64, area: f64) {
+        if !self.is_line() {
+            (self.width, self.height) = (0.0, 0.0);
+            return;
+        }
+        if self.height == 0.0 {
+            self.height = layer as f32;
+        }
+        if self.width == 0.0 {
+            // A bead with round ends is as much wider than a box of the same height and volume.
+            let height = f64::from(self.height);
+            let boxed = f64::from(self.filament) * area / self.length() / height;
+            self.width = (boxed + (1.0 - FRAC_PI_4) * height) as f32;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn print(text: &str) -> Print {
+        Print::read(&mut text.as_bytes(), 1.75).unwrap()
+    }
+
+    #[test]
+    fn layers_begin_at_marks_and_end_where_the_next_begins() {
+        let text = "; by hand\n;a = 1\nG1 X1 E1 ; b = 2\n;LAYER_CHANGE\nG1 Z0.3\nM104 S200\n\
+                    ;TYPE:Skin\n;WIDTH:0.5\nG1 X9 E2\n;LAYER_CHANGE\nG1 Z0.5\nG1 X1 E3\n\
+                    ;LAYER_CHANGE\nFOO\nG1 Z9";
+        let print = print(text);
+        assert_eq!(print.start, 0..1);
+        let layers: Vec<_> = print.layers.iter().map(|l| (l.moves.clone(), l.z as f32)).collect();
+        assert_eq!(layers, [(1..3, 0.3), (3..6, 0.5)]);
+        assert!((print.layers[1].height - 0.2).abs() < 1e-6);
+        let line = print.moves[2];
+        assert_eq!((line.width, line.height, line.role, line.line), (0.5, 0.3, Role::Skin, 9));
+        assert!(print.marked && print.tells_width && !print.tells_height);
+        assert_eq!(print.head, ["by hand", "a = 1"]);
+        assert_eq!((print.value("a"), print.value("b")), (Some("1"), Some("2")));
+        let notes: Vec<_> = print.notes.iter().map(|note| (note.at, note.line)).collect();
+        assert_eq!(notes, [(2, 6), (5, 14)]);
+    }
+
+    #[test]
+    fn widths_that_no_comment_tells_come_from_the_plastic() {
+        let print = print("G1 Z0.2\nG1 X10 E0.3326");
+        let line = print.moves[1];
+        assert_eq!(line.height, 0.2);
+        // 0.4 × 0.2 mm as a box.
+        assert!((line.width - 0.443).abs() < 0.001, "{}", line.width);
+        assert_eq!(print.layers.len(), 1);
+    }
+}
