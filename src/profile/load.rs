@@ -90,6 +90,13 @@ pub fn builtin_names() -> impl Iterator<Item = &'static str> {
 /// key, wrong type, out of range, a key without value, values that cannot print
 /// together, blocks that cannot be filled in.
 pub fn load(name_or_path: &str, overrides: &[Override]) -> Result<Profile> {
+    let profile = merge(name_or_path, overrides)?;
+    check::together(&profile.settings, &profile.origins)?;
+    Ok(profile)
+}
+
+/// As [`load`], each value checked, but not whether they can print together.
+pub(super) fn merge(name_or_path: &str, overrides: &[Override]) -> Result<Profile> {
     let mut merged = Merged::new();
     let layer = Layer::find(name_or_path, None).map_err(Error::Config)?;
     let name = layer.name.clone();
@@ -99,7 +106,6 @@ pub fn load(name_or_path: &str, overrides: &[Override]) -> Result<Profile> {
     }
     let settings = build(name_or_path, &merged)?;
     let origins = merged.into_iter().map(|(key, (_, origin))| (key, origin)).collect();
-    check::together(&settings, &origins)?;
     Ok(Profile { settings, origins, name })
 }
 

@@ -1,7 +1,7 @@
 //! Comments of a G-code file -> Profile: the settings that this program writes at its end.
 
 use super::keys::KEYS;
-use super::load::{DEFAULT, Override, Profile, ValueOrigin, load};
+use super::load::{DEFAULT, Override, Profile, ValueOrigin, merge};
 use super::show::NOT_DUMPED;
 use crate::error::Result;
 
@@ -10,7 +10,7 @@ use crate::error::Result;
 /// that of the default profile.
 ///
 /// # Errors
-/// As [`load`]: a value that is out of range, such as of a file of another version.
+/// As [`load`](super::load()): a value that is out of range, such as of a file of another version.
 pub fn recorded(comments: &[(String, String)]) -> Result<Option<Profile>> {
     let value = |name: &str| comments.iter().rev().find(|(key, _)| key == name);
     // Two that no other slicer writes, so that a stray `infill = 20` is not taken for ours.
@@ -24,13 +24,13 @@ pub fn recorded(comments: &[(String, String)]) -> Result<Option<Profile>> {
             Some(Override { key, value, origin: ValueOrigin::Recorded })
         })
         .collect();
-    load(DEFAULT, &overrides).map(Some)
+    merge(DEFAULT, &overrides).map(Some)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::profile::{builtin_names, dump};
+    use crate::profile::{builtin_names, dump, load};
 
     #[test]
     fn what_a_file_holds_gives_the_settings_back() {
