@@ -28,6 +28,32 @@ use std::time::Instant;
 /// Exit code of a run that is done but has findings, with `--strict`.
 const STRICT: u8 = 1;
 
+/// What a subcommand has to say: the text for standard output, and the exit code.
+struct Outcome {
+    text: String,
+    code: u8,
+}
+
+impl Outcome {
+    /// Prints the text and gives the exit code, which holds even if nobody reads the text.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if standard output cannot be written.
+    fn tell(self) -> Result<u8> {
+        match output::print(&self.text) {
+            Err(error) if !output::is_closed_stdout(&error) => Err(error),
+            _ => Ok(self.code),
+        }
+    }
+}
+
+impl From<String> for Outcome {
+    /// All is well.
+    fn from(text: String) -> Self {
+        Self { text, code: 0 }
+    }
+}
+
 /// Runs the program with these arguments, the program's name first, and
 /// returns the process's exit code.
 pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
@@ -38,7 +64,7 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
     };
     let done = match &arguments.command {
         None => slice(&arguments.slice),
-        Some(command) => other(command).map(|()| 0),
+        Some(command) => other(command).and_then(Outcome::tell),
     };
     done.unwrap_or_else(|error| {
         // Who stops reading our output has had enough of it: no failure.
@@ -165,7 +191,7 @@ fn write_report(path: &Path, mut sink: Sink, report: &Report) -> Result<Sink> {
     Ok(sink)
 }
 
-fn other(command: &Command) -> Result<()> {
+fn other(command: &Command) -> Result<Outcome> {
     let text = match command {
         Command::Profile(ProfileCommand::List) => list()?,
         Command::Profile(ProfileCommand::Show { name, set, verbose }) => {
@@ -195,7 +221,7 @@ fn other(command: &Command) -> Result<()> {
             String::from_utf8_lossy(&text).into_owned()
         }
     };
-    output::print(&text)
+    Ok(text.into())
 }
 
 fn list() -> Result<String> {
