@@ -192,7 +192,7 @@ impl Meter {
                 self.clock.set_limits(limits);
             }
             // Telling a heater takes no time; waiting for it is counted above.
-            Event::Change(_) | Event::Heating(_) | Event::Comment(_) => {}
+            Event::Change(_) | Event::Heating(_) | Event::Command { .. } | Event::Comment(_) => {}
             // Both are in the reader's summary.
             Event::FirmwareRetraction { .. } | Event::Unknown(_) => {}
         }

@@ -11,13 +11,14 @@
 //! - [`gcode`]: paths -> text
 //!
 //! Another way, from any slicer's G-code to its time: [`reader`] (text -> moves), [`motion`] (moves and
-//! limits -> seconds), [`mod@estimate`] (seconds by role and layer).
+//! limits -> seconds), [`mod@estimate`] (seconds by role and layer), [`mod@check`] (moves and model -> what is wrong).
 //!
 //! Beside the way: [`job`] (what a run is asked for), [`geom`] and [`units`] (plane geometry on the integer grid),
 //! [`profile`] (settings), [`motion`] (moves -> time), [`reader`] and [`mod@estimate`] (G-code of any slicer -> time),
 //! [`mod@compare`] (ways to print -> what each saves), [`report`], [`progress`], [`warning`] and [`error`].
 //! The command line is the binary's own.
 
+pub mod check;
 pub mod compare;
 pub mod error;
 pub mod estimate;
@@ -53,13 +54,37 @@ pub fn slice(
     out: &mut dyn gcode::Output,
     progress: &progress::Progress,
 ) -> Result<report::Report> {
-    let bed = bed(&job.settings.machine);
-    let models = job.models.iter().map(|file| mesh::stl::load(file)).collect::<Result<_>>()?;
-    let placed = mesh::transform::place(models, &job.placement, &bed)?;
+    let placed = place(&job.models, &job.placement, &bed(&job.settings.machine))?;
+    slice_placed(job, &placed, out, progress)
+}
 
+/// Reads models, `-` being standard input, and lays them on a bed.
+///
+/// # Errors
+/// Those of reading and placing: [`Error::Input`], [`Error::Usage`], [`Error::Unprintable`].
+pub fn place(
+    models: &[String],
+    placement: &mesh::Placement,
+    bed: &mesh::Bed,
+) -> Result<mesh::transform::Placed> {
+    let models = models.iter().map(|file| mesh::stl::load(file)).collect::<Result<_>>()?;
+    mesh::transform::place(models, placement, bed)
+}
+
+/// As [`slice()`], of the models as [`place`] gave them.
+///
+/// # Errors
+/// As [`slice()`].
+pub fn slice_placed(
+    job: &Job,
+    placed: &mesh::transform::Placed,
+    out: &mut dyn gcode::Output,
+    progress: &progress::Progress,
+) -> Result<report::Report> {
+    let bed = bed(&job.settings.machine);
     let settings = &settle(&job.settings, &placed.mesh);
     let heights = heights(settings, &placed.mesh);
-    let facts = print_facts(&placed, heights);
+    let facts = print_facts(placed, heights);
     if heights.count == 0 {
         let height = placed.size_mm[2];
         return Err(Error::Unprintable(format!(
@@ -95,7 +120,7 @@ pub fn slice(
     let Planner { mut window, tally, .. } = planner;
     let audits = window.audits();
     let sums = writer.finish()?;
-    report::report(job, &placed, heights, &sums, &audits, &tally)
+    report::report(job, placed, heights, &sums, &audits, &tally)
 }
 
 /// Plans the layers, some at a time.
@@ -150,7 +175,8 @@ fn print_facts(placed: &mesh::transform::Placed, heights: slice::Heights) -> Pri
 }
 
 /// The space that the machine has.
-fn bed(machine: &profile::Machine) -> mesh::Bed {
+#[must_use]
+pub fn bed(machine: &profile::Machine) -> mesh::Bed {
     let size = [machine.bed_width, machine.bed_depth];
     let min = match machine.origin {
         profile::Origin::Centre => size.map(|side| -side / 2.0),

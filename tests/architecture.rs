@@ -25,6 +25,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // A witness of its own: it shares nothing with the code that writes.
     ("reader", &[]),
     ("estimate", &["reader", "motion", "error"]),
+    // An independent witness: nothing of slice, region, plan or gcode.
+    ("check", &["reader", "mesh", "profile", "units"]),
 ];
 
 /// Modules that may use all others: the flow itself, and what tells of it.

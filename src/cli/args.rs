@@ -17,13 +17,14 @@ Examples:
   slicer - -o - < part.stl > part.gcode
   slicer profile show generic-marlin > mine.toml
   slicer estimate part.gcode -p ./mine.toml
+  slicer check part.gcode --against part.stl
 
 A model whose file is named like a subcommand is given as ./profile.";
 
 const EXIT_CODES: &str = "\
 Exit codes:
     0  done
-    1  done, but there were warnings and --strict was given
+    1  done, but with findings: warnings with --strict, or what `check` or --check found
     2  wrong arguments, profile or setting
     3  a model or G-code file cannot be read; a model does not fit, or leaves nothing to print
     4  an output cannot be written
@@ -64,6 +65,8 @@ pub(crate) enum Command {
     Profile(ProfileCommand),
     /// Say how long a G-code file takes
     Estimate(EstimateArgs),
+    /// Say what is wrong with a G-code file, also against the model
+    Check(Box<CheckArgs>),
     /// Tell what each way of dual injection saves on a model
     Compare(Box<CompareArgs>),
     /// Print completions for a shell
@@ -123,6 +126,28 @@ pub(crate) struct EstimateArgs {
     pub(crate) fixed_limits: bool,
 }
 
+/// Arguments of checking.
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    /// G-code file of any slicer; `-` reads standard input
+    #[arg(value_name = "FILE")]
+    pub(crate) file: String,
+    /// STL file that it was made from (repeatable); placed as the flags below say, then moved to where the lines are
+    #[arg(long, value_name = "PART")]
+    pub(crate) against: Vec<String>,
+    /// Built-in profile, or a file if it has a `/` or ends in .toml: the machine [default: the file's own settings]
+    #[arg(short, long, value_name = "NAME")]
+    pub(crate) profile: Option<String>,
+    /// Change any setting of the profile, such as machine.bed_width=250 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE", requires = "profile")]
+    pub(crate) set: Vec<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) place: PlaceArgs,
+}
+
 /// Arguments of `compare`.
 #[derive(Debug, Args)]
 pub(crate) struct CompareArgs {
@@ -172,6 +197,9 @@ pub(crate) struct SliceArgs {
     /// Exit with 1 if there are warnings; the output is written all the same
     #[arg(long, help_heading = "Running")]
     pub(crate) strict: bool,
+    /// Check the G-code against the models before it is put in place; with findings it is not
+    #[arg(long, help_heading = "Running")]
+    pub(crate) check: bool,
     /// Threads to use; the output never depends on it [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), help_heading = "Running")]
     pub(crate) threads: Option<u16>,

@@ -31,6 +31,7 @@ pub(super) fn read(file: &str) -> Result<(&str, Vec<u8>)> {
     Ok((name, bytes))
 }
 
-fn unreadable(file: &str, error: &std::io::Error) -> Error {
+/// A file that cannot be read.
+pub(super) fn unreadable(file: &str, error: &std::io::Error) -> Error {
     Error::input(file, format!("cannot read: {error}; check the path"))
 }

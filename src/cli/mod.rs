@@ -1,6 +1,7 @@
 //! Arguments -> products and exit code: the only place that prints.
 
 mod args;
+mod check;
 mod compare;
 mod estimate;
 mod input;
@@ -207,6 +208,7 @@ fn other(command: &Command) -> Result<Outcome> {
             format!("{name}: good\n")
         }
         Command::Compare(args) => compare::run(args)?,
+        Command::Check(args) => return check::run(args),
         Command::Estimate(args) => estimate::run(args)?,
         Command::Completions { shell } => {
             let mut text = Vec::new();

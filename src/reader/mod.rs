@@ -44,6 +44,13 @@ pub enum Event {
         /// Whether it is pulled back.
         back: bool,
     },
+    /// A command that is no move.
+    Command {
+        /// `G`, `M` or `T`, mostly.
+        letter: u8,
+        /// What follows the letter, without its fraction.
+        number: u32,
+    },
     /// A comment that marks nothing, without its `;`.
     Comment(Vec<u8>),
     /// A line of code that means nothing to the reader.

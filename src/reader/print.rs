@@ -1,6 +1,7 @@
 //! Events -> Print: a whole G-code file as layers of moves, held compactly.
 
 use super::{Event, Heating, Motion, Role, Summary};
+use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::io::{self, BufRead};
 use std::ops::Range;
@@ -13,6 +14,12 @@ const MOST_COMMENTS: usize = 10_000;
 
 /// Heights that differ by less are the same, mm.
 const SAME_HEIGHT: f64 = 1e-4;
+
+/// Keys under which slicers write the filament's diameter, mm.
+const DIAMETER_KEYS: &[&str] = &["filament.diameter", "filament_diameter"];
+
+/// Diameters that a filament may have, mm.
+const DIAMETERS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
 /// Height of a bead where nothing tells it, mm.
 const SOME_HEIGHT: f64 = 0.2;
@@ -31,6 +38,8 @@ pub struct Print {
     pub notes: Vec<Note>,
     /// `key = value` in comments: settings and sums that slicers write, in the file's order.
     pub values: Vec<(String, String)>,
+    /// Commands that occur, but for moves: letter and number -> the first line with it.
+    pub commands: BTreeMap<(u8, u32), u64>,
     /// The file's first comments, up to the first line that is something else.
     pub head: Vec<String>,
     /// Whether comments say where layers begin.
@@ -39,6 +48,8 @@ pub struct Print {
     pub tells_width: bool,
     /// Whether comments tell heights of lines.
     pub tells_height: bool,
+    /// Diameter of the filament, mm: as the file tells it, else as whoever reads it thinks.
+    pub filament_diameter: f64,
     /// What was read besides the moves.
     pub summary: Summary,
 }
@@ -116,8 +127,8 @@ impl Step {
 }
 
 impl Print {
-    /// Reads a whole file; `filament_diameter` in mm tells how wide lines are
-    /// whose comments do not.
+    /// Reads a whole file; `filament_diameter` in mm tells how wide lines are whose comments do
+    /// not, unless the file has one of its own.
     ///
     /// # Errors
     /// Only what reading the bytes gives: no content is an error.
@@ -165,6 +176,9 @@ impl Builder {
             Event::Unknown(code) => {
                 note(What::Unknown(String::from_utf8_lossy(&code).into_owned()));
             }
+            Event::Command { letter, number } => {
+                self.print.commands.entry((letter, number)).or_insert(line);
+            }
             Event::Comment(comment) => return self.comment(&comment),
             Event::Dwell(_) | Event::Wait(_) | Event::Change(_) => {}
         }
@@ -204,6 +218,9 @@ impl Builder {
 
     fn print(mut self, summary: Summary, diameter: f64) -> Print {
         self.print.summary = summary;
+        let told = DIAMETER_KEYS.iter().find_map(|key| self.print.value(key)?.parse().ok());
+        let diameter = told.filter(|told| DIAMETERS.contains(told)).unwrap_or(diameter);
+        self.print.filament_diameter = diameter;
         self.divide();
         let area = PI * diameter * diameter / 4.0;
         let print = &mut self.print;

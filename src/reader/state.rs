@@ -101,6 +101,12 @@ impl State {
         if code[0] == b'(' || code[0] == b'%' {
             return;
         }
+        let command = words::command(code);
+        if let Some((Code { letter, number, .. }, _)) = command
+            && !(letter == b'G' && number <= 3)
+        {
+            sink(Event::Command { letter, number });
+        }
         if let Some(heating) = heat::heating(code) {
             sink(Event::Heating(heating));
             if heating.waits {
@@ -108,7 +114,7 @@ impl State {
             }
             return;
         }
-        if let Some((command, words)) = words::command(code) {
+        if let Some((command, words)) = command {
             let known = !command.has_part && self.command(command, words, sink);
             // Parts of a family, such as M862.1, are all of one kind.
             if known || (command.has_part && is_harmless(command)) {

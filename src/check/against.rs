@@ -1,0 +1,192 @@
+//! Print + Part -> findings of a layer: outline, top and bottom surfaces, lines beside the part.
+
+use super::blobs::blobs;
+use super::capsule::Capsule;
+use super::finding::{Code, Finding, Place, short};
+use super::part::Part;
+use super::raster::{Bits, Grid};
+use crate::reader::print::{Layer, Step};
+use crate::reader::{Print, Role};
+
+/// The outline's inside that must be printed, mm.
+const RIM: f64 = 0.3;
+
+/// How far lines may reach out of the part, mm.
+const MOST_OUT: f64 = 0.3;
+
+/// Open places narrower than twice this are none, mm.
+const NARROW: f64 = 0.1;
+
+/// Smaller patches are the rounding of corners and ends, mm².
+const LEAST_AREA: f64 = 0.4;
+
+/// Places narrower than this many line widths cannot be printed.
+const PRINTABLE: f64 = 1.2;
+
+/// How far from walls and skins sparse infill is measured, mm.
+const FROM_WALLS: f64 = 0.5;
+
+/// Pieces that lines are measured in, mm.
+const PIECE: f64 = 0.2;
+
+/// What is found and measured on one layer.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Verdict {
+    pub(super) findings: Vec<Finding>,
+    pub(super) areas: Areas,
+}
+
+/// What is measured; areas in mm², volumes in mm³.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Areas {
+    /// The part's cut.
+    pub(super) part: f64,
+    /// The printable rim of it, and what of that is printed.
+    pub(super) rim: [f64; 2],
+    /// The printable part of top and bottom surfaces, and what of that is closed.
+    pub(super) surface: [f64; 2],
+    /// Walls and skins: area, and plastic.
+    pub(super) solid: [f64; 2],
+    /// What sparse infill is measured on: area, and plastic.
+    pub(super) sparse: [f64; 2],
+}
+
+/// What judging a layer needs.
+pub(super) struct Judge<'a> {
+    pub(super) print: &'a Print,
+    pub(super) part: &'a Part,
+    pub(super) grid: Grid,
+    /// Usual width of a wall, mm.
+    pub(super) line_width: f64,
+    /// mm².
+    pub(super) filament_area: f64,
+    /// Whether roles are told, so that lines of the part can be told from others.
+    pub(super) has_roles: bool,
+}
+
+/// Whether a line is of the part itself: no support, skirt or start line.
+pub(super) fn is_of_part(step: &Step, has_roles: bool) -> bool {
+    let roles = [Role::OuterWall, Role::InnerWall, Role::Skin, Role::Infill];
+    step.is_line() && (!has_roles || roles.contains(&step.role))
+}
+
+impl Judge<'_> {
+    /// Judges layer `index`, whose cut and those below and above are given.
+    pub(super) fn layer(&self, index: usize, [below, here, above]: [&Bits; 3]) -> Verdict {
+        let layer = &self.print.layers[index];
+        let lines = || {
+            let steps = self.print.moves_of(layer).iter();
+            steps.filter(|step| is_of_part(step, self.has_roles))
+        };
+        let (mut solid, mut sparse) = (Bits::new(self.grid.size), Bits::new(self.grid.size));
+        for step in lines() {
+            let into = if step.role == Role::Infill { &mut sparse } else { &mut solid };
+            Capsule::of(step, 1.0).draw(&self.grid, into);
+        }
+        let printed = sparse.or(&solid);
+        let printable = here.opened(self.grid.pixels(self.line_width * PRINTABLE / 2.0));
+
+        let mut verdict = Verdict::default();
+        let rim = here.clone().minus(&here.shrunk(self.grid.pixels(RIM))).and(&printable);
+        let open = rim.clone().minus(&printed);
+        verdict.areas.rim = self.shares(&rim, &open);
+        let patches = self.patches(&open, index, layer, Code::OpenOutline, |area| {
+            format!("{area} mm² along the outline are not printed")
+        });
+        verdict.findings.extend(patches);
+
+        let exposed = here.clone().minus(above).or(&here.clone().minus(below)).and(&printable);
+        let open = exposed.clone().minus(&solid);
+        verdict.areas.surface = self.shares(&exposed, &open);
+        // What the outline lacks has been told.
+        let open = open.minus(&rim);
+        let patches = self.patches(&open, index, layer, Code::OpenSurface, |area| {
+            format!("{area} mm² of a top or bottom surface are not closed")
+        });
+        verdict.findings.extend(patches);
+
+        if self.has_roles {
+            let out = printed.minus(&here.grown(self.grid.pixels(MOST_OUT)));
+            let patches = self.patches(&out, index, layer, Code::OutsidePart, |area| {
+                format!("{area} mm² are printed beside the part")
+            });
+            verdict.findings.extend(patches);
+        }
+        self.amounts(lines(), here, &solid, &mut verdict.areas);
+        verdict
+    }
+
+    /// An area, and it less what is open of it, mm².
+    fn shares(&self, all: &Bits, open: &Bits) -> [f64; 2] {
+        let area = self.grid.area();
+        [all.count() as f64 * area, (all.count() - open.count()) as f64 * area]
+    }
+
+    /// The patches that are wide and large enough to be faults.
+    fn patches(
+        &self,
+        bits: &Bits,
+        index: usize,
+        layer: &Layer,
+        code: Code,
+        text: impl Fn(f64) -> String,
+    ) -> Vec<Finding> {
+        if bits.is_empty() {
+            return Vec::new();
+        }
+        let found = blobs(&bits.opened(self.grid.pixels(NARROW)));
+        let areas = found.iter().map(|blob| (blob, blob.pixels as f64 * self.grid.area()));
+        let large = areas.filter(|(_, area)| *area >= LEAST_AREA);
+        large
+            .map(|(blob, area)| Finding {
+                code,
+                place: Place {
+                    line: None,
+                    layer: Some(index + 1),
+                    z_mm: Some(short(layer.z)),
+                    at_mm: Some(self.grid.middle(blob.at[0], blob.at[1]).map(short)),
+                },
+                measure: area,
+                unit: "mm²",
+                text: text(short(area)),
+            })
+            .collect()
+    }
+
+    /// Areas and plastic of walls and skins, and of sparse infill away from them.
+    fn amounts<'s>(
+        &self,
+        lines: impl Iterator<Item = &'s Step>,
+        here: &Bits,
+        solid: &Bits,
+        areas: &mut Areas,
+    ) {
+        let core = here.clone().minus(solid).shrunk(self.grid.pixels(FROM_WALLS));
+        let area = self.grid.area();
+        areas.part = here.count() as f64 * area;
+        areas.solid[0] = solid.count() as f64 * area;
+        areas.sparse[0] = core.count() as f64 * area;
+        for step in lines {
+            let plastic = f64::from(step.filament) * self.filament_area;
+            if step.role == Role::Infill {
+                areas.sparse[1] += plastic * self.share_in(step, &core);
+            } else {
+                areas.solid[1] += plastic;
+            }
+        }
+    }
+
+    /// What part of a line lies in an area.
+    fn share_in(&self, step: &Step, area: &Bits) -> f64 {
+        let count = (step.length() / PIECE).ceil().max(1.0) as usize;
+        let inside = (0..count).filter(|k| {
+            let part = (*k as f64 + 0.5) / count as f64;
+            let at = [0, 1].map(|axis| {
+                let (from, to) = (f64::from(step.from[axis]), f64::from(step.to[axis]));
+                from + part * (to - from)
+            });
+            self.grid.pixel(at).is_some_and(|[x, y]| area.has(x, y))
+        });
+        inside.count() as f64 / count as f64
+    }
+}

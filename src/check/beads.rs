@@ -1,0 +1,117 @@
+//! Print + Terms -> findings of amounts: lines with odd amounts of plastic, and sums that the file itself tells.
+
+use super::finding::{Code, Finding, Findings, Place, short};
+use super::terms::Terms;
+use crate::reader::print::Step;
+use crate::reader::{Print, Role};
+
+/// Shorter lines are mostly rounding, mm.
+const LEAST_LENGTH: f64 = 0.5;
+
+/// A line may take this many times the plastic of its role's usual line of that size …
+const MOST: f64 = 1.6;
+
+/// … or this.
+const LEAST: f64 = 0.55;
+
+/// The same where no comment tells how wide lines are.
+const MOST_UNTOLD: f64 = 4.0;
+
+/// Lines of a role that tell what is usual.
+const LEAST_LINES: usize = 20;
+
+/// How far sums may be from what they sum up: a part of 1, and mm.
+const SUM_SLACK: (f64, f64) = (0.01, 1.0);
+
+/// Lines whose plastic does not fit their size.
+pub(super) fn odd(print: &Print, terms: &Terms, found: &mut Findings) {
+    let lines = |role| {
+        let places = print.layers.iter().enumerate();
+        places.flat_map(move |(layer, one)| {
+            let steps = print.moves_of(one).iter();
+            steps.filter(move |step| is_judged(step, role)).map(move |step| (layer, step))
+        })
+    };
+    for role in Role::ALL {
+        let ratio =
+            |step: &Step| f64::from(step.filament) * terms.filament_area / room(print, step);
+        let mut ratios: Vec<f64> = lines(role).map(|(_, step)| ratio(step)).collect();
+        if ratios.len() < LEAST_LINES {
+            continue;
+        }
+        let middle = ratios.len() / 2;
+        let (_, usual, _) = ratios.select_nth_unstable_by(middle, f64::total_cmp);
+        let usual = *usual;
+        for (layer, step) in lines(role) {
+            let times = ratio(step) / usual;
+            let is_odd = if print.tells_width {
+                !(LEAST..=MOST).contains(&times)
+            } else {
+                times > MOST_UNTOLD
+            };
+            if is_odd {
+                let text = format!(
+                    "{} times the plastic that {} lines of this size take",
+                    short(times),
+                    role.name()
+                );
+                let measure = if times > 1.0 { times } else { 1.0 / times };
+                let finding = Finding::of(Code::OddBead, measure, "times", text);
+                found.add(Finding { place: place(layer, step), ..finding });
+            }
+        }
+    }
+}
+
+fn is_judged(step: &Step, role: Role) -> bool {
+    step.role == role && step.is_line() && step.length() >= LEAST_LENGTH
+}
+
+/// What a line's plastic is held against, mm³: its length times its width, if that is told, and height.
+fn room(print: &Print, step: &Step) -> f64 {
+    let width = if print.tells_width { f64::from(step.width) } else { 1.0 };
+    step.length() * width * f64::from(step.height)
+}
+
+/// Where a move of a layer, from 0, ends.
+pub(super) fn place(layer: usize, step: &Step) -> Place {
+    let [x, y, z] = step.to.map(f64::from);
+    Place {
+        line: Some(u64::from(step.line)),
+        layer: Some(layer + 1),
+        z_mm: Some(short(z)),
+        at_mm: Some([short(x), short(y)]),
+    }
+}
+
+/// Filament and layers as the file's comments tell them.
+pub(super) fn sums(print: &Print, found: &mut Findings) {
+    let told = |keys: &[&str]| {
+        let text = keys.iter().find_map(|key| print.value(key))?;
+        let parts: Option<Vec<f64>> = text.split(',').map(|one| one.trim().parse().ok()).collect();
+        parts.map(|parts| parts.iter().sum::<f64>()).filter(|sum| sum.is_finite())
+    };
+    if let Some(told) = told(&["filament used [mm]"]) {
+        let sum = |steps: &[Step]| steps.iter().map(|step| f64::from(step.filament)).sum::<f64>();
+        let last = print.moves.iter().rposition(Step::is_line).map_or(0, |index| index + 1);
+        // Some slicers count the start block, some do not.
+        let sums = [sum(&print.moves[..last]), sum(&print.moves[print.start.end.min(last)..last])];
+        let fits = |sum: &f64| (sum - told).abs() <= SUM_SLACK.0 * told + SUM_SLACK.1;
+        if !sums.iter().any(fits) {
+            let text = format!(
+                "the file says that it uses {} mm of filament, but uses {}",
+                short(told),
+                short(sums[1])
+            );
+            let measure = (sums[1] - told).abs();
+            found.add(Finding::of(Code::WrongSums, measure, "mm", text));
+        }
+    }
+    if let Some(told) = told(&["total layers count", "layers"]) {
+        let count = print.layers.len() as f64;
+        if count != told {
+            let text = format!("the file says that it has {told} layers, but has {count}");
+            found.add(Finding::of(Code::WrongSums, (count - told).abs(), "layers", text));
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! Finding: what is wrong with a file, where, and by how much.
+
+use serde::Serialize;
+use std::fmt;
+
+/// Findings of a kind that are listed; the rest are counted.
+pub const MOST_LISTED: usize = 100;
+
+/// Kinds of findings. Their names are stable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Code {
+    /// A command that the machine's firmware does not know.
+    UnknownCode,
+    /// A line or travel leaves the space that the machine has.
+    OutsideVolume,
+    /// Plastic is pushed out before the nozzle has been told to get hot and waited for.
+    ColdExtrusion,
+    /// A move is faster than the machine's axes.
+    TooFast,
+    /// Plastic goes faster than the hot end melts it.
+    TooMuchFlow,
+    /// A line is printed with the filament pulled back, or it is pulled back twice.
+    UnpairedRetraction,
+    /// A line takes far more or less plastic than others of its role and size.
+    OddBead,
+    /// A line lies lower than what was printed before it.
+    FallingZ,
+    /// Lines have nothing under them and hang on nothing.
+    InTheAir,
+    /// A line lies on a line of the same layer.
+    PrintedTwice,
+    /// The file says it uses another amount of filament than it does.
+    WrongSums,
+    /// The print is larger or smaller than the part.
+    WrongSize,
+    /// Something of the part's outline is not printed.
+    OpenOutline,
+    /// Something of a top or bottom surface is not printed.
+    OpenSurface,
+    /// Lines of the part lie beside it.
+    OutsidePart,
+    /// The sparse infill is denser or thinner than asked for, or missing.
+    WrongInfill,
+    /// Walls and skins take more or less plastic than they have room.
+    WrongVolume,
+}
+
+impl Code {
+    /// All of them.
+    pub const ALL: [Self; 17] = [
+        Self::UnknownCode,
+        Self::OutsideVolume,
+        Self::ColdExtrusion,
+        Self::TooFast,
+        Self::TooMuchFlow,
+        Self::UnpairedRetraction,
+        Self::OddBead,
+        Self::FallingZ,
+        Self::InTheAir,
+        Self::PrintedTwice,
+        Self::WrongSums,
+        Self::WrongSize,
+        Self::OpenOutline,
+        Self::OpenSurface,
+        Self::OutsidePart,
+        Self::WrongInfill,
+        Self::WrongVolume,
+    ];
+
+    /// Its stable name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::UnknownCode => "unknown-code",
+            Self::OutsideVolume => "outside-volume",
+            Self::ColdExtrusion => "cold-extrusion",
+            Self::TooFast => "too-fast",
+            Self::TooMuchFlow => "too-much-flow",
+            Self::UnpairedRetraction => "unpaired-retraction",
+            Self::OddBead => "odd-bead",
+            Self::FallingZ => "falling-z",
+            Self::InTheAir => "in-the-air",
+            Self::PrintedTwice => "printed-twice",
+            Self::WrongSums => "wrong-sums",
+            Self::WrongSize => "wrong-size",
+            Self::OpenOutline => "open-outline",
+            Self::OpenSurface => "open-surface",
+            Self::OutsidePart => "outside-part",
+            Self::WrongInfill => "wrong-infill",
+            Self::WrongVolume => "wrong-volume",
+        }
+    }
+}
+
+/// Where something is.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Place {
+    /// Line of the file, from 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub line: Option<u64>,
+    /// Layer, from 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layer: Option<usize>,
+    /// Height of the layer's top, or of the nozzle, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub z_mm: Option<f64>,
+    /// In the machine's coordinates, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at_mm: Option<[f64; 2]>,
+}
+
+/// Something that is wrong.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Finding {
+    /// Its kind.
+    pub code: Code,
+    /// Where it is.
+    #[serde(flatten)]
+    pub place: Place,
+    /// How much, in `unit`.
+    pub measure: f64,
+    /// Unit of `measure`, such as `mm²`.
+    pub unit: &'static str,
+    /// What it is, for people: without place and code.
+    pub text: String,
+}
+
+impl Finding {
+    /// One whose place is filled in later.
+    pub(super) fn of(code: Code, measure: f64, unit: &'static str, text: String) -> Self {
+        Self { code, place: Place::default(), measure, unit, text }
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}{}", self.code.name(), self.place, self.text)
+    }
+}
+
+impl fmt::Display for Place {
+    /// `line 7, layer 3 at 0.6 mm, x 10.5 y 20.25: `, as far as it is known.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut parts = Vec::new();
+        parts.extend(self.line.map(|line| format!("line {line}")));
+        parts.extend(match (self.layer, self.z_mm) {
+            (Some(layer), Some(z)) => Some(format!("layer {layer} at {} mm", short(z))),
+            (Some(layer), None) => Some(format!("layer {layer}")),
+            (None, Some(z)) => Some(format!("{} mm up", short(z))),
+            (None, None) => None,
+        });
+        parts.extend(self.at_mm.map(|[x, y]| format!("x {} y {}", short(x), short(y))));
+        if parts.is_empty() { Ok(()) } else { write!(f, "{}: ", parts.join(", ")) }
+    }
+}
+
+/// A length to the hundredth.
+pub(super) fn short(mm: f64) -> f64 {
+    let rounded = (mm * 100.0).round() / 100.0;
+    // No minus before a zero.
+    if rounded == 0.0 { 0.0 } else { rounded }
+}
+
+/// Findings in the order in which they are met; of each kind the largest are kept.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Findings {
+    found: Vec<Finding>,
+}
+
+impl Findings {
+    pub(super) fn add(&mut self, finding: Finding) {
+        self.found.push(finding);
+    }
+
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.found.len()
+    }
+
+    /// Says where all findings from `first` on are.
+    pub(super) fn place(&mut self, first: usize, place: Place) {
+        self.found[first..].iter_mut().for_each(|finding| finding.place = place);
+    }
+
+    pub(super) fn extend(&mut self, findings: impl IntoIterator<Item = Finding>) {
+        self.found.extend(findings);
+    }
+
+    /// The findings by kind, in each the largest first, and of how many each kind was.
+    pub(super) fn sorted(mut self) -> (Vec<Finding>, Vec<Count>) {
+        let by_size = |a: &Finding, b: &Finding| b.measure.total_cmp(&a.measure);
+        // Stable: of equals the first of the file.
+        self.found.sort_by(|a, b| a.code.cmp(&b.code).then_with(|| by_size(a, b)));
+        let mut counts: Vec<Count> = Vec::new();
+        self.found.retain(|finding| {
+            match counts.last_mut() {
+                Some(last) if last.code == finding.code => last.count += 1,
+                _ => counts.push(Count { code: finding.code, count: 1 }),
+            }
+            counts.last().is_some_and(|last| last.count <= MOST_LISTED)
+        });
+        (self.found, counts)
+    }
+}
+
+/// How many findings of one kind there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Count {
+    /// The kind.
+    pub code: Code,
+    /// How many.
+    pub count: usize,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_the_json() {
+        for code in Code::ALL {
+            assert_eq!(serde_json::to_value(code).unwrap(), code.name());
+        }
+        assert!(Code::ALL.windows(2).all(|two| two[0] < two[1]));
+    }
+
+    #[test]
+    fn places_are_told_as_far_as_they_are_known() {
+        let place = Place { line: Some(7), layer: Some(3), z_mm: Some(0.6), at_mm: None };
+        assert_eq!(place.to_string(), "line 7, layer 3 at 0.6 mm: ");
+        let place = Place { at_mm: Some([-0.001, 10.126]), ..Place::default() };
+        assert_eq!(place.to_string(), "x 0 y 10.13: ");
+        assert_eq!(Place::default().to_string(), "");
+    }
+
+    #[test]
+    fn of_each_kind_the_largest_are_listed_and_all_counted() {
+        let mut findings = Findings::default();
+        for k in 0..150 {
+            findings.add(Finding {
+                code: Code::OddBead,
+                place: Place::default(),
+                measure: f64::from(k),
+                unit: "mm",
+                text: String::new(),
+            });
+        }
+        let (listed, counts) = findings.sorted();
+        assert_eq!((listed.len(), listed[0].measure), (MOST_LISTED, 149.0));
+        assert_eq!(counts, [Count { code: Code::OddBead, count: 150 }]);
+    }
+}

@@ -1,0 +1,152 @@
+//! Print + Terms + model -> Verdict: an independent witness of what a G-code file prints.
+//!
+//! It reads the finished text and shares no code with what slices, plans or writes, so that a
+//! fault made there is not made again here. It works on any slicer's files; what a file does
+//! not tell is listed as not judged.
+
+mod against;
+mod align;
+mod beads;
+mod blobs;
+mod capsule;
+mod dialect;
+pub mod finding;
+mod heat;
+mod moves;
+mod part;
+mod raster;
+mod stack;
+mod surfaces;
+pub mod terms;
+
+use crate::mesh::Mesh;
+use crate::reader::print::Step;
+use crate::reader::{Print, Role};
+use finding::{Count, Finding, Findings};
+use serde::Serialize;
+use terms::Terms;
+
+/// Version of the JSON schema; raised when a field changes its meaning or goes away.
+pub const SCHEMA: u32 = 1;
+
+/// What was meant to be printed.
+#[derive(Debug, Clone, Copy)]
+pub struct Model<'a> {
+    /// As it lies on the bed, but for `offset`.
+    pub mesh: &'a Mesh,
+    /// Where its middle was put, in the machine's coordinates, mm. A file may have it elsewhere.
+    pub offset: [f64; 2],
+}
+
+/// What is to be said of a file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Verdict {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// Layers of the file.
+    pub layers: usize,
+    /// Moves of the file.
+    pub moves: usize,
+    /// What is wrong: by kind, the largest of each first, at most [`finding::MOST_LISTED`] of each.
+    pub findings: Vec<Finding>,
+    /// How many findings there are of each kind.
+    pub counts: Vec<Count>,
+    /// What could not be judged, and why.
+    pub not_judged: Vec<String>,
+    /// What was measured on the way.
+    pub measures: Measures,
+}
+
+/// What was measured on the way; `None` where the model is needed and not given.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Measures {
+    /// Plastic of all lines of the layers, mm³.
+    pub plastic_mm3: f64,
+    /// Longest stretch of a line that only its ends carry, mm.
+    pub longest_bridge_mm: f64,
+    /// Length of lines in the air where the part itself has nothing below, mm.
+    pub part_hangs_mm: f64,
+    /// Volume of the model's cuts, mm³.
+    pub part_mm3: Option<f64>,
+    /// What of the printable outline is printed, part of 1.
+    pub outline: Option<f64>,
+    /// What of the printable top and bottom surfaces is closed, part of 1.
+    pub surface: Option<f64>,
+    /// Plastic of walls and skins for the room that they cover.
+    pub solid: Option<f64>,
+    /// Density of the sparse infill away from walls and skins, part of 1.
+    pub infill: Option<f64>,
+}
+
+/// Judges a file. `model` is what it was made from, if that is known.
+#[must_use]
+pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict {
+    let (mut found, mut not_judged) = (Findings::default(), Vec::new());
+    let has_roles = print.moves.iter().any(|step| step.role == Role::OuterWall);
+    what_is_missing(print, terms, model.is_some(), has_roles, &mut not_judged);
+
+    moves::check(print, terms, &mut found, &mut not_judged);
+    beads::odd(print, terms, &mut found);
+    beads::sums(print, &mut found);
+    let part = model.and_then(|model| {
+        let say = (&mut found, &mut not_judged);
+        align::place(print, model.mesh, model.offset, has_roles, say)
+    });
+    let stacked = stack::check(print, part.as_ref(), &mut found);
+    let sums = part.as_ref().map(|part| surfaces::check(print, part, terms, has_roles, &mut found));
+
+    let lines = print.layers.iter().flat_map(|layer| print.moves_of(layer));
+    let filament: f64 =
+        lines.filter(|step| step.is_line()).map(|step| f64::from(step.filament)).sum();
+    let share = |[all, some]: [f64; 2]| if all > 0.0 { some / all } else { 1.0 };
+    let (findings, counts) = found.sorted();
+    Verdict {
+        schema: SCHEMA,
+        layers: print.layers.len(),
+        moves: print.moves.len(),
+        findings,
+        counts,
+        not_judged,
+        measures: Measures {
+            plastic_mm3: filament * terms.filament_area,
+            longest_bridge_mm: stacked.longest_bridge,
+            part_hangs_mm: stacked.part_hangs,
+            part_mm3: sums.map(|sums| sums.total.part),
+            outline: sums.map(|sums| share(sums.total.rim)),
+            surface: sums.map(|sums| share(sums.total.surface)),
+            solid: sums.map(|sums| share(sums.total.solid)),
+            infill: sums.and_then(|sums| sums.density),
+        },
+    }
+}
+
+/// What the file, or who asks, does not tell.
+fn what_is_missing(
+    print: &Print,
+    terms: &Terms,
+    has_model: bool,
+    has_roles: bool,
+    not_judged: &mut Vec<String>,
+) {
+    let mut say = |what: &str| not_judged.push(what.to_owned());
+    if terms.machine.is_none() {
+        say("volume, commands, speeds and flow: the file does not tell the machine; give -p");
+    }
+    if !has_model {
+        say("size, outline, surfaces, infill and volume: give the model with --against");
+    }
+    if !has_roles {
+        say("what lines are for: no comment of the file tells it");
+    }
+    if !print.tells_width {
+        say("the plastic of single lines: no comment tells how wide they are");
+    }
+}
+
+/// Lowest and highest x and y that lines cover, mm.
+fn extent<'a>(steps: impl Iterator<Item = &'a Step>) -> Option<([f64; 2], [f64; 2])> {
+    part::extent_of(steps.flat_map(|step| {
+        let (low, high) = capsule::Capsule::of(step, 1.0).extent();
+        [low, high]
+    }))
+}

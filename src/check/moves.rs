@@ -1,0 +1,283 @@
+//! Print + Terms -> findings of single moves: codes, volume, heat, feeds, flow, retractions, heights.
+
+use super::dialect;
+use super::finding::{Code, Finding, Findings, Place, short};
+use super::heat::Heat;
+use super::terms::{Machine, Terms};
+use crate::profile::DialectName;
+use crate::reader::print::{Step, What};
+use crate::reader::{Print, Role};
+
+/// Coordinates are rounded to this or less, mm.
+const ROUNDING: f64 = 0.01;
+
+/// Speeds may be over the limit by this factor: they are rounded, too.
+const SPEED_SLACK: f64 = 1.01;
+
+/// Flow may be over the limit by this factor: what one line melts is not known to better.
+const FLOW_SLACK: f64 = 1.05;
+
+/// Flow is judged on lines of this length: shorter ones are mostly rounding, mm.
+const LEAST_LENGTH: f64 = 0.2;
+
+/// Filament that may be missing or too much at a restore, mm.
+const FILAMENT_SLACK: f64 = 0.3;
+
+/// Judges the moves one by one, in the file's order. What cannot be judged is told in `notes`.
+pub(super) fn check(print: &Print, terms: &Terms, found: &mut Findings, notes: &mut Vec<String>) {
+    codes(print, terms, found, notes);
+    let mut walk = Walk::new(print, terms.machine.as_ref(), terms.filament_area);
+    let mut next_note = 0;
+    for (index, step) in print.moves.iter().enumerate() {
+        while let Some(note) = print.notes.get(next_note).filter(|note| note.at <= index) {
+            walk.note(&note.what);
+            next_note += 1;
+        }
+        walk.step(index, step, found);
+    }
+    if let Some(macros) = walk.heated_by_macro {
+        notes.push(format!("whether the nozzle is hot: that is left to `{macros}`"));
+    }
+}
+
+/// Commands that the machine does not know.
+fn codes(print: &Print, terms: &Terms, found: &mut Findings, notes: &mut Vec<String>) {
+    let Some(machine) = &terms.machine else { return };
+    let finding = |line, text| Finding {
+        code: Code::UnknownCode,
+        place: Place { line: Some(line), ..Place::default() },
+        measure: 1.0,
+        unit: "lines",
+        text,
+    };
+    let firmware = match machine.dialect {
+        DialectName::Makerbot => "GPX",
+        DialectName::Marlin => "Marlin",
+        DialectName::Klipper => "Klipper",
+    };
+    for (&(letter, number), &line) in &print.commands {
+        if !dialect::knows(machine.dialect, letter, number) {
+            let code = format!("{}{number}", char::from(letter));
+            found.add(finding(line, format!("{firmware} does not know {code}")));
+        }
+    }
+    let mut words = Vec::new();
+    for note in &print.notes {
+        let What::Unknown(code) = &note.what else { continue };
+        let first: String = code.split_whitespace().next().unwrap_or_default().to_owned();
+        let is_word = first.starts_with(|c: char| c.is_ascii_alphabetic())
+            && first.chars().nth(1).is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
+        if machine.dialect == DialectName::Klipper && is_word {
+            // A module's command or a macro of the machine's own.
+            if !words.contains(&first) {
+                words.push(first);
+            }
+        } else if !is_numbered(&first) {
+            let shown: String = code.chars().take(40).collect();
+            found.add(finding(note.line, format!("{firmware} does not know `{shown}`")));
+        }
+    }
+    if !words.is_empty() {
+        notes.push(format!("what Klipper makes of {}", words.join(", ")));
+    }
+}
+
+/// Whether the word is a letter and a number: those are judged as commands.
+fn is_numbered(word: &str) -> bool {
+    let mut chars = word.chars();
+    chars.next().is_some_and(|c| c.is_ascii_alphabetic())
+        && chars.next().is_some_and(|c| c.is_ascii_digit())
+}
+
+/// What is known after the moves so far.
+struct Walk<'a> {
+    print: &'a Print,
+    machine: Option<&'a Machine>,
+    filament_area: f64,
+    /// Layer of the next move; `None` before the first.
+    layer: Option<usize>,
+    /// The moves from the first layer's to the last line.
+    printing: std::ops::Range<usize>,
+    heat: Heat,
+    /// A word that may heat the nozzle, called before it was hot.
+    stranger: Option<String>,
+    /// That word, once plastic has been pushed out on its word.
+    heated_by_macro: Option<String>,
+    is_cold_told: bool,
+    /// Filament that is pulled back, mm.
+    pulled: f64,
+    /// Whether the firmware has it pulled back.
+    pulled_by_firmware: bool,
+    /// Highest line so far, mm.
+    printed_z: f64,
+    /// The layer whose falling was told last.
+    fallen: Option<usize>,
+}
+
+impl<'a> Walk<'a> {
+    fn new(print: &'a Print, machine: Option<&'a Machine>, filament_area: f64) -> Self {
+        let last = print.moves.iter().rposition(Step::is_line).map_or(0, |index| index + 1);
+        Self {
+            print,
+            machine,
+            filament_area,
+            layer: None,
+            printing: print.start.end..last.max(print.start.end),
+            heat: Heat::default(),
+            stranger: None,
+            heated_by_macro: None,
+            is_cold_told: false,
+            pulled: 0.0,
+            pulled_by_firmware: false,
+            printed_z: 0.0,
+            fallen: None,
+        }
+    }
+
+    fn note(&mut self, what: &What) {
+        match what {
+            What::Heating(heating) => self.heat.tell(heating),
+            What::FirmwareRetraction { back } => self.pulled_by_firmware = *back,
+            What::Unknown(code) => {
+                let word = code.split_whitespace().next().map(str::to_owned);
+                self.stranger = self.stranger.take().or(word);
+            }
+        }
+    }
+
+    fn step(&mut self, index: usize, step: &Step, found: &mut Findings) {
+        let next = self.layer.map_or(0, |layer| layer + 1);
+        if self.print.layers.get(next).is_some_and(|layer| layer.moves.start <= index) {
+            self.layer = Some(next);
+        }
+        let before = found.len();
+        self.retraction(index, step, found);
+        self.cold(step, found);
+        if step.is_line() || self.printing.contains(&index) {
+            self.volume(step, found);
+            self.speed(step, found);
+        }
+        if step.is_line() && self.printing.contains(&index) {
+            self.falling(step, found);
+        }
+        // All of them lie where the move ends.
+        let place = Place {
+            line: Some(u64::from(step.line)),
+            layer: self.layer.map(|layer| layer + 1),
+            z_mm: Some(short(f64::from(step.to[2]))),
+            at_mm: Some([step.to[0], step.to[1]].map(|at| short(f64::from(at)))),
+        };
+        found.place(before, place);
+    }
+
+    fn retraction(&mut self, index: usize, step: &Step, found: &mut Findings) {
+        let filament = f64::from(step.filament);
+        if filament < 0.0 {
+            self.pulled -= filament;
+            return;
+        }
+        if filament == 0.0 {
+            return;
+        }
+        let printing = self.printing.contains(&index);
+        if !step.is_line() {
+            let extra = filament - self.pulled;
+            self.pulled = (self.pulled - filament).max(0.0);
+            if printing && extra > FILAMENT_SLACK {
+                let text = format!(
+                    "{} mm of filament are pushed out more than was pulled back",
+                    short(extra)
+                );
+                found.add(Finding::of(Code::UnpairedRetraction, extra, "mm", text));
+            }
+            return;
+        }
+        if self.pulled > FILAMENT_SLACK && printing {
+            let text = format!("{} mm of filament are still pulled back", short(self.pulled));
+            found.add(Finding::of(Code::UnpairedRetraction, self.pulled, "mm", text));
+        } else if self.pulled_by_firmware {
+            let text = "the filament is still pulled back by G10".to_owned();
+            found.add(Finding::of(Code::UnpairedRetraction, 1.0, "retractions", text));
+        }
+        (self.pulled, self.pulled_by_firmware) = (0.0, false);
+    }
+
+    fn cold(&mut self, step: &Step, found: &mut Findings) {
+        if step.filament <= 0.0 || self.heat.is_hot() || self.is_cold_told {
+            return;
+        }
+        // Once is enough: all that follows is as cold.
+        self.is_cold_told = true;
+        if let Some(word) = self.stranger.clone().filter(|_| !self.heat.is_wanted()) {
+            self.heated_by_macro = Some(word);
+            return;
+        }
+        let text = if self.heat.is_wanted() {
+            "filament is pushed before anything waits for the nozzle to be hot"
+        } else {
+            "filament is pushed with the nozzle cold"
+        };
+        let pushed = f64::from(step.filament);
+        found.add(Finding::of(Code::ColdExtrusion, pushed, "mm", text.to_owned()));
+    }
+
+    fn volume(&self, step: &Step, found: &mut Findings) {
+        let Some(machine) = self.machine else { return };
+        let beyond = |axis: usize| {
+            let at = f64::from(step.to[axis]);
+            (machine.low[axis] - at).max(at - machine.high[axis])
+        };
+        let (axis, out) = (0..3)
+            .map(|axis| (axis, beyond(axis)))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .unwrap_or_default();
+        if out > ROUNDING {
+            let (low, high) = (machine.low[axis], machine.high[axis]);
+            let axis = ["x", "y", "z"][axis];
+            let text = format!("{} mm beyond the machine's {axis} of {low} to {high}", short(out));
+            found.add(Finding::of(Code::OutsideVolume, out, "mm", text));
+        }
+    }
+
+    fn speed(&self, step: &Step, found: &mut Findings) {
+        let Some(machine) = self.machine else { return };
+        let length = step.length();
+        // Firmwares hold moves in z and of the filament alone to their limits, as slicers count on.
+        if length < LEAST_LENGTH || step.from[2] != step.to[2] {
+            return;
+        }
+        let feed = f64::from(step.feed);
+        for axis in 0..2 {
+            let way = f64::from(step.to[axis]) - f64::from(step.from[axis]);
+            let speed = way.abs() / length * feed;
+            if speed > machine.speed[axis] * SPEED_SLACK {
+                let (limit, axis) = (machine.speed[axis], ["x", "y"][axis]);
+                let text = format!(
+                    "{} mm/s in {axis}, where the machine does {}",
+                    short(speed),
+                    short(limit)
+                );
+                found.add(Finding::of(Code::TooFast, speed, "mm/s", text));
+                return;
+            }
+        }
+        let flow = f64::from(step.filament) * self.filament_area / length * feed;
+        if step.is_line() && flow > machine.flow * FLOW_SLACK {
+            let text =
+                format!("{} mm³/s, where the hot end melts {}", short(flow), short(machine.flow));
+            found.add(Finding::of(Code::TooMuchFlow, flow, "mm³/s", text));
+        }
+    }
+
+    /// Skins may follow the surface up and down; all else goes up.
+    fn falling(&mut self, step: &Step, found: &mut Findings) {
+        let z = f64::from(step.from[2].min(step.to[2]));
+        let fall = self.printed_z - z;
+        if fall > ROUNDING && step.role != Role::Skin && self.fallen != self.layer {
+            self.fallen = self.layer;
+            let text = format!("{} mm lower than what is printed already", short(fall));
+            found.add(Finding::of(Code::FallingZ, fall, "mm", text));
+        }
+        self.printed_z = self.printed_z.max(f64::from(step.to[2]));
+    }
+}

@@ -1,0 +1,244 @@
+//! Mesh + heights -> Part: the model cut at the middle of each layer, as pixels.
+//!
+//! A cut of its own, so that a fault of the slicer's is not repeated here: triangles to
+//! segments, segments to signed crossings with each row of pixels, and inside is where the
+//! crossings before do not cancel out (the winding number is not 0). What lies on a plane or
+//! row counts as above it.
+
+use super::raster::{Bits, Grid};
+use crate::mesh::Mesh;
+use crate::units::to_mm;
+
+/// Planes lie on this grid, mm: half of the mesh's.
+const PLANE_GRID: f64 = 0.5e-4;
+
+/// The model where it was printed.
+pub(super) struct Part {
+    /// In the machine's coordinates, mm.
+    vertices: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+    /// Height of each layer's cut, mm, rising.
+    planes: Vec<f64>,
+    /// Triangles that each plane cuts: those of layer k are `cut[starts[k]..starts[k + 1]]`.
+    starts: Vec<usize>,
+    cut: Vec<u32>,
+}
+
+/// A stretch of an outline; the solid lies on the same side of all of them.
+type Segment = [[f64; 2]; 2];
+
+impl Part {
+    /// Cuts `mesh`, moved by `offset` mm, in the middle of each of the layers, told by their tops
+    /// and heights, mm.
+    ///
+    /// # Errors
+    /// The layer, from 0, that does not lie above the one before.
+    pub(super) fn new(mesh: &Mesh, offset: [f64; 2], layers: &[(f64, f64)]) -> Result<Self, usize> {
+        let planes: Vec<f64> = layers
+            .iter()
+            .map(|(top, height)| ((top - height / 2.0) / PLANE_GRID).round() * PLANE_GRID)
+            .collect();
+        if let Some(falls) = planes.windows(2).position(|two| two[0] >= two[1]) {
+            return Err(falls + 1);
+        }
+        let vertices: Vec<[f64; 3]> = mesh
+            .vertices
+            .iter()
+            .map(|&[x, y, z]| [to_mm(x) + offset[0], to_mm(y) + offset[1], to_mm(z)])
+            .collect();
+        let mut part = Self {
+            vertices,
+            triangles: mesh.triangles.clone(),
+            starts: vec![0; planes.len() + 1],
+            planes,
+            cut: Vec::new(),
+        };
+        part.sort();
+        Ok(part)
+    }
+
+    /// Moves it, mm.
+    pub(super) fn shift(&mut self, by: [f64; 2]) {
+        for vertex in &mut self.vertices {
+            vertex[0] += by[0];
+            vertex[1] += by[1];
+        }
+    }
+
+    /// Finds the triangles of each plane.
+    fn sort(&mut self) {
+        let spans: Vec<std::ops::Range<usize>> = self
+            .triangles
+            .iter()
+            .map(|corners| {
+                let z = corners.map(|corner| self.vertices[corner as usize][2]);
+                let (low, high) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
+                let beyond = |height: f64| self.planes.partition_point(|plane| *plane <= height);
+                beyond(low)..beyond(high)
+            })
+            .collect();
+        let mut counts = vec![0_usize; self.planes.len() + 1];
+        spans.iter().flat_map(Clone::clone).for_each(|plane| counts[plane + 1] += 1);
+        for k in 1..counts.len() {
+            counts[k] += counts[k - 1];
+        }
+        self.starts.clone_from(&counts);
+        self.cut = vec![0; self.starts.last().copied().unwrap_or(0)];
+        for (triangle, span) in (0_u32..).zip(&spans) {
+            for plane in span.clone() {
+                self.cut[counts[plane]] = triangle;
+                counts[plane] += 1;
+            }
+        }
+    }
+
+    /// Number of layers.
+    pub(super) fn layers(&self) -> usize {
+        self.planes.len()
+    }
+
+    /// Height of the model above the bed, mm.
+    pub(super) fn height(&self) -> f64 {
+        self.vertices.iter().map(|vertex| vertex[2]).fold(0.0, f64::max)
+    }
+
+    /// Lowest and highest x and y, mm.
+    pub(super) fn extent(&self) -> Option<([f64; 2], [f64; 2])> {
+        extent_of(self.vertices.iter().map(|vertex| [vertex[0], vertex[1]]))
+    }
+
+    /// Lowest and highest x and y of a layer's cut, mm.
+    pub(super) fn extent_of(&self, layer: usize) -> Option<([f64; 2], [f64; 2])> {
+        extent_of(self.segments(layer).flatten())
+    }
+
+    /// The outline of a layer's cut.
+    fn segments(&self, layer: usize) -> impl Iterator<Item = Segment> {
+        let plane = self.planes[layer];
+        let cut = &self.cut[self.starts[layer]..self.starts[layer + 1]];
+        cut.iter().filter_map(move |&triangle| self.segment(triangle, plane))
+    }
+
+    /// Where a plane cuts a triangle: from the side on which its outline goes up to the other.
+    fn segment(&self, triangle: u32, plane: f64) -> Option<Segment> {
+        let corners = self.triangles[triangle as usize];
+        let above = corners.map(|corner| self.vertices[corner as usize][2] >= plane);
+        let (mut up, mut down) = (None, None);
+        for k in 0..3 {
+            let next = (k + 1) % 3;
+            match (above[k], above[next]) {
+                (false, true) => up = Some(self.crossing(corners[k], corners[next], plane)),
+                (true, false) => down = Some(self.crossing(corners[next], corners[k], plane)),
+                _ => {}
+            }
+        }
+        Some([up?, down?])
+    }
+
+    /// Where the edge between a corner below and one above crosses; the same for both of its triangles.
+    fn crossing(&self, below: u32, above: u32, plane: f64) -> [f64; 2] {
+        let (low, high) = (self.vertices[below as usize], self.vertices[above as usize]);
+        let part = (plane - low[2]) / (high[2] - low[2]);
+        [0, 1].map(|axis| low[axis] + part * (high[axis] - low[axis]))
+    }
+
+    /// What of the bed the model covers at a layer; nothing beyond the last.
+    pub(super) fn section(&self, layer: usize, grid: &Grid) -> Bits {
+        let mut bits = Bits::new(grid.size);
+        if layer >= self.layers() {
+            return bits;
+        }
+        // Row, place along it, and which way the outline goes.
+        let mut crossings: Vec<(usize, f64, i32)> = Vec::new();
+        for [from, to] in self.segments(layer) {
+            let (low, high, sign) = if from[1] < to[1] { (from, to, 1) } else { (to, from, -1) };
+            for row in grid.span(1, low[1], high[1]) {
+                let y = grid.middle(0, row)[1];
+                let x = low[0] + (y - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
+                crossings.push((row, x, sign));
+            }
+        }
+        crossings
+            .sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        for row in crossings.chunk_by(|a, b| a.0 == b.0) {
+            let mut winding = 0;
+            for two in row.windows(2) {
+                winding += two[0].2;
+                if winding != 0 {
+                    bits.set(two[0].0, grid.span(0, two[0].1, two[1].1));
+                }
+            }
+        }
+        bits
+    }
+
+    /// Whether a place of a layer has nothing of the model on the layer below.
+    pub(super) fn hangs(&self, layer: usize, at: [f64; 2]) -> bool {
+        let Some(below) = layer.checked_sub(1).filter(|below| *below < self.layers()) else {
+            return false;
+        };
+        let mut winding = 0;
+        for [from, to] in self.segments(below) {
+            let (low, high, sign) = if from[1] < to[1] { (from, to, 1) } else { (to, from, -1) };
+            if (low[1]..high[1]).contains(&at[1]) {
+                let x = low[0] + (at[1] - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
+                winding += if x < at[0] { sign } else { 0 };
+            }
+        }
+        winding == 0
+    }
+}
+
+/// Lowest and highest x and y of some places.
+pub(super) fn extent_of(places: impl Iterator<Item = [f64; 2]>) -> Option<([f64; 2], [f64; 2])> {
+    places.fold(None, |extent, at| {
+        let (low, high) = extent.unwrap_or((at, at));
+        Some(([low[0].min(at[0]), low[1].min(at[1])], [high[0].max(at[0]), high[1].max(at[1])]))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::to_units;
+
+    /// A box of these sides, mm; `turned` has its faces inside out.
+    fn solid(sides: [f64; 3], turned: bool) -> Mesh {
+        let [x, y, z] = sides.map(to_units);
+        let corner = |k: i32| [(k & 1) * x, (k >> 1 & 1) * y, (k >> 2) * z];
+        let faces = [
+            [0, 2, 1],
+            [1, 2, 3],
+            [4, 5, 6],
+            [5, 7, 6],
+            [0, 1, 4],
+            [1, 5, 4],
+            [2, 6, 3],
+            [3, 6, 7],
+            [0, 4, 2],
+            [2, 4, 6],
+            [1, 3, 5],
+            [3, 7, 5],
+        ];
+        let face = |[a, b, c]: [u32; 3]| if turned { [a, c, b] } else { [a, b, c] };
+        Mesh { vertices: (0..8).map(corner).collect(), triangles: faces.map(face).to_vec() }
+    }
+
+    #[test]
+    fn a_box_is_cut_into_rectangles_whichever_way_its_faces_look() {
+        for turned in [false, true] {
+            let layers = [(0.2, 0.2), (0.4, 0.2), (0.6, 0.2)];
+            let part = Part::new(&solid([4.0, 2.0, 0.5], turned), [10.0, 5.0], &layers).unwrap();
+            assert_eq!(part.extent(), Some(([10.0, 5.0], [14.0, 7.0])));
+            let grid = Grid::over([10.0, 5.0], [14.0, 7.0], 1.0, 0.1, 1e9);
+            // The last plane lies on the upper face, which counts as above it.
+            for layer in 0..3 {
+                assert_eq!(part.section(layer, &grid).count(), 40 * 20, "{layer}");
+            }
+            assert!(part.section(3, &grid).is_empty());
+            assert!(part.hangs(1, [9.9, 6.0]) && !part.hangs(1, [10.1, 6.0]));
+            assert!(!part.hangs(0, [0.0, 0.0]));
+        }
+        assert_eq!(Part::new(&Mesh::default(), [0.0; 2], &[(0.2, 0.2), (0.2, 0.2)]).err(), Some(1));
+    }
+}

@@ -1,0 +1,180 @@
+//! Print + Part -> findings against the model, layer by layer, and the sums over all of them.
+
+use super::against::{Areas, Judge, Verdict, is_of_part};
+use super::extent;
+use super::finding::{Code, Finding, Findings, Place, short};
+use super::part::{Part, extent_of};
+use super::raster::{Bits, Grid};
+use super::terms::Terms;
+use crate::reader::{Print, Role};
+use rayon::prelude::*;
+
+/// Side of a pixel, mm: an eighth of a usual line.
+const PITCH: f64 = 0.05;
+
+/// Pixels of a layer at most; larger prints get larger pixels.
+const MOST_PIXELS: f64 = 3e7;
+
+/// Layers that are cut at a time, so that few are held.
+const BATCH: usize = 32;
+
+/// Layers over which infill is measured together: several of the largest groups.
+const BLOCK: usize = 12;
+
+/// Less room for infill tells nothing of its density, mm³.
+const LEAST_ROOM: f64 = 60.0;
+
+/// Infill of a block may be this part of what is asked for …
+const BLOCK_SLACK: [f64; 2] = [0.5, 1.7];
+
+/// … and that of the whole print this.
+const INFILL_SLACK: [f64; 2] = [0.8, 1.2];
+
+/// Room for infill that tells the whole print's density, mm³.
+const ENOUGH_ROOM: f64 = 1000.0;
+
+/// Walls and skins may take this part of the room that they cover.
+const SOLID_SLACK: [f64; 2] = [0.8, 1.25];
+
+/// Width of a line where no wall tells one, mm.
+const SOME_WIDTH: f64 = 0.4;
+
+/// Sums over all layers.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Sums {
+    /// Areas times heights, mm³, but for rim and surface: mm².
+    pub(super) total: Areas,
+    /// Density of the infill, part of 1, if there is enough of it.
+    pub(super) density: Option<f64>,
+}
+
+/// Holds all layers against the part.
+pub(super) fn check(
+    print: &Print,
+    part: &Part,
+    terms: &Terms,
+    has_roles: bool,
+    found: &mut Findings,
+) -> Sums {
+    let lines = print.moves.iter().filter(|step| is_of_part(step, has_roles));
+    let both = [extent(lines), part.extent()];
+    let corners = both.into_iter().flatten().flat_map(|(low, high)| [low, high]);
+    let Some((low, high)) = extent_of(corners) else { return Sums::default() };
+    let judge = Judge {
+        print,
+        part,
+        grid: Grid::over(low, high, 1.0, PITCH, MOST_PIXELS),
+        line_width: line_width(print),
+        filament_area: terms.filament_area,
+        has_roles,
+    };
+    let mut layers = Vec::with_capacity(print.layers.len());
+    for first in (0..print.layers.len()).step_by(BATCH) {
+        let end = (first + BATCH).min(print.layers.len());
+        layers.extend(batch(&judge, first..end));
+    }
+    for verdict in &mut layers {
+        found.extend(std::mem::take(&mut verdict.findings));
+    }
+    let areas: Vec<Areas> = layers.iter().map(|verdict| verdict.areas).collect();
+    sums(print, terms, &areas, found)
+}
+
+/// Judges some layers side by side.
+fn batch(judge: &Judge<'_>, layers: std::ops::Range<usize>) -> Vec<Verdict> {
+    // From the layer below the first to that above the last.
+    let cuts: Vec<Bits> = (layers.start..layers.end + 2)
+        .into_par_iter()
+        .map(|above| match above.checked_sub(1) {
+            Some(layer) => judge.part.section(layer, &judge.grid),
+            None => Bits::new(judge.grid.size),
+        })
+        .collect();
+    let judged = layers.clone().into_par_iter().map(|index| {
+        let k = index - layers.start;
+        judge.layer(index, [&cuts[k], &cuts[k + 1], &cuts[k + 2]])
+    });
+    judged.collect()
+}
+
+/// The usual width of the walls that are seen, mm.
+fn line_width(print: &Print) -> f64 {
+    let of = |role| print.moves.iter().filter(move |step| step.role == role && step.is_line());
+    let mut widths: Vec<f32> = of(Role::OuterWall).map(|step| step.width).collect();
+    if widths.is_empty() {
+        return SOME_WIDTH;
+    }
+    let middle = widths.len() / 2;
+    f64::from(*widths.select_nth_unstable_by(middle, f32::total_cmp).1)
+}
+
+/// Adds up, and judges the amounts.
+fn sums(print: &Print, terms: &Terms, areas: &[Areas], found: &mut Findings) -> Sums {
+    let mut sums = Sums::default();
+    let heights = print.layers.iter().map(|layer| layer.height);
+    for (areas, height) in areas.iter().zip(heights) {
+        let total = &mut sums.total;
+        total.part += areas.part * height;
+        total.solid[0] += areas.solid[0] * height;
+        total.solid[1] += areas.solid[1];
+        total.sparse[0] += areas.sparse[0] * height;
+        total.sparse[1] += areas.sparse[1];
+        for k in 0..2 {
+            total.rim[k] += areas.rim[k];
+            total.surface[k] += areas.surface[k];
+        }
+    }
+    let [room, plastic] = sums.total.solid;
+    if room > 0.0 && print.tells_width && !is_within(plastic / room, SOLID_SLACK) {
+        let percent = short(100.0 * plastic / room);
+        let text =
+            format!("walls and skins take {percent} % of the plastic that they have room for");
+        found.add(Finding::of(Code::WrongVolume, percent, "%", text));
+    }
+    let [room, plastic] = sums.total.sparse;
+    sums.density = (room >= ENOUGH_ROOM).then_some(plastic / room);
+    infill(print, terms, areas, &sums, found);
+    sums
+}
+
+fn is_within(value: f64, [low, high]: [f64; 2]) -> bool {
+    (low..=high).contains(&value)
+}
+
+/// Judges the density of the sparse infill: in all, and by blocks of layers.
+fn infill(print: &Print, terms: &Terms, areas: &[Areas], sums: &Sums, found: &mut Findings) {
+    if let (Some(asked), Some(density)) = (terms.infill, sums.density)
+        && !is_within(density, INFILL_SLACK.map(|slack| slack * asked))
+    {
+        let [percent, asked] = [density, asked].map(|part| short(100.0 * part));
+        let text =
+            format!("the sparse infill is {percent} % dense, where {asked} % were asked for");
+        found.add(Finding::of(Code::WrongInfill, percent, "%", text));
+        return;
+    }
+    let Some(usual) = sums.density.filter(|density| *density > 0.0) else { return };
+    for first in (0..areas.len()).step_by(BLOCK) {
+        let block = first..(first + BLOCK).min(areas.len());
+        let (mut room, mut plastic) = (0.0, 0.0);
+        for index in block.clone() {
+            room += areas[index].sparse[0] * print.layers[index].height;
+            plastic += areas[index].sparse[1];
+        }
+        if room < LEAST_ROOM || is_within(plastic / room / usual, BLOCK_SLACK) {
+            continue;
+        }
+        let percent = [plastic / room, usual].map(|part| short(100.0 * part));
+        let text = format!(
+            "the sparse infill of layers {} to {} is {} % dense, where {} % is usual",
+            first + 1,
+            block.end,
+            percent[0],
+            percent[1]
+        );
+        let finding = Finding::of(Code::WrongInfill, percent[0], "%", text);
+        found.add(Finding {
+            place: Place { layer: Some(first + 1), ..Place::default() },
+            ..finding
+        });
+    }
+}

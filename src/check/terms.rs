@@ -1,0 +1,73 @@
+//! Settings and a file's own comments -> Terms: what a file is held against.
+
+use crate::profile::{DialectName, Origin, Settings};
+use crate::reader::Print;
+use std::f64::consts::PI;
+
+/// What a file is held against.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Terms {
+    /// The machine, if one is known.
+    pub machine: Option<Machine>,
+    /// Cross-section of the filament, mm².
+    pub filament_area: f64,
+    /// Density of the sparse infill asked for, as a part of 1, if it is known.
+    pub infill: Option<f64>,
+}
+
+/// What a machine can do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Machine {
+    /// Its firmware.
+    pub dialect: DialectName,
+    /// Lowest x, y and z that the nozzle reaches, mm.
+    pub low: [f64; 3],
+    /// Highest x, y and z, mm.
+    pub high: [f64; 3],
+    /// Highest speeds in x, y, z and of the filament, mm/s.
+    pub speed: [f64; 4],
+    /// Plastic that it melts, mm³/s.
+    pub flow: f64,
+}
+
+/// Keys under which slicers write the density of infill, %.
+const DENSITY_KEYS: &[&str] = &["infill", "fill_density", "sparse_infill_density"];
+
+impl Terms {
+    /// What `settings` ask for, and what `print` says of itself.
+    #[must_use]
+    pub fn new(settings: Option<&Settings>, print: &Print) -> Self {
+        let diameter = print.filament_diameter;
+        let by_file = || {
+            let text = DENSITY_KEYS.iter().find_map(|key| print.value(key))?;
+            let percent: f64 = text.trim_end_matches('%').trim().parse().ok()?;
+            (percent.is_finite() && percent >= 0.0).then_some(percent / 100.0)
+        };
+        Self {
+            machine: settings.map(Machine::new),
+            filament_area: PI * diameter * diameter / 4.0,
+            // The file knows better than a profile named for the machine.
+            infill: by_file().or(settings.map(|settings| settings.infill / 100.0)),
+        }
+    }
+}
+
+impl Machine {
+    fn new(settings: &Settings) -> Self {
+        let machine = &settings.machine;
+        let size = [machine.bed_width, machine.bed_depth];
+        let low = match machine.origin {
+            Origin::Centre => size.map(|side| -side / 2.0),
+            Origin::FrontLeft => [0.0; 2],
+        };
+        let limits = &settings.limits;
+        Self {
+            dialect: machine.dialect,
+            low: [low[0], low[1], 0.0],
+            high: [low[0] + size[0], low[1] + size[1], machine.bed_height],
+            speed: [limits.feed_x, limits.feed_y, limits.feed_z, limits.feed_e]
+                .map(|per_minute| per_minute / 60.0),
+            flow: machine.max_volumetric_flow,
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! `slicer check` -> what is wrong with a G-code file, as lines or as JSON.
+
+use super::args::{self, CheckArgs};
+use super::{Outcome, input};
+use slicer::check::finding::Code;
+use slicer::check::terms::Terms;
+use slicer::check::{self, Measures, Model, Verdict};
+use slicer::error::{Error, Result};
+use slicer::mesh::Bed;
+use slicer::profile::{self, Profile};
+use slicer::reader::Print;
+use slicer::warning::plural;
+
+/// Diameter of the filament where neither file nor profile tells it, mm.
+const DIAMETER: f64 = 1.75;
+
+/// Findings of a kind that people get to read.
+const MOST_SHOWN: usize = 5;
+
+/// A bed that every model fits, for files of unknown machines, mm.
+const ANY_BED: Bed = Bed { min: [-5000.0; 2], max: [5000.0; 2], height: 10_000.0 };
+
+/// What standard output gets, and 1 if there are findings.
+///
+/// # Errors
+/// A profile or setting that is wrong, a file or model that cannot be read, a file without a move.
+pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
+    let given = args.profile.as_deref().map(|name| {
+        let overrides = args::set_overrides(&args.set)?;
+        profile::load(name, &overrides)
+    });
+    let given = given.transpose()?;
+    let (name, mut source) = input::open(&args.file)?;
+    let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
+    let print = Print::read(&mut source, diameter).map_err(|e| input::unreadable(name, &e))?;
+    if print.layers.is_empty() {
+        let why = "no move in it prints a line; give a G-code file that a slicer has written";
+        return Err(Error::input(name, why));
+    }
+    let told = profile::recorded(&print.values)?;
+    let judge = given.as_ref().or(told.as_ref());
+    let terms = Terms::new(judge.map(|profile| &profile.settings), &print);
+    let bed = judge.map_or(ANY_BED, |profile| slicer::bed(&profile.settings.machine));
+    let placed = if args.against.is_empty() {
+        None
+    } else {
+        Some(slicer::place(&args.against, &args.place.placement(), &bed)?)
+    };
+    let model = placed.as_ref().map(|placed| Model { mesh: &placed.mesh, offset: placed.offset });
+    let verdict = check::check(&print, &terms, model);
+    let code = u8::from(!verdict.findings.is_empty());
+    let text = if args.json {
+        let text = serde_json::to_string_pretty(&verdict);
+        text.map_err(|error| Error::input(name, error.to_string()))? + "\n"
+    } else {
+        let by = judged_by(given.as_ref(), told.as_ref(), &args.against);
+        format!("{name}: {}, {by}\n{}", headline(&verdict), lines(&verdict))
+    };
+    Ok(Outcome { text, code })
+}
+
+fn judged_by(given: Option<&Profile>, told: Option<&Profile>, models: &[String]) -> String {
+    let by = match (given, told) {
+        (Some(profile), _) => format!("judged by the profile {}", profile.name),
+        (None, Some(_)) => "judged by its own settings".to_owned(),
+        (None, None) => "judged without a profile".to_owned(),
+    };
+    if models.is_empty() { by } else { format!("{by}, against {}", models.join(", ")) }
+}
+
+/// `clean` or how many findings, of how much.
+fn headline(verdict: &Verdict) -> String {
+    let count: usize = verdict.counts.iter().map(|one| one.count).sum();
+    let found = if count == 0 { "clean".to_owned() } else { plural(count as u64, "finding") };
+    let layers = plural(verdict.layers as u64, "layer");
+    format!("{found} in {layers} and {}", plural(verdict.moves as u64, "move"))
+}
+
+/// Findings, measures and what was not judged, a line each.
+pub(super) fn lines(verdict: &Verdict) -> String {
+    let mut text = String::new();
+    for count in &verdict.counts {
+        text.push_str(&of_kind(verdict, count.code, count.count));
+    }
+    text.push_str(&measures(&verdict.measures));
+    for not in &verdict.not_judged {
+        text.push_str(&format!("not judged: {not}\n"));
+    }
+    text
+}
+
+/// The largest findings of a kind, and how many more there are.
+fn of_kind(verdict: &Verdict, code: Code, count: usize) -> String {
+    let of_kind = verdict.findings.iter().filter(|finding| finding.code == code);
+    let mut text: String = of_kind.take(MOST_SHOWN).map(|finding| format!("{finding}\n")).collect();
+    if count > MOST_SHOWN {
+        let more = count - MOST_SHOWN;
+        text.push_str(&format!("{}: and {more} more (--json lists them)\n", code.name()));
+    }
+    text
+}
+
+fn measures(measures: &Measures) -> String {
+    let percent = |name: &str, part: Option<f64>, digits: usize| {
+        part.map(|part| format!("{name} {:.digits$} %", 100.0 * part))
+    };
+    let parts: Vec<String> = [
+        percent("outline printed", measures.outline, 2),
+        percent("surfaces closed", measures.surface, 2),
+        percent("infill", measures.infill, 1),
+        percent("walls and skins filled", measures.solid, 1),
+        (measures.longest_bridge_mm > 0.0)
+            .then(|| format!("longest bridge {:.1} mm", measures.longest_bridge_mm)),
+        (measures.part_hangs_mm > 0.0).then(|| {
+            format!(
+                "{:.0} mm hang where the part itself does: think of --support",
+                measures.part_hangs_mm
+            )
+        }),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    if parts.is_empty() { String::new() } else { format!("measured: {}\n", parts.join(", ")) }
+}
