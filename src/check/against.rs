@@ -5,6 +5,7 @@ use super::capsule::Capsule;
 use super::finding::{Code, Finding, Place, short};
 use super::part::Part;
 use super::raster::{Bits, Grid};
+use super::terms::Terms;
 use crate::reader::print::{Layer, Step};
 use crate::reader::{Print, Role};
 
@@ -21,7 +22,10 @@ const NARROW: f64 = 0.1;
 const LEAST_AREA: f64 = 0.4;
 
 /// Places narrower than this many line widths cannot be printed.
-const PRINTABLE: f64 = 1.2;
+pub(super) const PRINTABLE: f64 = 1.2;
+
+/// Width of a line where no wall tells one, mm.
+pub(super) const SOME_WIDTH: f64 = 0.4;
 
 /// How far from walls and skins sparse infill is measured, mm.
 const FROM_WALLS: f64 = 0.5;
@@ -58,8 +62,7 @@ pub(super) struct Judge<'a> {
     pub(super) grid: Grid,
     /// Usual width of a wall, mm.
     pub(super) line_width: f64,
-    /// mm².
-    pub(super) filament_area: f64,
+    pub(super) terms: &'a Terms,
     /// Whether roles are told, so that lines of the part can be told from others.
     pub(super) has_roles: bool,
 }
@@ -167,26 +170,26 @@ impl Judge<'_> {
         areas.solid[0] = solid.count() as f64 * area;
         areas.sparse[0] = core.count() as f64 * area;
         for step in lines {
-            let plastic = f64::from(step.filament) * self.filament_area;
+            let plastic = self.terms.plastic(step);
             if step.role == Role::Infill {
-                areas.sparse[1] += plastic * self.share_in(step, &core);
+                areas.sparse[1] += plastic * share_in(step, &self.grid, &core);
             } else {
                 areas.solid[1] += plastic;
             }
         }
     }
+}
 
-    /// What part of a line lies in an area.
-    fn share_in(&self, step: &Step, area: &Bits) -> f64 {
-        let count = (step.length() / PIECE).ceil().max(1.0) as usize;
-        let inside = (0..count).filter(|k| {
-            let part = (*k as f64 + 0.5) / count as f64;
-            let at = [0, 1].map(|axis| {
-                let (from, to) = (f64::from(step.from[axis]), f64::from(step.to[axis]));
-                from + part * (to - from)
-            });
-            self.grid.pixel(at).is_some_and(|[x, y]| area.has(x, y))
+/// What part of a line lies in an area.
+pub(super) fn share_in(step: &Step, grid: &Grid, area: &Bits) -> f64 {
+    let count = (step.length() / PIECE).ceil().max(1.0) as usize;
+    let inside = (0..count).filter(|k| {
+        let part = (*k as f64 + 0.5) / count as f64;
+        let at = [0, 1].map(|axis| {
+            let (from, to) = (f64::from(step.from[axis]), f64::from(step.to[axis]));
+            from + part * (to - from)
         });
-        inside.count() as f64 / count as f64
-    }
+        grid.pixel(at).is_some_and(|[x, y]| area.has(x, y))
+    });
+    inside.count() as f64 / count as f64
 }

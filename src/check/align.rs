@@ -1,21 +1,40 @@
 //! Print + Mesh -> Part where it was printed, and whether it is as large.
 
-use super::against::is_of_part;
+use super::Model;
+use super::against::{PRINTABLE, SOME_WIDTH, is_of_part, share_in};
 use super::extent;
 use super::finding::{Code, Finding, Findings, short};
 use super::part::Part;
-use crate::mesh::Mesh;
+use super::raster::Grid;
 use crate::reader::print::{Layer, Step};
 use crate::reader::{Print, Role};
 
 /// A model may lie so far from where it is expected and be taken as lying there, mm.
 const MOST_OFF: f64 = 0.3;
 
-/// Sizes may differ by this: outlines are rounded, and tips thinner than a line left out, mm.
+/// Where walls are looked for, from the outline outwards and inwards, mm.
+const BAND: [f64; 2] = [0.3, 0.6];
+
+/// So much of the walls must lie there for the print to be one of this model.
+const LEAST_FIT: f64 = 0.75;
+
+/// Layers on which that is looked at.
+const LAYERS_LOOKED_AT: usize = 16;
+
+/// Side of a pixel for that, mm, and pixels at most.
+const PIXELS: (f64, f64) = (0.1, 4e6);
+
+/// Sizes that differ by less are the same, mm.
 const SIZE_SLACK: f64 = 0.6;
 
-/// The model may be so many layers higher or lower.
+/// Layers above the print that the model may have by rounding.
 const HEIGHT_SLACK: f64 = 1.01;
+
+/// Layers above the last that are looked at.
+const MOST_ABOVE: usize = 200;
+
+/// Patches of a cut that are too small to print, mm².
+const LEAST_AREA: f64 = 1.0;
 
 /// How the lines of a layer lie to the model's cut: middle to middle, and larger in x and y, mm.
 #[derive(Debug, Clone, Copy)]
@@ -24,18 +43,17 @@ struct Off {
     size: [f64; 2],
 }
 
-/// The model cut at the print's layers, where the lines lie. `expected` is where its middle was put.
-/// `None` if the two cannot be held against each other; a finding or note says why.
+/// The model cut at the print's layers, where the lines lie. `None` if the two cannot be held
+/// against each other; a finding or note says why.
 pub(super) fn place(
     print: &Print,
-    mesh: &Mesh,
-    expected: [f64; 2],
+    model: Model<'_>,
     has_roles: bool,
     (found, notes): (&mut Findings, &mut Vec<String>),
 ) -> Option<Part> {
     let heights: Vec<(f64, f64)> =
         print.layers.iter().map(|layer| (layer.z, layer.height)).collect();
-    let mut part = match Part::new(mesh, expected, &heights) {
+    let mut part = match Part::new(model.mesh, model.offset, &heights) {
         Ok(part) => part,
         Err(layer) => {
             notes.push(format!(
@@ -46,29 +64,57 @@ pub(super) fn place(
             return None;
         }
     };
-    let offs: Vec<Off> = print
-        .layers
-        .iter()
-        .enumerate()
+    let layers = print.layers.iter().enumerate();
+    let offs: Vec<Off> = layers
         .filter_map(|(index, layer)| off(print, layer, part.extent_of(index)?, has_roles))
         .collect();
-    if offs.is_empty() {
-        notes.push("the part: no layer of it has both an outline and lines".to_owned());
+    let mut fits = fit(print, &part, has_roles);
+    let by = [0, 1].map(|axis| median(offs.iter().map(|off| off.middle[axis])));
+    if fits < 1.0 && by.iter().any(|by| by.abs() > MOST_OFF) {
+        part.shift(by);
+        let shifted = fit(print, &part, has_roles);
+        if shifted > fits {
+            fits = shifted;
+            let [x, y] = [0, 1].map(|axis| short(model.offset[axis] + by[axis]));
+            notes.push(format!("where on the bed the part lies: its middle is at x {x} y {y}"));
+        } else {
+            part.shift(by.map(|by| -by));
+        }
+    }
+    if fits < LEAST_FIT {
+        sizes(&offs, fits, found);
+        notes.push(
+            "the part's surfaces: it is not the model (see --scale, --rotate, --unit)".into(),
+        );
         return None;
     }
-    let by = [0, 1].map(|axis| median(offs.iter().map(|off| off.middle[axis])));
-    if by.iter().any(|by| by.abs() > MOST_OFF) {
-        let [x, y] = [0, 1].map(|axis| short(expected[axis] + by[axis]));
-        notes.push(format!("where on the bed the part lies: its middle is at x {x} y {y}"));
-        part.shift(by);
-    }
-    let is_same = sizes(&offs, found) & height(print, &part, found);
-    if !is_same {
-        notes.push(
-            "the part's surfaces: it has another size (see --scale, --rotate, --unit)".into(),
-        );
-    }
-    is_same.then_some(part)
+    height(print, model, &part, found);
+    Some(part)
+}
+
+/// What part of the outer walls lies along the model's outline.
+fn fit(print: &Print, part: &Part, has_roles: bool) -> f64 {
+    let Some((low, high)) = part.extent() else { return 0.0 };
+    let grid = Grid::over(low, high, 2.0, PIXELS.0, PIXELS.1);
+    let every = print.layers.len().div_ceil(LAYERS_LOOKED_AT).max(1);
+    let looked_at = print.layers.iter().enumerate().step_by(every);
+    let shares = looked_at.map(|(index, layer)| {
+        let cut = part.section(index, &grid);
+        let mut band = cut.grown(grid.pixels(BAND[0]));
+        if has_roles {
+            band = band.minus(&cut.shrunk(grid.pixels(BAND[1])));
+        }
+        let walls = print
+            .moves_of(layer)
+            .iter()
+            .filter(|step| step.is_line() && (step.role == Role::OuterWall || !has_roles));
+        walls.fold([0.0; 2], |[along, all], step| {
+            let length = step.length();
+            [along + length * share_in(step, &grid, &band), all + length]
+        })
+    });
+    let [along, all] = shares.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
+    if all > 0.0 { along / all } else { 0.0 }
 }
 
 /// How a layer's lines lie to the model's cut, by their extents.
@@ -89,35 +135,51 @@ fn off(
     })
 }
 
-/// Whether the layers are as wide and deep as the model.
-fn sizes(offs: &[Off], found: &mut Findings) -> bool {
-    let mut fits = true;
-    for axis in 0..2 {
+/// Tells what of the size is wrong, or else that the shape is.
+fn sizes(offs: &[Off], fits: f64, found: &mut Findings) {
+    let before = found.len();
+    for (axis, name) in ["x", "y"].into_iter().enumerate() {
         let larger = median(offs.iter().map(|off| off.size[axis]));
         if larger.abs() > SIZE_SLACK {
-            fits = false;
-            let name = ["x", "y"][axis];
-            found.add(of_size(name, larger));
+            let than = if larger > 0.0 { "larger" } else { "smaller" };
+            let size = short(larger.abs());
+            let text = format!("the print is {size} mm {than} in {name} than the part");
+            found.add(Finding::of(Code::WrongSize, larger.abs(), "mm", text));
         }
     }
-    fits
-}
-
-fn height(print: &Print, part: &Part, found: &mut Findings) -> bool {
-    let Some(last) = print.layers.last() else { return true };
-    let higher = last.z - part.height();
-    // Layers are rounded to whole ones at the top.
-    if higher.abs() <= HEIGHT_SLACK * last.height {
-        return true;
+    if found.len() == before {
+        let percent = short(100.0 * fits);
+        let text = format!("only {percent} % of the outer walls lie along the part's outline");
+        found.add(Finding::of(Code::WrongSize, percent, "%", text));
     }
-    found.add(of_size("z", higher));
-    false
 }
 
-fn of_size(axis: &str, larger: f64) -> Finding {
-    let than = if larger > 0.0 { "larger" } else { "smaller" };
-    let text = format!("the print is {} mm {than} in {axis} than the part", short(larger.abs()));
-    Finding::of(Code::WrongSize, larger.abs(), "mm", text)
+/// Whether the print is as high as what of the model can be printed.
+fn height(print: &Print, model: Model<'_>, part: &Part, found: &mut Findings) {
+    let Some(last) = print.layers.last() else { return };
+    let lacks = part.height() - last.z;
+    let mut tell = |than: &str| {
+        let text = format!("the print is {} mm {than} than the part", short(lacks.abs()));
+        found.add(Finding::of(Code::WrongSize, lacks.abs(), "mm", text));
+    };
+    if lacks < -HEIGHT_SLACK * last.height {
+        tell("higher");
+    }
+    if lacks <= HEIGHT_SLACK * last.height {
+        return;
+    }
+    // A tip that is thinner than a line is left out by right.
+    let above = ((lacks / last.height).floor() as usize).min(MOST_ABOVE);
+    let layers: Vec<(f64, f64)> =
+        (1..=above).map(|k| (last.z + k as f64 * last.height, last.height)).collect();
+    let Ok(rest) = Part::new(model.mesh, model.offset, &layers) else { return };
+    let Some((low, high)) = rest.extent() else { return };
+    let grid = Grid::over(low, high, 1.0, PIXELS.0, PIXELS.1);
+    let line = grid.pixels(SOME_WIDTH * PRINTABLE / 2.0);
+    let area = |layer| rest.section(layer, &grid).opened(line).count() as f64 * grid.area();
+    if (0..above).any(|layer| area(layer) >= LEAST_AREA) {
+        tell("lower");
+    }
 }
 
 /// The middle one; 0 of none.

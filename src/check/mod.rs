@@ -90,9 +90,9 @@ pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict 
     beads::sums(print, &mut found);
     let part = model.and_then(|model| {
         let say = (&mut found, &mut not_judged);
-        align::place(print, model.mesh, model.offset, has_roles, say)
+        align::place(print, model, has_roles, say)
     });
-    let stacked = stack::check(print, part.as_ref(), &mut found);
+    let stacked = stack::check(print, part.as_ref(), terms.infill, &mut found);
     let sums = part.as_ref().map(|part| surfaces::check(print, part, terms, has_roles, &mut found));
 
     let lines = print.layers.iter().flat_map(|layer| print.moves_of(layer));

@@ -5,6 +5,7 @@
 //! or stands beside it on its own layer. A stretch that is not carried is a bridge if both
 //! its ends are, and else hangs in the air.
 
+use super::against::SOME_WIDTH;
 use super::beads::place;
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Findings, short};
@@ -25,8 +26,15 @@ const GAP: f64 = 0.5;
 /// Support may end so far below the part, mm: it is to come off.
 const SUPPORT_GAP: f64 = 0.45;
 
-/// A line may hang out so far, mm.
+/// A line may hang out so far, mm, …
 const LONGEST_END: f64 = 2.0;
+
+/// … or so many distances between lines of sparse infill: skins begin somewhere above it.
+const INFILL_GAPS: f64 = 2.0;
+
+/// Density of sparse infill where none is told, and where it is next to nothing, as a part of 1.
+const SOME_DENSITY: f64 = 0.2;
+const LEAST_DENSITY: f64 = 0.02;
 
 /// A line runs on another where their middles, so wide as a part of their widths, meet …
 const CORE: f64 = 0.4;
@@ -48,9 +56,14 @@ pub(super) struct Measured {
 
 /// Lays all lines of the layers down. Where `part` itself has nothing below, a hanging line is
 /// the part's fault, and only measured.
-pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) -> Measured {
+pub(super) fn check(
+    print: &Print,
+    part: Option<&Part>,
+    infill: Option<f64>,
+    found: &mut Findings,
+) -> Measured {
     let mut measured = Measured::default();
-    let Some(mut pile) = Pile::over(print) else { return measured };
+    let Some(mut pile) = Pile::over(print, infill) else { return measured };
     for (layer, one) in print.layers.iter().enumerate() {
         let steps = print.moves_of(one);
         for chain in steps.chunk_by(|a, b| a.is_line() && b.is_line() && a.to == b.from) {
@@ -69,15 +82,24 @@ struct Pile {
     tops: Vec<f32>,
     /// Height of the nozzle when a line's middle was laid, mm.
     cores: Vec<f32>,
+    /// A line may hang out so far, mm.
+    longest_end: f64,
 }
 
 impl Pile {
-    fn over(print: &Print) -> Option<Self> {
+    /// An empty bed under all of `print`; `infill` is the density of its sparse infill, as a part of 1.
+    fn over(print: &Print, infill: Option<f64>) -> Option<Self> {
         let steps = print.layers.iter().flat_map(|layer| print.moves_of(layer));
         let (low, high) = super::extent(steps.filter(|step| step.is_line()))?;
         let grid = Grid::over(low, high, 0.5, PITCH, MOST_PIXELS);
         let count = grid.size[0] * grid.size[1];
-        Some(Self { grid, tops: vec![0.0; count], cores: vec![0.0; count] })
+        let gap = SOME_WIDTH / infill.unwrap_or(SOME_DENSITY).max(LEAST_DENSITY);
+        Some(Self {
+            grid,
+            tops: vec![0.0; count],
+            cores: vec![0.0; count],
+            longest_end: LONGEST_END.max(INFILL_GAPS * gap),
+        })
     }
 
     fn at<T: Copy>(&self, map: &[T], place: [f64; 2]) -> Option<T> {
@@ -105,13 +127,14 @@ impl Pile {
                 behind += 1;
             }
             for place in Samples::of(step, self.grid.pitch) {
-                runs.add(self.is_carried(step, &place), place.length, place.at);
                 twice.add(self.is_laid(step, place.at), place.length, step);
+                runs.add(self.is_carried(step, &place), place);
             }
         }
         chain[behind..].iter().for_each(|step| self.lay_core(step));
         chain.iter().for_each(|step| self.lay(step));
-        self.hanging(&runs.ends(), layer, (chain, part), found, measured);
+        runs.end();
+        self.hanging(&runs.ends, layer, (chain, part), found, measured);
         measured.longest_bridge = measured.longest_bridge.max(runs.longest_bridge);
         for (length, step) in twice.ends() {
             let text = format!("{} mm of a line lie on another of the layer", short(length));
@@ -122,22 +145,31 @@ impl Pile {
 
     fn hanging(
         &self,
-        ends: &[(f64, [f64; 2])],
+        ends: &[Vec<Sample>],
         layer: usize,
         (chain, part): (&[Step], Option<&Part>),
         found: &mut Findings,
         measured: &mut Measured,
     ) {
-        for &(length, at) in ends.iter().filter(|(length, _)| *length > LONGEST_END) {
-            if part.is_some_and(|part| part.hangs(layer, at)) {
-                measured.part_hangs += length;
+        let length = |places: &[&Sample]| places.iter().map(|place| place.length).sum::<f64>();
+        for end in ends {
+            let all: Vec<&Sample> = end.iter().collect();
+            if length(&all) <= self.longest_end {
+                continue;
+            }
+            let (by_part, own): (Vec<&Sample>, Vec<&Sample>) = all
+                .into_iter()
+                .partition(|place| part.is_some_and(|part| part.hangs(layer, place.at)));
+            measured.part_hangs += length(&by_part);
+            let length = length(&own);
+            if length <= self.longest_end {
                 continue;
             }
             let what = chain[0].role.name();
             let text = format!("{} mm of {what} have nothing under them", short(length));
             let finding = Finding::of(Code::InTheAir, length, "mm", text);
             let mut place = place(layer, &chain[0]);
-            place.at_mm = Some(at.map(short));
+            place.at_mm = Some(own[own.len() / 2].at.map(short));
             found.add(Finding { place, ..finding });
         }
     }
@@ -226,36 +258,35 @@ impl Iterator for Samples {
 /// Stretches of a line that nothing carries.
 #[derive(Default)]
 struct Runs {
-    /// Those at the line's ends: length, and where they begin to hang.
-    ends: Vec<(f64, [f64; 2])>,
+    /// Those at the line's ends.
+    ends: Vec<Vec<Sample>>,
     longest_bridge: f64,
     /// The one that goes on.
-    length: f64,
-    begin: [f64; 2],
+    run: Vec<Sample>,
     is_carried_before: bool,
 }
 
 impl Runs {
-    fn add(&mut self, carried: bool, length: f64, at: [f64; 2]) {
+    fn add(&mut self, carried: bool, place: Sample) {
         if !carried {
-            if self.length == 0.0 {
-                self.begin = at;
-            }
-            self.length += length;
+            self.run.push(place);
             return;
         }
-        if self.length > 0.0 && self.is_carried_before {
-            self.longest_bridge = self.longest_bridge.max(self.length);
-        } else if self.length > 0.0 {
-            self.ends.push((self.length, self.begin));
+        let length: f64 = self.run.iter().map(|place| place.length).sum();
+        if !self.is_carried_before && length > 0.0 {
+            self.ends.push(std::mem::take(&mut self.run));
         }
-        (self.length, self.is_carried_before) = (0.0, true);
+        self.longest_bridge =
+            self.longest_bridge.max(if self.is_carried_before { length } else { 0.0 });
+        self.run.clear();
+        self.is_carried_before = true;
     }
 
-    /// Those that hang, the last one included.
-    fn ends(&self) -> Vec<(f64, [f64; 2])> {
-        let last = (self.length > 0.0).then_some((self.length, self.begin));
-        self.ends.iter().copied().chain(last).collect()
+    /// Ends the line: what still hangs is an end, too.
+    fn end(&mut self) {
+        if !self.run.is_empty() {
+            self.ends.push(std::mem::take(&mut self.run));
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Print + Part -> findings against the model, layer by layer, and the sums over all of them.
 
-use super::against::{Areas, Judge, Verdict, is_of_part};
+use super::against::{Areas, Judge, SOME_WIDTH, Verdict, is_of_part};
 use super::extent;
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::part::{Part, extent_of};
@@ -36,9 +36,6 @@ const ENOUGH_ROOM: f64 = 1000.0;
 /// Walls and skins may take this part of the room that they cover.
 const SOLID_SLACK: [f64; 2] = [0.8, 1.25];
 
-/// Width of a line where no wall tells one, mm.
-const SOME_WIDTH: f64 = 0.4;
-
 /// Sums over all layers.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Sums {
@@ -65,7 +62,7 @@ pub(super) fn check(
         part,
         grid: Grid::over(low, high, 1.0, PITCH, MOST_PIXELS),
         line_width: line_width(print),
-        filament_area: terms.filament_area,
+        terms,
         has_roles,
     };
     let mut layers = Vec::with_capacity(print.layers.len());

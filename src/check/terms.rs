@@ -1,7 +1,8 @@
 //! Settings and a file's own comments -> Terms: what a file is held against.
 
-use crate::profile::{DialectName, Origin, Settings};
-use crate::reader::Print;
+use crate::profile::{DialectName, ExtrusionModel, Origin, Settings};
+use crate::reader::print::Step;
+use crate::reader::{Print, Role};
 use std::f64::consts::PI;
 
 /// What a file is held against.
@@ -11,6 +12,9 @@ pub struct Terms {
     pub machine: Option<Machine>,
     /// Cross-section of the filament, mm².
     pub filament_area: f64,
+    /// How much more plastic than width times height lines take by settings of the file's own:
+    /// walls, skins, sparse infill.
+    pub flow: [f64; 3],
     /// Density of the sparse infill asked for, as a part of 1, if it is known.
     pub infill: Option<f64>,
 }
@@ -34,9 +38,10 @@ pub struct Machine {
 const DENSITY_KEYS: &[&str] = &["infill", "fill_density", "sparse_infill_density"];
 
 impl Terms {
-    /// What `settings` ask for, and what `print` says of itself.
+    /// What the machine of `settings` can do, what the file was made with (`own`, if it is one of
+    /// this program's), and what it says of itself otherwise.
     #[must_use]
-    pub fn new(settings: Option<&Settings>, print: &Print) -> Self {
+    pub fn new(settings: Option<&Settings>, own: Option<&Settings>, print: &Print) -> Self {
         let diameter = print.filament_diameter;
         let by_file = || {
             let text = DENSITY_KEYS.iter().find_map(|key| print.value(key))?;
@@ -46,10 +51,34 @@ impl Terms {
         Self {
             machine: settings.map(Machine::new),
             filament_area: PI * diameter * diameter / 4.0,
-            // The file knows better than a profile named for the machine.
-            infill: by_file().or(settings.map(|settings| settings.infill / 100.0)),
+            flow: own.map_or([1.0; 3], flow),
+            infill: by_file(),
         }
     }
+
+    /// A line's plastic, mm³, less what settings make of it on purpose.
+    pub(super) fn plastic(&self, step: &Step) -> f64 {
+        let flow = match step.role {
+            Role::OuterWall | Role::InnerWall => self.flow[0],
+            Role::Skin => self.flow[1],
+            Role::Infill => self.flow[2],
+            _ => 1.0,
+        };
+        f64::from(step.filament) * self.filament_area / flow
+    }
+}
+
+/// See [`Terms::flow`].
+fn flow(own: &Settings) -> [f64; 3] {
+    let extrusion = &own.extrusion;
+    let room = extrusion.factor_width * extrusion.factor_height;
+    [extrusion.wall_factor, extrusion.skin_factor, extrusion.infill_factor].map(|factor| {
+        let by_size = match extrusion.model {
+            ExtrusionModel::Area => 1.0,
+            ExtrusionModel::Factor => factor * own.filament_area() / room,
+        };
+        by_size * extrusion.multiplier
+    })
 }
 
 impl Machine {

@@ -39,7 +39,8 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     }
     let told = profile::recorded(&print.values)?;
     let judge = given.as_ref().or(told.as_ref());
-    let terms = Terms::new(judge.map(|profile| &profile.settings), &print);
+    let machine = judge.map(|profile| &profile.settings);
+    let terms = Terms::new(machine, told.as_ref().map(|profile| &profile.settings), &print);
     let bed = judge.map_or(ANY_BED, |profile| slicer::bed(&profile.settings.machine));
     let placed = if args.against.is_empty() {
         None

@@ -44,6 +44,8 @@ pub struct Print {
     pub head: Vec<String>,
     /// Whether comments say where layers begin.
     pub marked: bool,
+    /// Layers that begin, those without a line included.
+    pub begun: usize,
     /// Whether comments tell widths of lines.
     pub tells_width: bool,
     /// Whether comments tell heights of lines.
@@ -243,6 +245,7 @@ impl Builder {
             .filter(|(_, by_mark)| *by_mark || !marked)
             .map(|(at, _)| *at)
             .collect();
+        print.begun = begins.len();
         let mut below = 0.0;
         for (k, &first) in begins.iter().enumerate() {
             let end = begins.get(k + 1).copied().unwrap_or(print.moves.len());
