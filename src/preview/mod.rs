@@ -1,0 +1,3 @@
+//! Print -> pictures: what a G-code file of any slicer prints, drawn without a window.
+
+pub mod colours;
