@@ -327,3 +327,58 @@ fn the_pictures_of_the_readme_are_as_kept() {
     }
     assert!(std::env::var_os("UPDATE_GOLDEN").is_none(), "look at the pictures, and unset it");
 }
+
+/// What the cones of different eyes make of linear red, green and blue: G. M. Machado et al.,
+/// "A Physiologically-based Model for Simulation of Color Vision Deficiency" (2009), severity 1.
+const EYES: [[[f64; 3]; 3]; 4] = [
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    [
+        [0.152286, 1.052583, -0.204868],
+        [0.114503, 0.786281, 0.099216],
+        [-0.003882, -0.048116, 1.051998],
+    ],
+    [
+        [0.367322, 0.860646, -0.227968],
+        [0.280085, 0.672501, 0.047413],
+        [-0.011820, 0.042940, 0.968881],
+    ],
+    [
+        [1.255528, -0.076749, -0.178779],
+        [-0.078411, 0.930809, 0.147602],
+        [0.004733, 0.691367, 0.303900],
+    ],
+];
+
+fn times(matrix: &[[f64; 3]; 3], [a, b, c]: [f64; 3]) -> [f64; 3] {
+    matrix.map(|row| row[0] * a + row[1] * b + row[2] * c)
+}
+
+/// In CIELAB, as an eye sees it.
+fn seen(Colour(bytes): Colour, eye: &[[f64; 3]; 3]) -> [f64; 3] {
+    let linear = bytes.map(|byte| {
+        let part = f64::from(byte) / 255.0;
+        if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+    });
+    let light = times(eye, linear).map(|part| part.clamp(0.0, 1.0));
+    let xyz = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]];
+    let [x, y, z] = times(&xyz, light);
+    let root = |t: f64| if t > 0.008856 { t.cbrt() } else { 7.787 * t + 16.0 / 116.0 };
+    let [x, y, z] = [root(x / 0.9505), root(y), root(z / 1.089)];
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+#[test]
+fn colours_are_told_apart_by_all_eyes() {
+    let roles = &Role::ALL[..6];
+    let colours: Vec<_> =
+        roles.iter().flat_map(|r| [false, true].map(|thick| Colour::of(*r, thick))).collect();
+    for eye in &EYES {
+        for (k, a) in colours.iter().enumerate() {
+            for b in &colours[..k] {
+                let (p, q) = (seen(*a, eye), seen(*b, eye));
+                let apart = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+                assert!(apart >= 17.0, "{} and {}: {apart:.1}", a.hex(), b.hex());
+            }
+        }
+    }
+}
