@@ -9,7 +9,7 @@ use common::{Kind, fixture, fixtures, slice};
 use predicates::prelude::*;
 use slicer::preview::colours::Colour;
 use slicer::preview::cut::{Axis, Cut, Plane};
-use slicer::preview::drawing::Drawing;
+use slicer::preview::drawing::{Drawing, Frame};
 use slicer::preview::{layer, png, svg};
 use slicer::reader::{Print, Role};
 use std::fs;
@@ -141,16 +141,51 @@ fn the_legend_names_the_layer_and_what_is_on_it() {
     assert!(!has("support") && !has("travel"));
 }
 
+/// Red, green and blue of all pixels of the PNG.
+fn pixels(drawing: &Drawing) -> Vec<u8> {
+    let decoder = ::png::Decoder::new(std::io::Cursor::new(png::write(drawing).unwrap()));
+    let mut reader = decoder.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    assert_eq!([info.width, info.height], drawing.size);
+    pixels
+}
+
+#[test]
+fn y_is_upwards_and_a_crop_ends_where_it_is_told() {
+    let text = ";LAYER_CHANGE\n;TYPE:Skin\n;WIDTH:1\nG1 X0 Y10 Z0.2\nG1 X20 E1\n\
+                ;TYPE:Perimeter\nG1 Y0\nG1 X18 E2";
+    let drawing = drawn(&print(text), 1, 800);
+    let dots = pixels(&drawing);
+    let at = |point| {
+        let [x, y] = drawing.view.pixel(point).map(|at| at as usize);
+        let first = 3 * (y * drawing.size[0] as usize + x);
+        Colour(dots[first..first + 3].try_into().unwrap())
+    };
+    assert_eq!(at([10.0, 10.0]), Colour::of(Role::Skin, false));
+    assert_eq!(at([19.0, 0.0]), Colour::of(Role::InnerWall, false));
+    assert_eq!(at([10.0, 0.0]), Colour([255; 3]));
+
+    // Right of x = 5 there is only the panel.
+    let frame = Frame { min: [0.0, 8.0], max: [5.0, 12.0] };
+    let options = layer::Options { size: 800, below: 0, travels: false, frame };
+    let drawing = layer::drawing(&print(text), 0, &options);
+    let dots = pixels(&drawing);
+    let row = drawing.view.pixel([5.0, 10.2])[1] as usize;
+    let start = 3 * row * drawing.size[0] as usize;
+    let skin = |x: f64| {
+        let first = start + 3 * drawing.view.pixel([x, 10.2])[0] as usize;
+        dots[first..first + 3] == Colour::of(Role::Skin, false).0
+    };
+    assert!(skin(4.9) && !skin(5.1));
+}
+
 #[test]
 fn the_ink_of_a_png_covers_what_the_beads_cover() {
     let text = bracket();
     let mut drawing = drawn(&print(&text), LAYER, 2400);
     drawing.page.clear();
-    let decoder = ::png::Decoder::new(std::io::Cursor::new(png::write(&drawing).unwrap()));
-    let mut reader = decoder.read_info().unwrap();
-    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-    let info = reader.next_frame(&mut pixels).unwrap();
-    assert_eq!([info.width, info.height], drawing.size);
+    let pixels = pixels(&drawing);
     assert_eq!(drawing.size.into_iter().max().unwrap().abs_diff(2400), 0);
     // Half covered by the palest edge is darker than this.
     let inked = pixels.chunks(3).filter(|dot| dot.iter().min().unwrap() < &190).count();
