@@ -27,6 +27,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("estimate", &["reader", "motion", "error"]),
     // An independent witness: nothing of slice, region, plan or gcode.
     ("check", &["reader", "mesh", "profile", "units"]),
+    ("preview", &["reader"]),
 ];
 
 /// Modules that may use all others: the flow itself, and what tells of it.

@@ -7,10 +7,11 @@
 
 use super::raster::{Bits, Grid};
 use crate::mesh::Mesh;
-use crate::units::to_mm;
+use crate::units::{UNITS_PER_MM, to_mm};
 
-/// Planes lie on this grid, mm: half of the mesh's.
-const PLANE_GRID: f64 = 0.5e-4;
+/// Planes lie on a grid of so many steps a mm: half of the mesh's units. A whole number over it
+/// is the same number as the mesh's for the same height.
+const PLANE_STEPS: f64 = 2.0 * UNITS_PER_MM;
 
 /// The model where it was printed.
 pub(super) struct Part {
@@ -36,7 +37,7 @@ impl Part {
     pub(super) fn new(mesh: &Mesh, offset: [f64; 2], layers: &[(f64, f64)]) -> Result<Self, usize> {
         let planes: Vec<f64> = layers
             .iter()
-            .map(|(top, height)| ((top - height / 2.0) / PLANE_GRID).round() * PLANE_GRID)
+            .map(|(top, height)| ((top - height / 2.0) * PLANE_STEPS).round() / PLANE_STEPS)
             .collect();
         if let Some(falls) = planes.windows(2).position(|two| two[0] >= two[1]) {
             return Err(falls + 1);
@@ -231,7 +232,7 @@ mod tests {
             let part = Part::new(&solid([4.0, 2.0, 0.5], turned), [10.0, 5.0], &layers).unwrap();
             assert_eq!(part.extent(), Some(([10.0, 5.0], [14.0, 7.0])));
             let grid = Grid::over([10.0, 5.0], [14.0, 7.0], 1.0, 0.1, 1e9);
-            // The last plane lies on the upper face, which counts as above it.
+            // The last plane lies on the upper face, which counts as above it: it cuts nothing higher.
             for layer in 0..3 {
                 assert_eq!(part.section(layer, &grid).count(), 40 * 20, "{layer}");
             }

@@ -1,5 +1,6 @@
 //! Words of the command line -> Arguments: every flag, its help, and the settings it stands for.
 
+use super::preview::PreviewArgs;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use slicer::error::{Error, Result};
@@ -18,6 +19,7 @@ Examples:
   slicer profile show generic-marlin > mine.toml
   slicer estimate part.gcode -p ./mine.toml
   slicer check part.gcode --against part.stl
+  slicer preview part.gcode --layer 40 -o part.png
 
 A model whose file is named like a subcommand is given as ./profile.";
 
@@ -67,6 +69,8 @@ pub(crate) enum Command {
     Estimate(EstimateArgs),
     /// Say what is wrong with a G-code file, also against the model
     Check(Box<CheckArgs>),
+    /// Draw what a G-code file prints: a layer, every layer, or a cut
+    Preview(PreviewArgs),
     /// Tell what each way of dual injection saves on a model
     Compare(Box<CompareArgs>),
     /// Print completions for a shell
@@ -364,7 +368,8 @@ fn factor(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
-fn numbers<const N: usize>(text: &str) -> std::result::Result<[f64; N], String> {
+/// `N` finite numbers with commas between them.
+pub(super) fn numbers<const N: usize>(text: &str) -> std::result::Result<[f64; N], String> {
     let wrong = || format!("it must be {N} numbers with commas between them");
     let parsed: Vec<f64> = text
         .split(',')
