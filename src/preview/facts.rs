@@ -19,7 +19,7 @@ const LONGEST_VALUE: usize = 300;
 pub struct Facts {
     /// The file's name.
     pub name: String,
-    /// What the file's first comment says, mostly who wrote it.
+    /// The first of the file's first comments that says who generated it; empty without one.
     pub head: String,
     /// The whole time, without heating and homing.
     pub seconds: f64,
@@ -97,7 +97,7 @@ impl Facts {
         let layers = layers(print, estimate);
         Self {
             name: name.to_owned(),
-            head: print.head.first().map_or_else(String::new, |head| shortened(head)),
+            head: head(print),
             seconds: rounded(estimate.seconds),
             start_seconds: rounded(estimate.start_seconds),
             filament_mm: rounded(estimate.filament_mm),
@@ -188,6 +188,11 @@ fn layers(print: &Print, estimate: &Estimate) -> Vec<LayerFacts> {
         seconds: seconds(at),
     };
     print.layers.iter().enumerate().map(facts).collect()
+}
+
+fn head(print: &Print) -> String {
+    let told = |line: &&String| line.to_lowercase().contains("generated");
+    print.head.iter().find(told).map_or_else(String::new, |line| shortened(line))
 }
 
 fn settings(print: &Print) -> Vec<(String, String)> {

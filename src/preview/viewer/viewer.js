@@ -11,6 +11,8 @@ const state = {
   /** Where the pointer is, mm. */
   at: null,
   playing: false,
+  /** How often colours have changed. */
+  styles: 0,
 };
 
 let scene = null;
@@ -36,16 +38,29 @@ function redraw() {
   });
 }
 
+/** What was drawn last, by the name of the part: parts that would look the same are left. */
+const drawn = {};
+
+function drawIfNew(part, looks, act) {
+  const key = JSON.stringify(looks);
+  if (drawn[part] === key) return;
+  drawn[part] = key;
+  act();
+}
+
 function draw() {
-  const size = fitCanvas(byId("stage").querySelector("#lines"));
+  const size = fitCanvas(byId("lines"));
   state.view ??= fitted(size);
-  const scale = state.view.scale * devicePixelRatio;
-  scene.draw({ ...state.view, scale }, state.layer, state.move, state.below);
-  drawGround(byId("ground"), state.view);
-  const hit = state.at ? scene.pick(state.layer, state.move, state.at, 4 / state.view.scale) : -1;
-  drawMarks(byId("marks"), state, scene.movesOf(state.layer), hit);
+  const { view, layer, move, below, styles } = state;
+  const scale = view.scale * devicePixelRatio;
+  drawIfNew("lines", [view, layer, move, below, styles, size, devicePixelRatio], () => {
+    scene.draw({ ...view, scale }, layer, move, below);
+  });
+  drawIfNew("ground", [view, styles, size], () => drawGround(byId("ground"), view));
+  const hit = state.at ? scene.pick(layer, move, state.at, 4 / view.scale) : -1;
+  drawMarks(byId("marks"), state, scene.movesOf(layer), hit);
   showTip(hit);
-  drawTimes(state.layer);
+  drawIfNew("times", [layer, styles, size], () => drawTimes(layer));
   showState(hit);
 }
 
@@ -100,6 +115,7 @@ function showState(hit) {
 /** Colours, switches and the scale are as the state says. */
 function restyle() {
   scene.restyle(state);
+  state.styles++;
   byId("colour").value = state.colour;
   byId("below").checked = state.below;
   updateRoles(state, scene.palette);

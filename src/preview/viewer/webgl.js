@@ -70,7 +70,7 @@ class WebglPainter {
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     canvas.addEventListener("webglcontextrestored", () => {
       this.prepare();
-      redraw();
+      restyle();
     });
   }
 
@@ -85,7 +85,7 @@ class WebglPainter {
     this.uploads = 0;
     this.behind = null;
     this.behindKey = "";
-    this.steps = 400_000;
+    this.steps = isSoftware(gl) ? 15_000 : 400_000;
   }
 
   /** How many moves of lower layers are drawn at most. */
@@ -207,6 +207,13 @@ class WebglPainter {
     }
     return found;
   }
+}
+
+/** Whether a processor does the work of a graphics card: then lower layers are a burden. */
+function isSoftware(gl) {
+  const told = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
 function makeProgram(gl) {
