@@ -188,6 +188,7 @@ fn all(args: &PreviewArgs, encode: Encode, print: &Print) -> Result<()> {
     let count = print.layers.len();
     let products = (0..count).into_par_iter().map(|index| {
         let name = numbered(&args.output, index + 1, count);
+        usage::replaces(&name, &args.file)?;
         let mut sink = Sink::open(&name)?;
         let drawing = draw_layer(args, print, index, frame);
         write(encode, &drawing, &name, &mut sink)?;

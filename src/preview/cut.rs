@@ -118,17 +118,24 @@ impl Cut {
 }
 
 impl Section {
-    /// Whether another belongs to the same bead, and touches this one.
+    /// Whether another, of the same path, is to be seen as one with this: they touch, and
+    /// are as high, or the lower one hardly sticks out.
     fn meets(&self, other: &Self) -> bool {
-        let same = (self.bottom, self.height, self.colour);
-        same == (other.bottom, other.height, other.colour)
+        let (low, high) = if self.height < other.height { (self, other) } else { (other, self) };
+        let beyond = (high.low - low.low).max(low.high - high.high);
+        self.colour == other.colour
             && self.low <= other.high
             && other.low <= self.high
+            && (low.height == high.height && low.bottom == high.bottom
+                || beyond <= high.height / 2.0)
     }
 
     fn take_in(&mut self, other: &Self) {
         self.low = self.low.min(other.low);
         self.high = self.high.max(other.high);
+        if other.height > self.height {
+            (self.bottom, self.height) = (other.bottom, other.height);
+        }
     }
 
     fn stroke(&self) -> Stroke {

@@ -9,6 +9,9 @@ const EDGE: f64 = 0.09;
 /// How much darker an edge is than its bead.
 const EDGE_DARK: f64 = 0.38;
 
+/// Likewise, of a pale one.
+const PALE_EDGE_DARK: f64 = 0.1;
+
 /// A picture. What lies later in a list is painted over what lies before.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
@@ -69,8 +72,8 @@ pub struct Look {
 pub enum Kind {
     /// Plastic, with edges that are a little darker, within its width.
     Bead,
-    /// Of one colour.
-    Plain,
+    /// Likewise, in the background.
+    PaleBead,
     /// Dashes as long as so many widths, and gaps likewise.
     Dashed(u8),
 }
@@ -125,12 +128,15 @@ impl Look {
     #[must_use]
     pub fn coats(&self) -> Vec<(f64, Colour)> {
         match self.kind {
-            Kind::Bead => {
-                let edge = self.colour.mixed(Colour([0; 3]), EDGE_DARK);
-                vec![(self.width, edge), (self.width * (1.0 - 2.0 * EDGE), self.colour)]
-            }
-            Kind::Plain | Kind::Dashed(_) => vec![(self.width, self.colour)],
+            Kind::Bead => self.bead(EDGE_DARK),
+            Kind::PaleBead => self.bead(PALE_EDGE_DARK),
+            Kind::Dashed(_) => vec![(self.width, self.colour)],
         }
+    }
+
+    fn bead(&self, dark: f64) -> Vec<(f64, Colour)> {
+        let edge = self.colour.mixed(Colour([0; 3]), dark);
+        vec![(self.width, edge), (self.width * (1.0 - 2.0 * EDGE), self.colour)]
     }
 }
 

@@ -105,6 +105,7 @@ struct Scene<'a> {
 
 impl Scene<'_> {
     fn layer(&mut self, print: &Print, layer: &Layer, pale: f64) {
+        let kind = if pale > 0.0 { Kind::PaleBead } else { Kind::Bead };
         let mut last: Option<&Step> = None;
         for step in print.moves_of(layer) {
             if measured(step) {
@@ -112,7 +113,7 @@ impl Scene<'_> {
                 // Hundredths of a mm: no eye sees less, and neighbours are alike.
                 let width = (f64::from(step.width) * 100.0).round() / 100.0;
                 let goes_on = last.is_some_and(|last| last.to == step.from);
-                self.add(step, Look { width, colour, kind: Kind::Bead }, goes_on);
+                self.add(step, Look { width, colour, kind }, goes_on);
                 last = Some(step);
             } else if step.role == Role::Travel && self.options.travels && pale == 0.0 {
                 self.travel(step);

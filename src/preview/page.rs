@@ -72,7 +72,7 @@ impl Page<'_> {
     fn places(&self, text: TextSize) -> Places {
         let (line, letter) = (text.height(), text.advance());
         let [left, top] = [(AXIS_LETTERS * letter).ceil() + 2.0 * TICK, 2.0 * line];
-        let (panel, below) = (line + (PANEL_LETTERS * letter).ceil(), 2.0 * line);
+        let (panel, below) = (line + (PANEL_LETTERS * letter).ceil(), 3.3 * line);
         let longest = f64::from(self.size);
         let frame = self.frame.size();
         let room = [longest - left - panel, longest - top - below];
@@ -102,7 +102,7 @@ impl Page<'_> {
     fn axis(&self, axis: usize, places: &Places, text: TextSize, page: &mut Vec<Mark>) {
         let line = text.height();
         let (low, high) = (self.frame.min[axis], self.frame.max[axis]);
-        let apart = [text.advance() * (AXIS_LETTERS + 1.0), 2.2 * line][axis];
+        let apart = [text.advance() * (AXIS_LETTERS - 1.0), 2.2 * line][axis];
         let (step, decimals) = round_step(apart / places.view.scale);
         let first = (low / step).ceil();
         let count = ((high / step).floor() - first).max(-1.0) + 1.0;
@@ -123,7 +123,7 @@ impl Page<'_> {
             page.push(Mark::Text { at, anchor, text: number });
         }
         let (at, anchor) = if axis == 0 {
-            ([places.right + 0.8 * line, places.bottom + TICK + 0.7 * line], Anchor::Start)
+            ([places.right, places.bottom + TICK + 1.8 * line], Anchor::End)
         } else {
             ([places.left - 1.5 * TICK, places.top - line], Anchor::End)
         };
@@ -178,7 +178,7 @@ fn outline(places: &Places, page: &mut Vec<Mark>) {
 /// A round length with its name above, at the panel's lower end.
 fn scale_bar(places: &Places, text: TextSize, page: &mut Vec<Mark>) {
     let line = text.height();
-    let (left, y) = (places.right + 0.8 * line, places.height - 3.2 * line);
+    let (left, y) = (places.right + 0.8 * line, places.height - 3.3 * line);
     // The next smaller round length.
     let (length, decimals) = round_step(BAR * line / places.view.scale / 2.5);
     let end = left + length * places.view.scale;

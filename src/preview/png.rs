@@ -51,7 +51,7 @@ fn strokes(drawing: &Drawing, group: &[Stroke], pixels: &mut Pixmap) {
                 let dash = f32::from(dash) * width;
                 (LineCap::Butt, StrokeDash::new(vec![dash, dash], 0.0))
             }
-            Kind::Bead | Kind::Plain => (LineCap::Round, None),
+            Kind::Bead | Kind::PaleBead => (LineCap::Round, None),
         };
         let pen = Pen { width, line_cap, line_join: LineJoin::Round, dash, ..Pen::default() };
         pixels.stroke_path(&path, &paint(colour), &pen, Transform::identity(), None);
@@ -86,7 +86,6 @@ fn letters(size: TextSize, at: [f64; 2], anchor: Anchor, text: &str, pixels: &mu
     let (columns, rows) = (pixels.width() as usize, pixels.height() as usize);
     size.pixels(text, &mut |column, row, strength| {
         let (x, y) = (left + column as f64, top + row as f64);
-        // Negative ones are cut off by the conversion to large numbers' complement.
         if x < 0.0 || y < 0.0 || x as usize >= columns || y as usize >= rows {
             return;
         }

@@ -1,4 +1,4 @@
-//! Drawing -> SVG: text, as short as it can be without losing a hundredth of a pixel.
+//! Drawing -> SVG: text, in mm of the bed, as short as it can be.
 
 use super::colours::{Colour, INK, PAPER};
 use super::drawing::{Anchor, Drawing, Kind, Mark, Stroke};
@@ -37,8 +37,8 @@ fn scene(drawing: &Drawing, out: &mut String) {
             "<g transform=\"matrix({matrix})\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n"
         ),
     );
-    // A step of the last decimal is a tenth of a pixel or less.
-    let decimals = if scale <= 10.0 { 2 } else { 3 };
+    // Rounding moves nothing by more than an eighth of a pixel.
+    let decimals = if scale <= 25.0 { 2 } else { 3 };
     for (number, group) in drawing.groups().enumerate() {
         paths(group, number, decimals, out);
     }
@@ -61,7 +61,7 @@ fn paths(group: &[Stroke], number: usize, decimals: usize, out: &mut String) {
                 let dash = short(f64::from(dash) * look.width, 3);
                 format!(" stroke-linecap=\"butt\" stroke-dasharray=\"{dash}\"")
             }
-            Kind::Bead | Kind::Plain => String::new(),
+            Kind::Bead | Kind::PaleBead => String::new(),
         };
         // What paints lies around the path, so that its second coat can differ.
         let id = if several { format!(" id=\"p{number}\"") } else { String::new() };
@@ -78,16 +78,24 @@ fn path(stroke: &Stroke, decimals: usize, out: &mut String) {
     let mut points = stroke.points.iter().map(grid);
     let Some(mut at) = points.next() else { return };
     let number = |on_grid: f64| short(on_grid / unit, decimals);
-    put(out, format_args!("M{} {}", number(at[0]), number(at[1])));
+    pair("M", [number(at[0]), number(at[1])], out);
     let mut letter = "l";
     for next in points {
-        put(out, format_args!("{letter}{} {}", number(next[0] - at[0]), number(next[1] - at[1])));
+        pair(letter, [number(next[0] - at[0]), number(next[1] - at[1])], out);
         (at, letter) = (next, " ");
     }
 }
 
+/// Two numbers of a path. A minus needs no blank before it.
+fn pair(before: &str, [x, y]: [String; 2], out: &mut String) {
+    let before = if before == " " && x.starts_with('-') { "" } else { before };
+    let between = if y.starts_with('-') { "" } else { " " };
+    put(out, format_args!("{before}{x}{between}{y}"));
+}
+
 fn page(drawing: &Drawing, out: &mut String) {
     let size = drawing.text.height() * LETTERS;
+    out.push_str("<g shape-rendering=\"crispEdges\">\n");
     for mark in drawing.page.iter().filter(|mark| !matches!(mark, Mark::Text { .. })) {
         match mark {
             Mark::Line { from, to, width, colour } => line(*from, *to, *width, *colour, out),
@@ -95,6 +103,7 @@ fn page(drawing: &Drawing, out: &mut String) {
             Mark::Text { .. } => {}
         }
     }
+    out.push_str("</g>\n");
     let ink = INK.hex();
     put(
         out,
