@@ -112,6 +112,7 @@ function listenToPointers(stage) {
     const before = grip(held);
     held.set(event.pointerId, onStage(event));
     const now = grip(held);
+    state.fits = false;
     state.view.x -= (now.x - before.x) / state.view.scale;
     state.view.y += (now.y - before.y) / state.view.scale;
     if (before.apart && now.apart) zoom(now.apart / before.apart, [now.x, now.y]);
@@ -146,6 +147,7 @@ function listen() {
   listenToPointers(byId("stage"));
   addEventListener("keydown", onKey);
   addEventListener("hashchange", readAddress);
-  new ResizeObserver(redraw).observe(byId("stage"));
+  // At once: at the next frame the old picture would be seen stretched.
+  new ResizeObserver(draw).observe(byId("stage"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", restyle);
 }

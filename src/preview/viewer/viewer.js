@@ -8,6 +8,8 @@ const state = {
   hidden: new Set([TRAVEL, RETRACTION]),
   below: true,
   view: null,
+  /** Whether the view is to hold the whole print, whatever the window's size. */
+  fits: true,
   /** Where the pointer is, mm. */
   at: null,
   playing: false,
@@ -50,7 +52,7 @@ function drawIfNew(part, looks, act) {
 
 function draw() {
   const size = fitCanvas(byId("lines"));
-  state.view ??= fitted(size);
+  if (state.fits) state.view = fitted(size);
   const { view, layer, move, below, styles } = state;
   const scale = view.scale * devicePixelRatio;
   drawIfNew("lines", [view, layer, move, below, styles, size, devicePixelRatio], () => {
@@ -154,7 +156,7 @@ function togglePanel() {
 }
 
 function fit() {
-  state.view = null;
+  state.fits = true;
   redraw();
 }
 
@@ -167,6 +169,7 @@ function zoom(factor, [x, y] = middle()) {
   view.x = fixed[0] + ((view.x - fixed[0]) * view.scale) / scale;
   view.y = fixed[1] + ((view.y - fixed[1]) * view.scale) / scale;
   view.scale = scale;
+  state.fits = false;
   redraw();
 }
 
@@ -189,7 +192,7 @@ function readAddress() {
   }
   state.below = words.get("below") !== "0";
   const [x, y, scale] = numbers("view", 3) ?? [];
-  if (scale > 0) state.view = { x, y, scale };
+  if (scale > 0) Object.assign(state, { view: { x, y, scale }, fits: false });
   state.at = numbers("at", 2);
   setColour(words.get("colour") ?? state.colour);
   const [layer] = numbers("layer", 1) ?? [state.layer];
@@ -202,13 +205,13 @@ const writeAddress = (() => {
   return () => {
     clearTimeout(timer);
     timer = setTimeout(() => {
-      const { layer, move, view, hidden } = state;
+      const { layer, move, view, hidden, fits } = state;
       const names = [...hidden].sort().map((role) => FACTS.roles[role].name.replace(" ", "-"));
       const words = [`layer=${layer}`, `hide=${names}`];
       if (move < scene.countOf(layer)) words.push(`move=${move}`);
       if (state.colour !== "role") words.push(`colour=${state.colour}`);
       if (!state.below) words.push("below=0");
-      if (view) words.push(`view=${decimals(view.x, 3)},${decimals(view.y, 3)},${decimals(view.scale, 3)}`);
+      if (!fits) words.push(`view=${decimals(view.x, 3)},${decimals(view.y, 3)},${decimals(view.scale, 3)}`);
       const address = `#${words.join("&")}`;
       if (address === lastAddress || state.playing) return;
       lastAddress = address;
@@ -251,6 +254,7 @@ async function load() {
     scene = new Scene(bytes, byId("lines"));
     begin();
     byId("message").textContent = FACTS.moves ? "" : "There is no move in this file.";
+    draw();
   } catch (error) {
     const old = typeof DecompressionStream === "undefined";
     byId("message").textContent = old
