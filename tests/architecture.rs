@@ -27,7 +27,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("estimate", &["reader", "motion", "error"]),
     // An independent witness: nothing of slice, region, plan or gcode.
     ("check", &["reader", "mesh", "profile", "units"]),
-    ("preview", &["reader"]),
+    ("preview", &["reader", "estimate"]),
 ];
 
 /// Modules that may use all others: the flow itself, and what tells of it.
@@ -56,7 +56,13 @@ fn sources() -> Vec<Source> {
     while let Some(folder) = folders.pop() {
         for entry in fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
-            if path.is_dir() { folders.push(path) } else { files.push(path) }
+            let is_rust = path.extension().is_some_and(|extension| extension == "rs");
+            match path.is_dir() {
+                true => folders.push(path),
+                false if is_rust => files.push(path),
+                // Parts of a page are none of the modules.
+                false => {}
+            }
         }
     }
     files.sort();

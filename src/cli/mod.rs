@@ -11,6 +11,7 @@ mod preview;
 mod progress;
 mod summary;
 mod usage;
+mod viewer;
 
 use args::{Arguments, Command, ProfileCommand, SliceArgs};
 use clap::{CommandFactory as _, Parser as _};

@@ -1,7 +1,7 @@
-//! `slicer preview` -> pictures of what a G-code file prints: a layer, every layer, or a cut.
+//! `slicer preview` -> pictures of what a G-code file prints, or a page to look through it.
 
 use super::output::{self, Sink};
-use super::{args, input, interrupt, say, usage};
+use super::{args, input, interrupt, say, usage, viewer};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use slicer::error::{Error, Result};
@@ -10,11 +10,17 @@ use slicer::preview::drawing::{Drawing, Frame};
 use slicer::preview::{layer, png, svg};
 use slicer::profile;
 use slicer::reader::Print;
-use std::io::Write as _;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 /// Digits of a layer's number in a file's name, at least.
 const DIGITS: usize = 4;
+
+/// Pixels of a picture's longer side.
+const SIZE: u32 = 1200;
+
+/// Makes a picture's bytes.
+type Encode = fn(&Drawing) -> io::Result<Vec<u8>>;
 
 /// Arguments of `preview`.
 #[derive(Debug, Args)]
@@ -22,15 +28,15 @@ pub(crate) struct PreviewArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "FILE")]
     file: String,
-    /// Picture to write, .svg or .png; `-` writes standard output
+    /// Picture to write, .svg or .png, or .html to look through all layers; `-` writes standard output
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// Format of the picture [default: by the ending of OUT]
+    /// Format of OUT [default: by its ending]
     #[arg(long)]
     format: Option<Format>,
-    /// Pixels of the longer side
-    #[arg(long, value_name = "PIXELS", default_value = "1200", value_parser = clap::value_parser!(u32).range(400..=8000))]
-    size: u32,
+    /// Pixels of the longer side [default: 1200]
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(400..=8000))]
+    size: Option<u32>,
     /// Draw only this part: two corners, mm on the bed, or along a cut and in z
     #[arg(long, value_name = "X,Y,X,Y", value_parser = corners, allow_hyphen_values = true)]
     crop: Option<Frame>,
@@ -55,7 +61,7 @@ pub(crate) struct PreviewArgs {
     #[arg(long, value_name = "AXIS=MM", value_parser = plane, conflicts_with_all = ["layer", "all", "fit", "below", "travels"], help_heading = "Cut")]
     cut: Option<Plane>,
 
-    /// Built-in profile, or a file if it has a `/` or ends in .toml: the filament's diameter, for files that tell no widths
+    /// Built-in profile, or a file if it has a `/` or ends in .toml: the filament's diameter, for files that tell no widths; for a page the limits that its times depend on, too
     #[arg(short, long, value_name = "NAME", default_value = profile::DEFAULT, help_heading = "Settings")]
     profile: String,
     /// Change any setting of the profile, such as filament.diameter=2.85 (repeatable)
@@ -73,6 +79,8 @@ enum Format {
     Svg,
     /// Pixels
     Png,
+    /// A page that shows every layer and move in a browser, without network
+    Html,
 }
 
 /// Draws.
@@ -88,18 +96,23 @@ pub(super) fn run(args: &PreviewArgs) -> Result<()> {
     }
     usage::replaces(&args.output, &args.file)?;
     interrupt::watch();
+    let encode: Encode = match format {
+        Format::Svg => |drawing| Ok(svg::write(drawing).into_bytes()),
+        Format::Png => png::write,
+        Format::Html => return page(args),
+    };
     let (name, print) = read(args)?;
     match args.cut {
         Some(plane) => {
             let sink = Sink::open(&args.output)?;
             let drawing = cut(args, name, &print, plane)?;
-            finish(args, format, sink, &drawing)
+            finish(args, encode, sink, &drawing)
         }
-        None if args.all => all(args, format, &print),
+        None if args.all => all(args, encode, &print),
         None => {
             let sink = Sink::open(&args.output)?;
             let drawing = one(args, name, &print)?;
-            finish(args, format, sink, &drawing)
+            finish(args, encode, sink, &drawing)
         }
     }
 }
@@ -117,7 +130,7 @@ fn format(args: &PreviewArgs) -> Result<Format> {
         let out = args.output.display();
         let endings = names.iter().map(|name| format!(".{name}")).collect::<Vec<_>>().join(" or ");
         Error::Usage(format!(
-            "-o {out}: the ending tells no format of a picture; use {endings}, or say --format"
+            "-o {out}: the ending tells no format; use {endings}, or say --format"
         ))
     })
 }
@@ -161,7 +174,8 @@ fn cut(args: &PreviewArgs, name: &str, print: &Print, plane: Plane) -> Result<Dr
             "--cut {axis}={at}: nothing is printed there; {name} prints between {axis} = {low:.1} and {high:.1} mm"
         )));
     }
-    let drawing = cut.drawing(plane, args.crop.unwrap_or_else(|| cut.frame()), args.size);
+    let drawing =
+        cut.drawing(plane, args.crop.unwrap_or_else(|| cut.frame()), args.size.unwrap_or(SIZE));
     if drawing.scene.is_empty() {
         return Err(nothing_in_crop(name, cut.frame()));
     }
@@ -169,7 +183,7 @@ fn cut(args: &PreviewArgs, name: &str, print: &Print, plane: Plane) -> Result<Dr
 }
 
 /// A file for each layer, or none.
-fn all(args: &PreviewArgs, format: Format, print: &Print) -> Result<()> {
+fn all(args: &PreviewArgs, encode: Encode, print: &Print) -> Result<()> {
     let frame = frame(args, print);
     let count = print.layers.len();
     let products = (0..count).into_par_iter().map(|index| {
@@ -177,7 +191,7 @@ fn all(args: &PreviewArgs, format: Format, print: &Print) -> Result<()> {
         usage::replaces(&name, &args.file)?;
         let mut sink = Sink::open(&name)?;
         let drawing = draw_layer(args, print, index, frame);
-        write(format, &drawing, &name, &mut sink)?;
+        write(encode, &drawing, &name, &mut sink)?;
         sink.close()
     });
     output::commit_all(products.collect::<Result<_>>()?)?;
@@ -194,7 +208,7 @@ fn draw_layer(args: &PreviewArgs, print: &Print, index: usize, frame: Frame) -> 
         Some(layers) if args.fit => layer::frame(print, layers),
         _ => frame,
     };
-    let (size, below, travels) = (args.size, args.below, args.travels);
+    let (size, below, travels) = (args.size.unwrap_or(SIZE), args.below, args.travels);
     layer::drawing(print, index, &layer::Options { size, below, travels, frame })
 }
 
@@ -210,8 +224,8 @@ fn nothing_in_crop(name: &str, whole: Frame) -> Error {
     ))
 }
 
-fn finish(args: &PreviewArgs, format: Format, mut sink: Sink, drawing: &Drawing) -> Result<()> {
-    write(format, drawing, &args.output, &mut sink)?;
+fn finish(args: &PreviewArgs, encode: Encode, mut sink: Sink, drawing: &Drawing) -> Result<()> {
+    write(encode, drawing, &args.output, &mut sink)?;
     sink.commit()?;
     if !args.quiet {
         say(&format!("{}\n", drawing.title));
@@ -219,13 +233,34 @@ fn finish(args: &PreviewArgs, format: Format, mut sink: Sink, drawing: &Drawing)
     Ok(())
 }
 
-fn write(format: Format, drawing: &Drawing, name: &Path, sink: &mut Sink) -> Result<()> {
-    let bytes = match format {
-        Format::Svg => Ok(svg::write(drawing).into_bytes()),
-        Format::Png => png::write(drawing),
-    };
-    let done = bytes.and_then(|bytes| sink.write_all(&bytes)).and_then(|()| sink.flush());
+fn write(encode: Encode, drawing: &Drawing, name: &Path, sink: &mut Sink) -> Result<()> {
+    let done = encode(drawing).and_then(|bytes| sink.write_all(&bytes)).and_then(|()| sink.flush());
     done.map_err(|source| output::failed(name, "cannot write", source))
+}
+
+/// The page with all layers in it, for which nothing can be chosen.
+fn page(args: &PreviewArgs) -> Result<()> {
+    let given = [
+        ("--size", args.size.is_some()),
+        ("--crop", args.crop.is_some()),
+        ("--layer", args.layer.is_some()),
+        ("--all", args.all),
+        ("--fit", args.fit),
+        ("--below", args.below > 0),
+        ("--travels", args.travels),
+        ("--cut", args.cut.is_some()),
+    ];
+    if let Some((flag, _)) = given.iter().find(|(_, given)| *given) {
+        return Err(Error::Usage(format!(
+            "{flag} is for pictures, and a page shows everything; leave it out, or write .svg or .png"
+        )));
+    }
+    let profile = profile::load(&args.profile, &args::set_overrides(&args.set)?)?;
+    let told = viewer::write(&args.file, &args.output, &profile.settings)?;
+    if !args.quiet {
+        say(&told);
+    }
+    Ok(())
 }
 
 /// `a-0007.svg` for `a.svg`.

@@ -1,11 +1,15 @@
 //! Print -> pictures: what a G-code file of any slicer prints, drawn without a window.
 //!
 //! [`layer`] and [`cut`] make a [`drawing::Drawing`]; [`svg`] and [`png`] write it.
+//! [`html`] writes a page to look through all layers.
 
 pub mod colours;
 pub mod cut;
 pub mod drawing;
+pub mod facts;
+pub mod html;
 pub mod layer;
+pub mod packed;
 mod page;
 pub mod png;
 pub mod svg;

@@ -1,0 +1,36 @@
+//! G-code file -> a page to look through all its layers, as `slicer preview` writes it.
+
+use super::input;
+use super::output::{self, Sink};
+use slicer::error::{Error, Result};
+use slicer::estimate::{self, Options};
+use slicer::motion::Limits;
+use slicer::preview::html;
+use slicer::profile::Settings;
+use slicer::reader::Print;
+use slicer::warning::plural;
+use std::io::Write as _;
+use std::path::Path;
+
+/// Writes the page of `file` to `out`; tells what is in it.
+///
+/// # Errors
+/// A file that cannot be read or holds no move, an output that cannot be written.
+pub(super) fn write(file: &str, out: &Path, settings: &Settings) -> Result<String> {
+    let mut sink = Sink::open(out)?;
+    let (name, bytes) = input::read(file)?;
+    let diameter = settings.filament.diameter;
+    let options = Options { filament_diameter: diameter, fixed_limits: false };
+    let estimate = estimate::estimate(&mut &bytes[..], name, &Limits::new(settings), options)?;
+    let print = Print::read(&mut &bytes[..], diameter)
+        .map_err(|error| Error::input(name, format!("cannot read: {error}; check the path")))?;
+    // The file is not needed any more, and may be large.
+    drop(bytes);
+    let base = Path::new(name).file_name().map_or(name.into(), |base| base.to_string_lossy());
+    html::write(&print, &estimate, &base, diameter, &mut sink)
+        .and_then(|()| sink.flush())
+        .map_err(|source| output::failed(out, "cannot write", source))?;
+    sink.commit()?;
+    let layers = plural(print.layers.len() as u64, "layer");
+    Ok(format!("{layers}, {}\n", plural(print.moves.len() as u64, "move")))
+}

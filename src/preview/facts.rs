@@ -1,0 +1,210 @@
+//! Print + Estimate -> Facts: what the viewer's page is told besides the moves.
+
+use super::colours::Colour;
+use crate::estimate::Estimate;
+use crate::reader::Role;
+use crate::reader::print::{Layer, Print, Step};
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// Shorter lines do not count for the ends of scales, mm: the file's decimals tell
+/// their flow and width only roughly.
+const SHORTEST: f64 = 0.2;
+
+/// Characters of a setting that are told.
+const LONGEST_VALUE: usize = 300;
+
+/// What the page is told as JSON; lengths in mm, times in s.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Facts {
+    /// The file's name.
+    pub name: String,
+    /// The first of the file's first comments that says who generated it; empty without one.
+    pub head: String,
+    /// The whole time, without heating and homing.
+    pub seconds: f64,
+    /// Of it, before the first layer.
+    pub start_seconds: f64,
+    /// Filament that has gone in.
+    pub filament_mm: f64,
+    /// Its volume, cm³.
+    pub filament_cm3: f64,
+    /// Cross-section of the filament, mm².
+    pub filament_area: f64,
+    /// Number of moves.
+    pub moves: usize,
+    /// Least and most x, y, z of the lines of all layers, their widths included;
+    /// nothing without a line.
+    pub bounds: Option<[[f64; 3]; 2]>,
+    /// By role, in the order of [`Role::ALL`].
+    pub roles: Vec<RoleFacts>,
+    /// From the bed up.
+    pub layers: Vec<LayerFacts>,
+    /// Ends of the scales.
+    pub scales: Scales,
+    /// Settings that the file tells of itself, in its order.
+    pub settings: Vec<(String, String)>,
+}
+
+/// What is told of a role.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RoleFacts {
+    /// For people.
+    pub name: &'static str,
+    /// `#rrggbb`.
+    pub colour: String,
+    /// That of lines which are printed for several layers.
+    pub thick: String,
+    /// Its time.
+    pub seconds: f64,
+    /// Filament pushed out less that pulled back.
+    pub filament_mm: f64,
+    /// Number of moves.
+    pub moves: u64,
+}
+
+/// What is told of a layer.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LayerFacts {
+    /// Height of its first line.
+    pub z: f64,
+    /// Height above the layer below.
+    pub height: f64,
+    /// Its time; nothing where the estimate divides the file otherwise.
+    pub seconds: Option<f64>,
+}
+
+/// Least and most of what lines are coloured by; nothing without a line.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Scales {
+    /// mm/s.
+    pub speed: Option<[f64; 2]>,
+    /// mm³/s.
+    pub flow: Option<[f64; 2]>,
+    /// Of a layer, s.
+    pub time: Option<[f64; 2]>,
+    /// mm.
+    pub width: Option<[f64; 2]>,
+    /// mm.
+    pub height: Option<[f64; 2]>,
+}
+
+impl Facts {
+    /// Gathers them; `filament_diameter` in mm.
+    #[must_use]
+    pub fn new(print: &Print, estimate: &Estimate, name: &str, filament_diameter: f64) -> Self {
+        let filament_area = PI * filament_diameter * filament_diameter / 4.0;
+        let layers = layers(print, estimate);
+        Self {
+            name: name.to_owned(),
+            head: head(print),
+            seconds: rounded(estimate.seconds),
+            start_seconds: rounded(estimate.start_seconds),
+            filament_mm: rounded(estimate.filament_mm),
+            filament_cm3: rounded(estimate.filament_mm * filament_area / 1000.0),
+            filament_area,
+            moves: print.moves.len(),
+            bounds: bounds(print),
+            roles: Role::ALL.iter().map(|&role| RoleFacts::new(role, estimate)).collect(),
+            scales: Scales::new(print, &layers, filament_area),
+            layers,
+            settings: settings(print),
+        }
+    }
+}
+
+impl RoleFacts {
+    fn new(role: Role, estimate: &Estimate) -> Self {
+        let found = estimate.roles.iter().find(|time| time.role == role);
+        Self {
+            name: role.name(),
+            colour: Colour::of(role, false).hex(),
+            thick: Colour::of(role, true).hex(),
+            seconds: found.map_or(0.0, |time| rounded(time.seconds)),
+            filament_mm: found.map_or(0.0, |time| rounded(time.filament_mm)),
+            moves: found.map_or(0, |time| time.moves),
+        }
+    }
+}
+
+impl Scales {
+    fn new(print: &Print, layers: &[LayerFacts], area: f64) -> Self {
+        let mut scales = Self::default();
+        let mut widen = |step: &Step| {
+            include(&mut scales.speed, f64::from(step.feed));
+            include(&mut scales.width, f64::from(step.width));
+            include(&mut scales.height, f64::from(step.height));
+            let flow = f64::from(step.filament) * area * f64::from(step.feed) / step.length();
+            include(&mut scales.flow, flow);
+        };
+        let (long, short): (Vec<&Step>, Vec<&Step>) =
+            lines(print).partition(|step| step.length() >= SHORTEST);
+        let counted = if long.is_empty() { short } else { long };
+        counted.into_iter().for_each(&mut widen);
+        let times = layers.iter().filter_map(|layer| layer.seconds);
+        times.for_each(|seconds| include(&mut scales.time, seconds));
+        scales
+    }
+}
+
+/// The lines of all layers.
+fn lines(print: &Print) -> impl Iterator<Item = &Step> {
+    let moves = print.layers.iter().flat_map(|layer| print.moves_of(layer));
+    moves.filter(|step| step.is_line())
+}
+
+fn include(range: &mut Option<[f64; 2]>, value: f64) {
+    let value = rounded(value);
+    if value.is_finite() {
+        let [least, most] = range.unwrap_or([value; 2]);
+        *range = Some([least.min(value), most.max(value)]);
+    }
+}
+
+fn bounds(print: &Print) -> Option<[[f64; 3]; 2]> {
+    let mut axes = [None; 3];
+    for step in lines(print) {
+        let aside = f64::from(step.width) / 2.0;
+        for end in [step.from, step.to].map(|end| end.map(f64::from)) {
+            for (axis, (range, at)) in axes.iter_mut().zip(end).enumerate() {
+                let (below, above) =
+                    if axis < 2 { (aside, aside) } else { (step.height.into(), 0.0) };
+                include(range, at - below);
+                include(range, at + above);
+            }
+        }
+    }
+    let [x, y, z] = axes;
+    let (x, y, z) = (x?, y?, z?);
+    Some([[x[0], y[0], z[0]], [x[1], y[1], z[1]]])
+}
+
+fn layers(print: &Print, estimate: &Estimate) -> Vec<LayerFacts> {
+    let same = print.layers.len() == estimate.layers.len();
+    let seconds = |at: usize| same.then(|| rounded(estimate.layers[at].seconds));
+    let facts = |(at, layer): (usize, &Layer)| LayerFacts {
+        z: rounded(layer.z),
+        height: rounded(layer.height),
+        seconds: seconds(at),
+    };
+    print.layers.iter().enumerate().map(facts).collect()
+}
+
+fn head(print: &Print) -> String {
+    let told = |line: &&String| line.to_lowercase().contains("generated");
+    print.head.iter().find(told).map_or_else(String::new, |line| shortened(line))
+}
+
+fn settings(print: &Print) -> Vec<(String, String)> {
+    let values = print.values.iter();
+    values.map(|(key, value)| (shortened(key), shortened(value))).collect()
+}
+
+fn shortened(text: &str) -> String {
+    text.chars().take(LONGEST_VALUE).collect()
+}
+
+/// To thousandths: enough for people, and sums have long tails.
+fn rounded(value: f64) -> f64 {
+    (value * 1000.0).round() / 1000.0
+}

@@ -1,0 +1,142 @@
+// Page's data -> layers that are unpacked when they are looked at, and drawn.
+
+/** Moves that are kept unpacked. */
+const MOST_UNPACKED = 1_500_000;
+
+/** Pixels: how wide travels and marks of retractions are. */
+const TRAVEL_WIDTH = 1.3;
+const RETRACTION_WIDTH = 6;
+
+/** How much of the paper's colour is in lower layers. */
+const FADE = 0.72;
+
+class Scene {
+  /** `bytes` are the inflated moves. */
+  constructor(bytes, canvas) {
+    this.bytes = bytes;
+    this.blocks = findBlocks(bytes);
+    this.unpacked = new Map();
+    this.unpackedMoves = 0;
+    this.painter = makePainter(canvas);
+  }
+
+  /** Number of layers; block 0 is what comes before the first. */
+  get layers() {
+    return this.blocks.length - 1;
+  }
+
+  countOf(layer) {
+    return this.blocks[layer].count;
+  }
+
+  movesOf(layer) {
+    let moves = this.unpacked.get(layer);
+    if (!moves) {
+      if (this.unpackedMoves > MOST_UNPACKED) {
+        this.unpacked.clear();
+        this.unpackedMoves = 0;
+      }
+      moves = unpackBlock(this.bytes, this.blocks[layer]);
+      this.unpacked.set(layer, moves);
+      this.unpackedMoves += moves.count;
+    }
+    return moves;
+  }
+
+  /** Colours or what is hidden have changed. */
+  restyle({ colour, hidden }) {
+    this.palette = rolePalette();
+    this.paper = rgbOf(themeColour("paper"));
+    this.colourOf = colouring(colour, this.palette);
+    this.hidden = hidden;
+    this.painter.forget();
+  }
+
+  draw(view, layer, count, withBelow) {
+    this.painter.draw({
+      view,
+      layer,
+      count,
+      below: withBelow ? this.layersBelow(layer) : [],
+      paper: this.paper,
+      fade: FADE,
+      instancesOf: (one) => this.instancesOf(one),
+    });
+  }
+
+  /** As many as can be drawn, the lowest first. */
+  layersBelow(layer) {
+    const below = [];
+    let left = this.painter.mostBehind;
+    for (let lower = layer - 1; lower >= 1 && left > 0; lower--) {
+      left -= this.countOf(lower);
+      if (left > 0) below.unshift(lower);
+    }
+    return below;
+  }
+
+  /** What a painter needs of a layer: see INSTANCE. */
+  instancesOf(layer) {
+    const moves = this.movesOf(layer);
+    const floats = new Float32Array(INSTANCE * moves.count);
+    const inks = new Uint8Array(floats.buffer);
+    for (let i = 0; i < moves.count; i++) {
+      const at = INSTANCE * i;
+      floats[at] = moves.x.from[i];
+      floats[at + 1] = moves.y.from[i];
+      floats[at + 2] = moves.x.to[i];
+      floats[at + 3] = moves.y.to[i];
+      floats[at + 4] = this.widthOf(moves, i);
+      if (this.hidden.has(roleOf(moves, i))) continue;
+      inks.set(this.colourOf(moves, i, layer), 4 * (at + 5));
+      inks[4 * (at + 5) + 3] = 255;
+    }
+    return floats;
+  }
+
+  /** mm; below 0 in pixels. */
+  widthOf(moves, i) {
+    if (isLine(moves, i)) return moves.width[i];
+    return -devicePixelRatio * (roleOf(moves, i) === RETRACTION ? RETRACTION_WIDTH : TRAVEL_WIDTH);
+  }
+
+  /**
+   * The move at a place, among the first `count` of a layer that are shown: the uppermost
+   * line over it, else the nearest of what is as near as `reach` mm. -1 if there is none.
+   */
+  pick(layer, count, [x, y], reach) {
+    const moves = this.movesOf(layer);
+    let [found, best] = [-1, 0];
+    for (let i = 0; i < Math.min(count, moves.count); i++) {
+      if (this.hidden.has(roleOf(moves, i))) continue;
+      const beyond = distance(moves, i, x, y) - moves.width[i] / 2;
+      const beside = Math.max(beyond, 0);
+      // Marks and travels lie over lines, but are hit on themselves only.
+      if (beside <= reach && (found < 0 || beside <= best)) [found, best] = [i, beside];
+    }
+    return found;
+  }
+}
+
+/** Of a point from a move, mm. */
+function distance(moves, i, x, y) {
+  const [fromX, fromY] = [moves.x.from[i], moves.y.from[i]];
+  const [wayX, wayY] = [moves.x.to[i] - fromX, moves.y.to[i] - fromY];
+  const square = wayX * wayX + wayY * wayY;
+  const along = square > 0 ? ((x - fromX) * wayX + (y - fromY) * wayY) / square : 0;
+  const part = Math.min(Math.max(along, 0), 1);
+  return Math.hypot(x - fromX - part * wayX, y - fromY - part * wayY);
+}
+
+/** `?canvas` in the address asks for the plain one. */
+function makePainter(canvas) {
+  try {
+    if (location.search !== "?canvas") return new WebglPainter(canvas);
+  } catch (error) {
+    console.warn(error);
+  }
+  // A canvas that has had a context gives no other.
+  const plain = canvas.cloneNode();
+  canvas.replaceWith(plain);
+  return new CanvasPainter(plain);
+}
