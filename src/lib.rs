@@ -19,6 +19,7 @@
 //! The command line is the binary's own.
 
 pub mod compare;
+pub mod diff;
 pub mod error;
 pub mod estimate;
 pub mod gcode;

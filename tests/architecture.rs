@@ -25,6 +25,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // A witness of its own: it shares nothing with the code that writes.
     ("reader", &[]),
     ("estimate", &["reader", "motion", "error"]),
+    ("diff", &["reader", "estimate"]),
 ];
 
 /// Modules that may use all others: the flow itself, and what tells of it.

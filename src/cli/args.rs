@@ -66,6 +66,8 @@ pub(crate) enum Command {
     Estimate(EstimateArgs),
     /// Tell what each way of dual injection saves on a model
     Compare(Box<CompareArgs>),
+    /// Tell whether two G-code files print the same, and where not
+    Diff(super::diff::DiffArgs),
     /// Print completions for a shell
     Completions {
         /// The shell

@@ -2,6 +2,7 @@
 
 mod args;
 mod compare;
+mod diff;
 mod estimate;
 mod input;
 mod interrupt;
@@ -208,6 +209,7 @@ fn other(command: &Command) -> Result<Outcome> {
         }
         Command::Compare(args) => compare::run(args)?,
         Command::Estimate(args) => estimate::run(args)?,
+        Command::Diff(args) => return diff::run(args),
         Command::Completions { shell } => {
             let mut text = Vec::new();
             clap_complete::generate(*shell, &mut Arguments::command(), "slicer", &mut text);
