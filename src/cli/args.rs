@@ -23,7 +23,7 @@ A model whose file is named like a subcommand is given as ./profile.";
 const EXIT_CODES: &str = "\
 Exit codes:
     0  done
-    1  done, but there were warnings and --strict was given
+    1  done, but there were warnings and --strict was given; `diff` found files unequal
     2  wrong arguments, profile or setting
     3  a model or G-code file cannot be read; a model does not fit, or leaves nothing to print
     4  an output cannot be written

@@ -19,15 +19,15 @@ Equal are files whose plastic and orders to the printer are the same:
            same layer; neither their order, direction nor division into moves matters
   filament as much filament for each mm of these lines within PERCENT, beside what the decimals
            of a file leave open
-  sums     length and filament by role within PERCENT and 0.1 mm or 0.01 mm, in each layer and in the
-           file; time within PERCENT and 1 s in the file and by role, in a layer within
-           10 x PERCENT and 0.1 s
+  sums     in each layer, by role: length within PERCENT and 0.1 mm, filament within PERCENT and
+           0.01 mm, time at the feeds asked for within PERCENT and 0.1 s; in the file the same, and
+           the time it takes, by role and in all, within PERCENT and 1 s
   orders   the same temperatures, and the same other commands such as M106, in the same order
            within each layer; M73, M105, M117 and M118 are left out
 Told but not decisive: settings in comments (unless --settings), widths in comments, and the count
-and length of travels and retractions, which leave no plastic; their time is part of the sums.
+and length of travels and retractions, which leave no plastic; their time is part of the file's.
 If one of the files tells no roles, all lines count as one role. What comes before the first
-layer is told as layer 0. Both files are timed with the same limits: those of -p, else those that A
+layer is layer 0 in JSON. Both files are timed with the same limits: those of -p, else those that A
 holds as settings, else those of B, else those of the default profile.
 
 Exit codes: 0 equal, 1 not equal, 2 wrong arguments, 3 a file cannot be read or holds no move.";

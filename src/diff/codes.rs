@@ -65,7 +65,17 @@ pub struct Setting {
     pub value: Both<Option<String>>,
 }
 
-/// What a file tells the printer, by layer; the first is what comes before the first layer.
+/// What heaters, and the rest of the printer, are told differently in one place of both files.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+pub struct Orders {
+    /// Heaters.
+    pub heaters: Option<CodeDifference>,
+    /// Everything else but moves.
+    pub commands: Option<CodeDifference>,
+}
+
+/// What a file tells the printer by layer, with what comes before the first line of all and
+/// after the last one at the ends: slicers do not agree where layers begin and end there.
 pub(super) fn by_layer(bytes: &[u8], print: &Print) -> Vec<Vec<Code>> {
     let mut codes = others(bytes, print);
     for note in &print.notes {
@@ -74,10 +84,20 @@ pub(super) fn by_layer(bytes: &[u8], print: &Print) -> Vec<Vec<Code>> {
         }
     }
     codes.sort_by_key(|code| code.line);
-    let mut layers = vec![Vec::new(); print.layers.len() + 1];
+    let lines = || print.layers.first().map_or(0, |layer| layer.moves.start)..print.moves.len();
+    let first = lines().find(|&index| print.moves[index].is_line());
+    let last = lines().rfind(|&index| print.moves[index].is_line());
+    let end = print.layers.len() + 1;
+    let mut layers = vec![Vec::new(); end + 1];
     for code in codes {
         let before = print.moves.partition_point(|step| u64::from(step.line) < code.line);
-        let layer = print.layers.partition_point(|layer| layer.moves.start <= before);
+        let layer = match (first, last) {
+            (Some(first), Some(last)) if before > first => {
+                let layer = print.layers.partition_point(|layer| layer.moves.start <= before);
+                if before > last { end } else { layer }
+            }
+            _ => 0,
+        };
         layers[layer].push(code);
     }
     layers
@@ -162,9 +182,14 @@ fn heater(Heating { heater, celsius, waits }: Heating) -> String {
     celsius.map_or_else(|| format!("{name}{wait}"), |celsius| format!("{name} {celsius} °C{wait}"))
 }
 
+/// What differs between what both files tell the printer in one place.
+pub(super) fn orders(codes: Both<&Vec<Code>>) -> Orders {
+    Orders { heaters: difference(codes, true), commands: difference(codes, false) }
+}
+
 /// What differs between what a layer of either file tells heaters, or everything else.
 /// The same in another order differs, too: each file then says all of it.
-pub(super) fn difference(codes: Both<&Vec<Code>>, heats: bool) -> Option<CodeDifference> {
+fn difference(codes: Both<&Vec<Code>>, heats: bool) -> Option<CodeDifference> {
     let codes = codes.map(|codes| codes.iter().filter(|code| code.heats == heats));
     let codes = codes.map(Iterator::collect::<Vec<&Code>>);
     if codes.a.iter().map(|code| &code.text).eq(codes.b.iter().map(|code| &code.text)) {

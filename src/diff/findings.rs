@@ -1,6 +1,6 @@
 //! Difference -> Findings: what makes two files unequal, worst first.
 
-use super::codes::{CodeDifference, Setting};
+use super::codes::{CodeDifference, Orders, Setting};
 use super::pair::{Flow, PairOfLayers, Place, RoleOfPair};
 use super::sums::{Both, Sum};
 use super::{Difference, Tolerances};
@@ -27,6 +27,8 @@ pub enum Quantity {
     Filament,
     /// s.
     Time,
+    /// Time at the feeds that the file asks for, s.
+    AskedTime,
 }
 
 /// Something that makes two files unequal. Layers are counted from 1; 0 is what comes before
@@ -54,15 +56,15 @@ pub enum Finding {
     },
     /// Heaters are told something else.
     Heaters {
-        /// In this layer.
-        layer: Both<usize>,
+        /// In this layer; `None` is after the last line.
+        layer: Option<Both<usize>>,
         /// What.
         difference: CodeDifference,
     },
     /// The printer is told something else, besides moves and heaters.
-    Code {
-        /// In this layer.
-        layer: Both<usize>,
+    Commands {
+        /// In this layer; `None` is after the last line.
+        layer: Option<Both<usize>>,
         /// What.
         difference: CodeDifference,
     },
@@ -133,8 +135,8 @@ pub enum Kind {
     Flow,
     /// [`Finding::Sum`] of a layer.
     LayerSum,
-    /// [`Finding::Code`].
-    Code,
+    /// [`Finding::Commands`].
+    Commands,
     /// [`Finding::Sum`] of the file.
     FileSum,
     /// [`Finding::Setting`].
@@ -153,7 +155,7 @@ impl Finding {
             Self::Lines { .. } => Kind::Lines,
             Self::Flow { .. } => Kind::Flow,
             Self::Sum { layer: Some(_), .. } => Kind::LayerSum,
-            Self::Code { .. } => Kind::Code,
+            Self::Commands { .. } => Kind::Commands,
             Self::Sum { layer: None, .. } => Kind::FileSum,
             Self::Setting(_) => Kind::Setting,
         }
@@ -172,9 +174,10 @@ impl Finding {
                 [share, unlike_mm.a.max(unlike_mm.b)]
             }
             Self::Sum { sum, .. } => [sum.share(), 0.0],
-            Self::Heights { .. } | Self::Heaters { .. } | Self::Code { .. } | Self::Setting(_) => {
-                [0.0; 2]
-            }
+            Self::Heights { .. }
+            | Self::Heaters { .. }
+            | Self::Commands { .. }
+            | Self::Setting(_) => [0.0; 2],
         }
     }
 }
@@ -193,6 +196,7 @@ pub(super) fn findings(difference: &Difference, tolerances: &Tolerances) -> Vec<
             of_layer(pair, Both { a, b }, &mut found);
         }
     }
+    of_orders(&difference.end, None, &mut found);
     of_file(difference, &mut found);
     if tolerances.settings {
         found.extend(difference.settings.iter().cloned().map(Finding::Setting));
@@ -259,20 +263,16 @@ fn heights(pairs: &[PairOfLayers], tolerance: f64) -> Option<Finding> {
 }
 
 fn of_layer(pair: &PairOfLayers, layer: Both<usize>, found: &mut Vec<Finding>) {
-    let before = found.len();
-    let heaters = pair.heaters.clone();
-    found.extend(heaters.map(|difference| Finding::Heaters { layer, difference }));
-    let code = pair.code.clone();
-    found.extend(code.map(|difference| Finding::Code { layer, difference }));
+    of_orders(&pair.orders, Some(layer), found);
     for role in &pair.roles {
         of_role(role, layer, found);
     }
-    // What else differs in a layer says why its time does.
-    let has_lone_role = pair.roles.iter().any(|role| role.moves.a == 0 || role.moves.b == 0);
-    if found.len() == before && !has_lone_role && !pair.time_s.equal {
-        let (role, quantity, sum) = (None, Quantity::Time, pair.time_s);
-        found.push(Finding::Sum { layer: Some(layer), role, quantity, sum });
-    }
+}
+
+fn of_orders(orders: &Orders, layer: Option<Both<usize>>, found: &mut Vec<Finding>) {
+    let Orders { heaters, commands } = orders.clone();
+    found.extend(heaters.map(|difference| Finding::Heaters { layer, difference }));
+    found.extend(commands.map(|difference| Finding::Commands { layer, difference }));
 }
 
 fn of_role(pair: &RoleOfPair, layer: Both<usize>, found: &mut Vec<Finding>) {
@@ -291,9 +291,11 @@ fn of_role(pair: &RoleOfPair, layer: Both<usize>, found: &mut Vec<Finding>) {
     }
     // Lines that are drawn twice lie nowhere else: only the sums tell.
     if found.len() == before {
-        for (quantity, sum) in
-            [(Quantity::Length, pair.length_mm), (Quantity::Filament, pair.filament_mm)]
-        {
+        for (quantity, sum) in [
+            (Quantity::Length, pair.length_mm),
+            (Quantity::Filament, pair.filament_mm),
+            (Quantity::AskedTime, pair.asked_time_s),
+        ] {
             if !sum.equal {
                 found.push(Finding::Sum { layer: Some(layer), role: Some(role), quantity, sum });
             }

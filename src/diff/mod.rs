@@ -14,7 +14,7 @@ mod line;
 mod pair;
 mod sums;
 
-pub use codes::{CodeDifference, Setting};
+pub use codes::{CodeDifference, Orders, Setting};
 pub use findings::{File, Finding, Kind, Quantity};
 pub use pair::{Flow, PairOfLayers, Place, RoleOfPair};
 pub use sums::{Both, Extent, Sum};
@@ -56,7 +56,7 @@ pub struct Tolerances {
 pub struct Side {
     print: Print,
     estimate: Estimate,
-    /// The first is what comes before the first layer.
+    /// What comes before the first line, in each layer, and after the last line.
     codes: Vec<Vec<Code>>,
 }
 
@@ -110,6 +110,8 @@ pub struct Difference {
     pub settings: Vec<Setting>,
     /// What makes the files unequal, worst first.
     pub findings: Vec<Finding>,
+    /// What the printer is told differently after the last line.
+    pub end: Orders,
     /// What comes before the first layer, and each layer.
     pub pairs: Vec<PairOfLayers>,
 }
@@ -162,6 +164,10 @@ pub fn diff(a: &Side, b: &Side, tolerances: &Tolerances) -> Difference {
         },
         settings: codes::settings(&a.print, &b.print),
         findings: Vec::new(),
+        end: match (a.codes.last(), b.codes.last()) {
+            (Some(a), Some(b)) => codes::orders(Both { a, b }),
+            _ => Orders::default(),
+        },
         pairs,
     };
     difference.findings = findings::findings(&difference, tolerances);

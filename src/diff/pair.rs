@@ -2,7 +2,7 @@
 
 use super::align::Pair;
 use super::apart::{Apart, Farthest, Unlike, apart};
-use super::codes::{self, CodeDifference};
+use super::codes::{self, Orders};
 use super::line::Line;
 use super::sums::{self, Both, Extent, Measure, ROLES, Sum};
 use super::{LEAST_FILAMENT, LEAST_LENGTH, Side, Tolerances, is_plastic};
@@ -10,12 +10,8 @@ use crate::reader::Role;
 use crate::reader::print::{Layer, Step};
 use serde::Serialize;
 
-/// Time of a layer that may differ beside the share, s.
+/// Time at the feeds asked for that may differ beside the share, s.
 const LEAST_TIME: f64 = 0.1;
-
-/// A layer's time may differ by so many times the share of the whole file's: decimals of
-/// coordinates bend corners a little, which evens out over many layers.
-const LAYER_TIME: f64 = 10.0;
 
 /// A layer that both files have, or one of them; or what comes before the first layer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -26,14 +22,13 @@ pub struct PairOfLayers {
     pub z_mm: Both<Option<f64>>,
     /// How far it lies above the layer below, mm.
     pub height_mm: Both<Option<f64>>,
-    /// Time with the way to it, s.
-    pub time_s: Sum,
+    /// Time with the way to it, s. It need not be the same: other ways between the same lines
+    /// change it. See [`RoleOfPair::asked_time_s`].
+    pub time_s: Both<f64>,
     /// Box around its lines.
     pub extent_mm: Both<Option<Extent>>,
-    /// What heaters are told differently.
-    pub heaters: Option<CodeDifference>,
-    /// What else the printer is told differently, besides moves.
-    pub code: Option<CodeDifference>,
+    /// What the printer is told differently. Before the first layer: until its first line.
+    pub orders: Orders,
     /// By role, those that leave plastic.
     pub roles: Vec<RoleOfPair>,
 }
@@ -49,6 +44,8 @@ pub struct RoleOfPair {
     pub length_mm: Sum,
     /// Filament, mm.
     pub filament_mm: Sum,
+    /// Time at the feeds that the file asks for, s: no order of lines changes it.
+    pub asked_time_s: Sum,
     /// Length of each file's lines that is farther than the tolerance from all lines of the
     /// role in the other file, mm.
     pub far_mm: Both<f64>,
@@ -141,19 +138,18 @@ pub(super) fn compare(
     let of_role = |index: usize| role(halves, measures.as_ref(), index, told, tolerances);
     let plastic = (0..ROLES).filter(|&index| is_plastic(Role::ALL[index]));
     let roles = plastic.map(of_role).filter(|role| role.moves.a + role.moves.b > 0).collect();
-    let code = |heats: bool| {
-        let (a, b) = (a.codes.get(halves.a.number?)?, b.codes.get(halves.b.number?)?);
-        codes::difference(Both { a, b }, heats)
+    let numbers = halves.map(|half| half.number.unwrap_or(usize::MAX));
+    let orders = match (a.codes.get(numbers.a), b.codes.get(numbers.b)) {
+        (Some(a), Some(b)) => codes::orders(Both { a, b }),
+        _ => Orders::default(),
     };
-    let seconds = halves.map(|half| half.seconds);
     let found = PairOfLayers {
         layer: halves.map(|half| half.number),
         z_mm: halves.map(|half| half.layer.map(|layer| layer.z)),
         height_mm: halves.map(|half| half.layer.map(|layer| layer.height)),
-        time_s: Sum::new(seconds.a, seconds.b, LAYER_TIME * tolerances.share, LEAST_TIME),
+        time_s: halves.map(|half| half.seconds),
         extent_mm: measures.as_ref().map(|measure| measure.extent),
-        heaters: code(true),
-        code: code(false),
+        orders,
         roles,
     };
     (found, measures)
@@ -177,6 +173,7 @@ fn role(
         moves: tally.map(|tally| tally.moves),
         length_mm: Sum::new(tally.a.length, tally.b.length, share, LEAST_LENGTH),
         filament_mm: Sum::new(tally.a.filament, tally.b.filament, share, LEAST_FILAMENT),
+        asked_time_s: Sum::new(tally.a.asked, tally.b.asked, share, LEAST_TIME),
         far_mm: Both { a: one.far, b: other.far },
         farthest: farthest(&one, &other, halves),
         unlike_mm: Both { a: one.unlike, b: other.unlike },
@@ -213,12 +210,8 @@ fn most_unlike(one: &Apart, other: &Apart, halves: Both<&Half<'_>>) -> Option<Fl
     };
     let a = one.most_unlike.as_ref();
     let b = other.most_unlike.as_ref();
-    match (a, b) {
-        (Some(a), Some(b)) if b.share() > a.share() => {
-            Some(flow(b, halves.b.z(), Both { a: &b.other, b: &b.line }))
-        }
-        (Some(a), _) => Some(flow(a, halves.a.z(), Both { a: &a.line, b: &a.other })),
-        (None, Some(b)) => Some(flow(b, halves.b.z(), Both { a: &b.other, b: &b.line })),
-        (None, None) => None,
+    if b.is_some_and(|b| a.is_none_or(|a| b.share() > a.share())) {
+        return b.map(|b| flow(b, halves.b.z(), Both { a: &b.other, b: &b.line }));
     }
+    a.map(|a| flow(a, halves.a.z(), Both { a: &a.line, b: &a.other }))
 }

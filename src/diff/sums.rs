@@ -44,6 +44,8 @@ pub(super) struct Tally {
     pub(super) length: f64,
     /// mm.
     pub(super) filament: f64,
+    /// Time at the feeds that are asked for, s.
+    pub(super) asked: f64,
 }
 
 /// What moves add up to.
@@ -92,6 +94,9 @@ impl Measure {
             tally.moves += 1;
             tally.length += step.length();
             tally.filament += f64::from(step.filament);
+            if step.feed > 0.0 {
+                tally.asked += step.length() / f64::from(step.feed);
+            }
             if step.is_line() {
                 let places = [step.from, step.to].map(|place| place.map(f64::from));
                 let [one, other] = places.map(|place| Extent { min: place, max: place });
@@ -107,6 +112,7 @@ impl Measure {
             sum.moves += more.moves;
             sum.length += more.length;
             sum.filament += more.filament;
+            sum.asked += more.asked;
         }
         self.extent = joined(self.extent, other.extent);
         self

@@ -150,10 +150,10 @@ fn line(finding: &Finding, tolerance: f64) -> String {
             format!("{count} at another height, most {}: z {a:.3} in A, {b:.3} in B", label(*layer))
         }
         Finding::Heaters { layer, difference } => {
-            format!("{}: heaters: {}", label(*layer), told(difference))
+            format!("{}: heaters: {}", place(*layer), told(difference))
         }
-        Finding::Code { layer, difference } => {
-            format!("{}: commands: {}", label(*layer), told(difference))
+        Finding::Commands { layer, difference } => {
+            format!("{}: commands: {}", place(*layer), told(difference))
         }
         Finding::Lines { layer, role, length_mm, far_mm, farthest } => {
             let place = lines(*role, *length_mm, *far_mm, farthest, tolerance);
@@ -169,6 +169,7 @@ fn line(finding: &Finding, tolerance: f64) -> String {
                 Quantity::Length => ("length", "mm"),
                 Quantity::Filament => ("filament", "mm"),
                 Quantity::Time => ("time", "s"),
+                Quantity::AskedTime => ("time at the feeds asked for", "s"),
             };
             let Sum { a, b, .. } = *sum;
             let more = percent(a, b);
@@ -225,6 +226,15 @@ fn told(difference: &CodeDifference) -> String {
     let line = |line: Option<u64>| line.map_or_else(String::new, |n| format!(" (line {n})"));
     let CodeDifference { only: Both { a, b }, line: lines } = difference;
     format!("A {}{}, B {}{}", only(a), line(lines.a), only(b), line(lines.b))
+}
+
+/// Where something is told the printer.
+fn place(layer: Option<Both<usize>>) -> String {
+    match layer {
+        Some(Both { a: 0, b: 0 }) => "before the first line".to_owned(),
+        Some(layer) => label(layer),
+        None => "after the last line".to_owned(),
+    }
 }
 
 fn label(layer: Both<usize>) -> String {
