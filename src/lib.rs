@@ -16,11 +16,12 @@
 //!
 //! Beside the way: [`job`] (what a run is asked for), [`geom`] and [`units`] (plane geometry on the integer grid),
 //! [`profile`] (settings), [`motion`] (moves -> time), [`reader`] and [`mod@estimate`] (G-code of any slicer -> time),
-//! [`mod@compare`] (ways to print -> what each saves), [`report`], [`progress`], [`warning`] and [`error`].
+//! [`mod@compare`] (ways to print -> what each saves), [`mod@diff`] (two G-code files -> whether they print the same), [`report`], [`progress`], [`warning`] and [`error`].
 //! The command line is the binary's own.
 
 pub mod check;
 pub mod compare;
+pub mod diff;
 pub mod error;
 pub mod estimate;
 pub mod gcode;

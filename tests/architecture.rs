@@ -28,6 +28,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // An independent witness: nothing of slice, region, plan or gcode.
     ("check", &["reader", "mesh", "profile", "units"]),
     ("preview", &["reader", "estimate"]),
+    ("diff", &["reader", "estimate"]),
 ];
 
 /// Modules that may use all others: the flow itself, and what tells of it.

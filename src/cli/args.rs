@@ -26,7 +26,8 @@ A model whose file is named like a subcommand is given as ./profile.";
 const EXIT_CODES: &str = "\
 Exit codes:
     0  done
-    1  done, but with findings: warnings with --strict, or what `check` or --check found
+    1  done, but with findings: warnings with --strict, what `check` or --check found, files
+       that `diff` found unequal
     2  wrong arguments, profile or setting
     3  a model or G-code file cannot be read; a model does not fit, or leaves nothing to print
     4  an output cannot be written
@@ -73,6 +74,8 @@ pub(crate) enum Command {
     Preview(PreviewArgs),
     /// Tell what each way of dual injection saves on a model
     Compare(Box<CompareArgs>),
+    /// Tell whether two G-code files print the same, and where not
+    Diff(super::diff::DiffArgs),
     /// Print completions for a shell
     Completions {
         /// The shell

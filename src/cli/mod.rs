@@ -3,6 +3,7 @@
 mod args;
 mod check;
 mod compare;
+mod diff;
 mod estimate;
 mod input;
 mod interrupt;
@@ -214,6 +215,7 @@ fn other(command: &Command) -> Result<Outcome> {
         Command::Estimate(args) => estimate::run(args)?,
         // Its product is a file, unless it is told otherwise.
         Command::Preview(args) => return preview::run(args),
+        Command::Diff(args) => return diff::run(args),
         Command::Completions { shell } => {
             let mut text = Vec::new();
             clap_complete::generate(*shell, &mut Arguments::command(), "slicer", &mut text);

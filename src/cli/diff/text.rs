@@ -1,0 +1,299 @@
+//! Difference -> text for people: a verdict, the sums of both files, and the worst differences.
+
+use slicer::diff::{
+    Both, CodeDifference, Difference, File, Finding, Flow, Kind, Place, Quantity, Setting, Sum,
+};
+use slicer::reader::Role;
+use slicer::warning::plural;
+
+/// Differences that are listed without `--all`.
+const MOST_LISTED: usize = 10;
+
+/// Settings that are named where they are only told.
+const MOST_NAMED: usize = 5;
+
+/// For people.
+pub(super) fn text(found: &Difference, limits: &str, all: bool) -> String {
+    let mut text = verdict(found);
+    for row in table(found, limits).lines() {
+        text.push_str(row.trim_end());
+        text.push('\n');
+    }
+    let listed = listed(&found.findings, all);
+    if !listed.is_empty() {
+        text.push_str("\nworst first:\n");
+    }
+    for finding in &listed {
+        text.push_str(&format!("  {}\n", line(finding, found.tolerance_mm)));
+    }
+    let left = found.findings.len() - listed.len();
+    if left > 0 {
+        text.push_str(&format!("  and {left} more; --all lists them\n"));
+    }
+    let listed_already = found.findings.iter().any(|one| one.kind() == Kind::Setting);
+    if !found.settings.is_empty() && !listed_already {
+        text.push_str(&settings(&found.settings, all));
+    }
+    text
+}
+
+fn verdict(found: &Difference) -> String {
+    let within = format!("{} mm, {} %", found.tolerance_mm, found.sums_percent);
+    if found.equal {
+        return format!("equal within {within}\n\n");
+    }
+    let count = plural(found.findings.len() as u64, "difference");
+    let farthest = found.findings.iter().filter_map(|finding| match finding {
+        Finding::Lines { farthest, .. } => Some(farthest.distance_mm),
+        _ => None,
+    });
+    let farthest = farthest.reduce(f64::max);
+    let apart = farthest.map_or_else(String::new, |mm| format!(", lines up to {mm:.3} mm apart"));
+    format!("not equal within {within}: {count}{apart}\n\n")
+}
+
+/// Sums of both files, side by side. `!` marks what is beyond the tolerances.
+fn table(found: &Difference, limits: &str) -> String {
+    let mut text = format!(
+        "{:<11}{:^30}  {:^30}  {:^28}\n{:11}{}  {}  {}\n",
+        "",
+        "length, mm",
+        "filament, mm",
+        "time, s",
+        "",
+        heads(10),
+        heads(10),
+        heads(9)
+    );
+    for row in &found.roles {
+        text.push_str(&format!(
+            "{:<11}{}  {}  {}\n",
+            row.role.name(),
+            cells(&row.length_mm, 10, row.decides),
+            cells(&row.filament_mm, 10, row.decides),
+            cells(&row.time_s, 9, row.decides)
+        ));
+    }
+    text.push_str(&format!(
+        "{:<11}{:30}  {}  {}\n",
+        "all",
+        "",
+        cells(&found.filament_mm, 10, true),
+        cells(&found.time_s, 9, true)
+    ));
+    let Both { a, b } = found.layers;
+    let layers = if a == b { format!("{a} layers") } else { format!("{a} layers in A, {b} in B") };
+    text.push_str(&format!("{layers}; timed by the limits of {limits}\n"));
+    if let Both { a: Some(a), b: Some(b) } = found.extent_mm {
+        let apart = (0..3).map(|k| (a.min[k] - b.min[k]).abs().max((a.max[k] - b.max[k]).abs()));
+        let apart = apart.fold(0.0, f64::max);
+        if apart > found.tolerance_mm {
+            text.push_str(&format!("the box around all lines differs by {apart:.3} mm\n"));
+        }
+    }
+    text
+}
+
+fn heads(width: usize) -> String {
+    format!("{:>width$}{:>width$}{:>9} ", "A", "B", "B - A")
+}
+
+/// A sum of either file and how much more the second one is.
+fn cells(sum: &Sum, width: usize, decides: bool) -> String {
+    let more = if sum.a == sum.b { "=".to_owned() } else { percent(sum.a, sum.b) };
+    let mark = if decides && !sum.equal { "!" } else { " " };
+    format!("{:>width$.1}{:>width$.1}{more:>9}{mark}", sum.a, sum.b)
+}
+
+fn percent(a: f64, b: f64) -> String {
+    if a.abs() <= f64::EPSILON {
+        return "new".to_owned();
+    }
+    let percent = 100.0 * (b - a) / a.abs();
+    match percent.abs() {
+        size if size < 0.005 => "~".to_owned(),
+        size if size < 10.0 => format!("{percent:+.2}%"),
+        _ => format!("{percent:+.0}%"),
+    }
+}
+
+/// The worst of each kind, and then the worst of all.
+fn listed(findings: &[Finding], all: bool) -> Vec<&Finding> {
+    let first_of_kind = |k: usize| k == 0 || findings[k].kind() != findings[k - 1].kind();
+    let firsts = (0..findings.len()).filter(|&k| first_of_kind(k)).count();
+    let mut more = MOST_LISTED.saturating_sub(firsts);
+    let mut chosen = Vec::new();
+    for (k, finding) in findings.iter().enumerate() {
+        if all || first_of_kind(k) {
+            chosen.push(finding);
+        } else if more > 0 {
+            more -= 1;
+            chosen.push(finding);
+        }
+    }
+    chosen
+}
+
+/// One difference in one line.
+fn line(finding: &Finding, tolerance: f64) -> String {
+    match finding {
+        Finding::LayersOnlyIn { file, layers, length_mm } => {
+            format!("only in {}: {} ({length_mm:.1} mm of lines)", name(*file), runs(layers))
+        }
+        Finding::RoleOnlyIn { file, role, layers, length_mm } => {
+            let (role, file) = (role.name(), name(*file));
+            format!("{role} only in {file}: {length_mm:.1} mm in {}", runs(layers))
+        }
+        Finding::Heights { count, layer, z_mm } => {
+            let Both { a, b } = z_mm;
+            let count = plural(*count as u64, "layer");
+            format!("{count} at another height, most {}: z {a:.3} in A, {b:.3} in B", label(*layer))
+        }
+        Finding::Heaters { layer, difference } => {
+            format!("{}: heaters: {}", place(*layer), told(difference))
+        }
+        Finding::Commands { layer, difference } => {
+            format!("{}: commands: {}", place(*layer), told(difference))
+        }
+        Finding::Lines { layer, role, length_mm, far_mm, farthest } => {
+            let place = lines(*role, *length_mm, *far_mm, farthest, tolerance);
+            format!("{}: {place}", label(*layer))
+        }
+        Finding::Flow { layer, role, unlike_mm, most_unlike } => {
+            format!("{}: {}", label(*layer), flow(*role, *unlike_mm, most_unlike))
+        }
+        Finding::Sum { layer, role, quantity, sum } => {
+            let layer = layer.map_or_else(|| "whole file".to_owned(), label);
+            let role = role.map_or_else(String::new, |role| format!("{} ", role.name()));
+            let (what, unit) = match quantity {
+                Quantity::Length => ("length", "mm"),
+                Quantity::Filament => ("filament", "mm"),
+                Quantity::Time => ("time", "s"),
+                Quantity::AskedTime => ("time at the feeds asked for", "s"),
+            };
+            let Sum { a, b, .. } = *sum;
+            let more = percent(a, b);
+            format!("{layer}: {role}{what} {a:.2} {unit} in A, {b:.2} in B ({more})")
+        }
+        Finding::Setting(setting) => format!("setting {}", changed(setting)),
+    }
+}
+
+fn lines(
+    role: Role,
+    length: Both<f64>,
+    far: Both<f64>,
+    farthest: &Place,
+    tolerance: f64,
+) -> String {
+    let role = role.name();
+    let Place { distance_mm, at_mm: [x, y, z], line } = *farthest;
+    format!(
+        "{role} {distance_mm:.3} mm apart at x {x:.3} y {y:.3} z {z:.3} (lines {}); {:.1} of {:.1} mm \
+         in A and {:.1} of {:.1} in B farther than {tolerance} mm",
+        numbers(line),
+        far.a,
+        length.a,
+        far.b,
+        length.b
+    )
+}
+
+fn flow(role: Role, unlike: Both<f64>, flow: &Flow) -> String {
+    let Flow { filament_per_mm, section_mm, at_mm: [x, y, z], line } = flow;
+    let more = percent(filament_per_mm.a, filament_per_mm.b);
+    let section = |[width, height]: [f64; 2]| format!("{width:.2} x {height:.2}");
+    format!(
+        "{} with other filament on {:.1} mm, most {more} at x {x:.3} y {y:.3} z {z:.3} \
+         (lines {}; {} and {} mm)",
+        role.name(),
+        unlike.a.max(unlike.b),
+        numbers(*line),
+        section(section_mm.a),
+        section(section_mm.b)
+    )
+}
+
+/// Lines of both files.
+fn numbers(line: Both<u32>) -> String {
+    format!("A:{} B:{}", line.a, line.b)
+}
+
+fn told(difference: &CodeDifference) -> String {
+    let only = |codes: &[String]| {
+        if codes.is_empty() { "nothing".to_owned() } else { codes.join(", ") }
+    };
+    let line = |line: Option<u64>| line.map_or_else(String::new, |n| format!(" (line {n})"));
+    let CodeDifference { only: Both { a, b }, line: lines } = difference;
+    format!("A {}{}, B {}{}", only(a), line(lines.a), only(b), line(lines.b))
+}
+
+/// Where something is told the printer.
+fn place(layer: Option<Both<usize>>) -> String {
+    match layer {
+        Some(Both { a: 0, b: 0 }) => "before the first line".to_owned(),
+        Some(layer) => label(layer),
+        None => "after the last line".to_owned(),
+    }
+}
+
+fn label(layer: Both<usize>) -> String {
+    match layer {
+        Both { a: 0, b: 0 } => "before layer 1".to_owned(),
+        Both { a, b } if a == b => format!("layer {a}"),
+        Both { a, b } => format!("layer {a} (in B {b})"),
+    }
+}
+
+fn name(file: File) -> &'static str {
+    match file {
+        File::A => "A",
+        File::B => "B",
+    }
+}
+
+/// `layers 3, 5-9` for 3, 5, 6, 7, 8, 9; how many there are where that gets long.
+fn runs(numbers: &[usize]) -> String {
+    const MOST: usize = 8;
+    let runs: Vec<&[usize]> = numbers.chunk_by(|a, b| a + 1 == *b).collect();
+    let told = runs.iter().take(MOST).map(|run| match run {
+        [0] => "before layer 1".to_owned(),
+        [one] => one.to_string(),
+        [first, .., last] => format!("{first}-{last}"),
+        [] => String::new(),
+    });
+    let told = told.collect::<Vec<_>>().join(", ");
+    match numbers.len() {
+        1 => format!("layer {told}"),
+        count if runs.len() > MOST => format!("{count} layers ({told}, ...)"),
+        _ => format!("layers {told}"),
+    }
+}
+
+/// Settings that differ but do not matter.
+fn settings(settings: &[Setting], all: bool) -> String {
+    let most = if all { settings.len() } else { MOST_NAMED };
+    let named: Vec<String> = settings.iter().take(most).map(changed).collect();
+    let more = if settings.len() > most { ", and so on" } else { "" };
+    let count = plural(settings.len() as u64, "setting");
+    format!("\ntold only: {count} in comments: {}{more}\n", named.join("; "))
+}
+
+fn changed(setting: &Setting) -> String {
+    let value = |value: &Option<String>| value.clone().unwrap_or_else(|| "nothing".to_owned());
+    let Both { a, b } = &setting.value;
+    format!("{}: {} in A, {} in B", setting.key, value(a), value(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layers_in_a_row_are_told_as_a_range() {
+        assert_eq!(runs(&[3, 5, 6, 7, 9]), "layers 3, 5-7, 9");
+        assert_eq!(runs(&[4]), "layer 4");
+        let many: Vec<usize> = (1..40).map(|k| 2 * k).collect();
+        assert_eq!(runs(&many), "39 layers (2, 4, 6, 8, 10, 12, 14, 16, ...)");
+    }
+}

@@ -1,0 +1,252 @@
+//! Bytes of a G-code file -> Codes: what is told the printer besides moves, layer by layer.
+
+use super::sums::Both;
+use crate::reader::print::{Print, What};
+use crate::reader::{Heater, Heating};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Commands that the moves and their times hold already, or that only talk: positions, units,
+/// dwells and retractions; progress, reports, messages and limits of the machine.
+const SEEN_ELSEWHERE: &[&str] = &[
+    "G0",
+    "G1",
+    "G2",
+    "G3",
+    "G4",
+    "G10",
+    "G11",
+    "G20",
+    "G21",
+    "G90",
+    "G91",
+    "G92",
+    "M73",
+    "M82",
+    "M83",
+    "M105",
+    "M110",
+    "M117",
+    "M118",
+    "M201",
+    "M203",
+    "M204",
+    "M205",
+    "M220",
+    "SET_VELOCITY_LIMIT",
+];
+
+/// Something that is told the printer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Code {
+    /// Line of the file, from 1.
+    line: u64,
+    /// What, in the same words for all files.
+    text: String,
+    /// Whether a heater is told.
+    heats: bool,
+}
+
+/// What is told the printer in one layer of one file but not of the other.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct CodeDifference {
+    /// What only one of them says, in the file's order.
+    pub only: Both<Vec<String>>,
+    /// The first line of the file where that is, from 1.
+    pub line: Both<Option<u64>>,
+}
+
+/// A setting in the comments that differs.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Setting {
+    /// Its name.
+    pub key: String,
+    /// Its values; `None` where a file does not have it.
+    pub value: Both<Option<String>>,
+}
+
+/// What heaters, and the rest of the printer, are told differently in one place of both files.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+pub struct Orders {
+    /// Heaters.
+    pub heaters: Option<CodeDifference>,
+    /// Everything else but moves.
+    pub commands: Option<CodeDifference>,
+}
+
+/// What a file tells the printer by layer, with what comes before the first line of all and
+/// after the last one at the ends: slicers do not agree where layers begin and end there.
+pub(super) fn by_layer(bytes: &[u8], print: &Print) -> Vec<Vec<Code>> {
+    let mut codes = others(bytes, print);
+    for note in &print.notes {
+        if let What::Heating(heating) = note.what {
+            codes.push(Code { line: note.line, text: heater(heating), heats: true });
+        }
+    }
+    codes.sort_by_key(|code| code.line);
+    let lines = || print.layers.first().map_or(0, |layer| layer.moves.start)..print.moves.len();
+    let first = lines().find(|&index| print.moves[index].is_line());
+    let last = lines().rfind(|&index| print.moves[index].is_line());
+    let end = print.layers.len() + 1;
+    let mut layers = vec![Vec::new(); end + 1];
+    for code in codes {
+        let before = print.moves.partition_point(|step| u64::from(step.line) < code.line);
+        let layer = match (first, last) {
+            (Some(first), Some(last)) if before > first => {
+                let layer = print.layers.partition_point(|layer| layer.moves.start <= before);
+                if before > last { end } else { layer }
+            }
+            _ => 0,
+        };
+        layers[layer].push(code);
+    }
+    layers
+}
+
+/// Lines of code that are neither moves nor for heaters.
+fn others(bytes: &[u8], print: &Print) -> Vec<Code> {
+    let heats = |line: u64| {
+        let at = print.notes.partition_point(|note| note.line < line);
+        let note = print.notes.get(at).filter(|note| note.line == line);
+        note.is_some_and(|note| matches!(note.what, What::Heating(_)))
+    };
+    let mut codes = Vec::new();
+    for (line, bytes) in (1_u64..).zip(lines(bytes)) {
+        // Nearly all lines are moves.
+        if matches!(bytes, [b'G', b'0'..=b'3', b' ', ..] | [b';', ..] | []) {
+            continue;
+        }
+        let Some(text) = plain(bytes) else { continue };
+        let command = text.split(' ').next().unwrap_or_default();
+        if !SEEN_ELSEWHERE.contains(&command) && !heats(line) {
+            codes.push(Code { line, text, heats: false });
+        }
+    }
+    codes
+}
+
+/// Lines as the reader counts them: `\n`, `\r\n` and `\r` end one.
+fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut rest = Some(bytes);
+    std::iter::from_fn(move || {
+        let bytes = rest?;
+        let Some(end) = bytes.iter().position(|&byte| byte == b'\n' || byte == b'\r') else {
+            rest = None;
+            return Some(bytes);
+        };
+        let long = if bytes[end..].starts_with(b"\r\n") { 2 } else { 1 };
+        rest = Some(&bytes[end + long..]);
+        Some(&bytes[..end])
+    })
+}
+
+/// The code of a line without its number, comment and checksum, numbers in their shortest form.
+fn plain(line: &[u8]) -> Option<String> {
+    let text = String::from_utf8_lossy(line);
+    let code = text.split(';').next().unwrap_or_default();
+    let mut words = code.split_whitespace().peekable();
+    let number =
+        |word: &&str| word.strip_prefix(['N', 'n']).is_some_and(|rest| rest.parse::<u64>().is_ok());
+    let numbered = words.next_if(number).is_some();
+    let mut text = String::new();
+    for word in words {
+        let word = if numbered { word.split('*').next().unwrap_or_default() } else { word };
+        if !text.is_empty() {
+            text.push(' ');
+        }
+        text.push_str(&shortest(word));
+    }
+    (!text.is_empty() && !text.starts_with(['(', '%'])).then_some(text)
+}
+
+/// `M106` for `m0106`, `S255` for `S255.0`; anything else as it is.
+fn shortest(word: &str) -> String {
+    let mut rest = word.chars();
+    let letter = rest.next().filter(char::is_ascii_alphabetic);
+    let is_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
+    let number = Some(rest.as_str()).filter(|rest| rest.chars().all(is_number));
+    match (letter, number.and_then(|number| number.parse::<f64>().ok())) {
+        (Some(letter), Some(number)) => format!("{}{number}", letter.to_ascii_uppercase()),
+        _ => word.to_owned(),
+    }
+}
+
+fn heater(Heating { heater, celsius, waits }: Heating) -> String {
+    let name = match heater {
+        Heater::Nozzle(None) => "nozzle".to_owned(),
+        Heater::Nozzle(Some(tool)) => format!("nozzle {tool}"),
+        Heater::Bed => "bed".to_owned(),
+        Heater::All => "all heaters".to_owned(),
+    };
+    let wait = if waits { " waited for" } else { "" };
+    celsius.map_or_else(|| format!("{name}{wait}"), |celsius| format!("{name} {celsius} °C{wait}"))
+}
+
+/// What differs between what both files tell the printer in one place.
+pub(super) fn orders(codes: Both<&Vec<Code>>) -> Orders {
+    Orders { heaters: difference(codes, true), commands: difference(codes, false) }
+}
+
+/// What differs between what a layer of either file tells heaters, or everything else.
+/// The same in another order differs, too: each file then says all of it.
+fn difference(codes: Both<&Vec<Code>>, heats: bool) -> Option<CodeDifference> {
+    let codes = codes.map(|codes| codes.iter().filter(|code| code.heats == heats));
+    let codes = codes.map(Iterator::collect::<Vec<&Code>>);
+    if codes.a.iter().map(|code| &code.text).eq(codes.b.iter().map(|code| &code.text)) {
+        return None;
+    }
+    let mut only = Both { a: rest(&codes.a, &codes.b), b: rest(&codes.b, &codes.a) };
+    if only.a.is_empty() && only.b.is_empty() {
+        only = codes;
+    }
+    let line = only.as_ref().map(|codes| codes.first().map(|code| code.line));
+    let only = only.map(|codes| codes.into_iter().map(|code| code.text.clone()).collect());
+    Some(CodeDifference { only, line })
+}
+
+/// The first codes without as many of the same as there are among the others.
+fn rest<'a>(codes: &[&'a Code], others: &[&Code]) -> Vec<&'a Code> {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    others.iter().for_each(|code| *counts.entry(&code.text).or_default() += 1);
+    let is_left = |code: &&&Code| match counts.get_mut(code.text.as_str()) {
+        Some(count) if *count > 0 => {
+            *count -= 1;
+            false
+        }
+        _ => true,
+    };
+    codes.iter().filter(is_left).copied().collect()
+}
+
+/// The settings in the comments that differ, by name. Of several with a name the last holds.
+pub(super) fn settings(a: &Print, b: &Print) -> Vec<Setting> {
+    let all =
+        |print: &'_ Print| -> BTreeMap<String, String> { print.values.iter().cloned().collect() };
+    let (a, b) = (all(a), all(b));
+    let keys: std::collections::BTreeSet<&String> = a.keys().chain(b.keys()).collect();
+    let differs = keys.into_iter().filter(|key| a.get(*key) != b.get(*key));
+    let setting = |key: &String| Setting {
+        key: key.clone(),
+        value: Both { a: a.get(key).cloned(), b: b.get(key).cloned() },
+    };
+    differs.map(setting).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_told_in_the_same_words() {
+        for (line, expected) in [
+            ("M106 S255.0 ; fan", Some("M106 S255")),
+            ("N7 m0106  S127.5*33", Some("M106 S127.5")),
+            ("EXCLUDE_OBJECT NAME=a*b", Some("EXCLUDE_OBJECT NAME=a*b")),
+            ("  ; talk", None),
+            ("(talk)", None),
+        ] {
+            assert_eq!(plain(line.as_bytes()).as_deref(), expected, "{line}");
+        }
+        assert_eq!(lines(b"a\r\nb\rc\n\nd").count(), 5);
+    }
+}

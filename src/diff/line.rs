@@ -1,0 +1,205 @@
+//! Moves -> Line: a straight line of plastic in space, and how far it lies from points and other lines.
+
+use crate::reader::print::Step;
+
+/// A place, mm.
+pub(super) type Point = [f64; 3];
+
+/// A part of a line: where it begins and ends, 0 being the line's start and 1 its end.
+pub(super) type Part = [f64; 2];
+
+/// A line is parallel to another if it leaves it by less than this share, squared.
+const PARALLEL: f64 = 1e-20;
+
+/// Decimals of a filament length that slicers write leave this much open, mm.
+const FILAMENT_ROUNDING: f64 = 2e-5;
+
+/// Decimals of a coordinate that slicers write leave this much open, mm.
+const PLACE_ROUNDING: f64 = 1e-3;
+
+/// A straight line of plastic. Heights are above the layer.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line {
+    pub(super) from: Point,
+    pub(super) to: Point,
+    /// mm.
+    pub(super) length: f64,
+    /// Filament for each mm of line, mm.
+    pub(super) flow: f64,
+    /// Width and height by the file, mm.
+    pub(super) section: [f64; 2],
+    /// Line of the file, from 1.
+    pub(super) number: u32,
+}
+
+impl Line {
+    /// The line that this move lays in a layer at `z`.
+    pub(super) fn new(step: &Step, z: f64) -> Self {
+        let place = |[x, y, height]: [f32; 3]| [f64::from(x), f64::from(y), f64::from(height) - z];
+        let length = step.length();
+        Self {
+            from: place(step.from),
+            to: place(step.to),
+            length,
+            flow: f64::from(step.filament) / length,
+            section: [f64::from(step.width), f64::from(step.height)],
+            number: step.line,
+        }
+    }
+
+    /// The place at `t`, from 0 to 1.
+    pub(super) fn at(&self, t: f64) -> Point {
+        plus(self.from, t, minus(self.to, self.from))
+    }
+
+    /// How far `point` is from the nearest place of this line, mm.
+    pub(super) fn distance(&self, point: Point) -> f64 {
+        let along = minus(self.to, self.from);
+        let arm = minus(point, self.from);
+        let square = dot(along, along);
+        let t = if square > 0.0 { (dot(arm, along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        let across = plus(arm, -t, along);
+        dot(across, across).sqrt()
+    }
+
+    /// The part of this line that is no farther than `reach` from `other`. It is one part,
+    /// because the distance from something convex is a convex function.
+    pub(super) fn part_near(&self, other: &Self, reach: f64) -> Option<Part> {
+        if self.is_far_from(other, reach) {
+            return None;
+        }
+        let (u, v) = (minus(self.to, self.from), minus(other.to, other.from));
+        let w = minus(self.from, other.from);
+        let ends = joined(within(w, u, reach), within(minus(w, v), u, reach));
+        joined(ends, part_beside(w, u, v, reach))
+    }
+
+    /// Whether already the boxes around both are too far from each other.
+    fn is_far_from(&self, other: &Self, reach: f64) -> bool {
+        (0..2).any(|axis| {
+            let low = self.from[axis].min(self.to[axis]) - reach;
+            let high = self.from[axis].max(self.to[axis]) + reach;
+            other.from[axis].max(other.to[axis]) < low
+                || other.from[axis].min(other.to[axis]) > high
+        })
+    }
+
+    /// Whether both have the same plastic for each mm, as far as the decimals of a file tell.
+    /// Ends may lie `reach` apart, which makes short lines longer or shorter.
+    pub(super) fn is_as_thick(&self, other: &Self, share: f64, reach: f64) -> bool {
+        let shorter = self.length.min(other.length);
+        let most = self.flow.max(other.flow);
+        let ends = 2.0 * (reach + PLACE_ROUNDING) / shorter;
+        let allowed = most * (share + ends) + FILAMENT_ROUNDING / shorter;
+        (self.flow - other.flow).abs() <= allowed
+    }
+}
+
+/// Where `w` + t·`u` is no longer than `reach`, within 0 to 1.
+fn within(w: Point, u: Point, reach: f64) -> Option<Part> {
+    let square = dot(u, u);
+    let middle = if square > 0.0 { -dot(w, u) / square } else { 0.0 };
+    let nearest = plus(w, middle, u);
+    let room = reach * reach - dot(nearest, nearest);
+    if room < 0.0 {
+        return None;
+    }
+    if square == 0.0 {
+        return Some([0.0, 1.0]);
+    }
+    let half = (room / square).sqrt();
+    clipped([middle - half, middle + half])
+}
+
+/// Where `w` + t·`u` lies beside the stretch from 0 to `v`, no farther than `reach`.
+fn part_beside(w: Point, u: Point, v: Point, reach: f64) -> Option<Part> {
+    let square = dot(v, v);
+    if square == 0.0 {
+        return None;
+    }
+    let (first, rise) = (dot(w, v) / square, dot(u, v) / square);
+    let beside = if rise == 0.0 {
+        (0.0..=1.0).contains(&first).then_some([0.0, 1.0])?
+    } else {
+        let (a, b) = (-first / rise, (1.0 - first) / rise);
+        clipped([a.min(b), a.max(b)])?
+    };
+    let across_w = plus(w, -first, v);
+    let mut across_u = plus(u, -rise, v);
+    if dot(across_u, across_u) <= PARALLEL * dot(u, u) {
+        across_u = [0.0; 3];
+    }
+    let near = within(across_w, across_u, reach)?;
+    let part = [near[0].max(beside[0]), near[1].min(beside[1])];
+    (part[0] <= part[1]).then_some(part)
+}
+
+/// From the first of both to the last.
+fn joined(a: Option<Part>, b: Option<Part>) -> Option<Part> {
+    let (Some(one), Some(other)) = (a, b) else { return a.or(b) };
+    Some([one[0].min(other[0]), one[1].max(other[1])])
+}
+
+fn clipped([low, high]: Part) -> Option<Part> {
+    (low <= 1.0 && high >= 0.0).then_some([low.max(0.0), high.min(1.0)])
+}
+
+// Written out: these are nearly all of the work.
+
+#[inline]
+fn minus(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// `a` + `t` · `b`.
+#[inline]
+fn plus(a: Point, t: f64, b: Point) -> Point {
+    [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]]
+}
+
+#[inline]
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    pub(in crate::diff) fn line(from: [f64; 2], to: [f64; 2]) -> Line {
+        let length = ((to[0] - from[0]).powi(2) + (to[1] - from[1]).powi(2)).sqrt();
+        let (from, to) = ([from[0], from[1], 0.0], [to[0], to[1], 0.0]);
+        Line { from, to, length, flow: 0.03, section: [0.4, 0.2], number: 1 }
+    }
+
+    fn places() -> impl Strategy<Value = [[f64; 2]; 4]> {
+        let place = || prop::array::uniform2(-4.0..4.0_f64);
+        [place(), place(), place(), place()]
+    }
+
+    proptest! {
+        #[test]
+        fn the_part_near_is_where_the_distance_is_small([a, b, c, d] in places(), reach in 0.1..3.0_f64) {
+            let (one, other) = (line(a, b), line(c, d));
+            let part = one.part_near(&other, reach);
+            for k in 0..=100 {
+                let t = f64::from(k) / 100.0;
+                let distance = other.distance(one.at(t));
+                let inside = part.is_some_and(|[low, high]| (low..=high).contains(&t));
+                prop_assert!(inside == (distance <= reach) || (distance - reach).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn parallel_and_crossing_lines() {
+        let one = line([0.0, 0.0], [10.0, 0.0]);
+        assert_eq!(one.part_near(&line([10.0, 0.0], [0.0, 0.0]), 0.01), Some([0.0, 1.0]));
+        assert_eq!(one.part_near(&line([0.0, 0.02], [10.0, 0.02]), 0.01), None);
+        let half = one.part_near(&line([5.0, 0.0], [20.0, 0.0]), 0.01).unwrap();
+        assert!((half[0] - 0.499).abs() < 1e-9 && half[1] == 1.0);
+        let cross = one.part_near(&line([5.0, -5.0], [5.0, 5.0]), 0.01).unwrap();
+        assert!((cross[0] - 0.499).abs() < 1e-9 && (cross[1] - 0.501).abs() < 1e-9);
+    }
+}
