@@ -12,7 +12,7 @@
 //! - [`render`]: triangles -> a picture, for the head of the file
 //!
 //! Another way, from any slicer's G-code to its time: [`reader`] (text -> moves), [`motion`] (moves and
-//! limits -> seconds), [`mod@estimate`] (seconds by role and layer).
+//! limits -> seconds), [`mod@estimate`] (seconds by role and layer), [`preview`] (pictures).
 //!
 //! Beside the way: [`job`] (what a run is asked for), [`geom`] and [`units`] (plane geometry on the integer grid),
 //! [`profile`] (settings), [`motion`] (moves -> time), [`reader`] and [`mod@estimate`] (G-code of any slicer -> time),
@@ -28,6 +28,7 @@ pub mod job;
 pub mod mesh;
 pub mod motion;
 pub mod plan;
+pub mod preview;
 pub mod profile;
 pub mod progress;
 pub mod reader;

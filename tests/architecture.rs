@@ -26,6 +26,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // A witness of its own: it shares nothing with the code that writes.
     ("reader", &[]),
     ("estimate", &["reader", "motion", "error"]),
+    ("preview", &["reader"]),
 ];
 
 /// Modules that may use all others: the flow itself, and what tells of it.

@@ -1,5 +1,6 @@
 //! Words of the command line -> Arguments: every flag, its help, and the settings it stands for.
 
+use super::preview::PreviewArgs;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use slicer::error::{Error, Result};
@@ -17,6 +18,7 @@ Examples:
   slicer - -o - < part.stl > part.gcode
   slicer profile show generic-marlin > mine.toml
   slicer estimate part.gcode -p ./mine.toml
+  slicer preview part.gcode --layer 40 -o part.png
 
 A model whose file is named like a subcommand is given as ./profile.";
 
@@ -64,6 +66,8 @@ pub(crate) enum Command {
     Profile(ProfileCommand),
     /// Say how long a G-code file takes
     Estimate(EstimateArgs),
+    /// Draw what a G-code file prints: a layer, every layer, or a cut
+    Preview(PreviewArgs),
     /// Tell what each way of dual injection saves on a model
     Compare(Box<CompareArgs>),
     /// Print completions for a shell
@@ -336,7 +340,8 @@ fn factor(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
-fn numbers<const N: usize>(text: &str) -> std::result::Result<[f64; N], String> {
+/// `N` finite numbers with commas between them.
+pub(super) fn numbers<const N: usize>(text: &str) -> std::result::Result<[f64; N], String> {
     let wrong = || format!("it must be {N} numbers with commas between them");
     let parsed: Vec<f64> = text
         .split(',')

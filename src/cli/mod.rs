@@ -6,6 +6,7 @@ mod estimate;
 mod input;
 mod interrupt;
 mod output;
+mod preview;
 mod progress;
 mod summary;
 mod usage;
@@ -182,6 +183,8 @@ fn other(command: &Command) -> Result<()> {
         }
         Command::Compare(args) => compare::run(args)?,
         Command::Estimate(args) => estimate::run(args)?,
+        // Its product is a file, unless it is told otherwise.
+        Command::Preview(args) => return preview::run(args),
         Command::Completions { shell } => {
             let mut text = Vec::new();
             clap_complete::generate(*shell, &mut Arguments::command(), "slicer", &mut text);

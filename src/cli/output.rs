@@ -5,7 +5,7 @@ use slicer::error::{Error, Result};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempPath};
 
 /// Where a product goes. Opened before the long work, so that a wrong path
 /// costs no time. Without [`Sink::commit`] no file is left or changed.
@@ -33,6 +33,16 @@ enum End {
     Open(File),
 }
 
+/// A whole product beside its final place. It keeps no file open, so that there
+/// may be any number of them.
+#[derive(Debug)]
+pub(crate) struct Closed {
+    /// As the user named it.
+    name: PathBuf,
+    file: TempPath,
+    path: PathBuf,
+}
+
 impl Sink {
     /// Opens `name`: `-` is standard output, an existing device or pipe is
     /// written to, anything else becomes a file; all of it on [`Sink::commit`].
@@ -43,6 +53,21 @@ impl Sink {
         let target = if is_stdout(name) { unnamed(End::Stdout) } else { open_target(name) };
         let target = target.map_err(|source| failed(name, "cannot open for writing", source))?;
         Ok(Self { name: name.to_owned(), target })
+    }
+
+    /// Ends writing, for [`commit_all`].
+    ///
+    /// # Errors
+    /// [`Error::Output`] if the rest cannot be written, or it goes to no file.
+    pub(crate) fn close(self) -> Result<Closed> {
+        let name = self.name;
+        let Target::Temporary(out, path) = self.target else {
+            return Err(failed(&name, "cannot write", told("it is no file; choose another name")));
+        };
+        match out.into_inner() {
+            Ok(file) => Ok(Closed { name, file: file.into_temp_path(), path }),
+            Err(error) => Err(failed(&name, "cannot write", error.into_error())),
+        }
     }
 
     /// Makes what was written the output.
@@ -65,6 +90,34 @@ impl Sink {
                 .map(drop),
         };
         done.map_err(|source| failed(&name, "cannot write", source))
+    }
+}
+
+/// Makes all of them outputs, or none.
+///
+/// # Errors
+/// As [`Sink::commit`]; what was put in place by then is removed.
+pub(crate) fn commit_all(products: Vec<Closed>) -> Result<()> {
+    let mut done: Vec<PathBuf> = Vec::with_capacity(products.len());
+    for product in products {
+        let path = product.path.clone();
+        if let Err(error) = product.commit() {
+            for path in done {
+                let _ = fs::remove_file(path);
+            }
+            return Err(error);
+        }
+        done.push(path);
+    }
+    Ok(())
+}
+
+impl Closed {
+    fn commit(self) -> Result<()> {
+        let temporary = self.file.to_path_buf();
+        let done = self.file.persist(self.path).map_err(|error| error.error);
+        interrupt::done(&temporary);
+        done.map_err(|source| failed(&self.name, "cannot write", source))
     }
 }
 

@@ -32,6 +32,17 @@ pub(super) fn check(args: &SliceArgs, out: &Path) -> Result<()> {
     Ok(())
 }
 
+/// Checks that a product does not replace the file that it is made from.
+///
+/// # Errors
+/// [`Error::Usage`].
+pub(super) fn replaces(product: &Path, input: &str) -> Result<()> {
+    if input != "-" && !is_stdout(product) && is_same_file(product, Path::new(input)) {
+        return refuse(&format!("the output would replace {input}; choose another name for it"));
+    }
+    Ok(())
+}
+
 /// What a first word seems to mean that is neither command nor file, in a sentence.
 pub(super) fn meant(word: &str) -> Option<String> {
     let commands = super::args::Arguments::command();

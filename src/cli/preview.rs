@@ -1,0 +1,286 @@
+//! `slicer preview` -> pictures of what a G-code file prints: a layer, every layer, or a cut.
+
+use super::output::{self, Sink};
+use super::{args, input, interrupt, say, usage};
+use clap::{Args, ValueEnum};
+use rayon::prelude::*;
+use slicer::error::{Error, Result};
+use slicer::preview::cut::{Axis, Cut, Plane};
+use slicer::preview::drawing::{Drawing, Frame};
+use slicer::preview::{layer, png, svg};
+use slicer::profile;
+use slicer::reader::Print;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Digits of a layer's number in a file's name, at least.
+const DIGITS: usize = 4;
+
+/// Arguments of `preview`.
+#[derive(Debug, Args)]
+pub(crate) struct PreviewArgs {
+    /// G-code file of any slicer; `-` reads standard input
+    #[arg(value_name = "FILE")]
+    file: String,
+    /// Picture to write, .svg or .png; `-` writes standard output
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Format of the picture [default: by the ending of OUT]
+    #[arg(long)]
+    format: Option<Format>,
+    /// Pixels of the longer side
+    #[arg(long, value_name = "PIXELS", default_value = "1200", value_parser = clap::value_parser!(u32).range(400..=8000))]
+    size: u32,
+    /// Draw only this part: two corners, mm on the bed, or along a cut and in z
+    #[arg(long, value_name = "X,Y,X,Y", value_parser = corners, allow_hyphen_values = true)]
+    crop: Option<Frame>,
+
+    /// Draw this layer, counted from 1 [default: the middle one, or that above if it has more in it]
+    #[arg(long, value_name = "N", help_heading = "Layers")]
+    layer: Option<usize>,
+    /// Draw every layer; OUT.svg becomes OUT-0001.svg and so on
+    #[arg(long, conflicts_with = "layer", help_heading = "Layers")]
+    all: bool,
+    /// Fill the picture with the layer; otherwise all layers have the same frame, that of the print
+    #[arg(long, conflicts_with = "crop", help_heading = "Layers")]
+    fit: bool,
+    /// Draw N layers below pale
+    #[arg(long, value_name = "N", default_value_t = 0, help_heading = "Layers")]
+    below: usize,
+    /// Draw travels
+    #[arg(long, help_heading = "Layers")]
+    travels: bool,
+
+    /// Draw an upright cut through the print instead of a layer, such as x=12.5 (mm on the bed)
+    #[arg(long, value_name = "AXIS=MM", value_parser = plane, conflicts_with_all = ["layer", "all", "fit", "below", "travels"], help_heading = "Cut")]
+    cut: Option<Plane>,
+
+    /// Built-in profile, or a file if it has a `/` or ends in .toml: the filament's diameter, for files that tell no widths
+    #[arg(short, long, value_name = "NAME", default_value = profile::DEFAULT, help_heading = "Settings")]
+    profile: String,
+    /// Change any setting of the profile, such as filament.diameter=2.85 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
+    set: Vec<String>,
+    /// Do not say which layer is drawn
+    #[arg(short, long, help_heading = "Running")]
+    quiet: bool,
+}
+
+/// What a picture is written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// Lines, for any size
+    Svg,
+    /// Pixels
+    Png,
+}
+
+/// Draws.
+///
+/// # Errors
+/// Arguments, a profile or setting that is wrong, a file that cannot be read or prints
+/// nothing, a layer or cut that it does not have, or an output that cannot be written.
+pub(super) fn run(args: &PreviewArgs) -> Result<()> {
+    let format = format(args)?;
+    if args.all && output::is_stdout(&args.output) {
+        let why = "--all writes a file for each layer; name OUT, such as -o layers.svg";
+        return Err(Error::Usage(why.to_owned()));
+    }
+    usage::replaces(&args.output, &args.file)?;
+    interrupt::watch();
+    let (name, print) = read(args)?;
+    match args.cut {
+        Some(plane) => {
+            let sink = Sink::open(&args.output)?;
+            let drawing = cut(args, name, &print, plane)?;
+            finish(args, format, sink, &drawing)
+        }
+        None if args.all => all(args, format, &print),
+        None => {
+            let sink = Sink::open(&args.output)?;
+            let drawing = one(args, name, &print)?;
+            finish(args, format, sink, &drawing)
+        }
+    }
+}
+
+/// By `--format`, or by the output's ending.
+fn format(args: &PreviewArgs) -> Result<Format> {
+    if let Some(format) = args.format {
+        return Ok(format);
+    }
+    let ending = args.output.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let known = Format::value_variants().iter().filter_map(Format::to_possible_value);
+    let names: Vec<String> = known.map(|value| value.get_name().to_owned()).collect();
+    let found = names.iter().position(|name| Some(name) == ending.as_ref());
+    found.map(|k| Format::value_variants()[k]).ok_or_else(|| {
+        let out = args.output.display();
+        let endings = names.iter().map(|name| format!(".{name}")).collect::<Vec<_>>().join(" or ");
+        Error::Usage(format!(
+            "-o {out}: the ending tells no format of a picture; use {endings}, or say --format"
+        ))
+    })
+}
+
+/// The file's name for messages, and what it prints.
+fn read(args: &PreviewArgs) -> Result<(&str, Print)> {
+    let profile = profile::load(&args.profile, &args::set_overrides(&args.set)?)?;
+    let (name, mut source) = input::open(&args.file)?;
+    let print = Print::read(&mut source, profile.settings.filament.diameter)
+        .map_err(|error| Error::input(name, format!("cannot read: {error}; check the path")))?;
+    if layer::frame(&print, &print.layers).is_empty() {
+        let why = "nothing is printed in it; give a G-code file that a slicer has written";
+        return Err(Error::input(name, why));
+    }
+    Ok((name, print))
+}
+
+fn one(args: &PreviewArgs, name: &str, print: &Print) -> Result<Drawing> {
+    let count = print.layers.len();
+    let number = args.layer.unwrap_or_else(|| layer::middle(print) + 1);
+    if !(1..=count).contains(&number) {
+        let layers = slicer::warning::plural(count as u64, "layer");
+        let range =
+            if count == 1 { "there is only 1".to_owned() } else { format!("choose 1 to {count}") };
+        return Err(Error::Usage(format!("--layer {number}: {name} has {layers}; {range}")));
+    }
+    let drawing = draw_layer(args, print, number - 1, frame(args, print));
+    if drawing.scene.is_empty() {
+        return Err(nothing_in_crop(name, layer::frame(print, &print.layers)));
+    }
+    Ok(drawing)
+}
+
+fn cut(args: &PreviewArgs, name: &str, print: &Print, plane: Plane) -> Result<Drawing> {
+    let cut = Cut::new(print, plane);
+    if cut.sections.is_empty() {
+        let whole = layer::frame(print, &print.layers);
+        let (axis, k) = (plane.axis.name(), usize::from(plane.axis == Axis::Y));
+        let (at, low, high) = (plane.at, whole.min[k], whole.max[k]);
+        return Err(Error::Usage(format!(
+            "--cut {axis}={at}: nothing is printed there; {name} prints between {axis} = {low:.1} and {high:.1} mm"
+        )));
+    }
+    let drawing = cut.drawing(plane, args.crop.unwrap_or_else(|| cut.frame()), args.size);
+    if drawing.scene.is_empty() {
+        return Err(nothing_in_crop(name, cut.frame()));
+    }
+    Ok(drawing)
+}
+
+/// A file for each layer, or none.
+fn all(args: &PreviewArgs, format: Format, print: &Print) -> Result<()> {
+    let frame = frame(args, print);
+    let count = print.layers.len();
+    let products = (0..count).into_par_iter().map(|index| {
+        let name = numbered(&args.output, index + 1, count);
+        usage::replaces(&name, &args.file)?;
+        let mut sink = Sink::open(&name)?;
+        let drawing = draw_layer(args, print, index, frame);
+        write(format, &drawing, &name, &mut sink)?;
+        sink.close()
+    });
+    output::commit_all(products.collect::<Result<_>>()?)?;
+    if !args.quiet {
+        let (first, last) =
+            (numbered(&args.output, 1, count), numbered(&args.output, count, count));
+        say(&format!("{} to {}\n", first.display(), last.display()));
+    }
+    Ok(())
+}
+
+fn draw_layer(args: &PreviewArgs, print: &Print, index: usize, frame: Frame) -> Drawing {
+    let frame = match print.layers.get(index..=index) {
+        Some(layers) if args.fit => layer::frame(print, layers),
+        _ => frame,
+    };
+    let (size, below, travels) = (args.size, args.below, args.travels);
+    layer::drawing(print, index, &layer::Options { size, below, travels, frame })
+}
+
+/// What pictures of layers show, unless each is to fill its own.
+fn frame(args: &PreviewArgs, print: &Print) -> Frame {
+    args.crop.unwrap_or_else(|| layer::frame(print, &print.layers))
+}
+
+fn nothing_in_crop(name: &str, whole: Frame) -> Error {
+    let [[x, y], [to_x, to_y]] = [whole.min, whole.max];
+    Error::Usage(format!(
+        "--crop: nothing of {name} is printed there; all of it lies within {x:.1},{y:.1},{to_x:.1},{to_y:.1}"
+    ))
+}
+
+fn finish(args: &PreviewArgs, format: Format, mut sink: Sink, drawing: &Drawing) -> Result<()> {
+    write(format, drawing, &args.output, &mut sink)?;
+    sink.commit()?;
+    if !args.quiet {
+        say(&format!("{}\n", drawing.title));
+    }
+    Ok(())
+}
+
+fn write(format: Format, drawing: &Drawing, name: &Path, sink: &mut Sink) -> Result<()> {
+    let bytes = match format {
+        Format::Svg => Ok(svg::write(drawing).into_bytes()),
+        Format::Png => png::write(drawing),
+    };
+    let done = bytes.and_then(|bytes| sink.write_all(&bytes)).and_then(|()| sink.flush());
+    done.map_err(|source| output::failed(name, "cannot write", source))
+}
+
+/// `a-0007.svg` for `a.svg`.
+fn numbered(name: &Path, number: usize, count: usize) -> PathBuf {
+    let digits = count.to_string().len().max(DIGITS);
+    let mut file = name.file_stem().unwrap_or_default().to_owned();
+    file.push(format!("-{number:0digits$}"));
+    if let Some(ending) = name.extension() {
+        file.push(".");
+        file.push(ending);
+    }
+    name.with_file_name(file)
+}
+
+fn plane(text: &str) -> std::result::Result<Plane, String> {
+    let wrong = || "it must be x=MM or y=MM, such as x=12.5".to_owned();
+    let (axis, at) = text.split_once('=').ok_or_else(wrong)?;
+    let axis = match axis.trim() {
+        "x" | "X" => Axis::X,
+        "y" | "Y" => Axis::Y,
+        _ => return Err(wrong()),
+    };
+    let at: Option<f64> = at.trim().parse().ok();
+    Ok(Plane { axis, at: at.filter(|at| at.is_finite()).ok_or_else(wrong)? })
+}
+
+fn corners(text: &str) -> std::result::Result<Frame, String> {
+    let [x, y, to_x, to_y] = args::numbers(text)?;
+    let mut frame = Frame::EMPTY;
+    frame.include([x, y], 0.0);
+    frame.include([to_x, to_y], 0.0);
+    let [width, height] = frame.size();
+    if width >= 0.1 && height >= 0.1 && width.max(height) <= 10_000.0 {
+        Ok(frame)
+    } else {
+        Err("its sides must be 0.1 to 10000 mm".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stand_before_the_ending() {
+        let named = |name: &str, count| numbered(Path::new(name), 7, count);
+        assert_eq!(named("a.svg", 120), Path::new("a-0007.svg"));
+        assert_eq!(named("dir.x/a.b.png", 12_000), Path::new("dir.x/a.b-00007.png"));
+    }
+
+    #[test]
+    fn planes_and_corners_are_checked() {
+        assert_eq!(plane("y=-3"), Ok(Plane { axis: Axis::Y, at: -3.0 }));
+        assert!(plane("z=1").is_err() && plane("x=nan").is_err() && plane("x").is_err());
+        assert_eq!(corners("5,6,1,2"), Ok(Frame { min: [1.0, 2.0], max: [5.0, 6.0] }));
+        assert!(corners("1,1,1,2").is_err() && corners("1,1,1e9,2").is_err());
+    }
+}

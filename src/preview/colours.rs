@@ -1,0 +1,81 @@
+//! Role of a line -> Colour: one palette for every picture, told apart by colour-blind people, too.
+
+use crate::reader::Role;
+use crate::reader::print::{Layer, Step};
+
+/// A line this many times as high as its layer is printed for more than one layer.
+const THICK: f64 = 1.5;
+
+/// Red, green and blue, as on a screen (sRGB).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Colour(pub [u8; 3]);
+
+/// What is behind everything.
+pub const PAPER: Colour = Colour([255, 255, 255]);
+
+/// Text, and the frame.
+pub const INK: Colour = Colour([51, 51, 51]);
+
+impl Colour {
+    /// The colour of a line of this role; a thick one has a darker shade.
+    ///
+    /// The hues are those of M. Okabe and K. Ito, "Color Universal Design" (2008).
+    #[must_use]
+    pub fn of(role: Role, thick: bool) -> Self {
+        let (thin, dark) = match role {
+            Role::OuterWall => ([89, 89, 89], [0, 0, 0]),
+            Role::InnerWall => ([222, 155, 191], [158, 62, 120]),
+            Role::Skin => ([240, 185, 66], [176, 96, 0]),
+            Role::Infill => ([112, 186, 232], [0, 84, 148]),
+            Role::Support => ([124, 205, 172], [0, 112, 82]),
+            Role::Other => ([190, 190, 190], [130, 130, 130]),
+            Role::Travel => ([213, 94, 0], [213, 94, 0]),
+            Role::Retraction => ([140, 40, 160], [140, 40, 160]),
+        };
+        Self(if thick { dark } else { thin })
+    }
+
+    /// As `#rrggbb`.
+    #[must_use]
+    pub fn hex(self) -> String {
+        let [red, green, blue] = self.0;
+        format!("#{red:02x}{green:02x}{blue:02x}")
+    }
+
+    /// Mixed with `part` of another colour, 0 to 1.
+    #[must_use]
+    pub fn mixed(self, other: Self, part: f64) -> Self {
+        let mix = |k: usize| {
+            let (own, other) = (f64::from(self.0[k]), f64::from(other.0[k]));
+            (own + (other - own) * part).round() as u8
+        };
+        Self([mix(0), mix(1), mix(2)])
+    }
+}
+
+/// Whether a line is printed for more layers than its own.
+#[must_use]
+pub fn is_thick(step: &Step, layer: &Layer) -> bool {
+    f64::from(step.height) > THICK * layer.height
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_role_has_its_own_colour_and_a_shade_of_it() {
+        let drawn = &Role::ALL[..6];
+        let all = |thick| drawn.iter().map(move |role| Colour::of(*role, thick));
+        let mut colours: Vec<Colour> = all(false).chain(all(true)).collect();
+        colours.sort_unstable();
+        colours.dedup();
+        assert_eq!(colours.len(), 12);
+    }
+
+    #[test]
+    fn colours_are_written_as_in_html() {
+        assert_eq!(Colour([0, 84, 148]).hex(), "#005494");
+        assert_eq!(Colour([0, 0, 0]).mixed(PAPER, 0.5).hex(), "#808080");
+    }
+}

@@ -1,0 +1,157 @@
+//! Layer of a print -> Drawing: its lines as seen from above, in their true widths.
+
+use super::colours::{Colour, PAPER, is_thick};
+use super::drawing::{Drawing, Frame, Kind, Look, Stroke};
+use super::page::Page;
+use super::{Keys, MARGIN, measured};
+use crate::reader::print::{Layer, Step};
+use crate::reader::{Print, Role};
+
+/// How pale the layers below are, 0 to 1.
+const PALE: f64 = 0.75;
+
+/// Width of a travel, pixels.
+const TRAVEL: f64 = 1.5;
+
+/// Dashes and gaps of a travel, in its widths.
+const DASH: u8 = 4;
+
+/// What to draw besides the lines of a layer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Pixels of the picture's longer side.
+    pub size: u32,
+    /// So many layers below are drawn pale.
+    pub below: usize,
+    /// Whether travels are drawn.
+    pub travels: bool,
+    /// What is shown, mm on the bed.
+    pub frame: Frame,
+}
+
+/// What holds all lines of these layers, mm on the bed, with a margin around it.
+/// Empty if there is none.
+#[must_use]
+pub fn frame(print: &Print, layers: &[Layer]) -> Frame {
+    let mut frame = Frame::EMPTY;
+    for step in layers.iter().flat_map(|layer| print.moves_of(layer)).filter(|s| measured(s)) {
+        for at in [step.from, step.to] {
+            frame.include(flat(at), f64::from(step.width) / 2.0);
+        }
+    }
+    let size = frame.size();
+    frame.padded(MARGIN * size[0].max(size[1]))
+}
+
+/// The layer in the middle, or that above it if more goes into that: of two layers
+/// whose infill is printed at once, the one that shows it. Counted from 0.
+#[must_use]
+pub fn middle(print: &Print) -> usize {
+    let layers = &print.layers;
+    let filament = |index: usize| -> f64 {
+        let steps = layers.get(index).map_or(&[][..], |layer| print.moves_of(layer));
+        steps.iter().filter(|step| measured(step)).map(|step| f64::from(step.filament)).sum()
+    };
+    let middle = layers.len().saturating_sub(1) / 2;
+    if filament(middle + 1) > filament(middle) { middle + 1 } else { middle }
+}
+
+/// Draws a layer, `index` counted from 0. A layer that is not there has no lines.
+#[must_use]
+pub fn drawing(print: &Print, index: usize, options: &Options) -> Drawing {
+    let below = index.saturating_sub(options.below)..index;
+    let layers = &print.layers;
+    let shown = layers.get(index);
+    let mut scene = Scene { options, strokes: Vec::new(), travels: Vec::new() };
+    for layer in layers.get(below.clone()).unwrap_or_default() {
+        scene.layer(print, layer, PALE);
+    }
+    let mut keys = Keys::default();
+    if let Some(layer) = shown {
+        scene.layer(print, layer, 0.0);
+        keys.layer(print, layer);
+    }
+    let mut keys = keys.list();
+    if !below.is_empty() {
+        let words = if below.len() == 1 { "layer below" } else { "layers below" };
+        keys.push((Colour::of(Role::OuterWall, false).mixed(PAPER, PALE), words.to_owned()));
+    }
+    if options.travels {
+        keys.push((Colour::of(Role::Travel, false), Role::Travel.name().to_owned()));
+    }
+    let (z, height) = shown.map_or((0.0, 0.0), |layer| (layer.z, layer.height));
+    let heading = vec![
+        format!("layer {} of {}", index + 1, layers.len()),
+        format!("z {} mm", super::millimetres(z)),
+        format!("height {} mm", super::millimetres(height)),
+    ];
+    let (size, frame) = (options.size, options.frame);
+    let mut drawing = Page { size, frame, axes: ["x", "y"], heading, keys }.lay_out();
+    let pixel = 1.0 / drawing.view.scale;
+    for travel in &mut scene.travels {
+        travel.look.width = TRAVEL * pixel;
+    }
+    drawing.scene = scene.strokes;
+    drawing.scene.append(&mut scene.travels);
+    drawing
+}
+
+/// Collects strokes.
+struct Scene<'a> {
+    options: &'a Options,
+    strokes: Vec<Stroke>,
+    travels: Vec<Stroke>,
+}
+
+impl Scene<'_> {
+    fn layer(&mut self, print: &Print, layer: &Layer, pale: f64) {
+        let kind = if pale > 0.0 { Kind::PaleBead } else { Kind::Bead };
+        let mut last: Option<&Step> = None;
+        for step in print.moves_of(layer) {
+            if measured(step) {
+                let colour = Colour::of(step.role, is_thick(step, layer)).mixed(PAPER, pale);
+                // Hundredths of a mm: no eye sees less, and neighbours are alike.
+                let width = (f64::from(step.width) * 100.0).round() / 100.0;
+                let goes_on = last.is_some_and(|last| last.to == step.from);
+                self.add(step, Look { width, colour, kind }, goes_on);
+                last = Some(step);
+            } else if step.role == Role::Travel && self.options.travels && pale == 0.0 {
+                self.travel(step);
+            }
+        }
+    }
+
+    /// A line; one that goes on where the last of its kind ends is one with it.
+    fn add(&mut self, step: &Step, look: Look, goes_on: bool) {
+        let (from, to) = (flat(step.from), flat(step.to));
+        if !self.options.frame.touches(from, to, look.width / 2.0) {
+            return;
+        }
+        if let Some(last) = self.strokes.last_mut()
+            && goes_on
+            && last.look == look
+            && last.points.last() == Some(&from)
+        {
+            return last.points.push(to);
+        }
+        self.strokes.push(Stroke { points: vec![from, to], look });
+    }
+
+    fn travel(&mut self, step: &Step) {
+        let (from, to) = (flat(step.from), flat(step.to));
+        if from == to || !self.options.frame.touches(from, to, 0.0) {
+            return;
+        }
+        let kind = Kind::Dashed(DASH);
+        let look = Look { width: 0.0, colour: Colour::of(Role::Travel, false), kind };
+        match self.travels.last_mut() {
+            Some(last) if last.points.last() == Some(&from) => last.points.push(to),
+            _ => self.travels.push(Stroke { points: vec![from, to], look }),
+        }
+    }
+}
+
+/// As seen from above.
+fn flat(at: [f32; 3]) -> [f64; 2] {
+    [f64::from(at[0]), f64::from(at[1])]
+}
