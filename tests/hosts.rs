@@ -1,4 +1,4 @@
-//! G-code -> what hosts find in it: name, pictures, sums and settings, in the forms that they look for.
+//! G-code -> what hosts find in it: name, pictures, sums and settings, in the forms that they look for; pictures of models.
 //!
 //! `MOONRAKER_METADATA=…/metadata.py cargo test --test hosts` asks Moonraker's own script as
 //! well (of 2025-10 or later; it needs Python and Pillow).
@@ -14,6 +14,7 @@ use common::{Run, as_it_is, fixture, slice_placed};
 use serde_json::Value;
 use slicer::mesh::Placement;
 use slicer::profile::recorded;
+use std::path::Path;
 use std::process::Command;
 
 /// Prints that differ in what hosts read: profile, copies, settings.
@@ -183,6 +184,44 @@ fn what_is_written_for_hosts_leaves_the_settings_as_they_were() {
         }
         assert_eq!(read, made, "{what:?}");
         assert_eq!(print.layers.len(), run.report.layers.count);
+    }
+}
+
+fn preview(folder: &Path, words: &[&str]) -> std::process::Output {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
+    command.current_dir(folder).arg("preview").args(words).output().unwrap()
+}
+
+#[test]
+fn preview_draws_models_themselves() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    // By its ending, and by how it begins.
+    for (fixture_name, name) in
+        [("bracket.stl", "a.STL"), ("bracket.stl", "binary"), ("cube_ascii.stl", "ascii.txt")]
+    {
+        std::fs::write(path.join(name), fixture(fixture_name)).unwrap();
+        let run = preview(path, &[name, "-q", "--size", "400", "-o", "out.png"]);
+        assert!(run.status.success(), "{run:?}");
+        assert!(run.stdout.is_empty() && run.stderr.is_empty(), "{run:?}");
+        let picture = std::fs::read(path.join("out.png")).unwrap();
+        let (size, solid) = seen(&picture);
+        assert_eq!((size[0].max(size[1]), solid), (400, 1.0), "{name}");
+    }
+    std::fs::write(path.join("cut.stl"), &fixture("bracket.stl")[..200_000]).unwrap();
+    let refused: [(&[&str], i32, &str); 5] = [
+        (&["cut.stl", "-o", "no.png"], 3, "it is cut off"),
+        (&["none.stl", "-o", "no.png"], 3, "none.stl: cannot be read"),
+        (&["a.STL", "-o", "no.svg"], 2, "use .png"),
+        (&["a.STL", "-o", "no.png", "--cut", "x=0"], 2, "--cut: a.STL is a model"),
+        (&["a.STL", "-o", "no.png", "--size", "4000"], 2, "at most 3000 pixels"),
+    ];
+    for (words, code, why) in refused {
+        let run = preview(path, words);
+        let said = String::from_utf8(run.stderr).unwrap();
+        assert_eq!(run.status.code(), Some(code), "{said}");
+        assert!(said.contains(why) && said.lines().count() == 1, "{said}");
+        assert!(!path.join(words[2]).exists());
     }
 }
 

@@ -5,6 +5,7 @@ mod compare;
 mod estimate;
 mod input;
 mod interrupt;
+mod model;
 mod output;
 mod preview;
 mod progress;

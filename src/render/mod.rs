@@ -53,6 +53,15 @@ pub fn draw(mesh: &Mesh, size: [u32; 2], ground: Ground) -> Picture {
     Picture { width: size[0], height: size[1], rgba }
 }
 
+/// Width and height of a picture of `mesh` whose longer side has `longer` pixels, and which
+/// is as flat or narrow as what it shows, but not beyond 1 to 3.
+#[must_use]
+pub fn fitting(mesh: &Mesh, longer: u32) -> [u32; 2] {
+    let [wide, high] = view::seen(mesh);
+    let part = |side: f64| (side / wide.max(high)).clamp(1.0 / 3.0, 1.0);
+    [wide, high].map(|side| ((part(side) * f64::from(longer)).round() as u32).max(1))
+}
+
 /// Samples along each side of a pixel: many where pixels are few.
 fn samples(size: [u32; 2]) -> u32 {
     /// Samples along the longer side of a small picture.
@@ -126,6 +135,16 @@ mod tests {
                 };
                 assert!(fills(columns, size[0]) || fills(rows, size[1]), "{size:?} {sides:?}");
             }
+        }
+    }
+
+    #[test]
+    fn a_fitting_picture_is_as_flat_as_the_model() {
+        for (sides, flat) in [([200_000; 3], false), ([2_000_000, 10_000, 500], true)] {
+            let size = fitting(&block(sides), 300);
+            assert_eq!(size[0].max(size[1]), 300);
+            assert_eq!(size[1] <= 150, flat, "{size:?}");
+            assert!(size[1] >= 100);
         }
     }
 

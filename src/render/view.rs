@@ -51,13 +51,13 @@ impl View {
         let grains = f64::from(samples) * f64::from(GRAIN);
         let margin = (MARGIN * f64::from(size[0].min(size[1]))).max(1.0);
         let room = size.map(|pixels| (f64::from(pixels) - 2.0 * margin).max(1.0) * grains);
-        let across = |[low, high]: [i64; 2]| (high - low).max(1) as f64;
+        let [wide, high] = seen(mesh);
         Self {
-            scale: (room[0] / across(right)).min(room[1] / across(up)),
+            scale: (room[0] / wide).min(room[1] / high),
             middle: [right, up].map(|[low, high]| low + high),
             centre: size.map(|pixels| f64::from(pixels) * grains / 2.0),
             far: eye[0],
-            depth: NEAREST / across(eye),
+            depth: NEAREST / (eye[1] - eye[0]).max(1) as f64,
         }
     }
 
@@ -74,6 +74,11 @@ impl View {
             near: (1.0 + (along(vertex, TO_EYE) - self.far) as f64 * self.depth) as f32,
         }
     }
+}
+
+/// How wide and high `mesh` is as seen, in no unit.
+pub(super) fn seen(mesh: &Mesh) -> [f64; 2] {
+    [RIGHT, UP].map(|axis| span(mesh, axis)).map(|[low, high]| (high - low).max(1) as f64)
 }
 
 fn along(vertex: [i32; 3], axis: [i64; 3]) -> i64 {
