@@ -9,7 +9,7 @@ use common::{Kind, fixture, fixtures, slice};
 use predicates::prelude::*;
 use slicer::preview::colours::Colour;
 use slicer::preview::cut::{Axis, Cut, Plane};
-use slicer::preview::drawing::Drawing;
+use slicer::preview::drawing::{Drawing, Frame};
 use slicer::preview::{layer, png, svg};
 use slicer::reader::{Print, Role};
 use std::fs;
@@ -141,16 +141,51 @@ fn the_legend_names_the_layer_and_what_is_on_it() {
     assert!(!has("support") && !has("travel"));
 }
 
+/// Red, green and blue of all pixels of the PNG.
+fn pixels(drawing: &Drawing) -> Vec<u8> {
+    let decoder = ::png::Decoder::new(std::io::Cursor::new(png::write(drawing).unwrap()));
+    let mut reader = decoder.read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    assert_eq!([info.width, info.height], drawing.size);
+    pixels
+}
+
+#[test]
+fn y_is_upwards_and_a_crop_ends_where_it_is_told() {
+    let text = ";LAYER_CHANGE\n;TYPE:Skin\n;WIDTH:1\nG1 X0 Y10 Z0.2\nG1 X20 E1\n\
+                ;TYPE:Perimeter\nG1 Y0\nG1 X18 E2";
+    let drawing = drawn(&print(text), 1, 800);
+    let dots = pixels(&drawing);
+    let at = |point| {
+        let [x, y] = drawing.view.pixel(point).map(|at| at as usize);
+        let first = 3 * (y * drawing.size[0] as usize + x);
+        Colour(dots[first..first + 3].try_into().unwrap())
+    };
+    assert_eq!(at([10.0, 10.0]), Colour::of(Role::Skin, false));
+    assert_eq!(at([19.0, 0.0]), Colour::of(Role::InnerWall, false));
+    assert_eq!(at([10.0, 0.0]), Colour([255; 3]));
+
+    // Right of x = 5 there is only the panel.
+    let frame = Frame { min: [0.0, 8.0], max: [5.0, 12.0] };
+    let options = layer::Options { size: 800, below: 0, travels: false, frame };
+    let drawing = layer::drawing(&print(text), 0, &options);
+    let dots = pixels(&drawing);
+    let row = drawing.view.pixel([5.0, 10.2])[1] as usize;
+    let start = 3 * row * drawing.size[0] as usize;
+    let skin = |x: f64| {
+        let first = start + 3 * drawing.view.pixel([x, 10.2])[0] as usize;
+        dots[first..first + 3] == Colour::of(Role::Skin, false).0
+    };
+    assert!(skin(4.9) && !skin(5.1));
+}
+
 #[test]
 fn the_ink_of_a_png_covers_what_the_beads_cover() {
     let text = bracket();
     let mut drawing = drawn(&print(&text), LAYER, 2400);
     drawing.page.clear();
-    let decoder = ::png::Decoder::new(std::io::Cursor::new(png::write(&drawing).unwrap()));
-    let mut reader = decoder.read_info().unwrap();
-    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-    let info = reader.next_frame(&mut pixels).unwrap();
-    assert_eq!([info.width, info.height], drawing.size);
+    let pixels = pixels(&drawing);
     assert_eq!(drawing.size.into_iter().max().unwrap().abs_diff(2400), 0);
     // Half covered by the palest edge is darker than this.
     let inked = pixels.chunks(3).filter(|dot| dot.iter().min().unwrap() < &190).count();
@@ -326,4 +361,59 @@ fn the_pictures_of_the_readme_are_as_kept() {
         assert!(fs::read_to_string(&path).unwrap_or_default() == made, "{name} differs");
     }
     assert!(std::env::var_os("UPDATE_GOLDEN").is_none(), "look at the pictures, and unset it");
+}
+
+/// What the cones of different eyes make of linear red, green and blue: G. M. Machado et al.,
+/// "A Physiologically-based Model for Simulation of Color Vision Deficiency" (2009), severity 1.
+const EYES: [[[f64; 3]; 3]; 4] = [
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    [
+        [0.152286, 1.052583, -0.204868],
+        [0.114503, 0.786281, 0.099216],
+        [-0.003882, -0.048116, 1.051998],
+    ],
+    [
+        [0.367322, 0.860646, -0.227968],
+        [0.280085, 0.672501, 0.047413],
+        [-0.011820, 0.042940, 0.968881],
+    ],
+    [
+        [1.255528, -0.076749, -0.178779],
+        [-0.078411, 0.930809, 0.147602],
+        [0.004733, 0.691367, 0.303900],
+    ],
+];
+
+fn times(matrix: &[[f64; 3]; 3], [a, b, c]: [f64; 3]) -> [f64; 3] {
+    matrix.map(|row| row[0] * a + row[1] * b + row[2] * c)
+}
+
+/// In CIELAB, as an eye sees it.
+fn seen(Colour(bytes): Colour, eye: &[[f64; 3]; 3]) -> [f64; 3] {
+    let linear = bytes.map(|byte| {
+        let part = f64::from(byte) / 255.0;
+        if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+    });
+    let light = times(eye, linear).map(|part| part.clamp(0.0, 1.0));
+    let xyz = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]];
+    let [x, y, z] = times(&xyz, light);
+    let root = |t: f64| if t > 0.008856 { t.cbrt() } else { 7.787 * t + 16.0 / 116.0 };
+    let [x, y, z] = [root(x / 0.9505), root(y), root(z / 1.089)];
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+#[test]
+fn colours_are_told_apart_by_all_eyes() {
+    let roles = &Role::ALL[..6];
+    let colours: Vec<_> =
+        roles.iter().flat_map(|r| [false, true].map(|thick| Colour::of(*r, thick))).collect();
+    for eye in &EYES {
+        for (k, a) in colours.iter().enumerate() {
+            for b in &colours[..k] {
+                let (p, q) = (seen(*a, eye), seen(*b, eye));
+                let apart = (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
+                assert!(apart >= 17.0, "{} and {}: {apart:.1}", a.hex(), b.hex());
+            }
+        }
+    }
 }

@@ -19,16 +19,19 @@ pub const INK: Colour = Colour([51, 51, 51]);
 impl Colour {
     /// The colour of a line of this role; a thick one has a darker shade.
     ///
-    /// The hues are those of M. Okabe and K. Ito, "Color Universal Design" (2008).
+    /// Hues near those of M. Okabe and K. Ito, "Color Universal Design" (2008), moved until any
+    /// two colours of lines are 17 or more apart in CIELAB, also as people see them who lack one
+    /// kind of cones (matrices of Machado et al. 2009). Travel and retraction are thin lines and
+    /// dots.
     #[must_use]
     pub fn of(role: Role, thick: bool) -> Self {
         let (thin, dark) = match role {
-            Role::OuterWall => ([89, 89, 89], [0, 0, 0]),
-            Role::InnerWall => ([222, 155, 191], [158, 62, 120]),
-            Role::Skin => ([240, 185, 66], [176, 96, 0]),
-            Role::Infill => ([112, 186, 232], [0, 84, 148]),
-            Role::Support => ([124, 205, 172], [0, 112, 82]),
-            Role::Other => ([190, 190, 190], [130, 130, 130]),
+            Role::OuterWall => ([92, 92, 92], [0, 0, 0]),
+            Role::InnerWall => ([199, 109, 184], [102, 10, 87]),
+            Role::Skin => ([243, 183, 70], [191, 93, 0]),
+            Role::Infill => ([78, 211, 255], [16, 89, 178]),
+            Role::Support => ([113, 176, 157], [0, 76, 32]),
+            Role::Other => ([191, 175, 124], [136, 120, 88]),
             Role::Travel => ([213, 94, 0], [213, 94, 0]),
             Role::Retraction => ([140, 40, 160], [140, 40, 160]),
         };
