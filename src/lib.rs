@@ -9,6 +9,7 @@
 //! - [`region`]: layers -> walls, and spans of skin, sparse infill and support
 //! - [`plan`]: regions -> paths in order, with travels
 //! - [`gcode`]: paths -> text
+//! - [`render`]: triangles -> a picture, for the head of the file
 //!
 //! Another way, from any slicer's G-code to its time: [`reader`] (text -> moves), [`motion`] (moves and
 //! limits -> seconds), [`mod@estimate`] (seconds by role and layer), [`mod@check`] (moves and model -> what is
@@ -35,6 +36,7 @@ pub mod profile;
 pub mod progress;
 pub mod reader;
 pub mod region;
+pub mod render;
 pub mod report;
 pub mod slice;
 pub mod units;
@@ -97,7 +99,14 @@ pub fn slice_placed(
     }
     progress.set_total(heights.count);
     let tolerance = to_units(settings.tolerance);
-    let slicer = slice::Slicer::new(&placed.mesh, &placed.adjacency, heights, tolerance);
+    let (pictures, slicer) = rayon::join(
+        || thumbnails(settings, &placed.mesh),
+        || slice::Slicer::new(&placed.mesh, &placed.adjacency, heights, tolerance),
+    );
+    let pictures = pictures.map_err(|source| {
+        let action = "cannot draw the thumbnails";
+        Error::Output { file: job.output.clone(), action, source }
+    })?;
 
     let params = region::Params::new(settings);
     let support = region::support::SupportParams::new(settings);
@@ -108,7 +117,8 @@ pub fn slice_placed(
     });
     let plan = plan::PlanParams::new(settings, &params, support);
 
-    let mut writer = gcode::Writer::new(out, &job.output, settings, facts, placed.offset)?;
+    let mut writer =
+        gcode::Writer::new(out, &job.output, settings, facts, placed.offset, &pictures)?;
     let grouping = region::groups::Grouping::new(&settings.dual, settings.dual_ratio());
     let window = region::window::Window::new(&slicer, &params, &grouping, supports);
     let mut planner = Planner { window, plan, at: None, tally: report::Tally::default() };
@@ -163,6 +173,18 @@ fn settle(settings: &profile::Settings, mesh: &mesh::Mesh) -> profile::Settings 
         given => given,
     };
     profile::Settings { angle, ..settings.clone() }
+}
+
+/// Pictures of the models, of the sizes that the host wants.
+fn thumbnails(
+    settings: &profile::Settings,
+    mesh: &mesh::Mesh,
+) -> std::io::Result<Vec<gcode::hosts::Thumbnail>> {
+    let draw = |&profile::PictureSize { width, height }| {
+        let png = render::draw(mesh, [width, height], render::Ground::Transparent).png()?;
+        Ok(gcode::hosts::Thumbnail { width, height, png })
+    };
+    settings.machine.thumbnails.par_iter().map(draw).collect()
 }
 
 /// What the start and end blocks may want to know.

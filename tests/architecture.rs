@@ -15,6 +15,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("geom", &["units"]),
     ("mesh", &["units", "error", "warning"]),
     ("slice", &["geom", "mesh", "units"]),
+    ("render", &["mesh", "units"]),
     ("region", &["geom", "mesh", "slice", "profile", "units"]),
     ("plan", &["geom", "region", "slice", "profile", "units"]),
     // The program's name comes from the job.

@@ -26,7 +26,9 @@ pub(super) fn run(args: &CompareArgs) -> Result<String> {
     Ok(table(&found))
 }
 
-fn job(args: &CompareArgs, profile: Profile) -> Job {
+fn job(args: &CompareArgs, mut profile: Profile) -> Job {
+    // Nobody sees what is written.
+    profile.settings.machine.thumbnails.clear();
     Job {
         models: args.inputs.clone(),
         placement: args.place.placement(),

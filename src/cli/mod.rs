@@ -7,6 +7,7 @@ mod diff;
 mod estimate;
 mod input;
 mod interrupt;
+mod model;
 mod output;
 mod preview;
 mod progress;

@@ -1,7 +1,7 @@
-//! `slicer preview` -> pictures of what a G-code file prints, or a page to look through it.
+//! `slicer preview` -> pictures of what a G-code file prints, a page to look through it, or a picture of a model.
 
 use super::output::{self, Sink};
-use super::{args, input, interrupt, say, usage, viewer};
+use super::{args, input, interrupt, model, say, usage, viewer};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use slicer::error::{Error, Result};
@@ -25,7 +25,7 @@ type Encode = fn(&Drawing) -> io::Result<Vec<u8>>;
 /// Arguments of `preview`.
 #[derive(Debug, Args)]
 pub(crate) struct PreviewArgs {
-    /// G-code file of any slicer; `-` reads standard input
+    /// G-code file of any slicer, `-` for standard input; or an STL file, to see the model itself
     #[arg(value_name = "FILE")]
     file: String,
     /// Picture to write, .svg or .png, or .html to look through all layers; `-` writes standard output
@@ -96,6 +96,9 @@ pub(super) fn run(args: &PreviewArgs) -> Result<()> {
     }
     usage::replaces(&args.output, &args.file)?;
     interrupt::watch();
+    if model::is_model(&args.file) {
+        return model_itself(args, format);
+    }
     let encode: Encode = match format {
         Format::Svg => |drawing| Ok(svg::write(drawing).into_bytes()),
         Format::Png => png::write,
@@ -133,6 +136,39 @@ fn format(args: &PreviewArgs) -> Result<Format> {
             "-o {out}: the ending tells no format; use {endings}, or say --format"
         ))
     })
+}
+
+/// Draws a model, which has no layers yet.
+fn model_itself(args: &PreviewArgs, format: Format) -> Result<()> {
+    let of_gcode = [
+        ("--layer", args.layer.is_some()),
+        ("--all", args.all),
+        ("--fit", args.fit),
+        ("--below", args.below > 0),
+        ("--travels", args.travels),
+        ("--cut", args.cut.is_some()),
+        ("--crop", args.crop.is_some()),
+    ];
+    let file = &args.file;
+    if let Some((flag, _)) = of_gcode.iter().find(|(_, given)| *given) {
+        return Err(Error::Usage(format!("{flag}: {file} is a model; slice it first")));
+    }
+    if format != Format::Png {
+        let why = format!("{file} is a model, whose picture is a PNG; use .png or --format png");
+        return Err(Error::Usage(why));
+    }
+    let mut sink = Sink::open(&args.output)?;
+    let drawn = model::draw(file, args.size)?;
+    let done = sink.write_all(&drawn.png).and_then(|()| sink.flush());
+    done.map_err(|source| output::failed(&args.output, "cannot write", source))?;
+    sink.commit()?;
+    for warning in &drawn.warnings {
+        say(&format!("warning: {warning}\n"));
+    }
+    if !args.quiet {
+        say(&format!("{}\n", drawn.title));
+    }
+    Ok(())
 }
 
 /// The file's name for messages, and what it prints.

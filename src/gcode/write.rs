@@ -125,6 +125,9 @@ impl<'a> Text<'a> {
         self.line(";LAYER_CHANGE");
         self.annotate(";Z:", layer.z);
         self.annotate(";HEIGHT:", layer.height);
+        // Hosts take the print's height from this.
+        self.line(";BEFORE_LAYER_CHANGE");
+        self.annotate(";", layer.z);
         self.height = layer.height;
     }
 
@@ -284,6 +287,8 @@ mod tests {
 ;LAYER_CHANGE
 ;Z:0.8
 ;HEIGHT:0.2
+;BEFORE_LAYER_CHANGE
+;0.8
 G1 E0 F1200
 G1 X150 Y150 F5400
 G1 Z0.8 F1000

@@ -9,7 +9,7 @@ use std::io::{ErrorKind, Read};
 pub use super::coordinate::MAX_NUMBER;
 
 /// Bytes before the first triangle of a binary file: a header of 80 and the count.
-const HEADER: usize = 84;
+pub const HEADER: usize = 84;
 /// Bytes of a triangle: normal and three corners as `f32`, and two attribute bytes.
 const RECORD: usize = 50;
 
@@ -34,6 +34,15 @@ pub fn load(path: &str) -> Result<RawMesh> {
         ),
     })?;
     parse(name, &bytes)
+}
+
+/// Whether a file of `length` bytes that begins with `head`, its first [`HEADER`] bytes, seems
+/// to be an STL.
+#[must_use]
+pub fn seems(head: &[u8], length: u64) -> bool {
+    let count = head.get(80..HEADER).map(|count| [count[0], count[1], count[2], count[3]]);
+    let binary = count.map(|bytes| binary_length(u64::from(u32::from_le_bytes(bytes))));
+    binary == Some(length) || head.trim_ascii_start().starts_with(b"solid")
 }
 
 /// Reads an STL file's `bytes`; `name` stands in messages and in the report.

@@ -1,5 +1,6 @@
 //! Key name -> what it may hold: the one table of all settings with unit, limits and meaning.
 
+use super::sizes;
 use toml::Value;
 
 /// What a key may hold.
@@ -37,6 +38,8 @@ pub enum Kind {
         /// Highest value allowed.
         max: u32,
     },
+    /// Sizes of pictures in a list.
+    Sizes,
     /// `true` or `false`.
     Switch,
     /// One line of text without control characters, at most [`MAX_TEXT`] characters.
@@ -170,6 +173,7 @@ pub const KEYS: &[Key] = &[
     number("machine.acceleration", "mm/s²", 1.0, 100_000.0, "acceleration that {acceleration} stands for"),
     plain("machine.relative_e", Kind::Switch, "E counts from the last move, not from the start"),
     number("machine.max_volumetric_flow", "mm³/s", 0.1, 1_000.0, "plastic that the hot end can melt"),
+    Key { unit: "pixels", ..plain("machine.thumbnails", Kind::Sizes, "pictures of the models at the head of the file, for hosts") },
     plain("machine.start", Kind::Block, "G-code before the print"),
     plain("machine.end", Kind::Block, "G-code after the print"),
     number("limits.feed_x", "mm/min", 1.0, 200_000.0, "highest feed in x"),
@@ -215,7 +219,8 @@ impl Key {
             | Kind::Count { .. }
             | Kind::CountOrAuto { .. }
             | Kind::Word(_)
-            | Kind::Words(_) => facts.push(self.allowed()),
+            | Kind::Words(_)
+            | Kind::Sizes => facts.push(self.allowed()),
             Kind::Switch => facts.push("true | false".to_owned()),
             Kind::Text => facts.push("text".to_owned()),
             Kind::Block => facts.push("G-code with {placeholders}".to_owned()),
@@ -233,6 +238,7 @@ impl Key {
             Kind::CountOrAuto { min, max } => format!("{min} to {max} | auto"),
             Kind::Word(words) => words.join(" | "),
             Kind::Words(words) => format!("any of {}", words.join(", ")),
+            Kind::Sizes => sizes::allowed(),
             Kind::Switch => "true or false".to_owned(),
             Kind::Text => format!("one line of at most {MAX_TEXT} characters"),
             Kind::Block => "text".to_owned(),
@@ -272,10 +278,10 @@ impl Key {
             (Kind::Word(words), Value::String(word)) => self.one_of(words, word),
             (Kind::Words(words), Value::Array(list)) => self.some_of(words, list),
             // `--set dual.parts=infill,support` needs neither brackets nor quotes.
-            (Kind::Words(words), Value::String(text)) => {
-                let parts = text.split(',').map(str::trim).filter(|part| !part.is_empty());
-                self.some_of(words, parts.map(|part| Value::String(part.to_owned())).collect())
-            }
+            (Kind::Words(words), Value::String(text)) => self.some_of(words, listed(&text)),
+            (Kind::Sizes, Value::Array(list)) => sizes::check(&list),
+            // Without brackets and quotes, too.
+            (Kind::Sizes, Value::String(text)) => sizes::check(&listed(&text)),
             (Kind::Text, Value::String(text)) => self.one_line(text),
             (Kind::Switch, Value::Boolean(on)) => Ok(Value::Boolean(on)),
             (Kind::Block, Value::String(text)) => Ok(Value::String(text)),
@@ -331,11 +337,17 @@ impl Key {
             Kind::Count { .. } => format!("a whole number, {}", self.allowed()),
             Kind::NumberOrAuto { min, max } => format!("a number, {min} to {max}, or auto"),
             Kind::CountOrAuto { min, max } => format!("a whole number, {min} to {max}, or auto"),
-            Kind::Words(_) => format!("a list of {}", self.allowed()),
+            Kind::Words(_) | Kind::Sizes => format!("a list of {}", self.allowed()),
             Kind::Word(_) => format!("one of {}", self.allowed()),
             Kind::Switch | Kind::Text | Kind::Block => self.allowed(),
         }
     }
+}
+
+/// The words of a text with commas between them.
+fn listed(text: &str) -> Vec<Value> {
+    let words = text.split(',').map(str::trim).filter(|word| !word.is_empty());
+    words.map(|word| Value::String(word.to_owned())).collect()
 }
 
 fn described(value: &Value) -> String {

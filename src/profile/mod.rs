@@ -8,6 +8,7 @@ mod parse;
 mod recorded;
 mod settings;
 mod show;
+mod sizes;
 pub mod suggest;
 pub mod template;
 
@@ -15,3 +16,4 @@ pub use load::{DEFAULT, Override, Profile, ValueOrigin, builtin_names, load};
 pub use recorded::recorded;
 pub use settings::*;
 pub use show::{document, dump};
+pub use sizes::PictureSize;

@@ -4,6 +4,7 @@
 //! settings at the end of a G-code file. Units and meanings are said here once;
 //! the limits are in [`super::keys`].
 
+use super::sizes::PictureSize;
 use serde::{Deserialize, Serialize};
 
 /// All effective settings. Lengths in mm, feeds in mm/min, angles in degrees.
@@ -366,6 +367,8 @@ pub struct Machine {
     pub relative_e: bool,
     /// Plastic that the hot end can melt, mm³/s.
     pub max_volumetric_flow: f64,
+    /// Sizes of the pictures of the models at the head of the file.
+    pub thumbnails: Vec<PictureSize>,
     /// G-code before the print, with `{placeholders}`.
     pub start: String,
     /// G-code after the print, with `{placeholders}`.

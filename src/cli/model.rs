@@ -1,0 +1,61 @@
+//! STL file -> PNG: the model itself, for `slicer preview`.
+
+use slicer::error::{Error, Result};
+use slicer::mesh::{Bed, Placement, Unit, stl, transform};
+use slicer::render::{self, Ground};
+use slicer::units::MAX_COORDINATE_MM;
+use slicer::warning::Warning;
+use std::fs::File;
+use std::io::Read as _;
+
+/// Pixels of the longer side, at most: a larger picture takes much memory.
+const MOST: u32 = 3000;
+
+/// A picture of a model.
+pub(super) struct Drawn {
+    /// The bytes of a PNG file.
+    pub(super) png: Vec<u8>,
+    /// What is seen, for people.
+    pub(super) title: String,
+    /// What was found in the mesh.
+    pub(super) warnings: Vec<Warning>,
+}
+
+/// Whether a file is a model: by its name's ending, or else by how it begins. Standard
+/// input is none, since it cannot be read twice.
+pub(super) fn is_model(file: &str) -> bool {
+    if file == "-" {
+        return false;
+    }
+    if file.to_lowercase().ends_with(".stl") {
+        return true;
+    }
+    let Ok(source) = File::open(file) else { return false };
+    // Only a regular file can be looked at beforehand.
+    let length = source.metadata().ok().filter(std::fs::Metadata::is_file).map(|data| data.len());
+    let mut head = Vec::new();
+    length.is_some_and(|length| {
+        source.take(stl::HEADER as u64).read_to_end(&mut head).is_ok() && stl::seems(&head, length)
+    })
+}
+
+/// Draws the model as it stands in the file, `size` pixels along the longer side, on white.
+///
+/// # Errors
+/// A file that is no usable STL, or a picture that is too large.
+pub(super) fn draw(file: &str, size: u32) -> Result<Drawn> {
+    if size > MOST {
+        let why = format!("--size {size}: a model is drawn with at most {MOST} pixels; use fewer");
+        return Err(Error::Usage(why));
+    }
+    let half = MAX_COORDINATE_MM / 2.0;
+    let bed = Bed { min: [-half; 2], max: [half; 2], height: MAX_COORDINATE_MM };
+    let placement = Placement { unit: Unit::Mm, scale: 1.0, rotate: [0.0; 3], at: None, copies: 1 };
+    let placed = transform::place(vec![stl::load(file)?], &placement, &bed)?;
+    let picture = render::draw(&placed.mesh, render::fitting(&placed.mesh, size), Ground::White);
+    let png = picture.png().map_err(|error| Error::input(file, error.to_string()))?;
+    let [x, y, z] = placed.size_mm;
+    let count = placed.mesh.triangles.len();
+    let title = format!("{file}: {count} triangles, {x:.1} x {y:.1} x {z:.1} mm");
+    Ok(Drawn { png, title, warnings: placed.warnings })
+}

@@ -1,0 +1,107 @@
+//! Mesh + picture's size -> View: where each vertex is in the picture, and how near.
+
+use crate::mesh::Mesh;
+use crate::units::nearest;
+
+/// Places between two samples, so that corners are whole numbers and edges exact.
+pub(super) const GRAIN: i32 = 256;
+
+/// The largest [`Corner::near`].
+const NEAREST: f64 = 16_777_214.0;
+
+/// Part of the picture's shorter side that stays free at each side.
+const MARGIN: f64 = 0.03;
+
+/// Towards the eye, times 17: the camera stands to the front (-y), half as far to the
+/// right, and looks down by 28°. Chosen so that all of it is whole numbers.
+pub(super) const TO_EYE: [i64; 3] = [9, -12, 8];
+/// To the right in the picture, times 85.
+const RIGHT: [i64; 3] = [68, 51, 0];
+/// Upwards in the picture, times 85.
+const UP: [i64; 3] = [-24, 32, 75];
+
+/// A vertex as seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Corner {
+    /// From the picture's top left corner to the right and down, in samples over [`GRAIN`].
+    pub(super) at: [i32; 2],
+    /// From 1 at the far end of the models to 2²⁴ - 1 at the near end.
+    pub(super) near: f32,
+}
+
+/// The camera: parallel rays, set so that the models fill the picture.
+#[derive(Debug, Clone)]
+pub(super) struct View {
+    /// Samples over [`GRAIN`] for each unit of right and up.
+    scale: f64,
+    /// Middle of what is seen: right, up, times 2.
+    middle: [i64; 2],
+    /// Middle of the picture, samples over [`GRAIN`].
+    centre: [f64; 2],
+    /// The far end, along [`TO_EYE`].
+    far: i64,
+    /// Nearness for each unit along [`TO_EYE`].
+    depth: f64,
+}
+
+impl View {
+    /// A view of all of `mesh` in a picture of `size` pixels, `samples` along each side of one.
+    pub(super) fn new(mesh: &Mesh, size: [u32; 2], samples: u32) -> Self {
+        let [right, up, eye] = [RIGHT, UP, TO_EYE].map(|axis| span(mesh, axis));
+        let grains = f64::from(samples) * f64::from(GRAIN);
+        let margin = (MARGIN * f64::from(size[0].min(size[1]))).max(1.0);
+        let room = size.map(|pixels| (f64::from(pixels) - 2.0 * margin).max(1.0) * grains);
+        let [wide, high] = seen(mesh);
+        Self {
+            scale: (room[0] / wide).min(room[1] / high),
+            middle: [right, up].map(|[low, high]| low + high),
+            centre: size.map(|pixels| f64::from(pixels) * grains / 2.0),
+            far: eye[0],
+            depth: NEAREST / (eye[1] - eye[0]).max(1) as f64,
+        }
+    }
+
+    /// Where a vertex is.
+    pub(super) fn corner(&self, vertex: [i32; 3]) -> Corner {
+        let away = |axis: [i64; 3], middle: i64| {
+            (2 * along(vertex, axis) - middle) as f64 / 2.0 * self.scale
+        };
+        Corner {
+            at: [
+                nearest(self.centre[0] + away(RIGHT, self.middle[0])) as i32,
+                nearest(self.centre[1] - away(UP, self.middle[1])) as i32,
+            ],
+            near: (1.0 + (along(vertex, TO_EYE) - self.far) as f64 * self.depth) as f32,
+        }
+    }
+}
+
+/// How wide and high `mesh` is as seen, in no unit.
+pub(super) fn seen(mesh: &Mesh) -> [f64; 2] {
+    [RIGHT, UP].map(|axis| span(mesh, axis)).map(|[low, high]| (high - low).max(1) as f64)
+}
+
+fn along(vertex: [i32; 3], axis: [i64; 3]) -> i64 {
+    (0..3).map(|k| i64::from(vertex[k]) * axis[k]).sum()
+}
+
+/// Lowest and highest along `axis`.
+fn span(mesh: &Mesh, axis: [i64; 3]) -> [i64; 2] {
+    let first = mesh.vertices.first().map_or(0, |&vertex| along(vertex, axis));
+    mesh.vertices.iter().fold([first; 2], |[low, high], &vertex| {
+        let here = along(vertex, axis);
+        [low.min(here), high.max(here)]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_axes_are_square_and_of_one_length() {
+        let dot = |a: [i64; 3], b: [i64; 3]| (0..3).map(|k| a[k] * b[k]).sum::<i64>();
+        assert_eq!([dot(RIGHT, UP), dot(UP, TO_EYE), dot(TO_EYE, RIGHT)], [0; 3]);
+        assert_eq!([dot(RIGHT, RIGHT), dot(UP, UP), dot(TO_EYE, TO_EYE)], [7225, 7225, 289]);
+    }
+}
