@@ -215,7 +215,7 @@ fn other(command: &Command) -> Result<Outcome> {
         Command::Check(args) => return check::run(args),
         Command::Estimate(args) => estimate::run(args)?,
         // Its product is a file, unless it is told otherwise.
-        Command::Preview(args) => return preview::run(args),
+        Command::Preview(args) => preview::run(args).map(|()| String::new())?,
         Command::Diff(args) => return diff::run(args),
         Command::Completions { shell } => {
             let mut text = Vec::new();

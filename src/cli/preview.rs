@@ -158,7 +158,7 @@ fn model_itself(args: &PreviewArgs, format: Format) -> Result<()> {
         return Err(Error::Usage(why));
     }
     let mut sink = Sink::open(&args.output)?;
-    let drawn = model::draw(file, args.size)?;
+    let drawn = model::draw(file, args.size.unwrap_or(SIZE))?;
     let done = sink.write_all(&drawn.png).and_then(|()| sink.flush());
     done.map_err(|source| output::failed(&args.output, "cannot write", source))?;
     sink.commit()?;
