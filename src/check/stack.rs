@@ -1,11 +1,11 @@
 //! Print -> findings of how lines lie on each other: in the air, or printed twice.
 //!
-//! A map of the bed holds how high plastic stands; lines are laid on it in the file's order.
-//! A place of a line is carried if plastic (or the bed) reaches up to its lower side there,
-//! or stands beside it on its own layer. A stretch that is not carried is a bridge if both
-//! its ends are, and else hangs in the air.
+//! A map of the bed holds how high plastic stands; lines are laid on it in the file's order. A
+//! place of a line is carried if plastic or the bed reaches up to its lower side there. Lines of
+//! a layer that touch hold on to one another: such a patch is in the air if none of its lines is
+//! carried anywhere. Within a patch, a stretch that is not carried is a bridge if both its ends
+//! are, and else an end that hangs out; long ones are told, too.
 
-use super::against::SOME_WIDTH;
 use super::beads::place;
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Findings, short};
@@ -26,21 +26,19 @@ const GAP: f64 = 0.5;
 /// Support may end so far below the part, mm: it is to come off.
 const SUPPORT_GAP: f64 = 0.45;
 
-/// A line may hang out so far, mm, …
-const LONGEST_END: f64 = 2.0;
+/// A patch with shorter lines in all is no more than a blob, mm.
+const LEAST_PATCH: f64 = 2.0;
 
-/// … or so many distances between lines of sparse infill: skins begin somewhere above it.
-const INFILL_GAPS: f64 = 2.0;
-
-/// Density of sparse infill where none is told, and where it is next to nothing, as a part of 1.
-const SOME_DENSITY: f64 = 0.2;
-const LEAST_DENSITY: f64 = 0.02;
+/// An end may hang out so far, mm: skins begin and end somewhere above sparse infill.
+const LONGEST_END: f64 = 30.0;
 
 /// A line runs on another where their middles, so wide as a part of their widths, meet …
 const CORE: f64 = 0.4;
 
-/// … over so many mm.
-const LEAST_TWICE: f64 = 2.0;
+/// … over so many mm, or over nearly all of a line that is longer than the second.
+const LEAST_TWICE: f64 = 10.0;
+const LEAST_WHOLE: f64 = 2.0;
+const WHOLE: f64 = 0.8;
 
 /// So far behind the nozzle a line counts as one that the next may not run on, mm: turns are closer.
 const BEHIND: f64 = 1.5;
@@ -56,23 +54,98 @@ pub(super) struct Measured {
 
 /// Lays all lines of the layers down. Where `part` itself has nothing below, a hanging line is
 /// the part's fault, and only measured.
-pub(super) fn check(
-    print: &Print,
-    part: Option<&Part>,
-    infill: Option<f64>,
-    found: &mut Findings,
-) -> Measured {
+pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) -> Measured {
     let mut measured = Measured::default();
-    let Some(mut pile) = Pile::over(print, infill) else { return measured };
+    let Some(mut pile) = Pile::over(print) else { return measured };
     for (layer, one) in print.layers.iter().enumerate() {
+        pile.owners_from = pile.next_owner;
         let steps = print.moves_of(one);
-        for chain in steps.chunk_by(|a, b| a.is_line() && b.is_line() && a.to == b.from) {
-            if chain[0].is_line() {
-                pile.chain(chain, layer, part, found, &mut measured);
+        let chains = steps.chunk_by(|a, b| a.is_line() && b.is_line() && a.to == b.from);
+        let lines: Vec<Line> = chains
+            .filter(|chain| chain[0].is_line())
+            .map(|chain| pile.chain(chain, layer, found))
+            .collect();
+        let judge = Judge { layer, part };
+        judge.patches(&lines, &mut pile, found, &mut measured);
+    }
+    measured
+}
+
+/// An unbroken line once it is laid.
+struct Line {
+    /// Its first piece.
+    first: Step,
+    /// mm.
+    length: f64,
+    /// Whether it is carried somewhere.
+    carried: bool,
+    /// Stretches that are not, but for bridges: those at its ends.
+    ends: Vec<Vec<Sample>>,
+    longest_bridge: f64,
+}
+
+/// Judges what hangs on a layer.
+struct Judge<'a> {
+    layer: usize,
+    part: Option<&'a Part>,
+}
+
+impl Judge<'_> {
+    fn patches(
+        &self,
+        lines: &[Line],
+        pile: &mut Pile,
+        found: &mut Findings,
+        measured: &mut Measured,
+    ) {
+        let roots: Vec<usize> = (0..lines.len()).map(|line| pile.root(line)).collect();
+        let mut carried = vec![false; lines.len()];
+        let mut lengths = vec![0.0; lines.len()];
+        for (line, &root) in lines.iter().zip(&roots) {
+            carried[root] |= line.carried;
+            lengths[root] += line.length;
+        }
+        for (k, (line, &root)) in lines.iter().zip(&roots).enumerate() {
+            measured.longest_bridge = measured.longest_bridge.max(line.longest_bridge);
+            if carried[root] {
+                let long = line.ends.iter().filter(|end| length_of(end) > LONGEST_END);
+                long.for_each(|end| self.hangs(line, end, LONGEST_END, found, measured));
+            } else if k == root && lengths[root] >= LEAST_PATCH {
+                let whole = lines.iter().zip(&roots).filter(|(_, other)| **other == root);
+                let ends = whole.flat_map(|(line, _)| line.ends.iter().flatten().copied());
+                self.hangs(line, &ends.collect::<Vec<_>>(), LEAST_PATCH, found, measured);
             }
         }
     }
-    measured
+
+    /// Tells of a stretch that hangs, unless the part does.
+    fn hangs(
+        &self,
+        line: &Line,
+        places: &[Sample],
+        most: f64,
+        found: &mut Findings,
+        measured: &mut Measured,
+    ) {
+        let (by_part, own): (Vec<Sample>, Vec<Sample>) = places
+            .iter()
+            .partition(|place| self.part.is_some_and(|part| part.hangs(self.layer, place.at)));
+        measured.part_hangs += length_of(&by_part);
+        let length = length_of(&own);
+        if length < most {
+            return;
+        }
+        let what = line.first.role.name();
+        let text = format!("{} mm of {what} have nothing under them", short(length));
+        let finding = Finding::of(Code::InTheAir, length, "mm", text);
+        let mut place = place(self.layer, &line.first);
+        place.at_mm = Some(own[own.len() / 2].at.map(short));
+        found.add(Finding { place, ..finding });
+    }
+}
+
+fn length_of(places: &[Sample]) -> f64 {
+    places.iter().map(|place| place.length).sum()
 }
 
 /// Plastic as it stands.
@@ -82,23 +155,29 @@ struct Pile {
     tops: Vec<f32>,
     /// Height of the nozzle when a line's middle was laid, mm.
     cores: Vec<f32>,
-    /// A line may hang out so far, mm.
-    longest_end: f64,
+    /// The line that was laid there last, counted over all layers from 1.
+    owners: Vec<u32>,
+    next_owner: u32,
+    /// The owner before the first line of this layer.
+    owners_from: u32,
+    /// For each line of the layer a line that it touches, and so on to the first of its patch.
+    parents: Vec<usize>,
 }
 
 impl Pile {
-    /// An empty bed under all of `print`; `infill` is the density of its sparse infill, as a part of 1.
-    fn over(print: &Print, infill: Option<f64>) -> Option<Self> {
+    fn over(print: &Print) -> Option<Self> {
         let steps = print.layers.iter().flat_map(|layer| print.moves_of(layer));
         let (low, high) = super::extent(steps.filter(|step| step.is_line()))?;
         let grid = Grid::over(low, high, 0.5, PITCH, MOST_PIXELS);
         let count = grid.size[0] * grid.size[1];
-        let gap = SOME_WIDTH / infill.unwrap_or(SOME_DENSITY).max(LEAST_DENSITY);
         Some(Self {
             grid,
             tops: vec![0.0; count],
             cores: vec![0.0; count],
-            longest_end: LONGEST_END.max(INFILL_GAPS * gap),
+            owners: vec![0; count],
+            next_owner: 0,
+            owners_from: 0,
+            parents: Vec::new(),
         })
     }
 
@@ -106,19 +185,21 @@ impl Pile {
         self.grid.pixel(place).map(|[x, y]| map[y * self.grid.size[0] + x])
     }
 
+    /// The first line of the patch that a line of this layer belongs to.
+    fn root(&mut self, mut line: usize) -> usize {
+        while self.parents[line] != line {
+            self.parents[line] = self.parents[self.parents[line]];
+            line = self.parents[line];
+        }
+        line
+    }
+
     /// Lays one unbroken line, of many straight pieces.
-    fn chain(
-        &mut self,
-        chain: &[Step],
-        layer: usize,
-        part: Option<&Part>,
-        found: &mut Findings,
-        measured: &mut Measured,
-    ) {
+    fn chain(&mut self, chain: &[Step], layer: usize, found: &mut Findings) -> Line {
         let mut runs = Runs::default();
         let mut twice = Twice::default();
-        let mut behind = 0;
-        let mut way_behind = 0.0;
+        let (mut behind, mut way_behind) = (0, 0.0);
+        let mut length = 0.0;
         for step in chain {
             way_behind += step.length();
             while way_behind - chain[behind].length() > BEHIND {
@@ -127,59 +208,34 @@ impl Pile {
                 behind += 1;
             }
             for place in Samples::of(step, self.grid.pitch) {
+                length += place.length;
                 twice.add(self.is_laid(step, place.at), place.length, step);
                 runs.add(self.is_carried(step, &place), place);
             }
         }
         chain[behind..].iter().for_each(|step| self.lay_core(step));
-        chain.iter().for_each(|step| self.lay(step));
+        self.lay(chain);
         runs.end();
-        self.hanging(&runs.ends, layer, (chain, part), found, measured);
-        measured.longest_bridge = measured.longest_bridge.max(runs.longest_bridge);
-        for (length, step) in twice.ends() {
-            let text = format!("{} mm of a line lie on another of the layer", short(length));
-            let finding = Finding::of(Code::PrintedTwice, length, "mm", text);
+        for (long, step) in twice.ends(length) {
+            let text = format!("{} mm of a line lie on another of the layer", short(long));
+            let finding = Finding::of(Code::PrintedTwice, long, "mm", text);
             found.add(Finding { place: place(layer, &step), ..finding });
         }
-    }
-
-    fn hanging(
-        &self,
-        ends: &[Vec<Sample>],
-        layer: usize,
-        (chain, part): (&[Step], Option<&Part>),
-        found: &mut Findings,
-        measured: &mut Measured,
-    ) {
-        let length = |places: &[&Sample]| places.iter().map(|place| place.length).sum::<f64>();
-        for end in ends {
-            let all: Vec<&Sample> = end.iter().collect();
-            if length(&all) <= self.longest_end {
-                continue;
-            }
-            let (by_part, own): (Vec<&Sample>, Vec<&Sample>) = all
-                .into_iter()
-                .partition(|place| part.is_some_and(|part| part.hangs(layer, place.at)));
-            measured.part_hangs += length(&by_part);
-            let length = length(&own);
-            if length <= self.longest_end {
-                continue;
-            }
-            let what = chain[0].role.name();
-            let text = format!("{} mm of {what} have nothing under them", short(length));
-            let finding = Finding::of(Code::InTheAir, length, "mm", text);
-            let mut place = place(layer, &chain[0]);
-            place.at_mm = Some(own[own.len() / 2].at.map(short));
-            found.add(Finding { place, ..finding });
+        Line {
+            first: chain[0],
+            length,
+            carried: runs.is_carried_before,
+            ends: runs.ends,
+            longest_bridge: runs.longest_bridge,
         }
     }
 
-    /// Whether something carries the line there: below it, or beside it on its layer.
+    /// Whether something below carries the line there.
     fn is_carried(&self, step: &Step, place: &Sample) -> bool {
         let height = f64::from(step.height);
         let needed = place.z - height - GAP * height.min(0.3);
         let side = f64::from(step.width) / 2.0;
-        [-side, -side / 2.0, 0.0, side / 2.0, side].into_iter().any(|off| {
+        [0.0, -side / 2.0, side / 2.0, -side, side].into_iter().any(|off| {
             let at = [place.at[0] + off * place.across[0], place.at[1] + off * place.across[1]];
             self.at(&self.tops, at).is_none_or(|top| f64::from(top) >= needed - 1e-3)
         })
@@ -191,14 +247,43 @@ impl Pile {
         core > 0.0 && (core - step.to[2]).abs() < 0.01
     }
 
-    fn lay(&mut self, step: &Step) {
-        let extra = if step.role == Role::Support { SUPPORT_GAP as f32 } else { 0.0 };
-        let top = step.from[2].max(step.to[2]) + extra;
-        let (width, tops) = (self.grid.size[0], &mut self.tops);
-        Capsule::of(step, 1.0).rows(&self.grid, |y, span| {
-            let row = &mut tops[y * width..][span];
-            row.iter_mut().for_each(|known| *known = known.max(top));
-        });
+    /// Lays a line's plastic, and joins it to the lines of this layer that it touches.
+    fn lay(&mut self, chain: &[Step]) {
+        // Lines of the layer are counted from 0, owners over all layers from 1.
+        let line = (self.next_owner - self.owners_from) as usize;
+        self.next_owner += 1;
+        if line == 0 {
+            self.parents.clear();
+        }
+        self.parents.push(line);
+        let owner = self.next_owner;
+        let mut touched: Vec<u32> = Vec::new();
+        let width = self.grid.size[0];
+        for step in chain {
+            let extra = if step.role == Role::Support { SUPPORT_GAP as f32 } else { 0.0 };
+            let top = step.from[2].max(step.to[2]) + extra;
+            let (tops, owners, before) = (&mut self.tops, &mut self.owners, self.owners_from);
+            Capsule::of(step, 1.0).rows(&self.grid, |y, span| {
+                let row = y * width;
+                for known in &mut tops[row + span.start..row + span.end] {
+                    *known = known.max(top);
+                }
+                // Lines that lie side by side touch at a pixel more.
+                let beside = row + span.start.saturating_sub(1)..row + (span.end + 1).min(width);
+                for known in &mut owners[beside] {
+                    if *known > before && *known != owner && touched.last() != Some(known) {
+                        touched.push(*known);
+                    }
+                    *known = owner;
+                }
+            });
+        }
+        touched.sort_unstable();
+        touched.dedup();
+        for other in touched {
+            let (a, b) = (self.root(line), self.root((other - 1 - self.owners_from) as usize));
+            self.parents[a.max(b)] = a.min(b);
+        }
     }
 
     fn lay_core(&mut self, step: &Step) {
@@ -208,6 +293,7 @@ impl Pile {
 }
 
 /// A short piece of a line.
+#[derive(Clone, Copy)]
 struct Sample {
     /// Its middle.
     at: [f64; 2],
@@ -309,14 +395,15 @@ impl Twice {
     }
 
     fn end(&mut self) {
-        if let Some(step) = self.last.take().filter(|_| self.length >= LEAST_TWICE) {
-            self.found.push((self.length, step));
-        }
+        self.found.extend(self.last.take().map(|step| (self.length, step)));
         self.length = 0.0;
     }
 
-    fn ends(mut self) -> Vec<(f64, Step)> {
+    /// Those that are long, or nearly all of the line, which is `all` mm long.
+    fn ends(mut self, all: f64) -> Vec<(f64, Step)> {
         self.end();
+        let least = LEAST_TWICE.min((WHOLE * all).max(LEAST_WHOLE));
+        self.found.retain(|(length, _)| *length >= least);
         self.found
     }
 }
