@@ -20,8 +20,8 @@ Equal are files whose plastic and orders to the printer are the same:
   filament as much filament for each mm of these lines within PERCENT, beside what the decimals
            of a file leave open
   sums     in each layer, by role: length within PERCENT and 0.1 mm, filament within PERCENT and
-           0.01 mm, time at the feeds asked for within PERCENT and 0.1 s; in the file the same, and
-           the time it takes, by role and in all, within PERCENT and 1 s
+           0.01 mm, time at the feeds asked for within PERCENT and 0.1 s; in the file, length and
+           filament likewise, and the time of the whole print within PERCENT and 1 s
   orders   the same temperatures, and the same other commands such as M106, in the same order
            within each layer; M73, M105, M117 and M118 are left out
 Told but not decisive: settings in comments (unless --settings), widths in comments, and the count

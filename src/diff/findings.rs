@@ -314,6 +314,5 @@ fn of_file(difference: &Difference, found: &mut Vec<Finding>) {
     for row in difference.roles.iter().filter(|row| row.decides) {
         offer(Some(row.role), Quantity::Length, row.length_mm);
         offer(Some(row.role), Quantity::Filament, row.filament_mm);
-        offer(Some(row.role), Quantity::Time, row.time_s);
     }
 }

@@ -121,8 +121,8 @@ pub struct Difference {
 pub struct RoleOfFile {
     /// The role; `other` is all that extrudes if one of the files tells no roles.
     pub role: Role,
-    /// Whether its sums have to be the same: those of travels and retractions need not, which
-    /// leave no plastic. What they take is a part of the whole time.
+    /// Whether its length and filament have to be the same: those of travels and retractions
+    /// need not, which leave no plastic. What they take is a part of the whole time.
     pub decides: bool,
     /// Number of moves.
     pub moves: Both<u64>,
@@ -130,7 +130,7 @@ pub struct RoleOfFile {
     pub length_mm: Sum,
     /// Filament pushed out less that pulled back, mm.
     pub filament_mm: Sum,
-    /// Time, s.
+    /// Time, s. It never decides: how corners are taken changes it, and other ways to lines.
     pub time_s: Sum,
 }
 

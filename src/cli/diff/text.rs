@@ -71,7 +71,7 @@ fn table(found: &Difference, limits: &str) -> String {
             row.role.name(),
             cells(&row.length_mm, 10, row.decides),
             cells(&row.filament_mm, 10, row.decides),
-            cells(&row.time_s, 9, row.decides)
+            cells(&row.time_s, 9, false)
         ));
     }
     text.push_str(&format!(
