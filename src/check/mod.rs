@@ -64,6 +64,8 @@ pub struct Measures {
     pub plastic_mm3: f64,
     /// Longest stretch of a line that only its ends carry, mm.
     pub longest_bridge_mm: f64,
+    /// Longest end of a line with nothing below that only the line itself and its neighbours hold, mm.
+    pub longest_end_mm: f64,
     /// Length of lines in the air where the part itself has nothing below, mm.
     pub part_hangs_mm: f64,
     /// Volume of the model's cuts, mm³.
@@ -110,6 +112,7 @@ pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict 
         measures: Measures {
             plastic_mm3: filament * terms.filament_area,
             longest_bridge_mm: stacked.longest_bridge,
+            longest_end_mm: stacked.longest_end,
             part_hangs_mm: stacked.part_hangs,
             part_mm3: sums.map(|sums| sums.total.part),
             outline: sums.map(|sums| share(sums.total.rim)),

@@ -4,7 +4,7 @@
 //! place of a line is carried if plastic or the bed reaches up to its lower side there. Lines of
 //! a layer that touch hold on to one another: such a patch is in the air if none of its lines is
 //! carried anywhere. Within a patch, a stretch that is not carried is a bridge if both its ends
-//! are, and else an end that hangs out; long ones are told, too.
+//! are, and else an end that hangs out; both are measured.
 
 use super::beads::place;
 use super::capsule::Capsule;
@@ -27,10 +27,7 @@ const GAP: f64 = 0.5;
 const SUPPORT_GAP: f64 = 0.45;
 
 /// A patch with shorter lines in all is no more than a blob, mm.
-const LEAST_PATCH: f64 = 2.0;
-
-/// An end may hang out so far, mm: skins begin and end somewhere above sparse infill.
-const LONGEST_END: f64 = 30.0;
+const LEAST_PATCH: f64 = 4.0;
 
 /// A line runs on another where their middles, so wide as a part of their widths, meet …
 const CORE: f64 = 0.4;
@@ -48,6 +45,8 @@ const BEHIND: f64 = 1.5;
 pub(super) struct Measured {
     /// Longest stretch between two carried places, mm.
     pub(super) longest_bridge: f64,
+    /// Longest end of a line that only the line itself and its neighbours hold, mm.
+    pub(super) longest_end: f64,
     /// Length of lines that hang where the part itself hangs, mm.
     pub(super) part_hangs: f64,
 }
@@ -108,31 +107,25 @@ impl Judge<'_> {
         for (k, (line, &root)) in lines.iter().zip(&roots).enumerate() {
             measured.longest_bridge = measured.longest_bridge.max(line.longest_bridge);
             if carried[root] {
-                let long = line.ends.iter().filter(|end| length_of(end) > LONGEST_END);
-                long.for_each(|end| self.hangs(line, end, LONGEST_END, found, measured));
+                // Skins begin and end somewhere above sparse infill: that is no fault.
+                let longest = line.ends.iter().map(|end| length_of(end)).fold(0.0, f64::max);
+                measured.longest_end = measured.longest_end.max(longest);
             } else if k == root && lengths[root] >= LEAST_PATCH {
                 let whole = lines.iter().zip(&roots).filter(|(_, other)| **other == root);
                 let ends = whole.flat_map(|(line, _)| line.ends.iter().flatten().copied());
-                self.hangs(line, &ends.collect::<Vec<_>>(), LEAST_PATCH, found, measured);
+                self.hangs(line, &ends.collect::<Vec<_>>(), found, measured);
             }
         }
     }
 
-    /// Tells of a stretch that hangs, unless the part does.
-    fn hangs(
-        &self,
-        line: &Line,
-        places: &[Sample],
-        most: f64,
-        found: &mut Findings,
-        measured: &mut Measured,
-    ) {
+    /// Tells of a patch that hangs, unless the part does.
+    fn hangs(&self, line: &Line, places: &[Sample], found: &mut Findings, measured: &mut Measured) {
         let (by_part, own): (Vec<Sample>, Vec<Sample>) = places
             .iter()
             .partition(|place| self.part.is_some_and(|part| part.hangs(self.layer, place.at)));
         measured.part_hangs += length_of(&by_part);
         let length = length_of(&own);
-        if length < most {
+        if length < LEAST_PATCH {
             return;
         }
         let what = line.first.role.name();
