@@ -301,7 +301,7 @@ fn what_is_wrong_is_said_in_one_line_and_leaves_nothing() {
     fails(&with(&["--crop", "90,90,95,95"]), 2, "--crop: nothing of tile.gcode");
     fails(&with(&["--crop", "90,90,90,95"]), 2, "its sides must be 0.1 to 10000 mm");
     fails(&with(&["--cut", "x=0", "--layer", "2"]), 2, "cannot be used with");
-    fails(&["tile.gcode", "-o", "a.gif"], 2, "use .svg or .png, or say --format");
+    fails(&["tile.gcode", "-o", "a.gif"], 2, "use .svg, .png or .html, or say --format");
     fails(&["tile.gcode", "-o", "no/a.svg"], 4, "there is no directory no");
     fails(&["tile.gcode", "-o", "-", "--format", "svg", "--all"], 2, "--all writes a file");
     fails(&["tile.gcode", "-o", "tile.gcode", "--format", "png"], 2, "would replace");

@@ -327,7 +327,7 @@ fn a_browser_shows_the_layer_the_moves_and_what_is_pointed_at() {
     let [x, y] = [0, 1].map(|axis| f64::midpoint(line.from[axis].into(), line.to[axis].into()));
 
     let place = format!("layer=14&move={shown}&colour=flow&at={x},{y}");
-    for (query, painter) in [("", "WebglPainter"), ("?canvas", "CanvasPainter")] {
+    for (query, painter) in [("?webgl", "WebglPainter"), ("?canvas", "CanvasPainter")] {
         let state = state(&chromium, &file, query, &place);
         assert_eq!(state["layers"], print.layers.len());
         assert_eq!((&state["layer"], &state["moves"]), (&14.into(), &steps.len().into()));

@@ -131,7 +131,11 @@ fn format(args: &PreviewArgs) -> Result<Format> {
     let found = names.iter().position(|name| Some(name) == ending.as_ref());
     found.map(|k| Format::value_variants()[k]).ok_or_else(|| {
         let out = args.output.display();
-        let endings = names.iter().map(|name| format!(".{name}")).collect::<Vec<_>>().join(" or ");
+        let endings: Vec<String> = names.iter().map(|name| format!(".{name}")).collect();
+        let endings = match endings.split_last() {
+            Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
+            None => String::new(),
+        };
         Error::Usage(format!(
             "-o {out}: the ending tells no format; use {endings}, or say --format"
         ))

@@ -1,29 +1,47 @@
-// Layers -> pixels by canvas 2D, for browsers without WebGL 2: slower, and beads are flat.
+// Layers -> pixels by canvas 2D, where there is no WebGL 2 or only a processor that does its work slowly.
 
 class CanvasPainter {
   constructor(canvas) {
     this.canvas = canvas;
-    this.context = canvas.getContext("2d");
+    this.front = canvas.getContext("2d");
+    /** Lower layers have a picture of their own, which lasts until the view changes. */
+    this.behind = document.createElement("canvas").getContext("2d");
+    this.behindKey = "";
   }
 
   get mostBehind() {
     return 20_000;
   }
 
-  forget() {}
+  forget() {
+    this.behindKey = "";
+  }
 
   /** As that of WebglPainter. */
   draw({ view, layer, count, below, paper, fade, instancesOf }) {
-    const { context, canvas } = this;
-    context.setTransform(1, 0, 0, 1, 0, 0);
-    context.clearRect(0, 0, canvas.width, canvas.height);
-    const { x, y, scale } = view;
-    context.setTransform(scale, 0, 0, -scale, canvas.width / 2 - x * scale, canvas.height / 2 + y * scale);
-    context.lineCap = context.lineJoin = "round";
-    const faded = (rgb) => mixed(rgb, paper, fade);
-    for (const lower of below) this.drawLayer(instancesOf(lower), Infinity, false, scale, faded);
+    const { width, height } = this.canvas;
+    const key = [view.x, view.y, view.scale, width, height, below].join();
+    if (key !== this.behindKey) {
+      Object.assign(this.behind.canvas, { width, height });
+      this.begin(this.behind, view);
+      const faded = (rgb) => mixed(rgb, paper, fade);
+      for (const lower of below) this.drawLayer(instancesOf(lower), Infinity, false, view.scale, faded);
+    }
+    this.behindKey = key;
+    this.begin(this.front, view);
     const floats = instancesOf(layer);
-    for (const thin of [false, true]) this.drawLayer(floats, count, thin, scale, (rgb) => rgb);
+    for (const thin of [false, true]) this.drawLayer(floats, count, thin, view.scale, (rgb) => rgb);
+  }
+
+  /** Takes up a context, cleared, and lets it measure in mm. */
+  begin(context, { x, y, scale }) {
+    const { width, height } = this.canvas;
+    this.context = context;
+    context.setTransform(1, 0, 0, 1, 0, 0);
+    context.clearRect(0, 0, width, height);
+    if (context === this.front) context.drawImage(this.behind.canvas, 0, 0);
+    context.setTransform(scale, 0, 0, -scale, width / 2 - x * scale, height / 2 + y * scale);
+    context.lineCap = context.lineJoin = "round";
   }
 
   /** Neighbours that look the same are one path. */

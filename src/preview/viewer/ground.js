@@ -43,7 +43,7 @@ function drawGround(canvas, view) {
     context.moveTo(...line[0]);
     context.lineTo(...line[1]);
     context.stroke();
-    context.fillText(decimals(value, 3), ...text);
+    if (text) context.fillText(decimals(value, 3), ...text);
   };
   for (let k = Math.ceil(left / step); k * step <= right; k++) {
     const x = Math.round(toScreen([k * step, 0], view, width, height)[0]) + 0.5;
@@ -51,7 +51,8 @@ function drawGround(canvas, view) {
   }
   for (let k = Math.ceil(bottom / step); k * step <= top; k++) {
     const y = Math.round(toScreen([0, k * step], view, width, height)[1]) + 0.5;
-    rule(k * step, [[0, y], [width, y]], [4, y - 3]);
+    // The lowest corner is the other axis's.
+    rule(k * step, [[0, y], [width, y]], y < height - 18 && [4, y - 3]);
   }
 }
 

@@ -128,12 +128,12 @@ function distance(moves, i, x, y) {
   return Math.hypot(x - fromX - part * wayX, y - fromY - part * wayY);
 }
 
-/** `?canvas` in the address asks for the plain one. */
+/** WebGL where it is quick; `?webgl` and `?canvas` in the address ask for one of them. */
 function makePainter(canvas) {
   try {
-    if (location.search !== "?canvas") return new WebglPainter(canvas);
+    if (location.search !== "?canvas") return new WebglPainter(canvas, location.search === "?webgl");
   } catch (error) {
-    console.warn(error);
+    console.info(`Drawn by canvas 2D: ${error.message}`);
   }
   // A canvas that has had a context gives no other.
   const plain = canvas.cloneNode();

@@ -60,12 +60,13 @@ void main() {
 }`;
 
 class WebglPainter {
-  /** Throws where there is no WebGL 2. */
-  constructor(canvas) {
+  /** Throws where there is no WebGL 2, or, unless `forced`, only a slow one. */
+  constructor(canvas, forced) {
     this.canvas = canvas;
     const options = { antialias: false, premultipliedAlpha: true, preserveDrawingBuffer: true };
     this.gl = canvas.getContext("webgl2", options);
     if (!this.gl) throw new Error("no WebGL 2");
+    if (!forced && isSoftware(this.gl)) throw new Error("WebGL without a graphics card");
     this.prepare();
     canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     canvas.addEventListener("webglcontextrestored", () => {
@@ -85,12 +86,11 @@ class WebglPainter {
     this.uploads = 0;
     this.behind = null;
     this.behindKey = "";
-    this.steps = isSoftware(gl) ? 15_000 : 400_000;
   }
 
   /** How many moves of lower layers are drawn at most. */
   get mostBehind() {
-    return this.steps;
+    return 400_000;
   }
 
   /** Forgets what was uploaded: colours have changed. */
@@ -209,7 +209,7 @@ class WebglPainter {
   }
 }
 
-/** Whether a processor does the work of a graphics card: then lower layers are a burden. */
+/** Whether a processor does the work of a graphics card: then canvas 2D is faster. */
 function isSoftware(gl) {
   const told = gl.getExtension("WEBGL_debug_renderer_info");
   const name = gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
