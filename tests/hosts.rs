@@ -17,15 +17,18 @@ use slicer::profile::recorded;
 use std::path::Path;
 use std::process::Command;
 
-/// Prints that differ in what hosts read: profile, copies, settings.
-const PRINTS: [(&str, u32, &[(&str, &str)]); 4] = [
+/// Profile, copies, settings.
+type What = (&'static str, u32, &'static [(&'static str, &'static str)]);
+
+/// Prints that differ in what hosts read.
+const PRINTS: [What; 4] = [
     ("generic-klipper", 1, &[]),
     ("generic-klipper", 4, &[("dual.mode", "pair"), ("filament.name", "Galaxy \"PETG\" black")]),
     ("generic-marlin", 2, &[("first_layer_height", "0.3"), ("machine.thumbnails", "220x124")]),
     ("zcube-dual", 1, &[("dual.mode", "pair"), ("filament.name", "Blend 7")]),
 ];
 
-fn print((profile, copies, set): (&str, u32, &[(&str, &str)])) -> Run {
+fn print((profile, copies, set): What) -> Run {
     let placement = Placement { copies, ..as_it_is() };
     slice_placed(&fixture("bracket.stl"), profile, set, &placement)
 }

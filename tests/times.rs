@@ -18,7 +18,7 @@ fn progress(run: &Run) -> Vec<(bool, u64, Option<u64>)> {
             let mut words = words.split_whitespace();
             let percent = words.next().unwrap().parse().unwrap();
             let minutes = words.next().map(|word| word.strip_prefix('R').unwrap().parse().unwrap());
-            lines.push((before[0].starts_with(";Z:"), percent, minutes));
+            lines.push((before[0] == ";BEFORE_LAYER_CHANGE", percent, minutes));
         }
         before = [before[1], line];
     }
