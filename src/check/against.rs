@@ -19,7 +19,7 @@ const MOST_OUT: f64 = 0.3;
 const NARROW: f64 = 0.1;
 
 /// Smaller patches are the rounding of corners and ends, mm².
-const LEAST_AREA: f64 = 0.4;
+const LEAST_AREA: f64 = 0.6;
 
 /// Places narrower than this many line widths cannot be printed.
 pub(super) const PRINTABLE: f64 = 1.2;
@@ -27,8 +27,11 @@ pub(super) const PRINTABLE: f64 = 1.2;
 /// Width of a line where no wall tells one, mm.
 pub(super) const SOME_WIDTH: f64 = 0.4;
 
-/// How far from walls and skins sparse infill is measured, mm.
+/// How far from walls and skins sparse infill is measured, mm, …
 const FROM_WALLS: f64 = 0.5;
+
+/// … and how wide a place must be for its lines to show their density, mm.
+const LEAST_WIDE: f64 = 6.0;
 
 /// Pieces that lines are measured in, mm.
 const PIECE: f64 = 0.2;
@@ -38,6 +41,8 @@ const PIECE: f64 = 0.2;
 pub(super) struct Verdict {
     pub(super) findings: Vec<Finding>,
     pub(super) areas: Areas,
+    /// Whether the layer was left out.
+    pub(super) is_unsure: bool,
 }
 
 /// What is measured; areas in mm², volumes in mm³.
@@ -164,7 +169,8 @@ impl Judge<'_> {
         solid: &Bits,
         areas: &mut Areas,
     ) {
-        let core = here.clone().minus(solid).shrunk(self.grid.pixels(FROM_WALLS));
+        let half = self.grid.pixels(LEAST_WIDE / 2.0);
+        let core = here.clone().minus(solid).squares(half, self.grid.pixels(FROM_WALLS));
         let area = self.grid.area();
         areas.part = here.count() as f64 * area;
         areas.solid[0] = solid.count() as f64 * area;

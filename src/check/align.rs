@@ -99,7 +99,7 @@ fn fit(print: &Print, part: &Part, has_roles: bool) -> f64 {
     let every = print.layers.len().div_ceil(LAYERS_LOOKED_AT).max(1);
     let looked_at = print.layers.iter().enumerate().step_by(every);
     let shares = looked_at.map(|(index, layer)| {
-        let cut = part.section(index, &grid);
+        let (cut, _) = part.section(index, &grid);
         let mut band = cut.grown(grid.pixels(BAND[0]));
         if has_roles {
             band = band.minus(&cut.shrunk(grid.pixels(BAND[1])));
@@ -176,7 +176,7 @@ fn height(print: &Print, model: Model<'_>, part: &Part, found: &mut Findings) {
     let Some((low, high)) = rest.extent() else { return };
     let grid = Grid::over(low, high, 1.0, PIXELS.0, PIXELS.1);
     let line = grid.pixels(SOME_WIDTH * PRINTABLE / 2.0);
-    let area = |layer| rest.section(layer, &grid).opened(line).count() as f64 * grid.area();
+    let area = |layer| rest.section(layer, &grid).0.opened(line).count() as f64 * grid.area();
     if (0..above).any(|layer| area(layer) >= LEAST_AREA) {
         tell("lower");
     }

@@ -95,7 +95,9 @@ pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict 
         align::place(print, model, has_roles, say)
     });
     let stacked = stack::check(print, part.as_ref(), &mut found);
-    let sums = part.as_ref().map(|part| surfaces::check(print, part, terms, has_roles, &mut found));
+    let sums = part
+        .as_ref()
+        .map(|part| surfaces::check(print, part, terms, has_roles, (&mut found, &mut not_judged)));
 
     let lines = print.layers.iter().flat_map(|layer| print.moves_of(layer));
     let filament: f64 =

@@ -23,7 +23,12 @@ pub(super) struct Part {
     /// Triangles that each plane cuts: those of layer k are `cut[starts[k]..starts[k + 1]]`.
     starts: Vec<usize>,
     cut: Vec<u32>,
+    /// Heights of level faces, mm, rising.
+    levels: Vec<f64>,
 }
+
+/// Slicers may take a face that lies so near to a cut for above or below it, mm.
+const NEAR_LEVEL: f64 = 1.5e-3;
 
 /// A stretch of an outline; the solid lies on the same side of all of them.
 type Segment = [[f64; 2]; 2];
@@ -53,7 +58,9 @@ impl Part {
             starts: vec![0; planes.len() + 1],
             planes,
             cut: Vec::new(),
+            levels: Vec::new(),
         };
+        part.levels = part.find_levels();
         part.sort();
         Ok(part)
     }
@@ -91,6 +98,24 @@ impl Part {
                 counts[plane] += 1;
             }
         }
+    }
+
+    fn find_levels(&self) -> Vec<f64> {
+        let level = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|corner| self.vertices[corner as usize][2]);
+            (a == b && b == c).then_some(a)
+        };
+        let mut levels: Vec<f64> = self.triangles.iter().filter_map(level).collect();
+        levels.sort_unstable_by(f64::total_cmp);
+        levels.dedup();
+        levels
+    }
+
+    /// Whether a layer is cut along a level face, where other slicers' rules may differ.
+    pub(super) fn is_along_a_face(&self, layer: usize) -> bool {
+        let Some(plane) = self.planes.get(layer) else { return false };
+        let next = self.levels.partition_point(|level| *level < plane - NEAR_LEVEL);
+        self.levels.get(next).is_some_and(|level| *level <= plane + NEAR_LEVEL)
     }
 
     /// Number of layers.
@@ -143,11 +168,13 @@ impl Part {
         [0, 1].map(|axis| low[axis] + part * (high[axis] - low[axis]))
     }
 
-    /// What of the bed the model covers at a layer; nothing beyond the last.
-    pub(super) fn section(&self, layer: usize, grid: &Grid) -> Bits {
+    /// What of the bed the model covers at a layer, nothing beyond the last; and whether its
+    /// outline closes.
+    pub(super) fn section(&self, layer: usize, grid: &Grid) -> (Bits, bool) {
         let mut bits = Bits::new(grid.size);
+        let mut closes = true;
         if layer >= self.layers() {
-            return bits;
+            return (bits, closes);
         }
         // Row, place along it, and which way the outline goes.
         let mut crossings: Vec<(usize, f64, i32)> = Vec::new();
@@ -169,8 +196,9 @@ impl Part {
                     bits.set(two[0].0, grid.span(0, two[0].1, two[1].1));
                 }
             }
+            closes &= winding + row.last().map_or(0, |last| last.2) == 0;
         }
-        bits
+        (bits, closes)
     }
 
     /// Whether a place of a layer has nothing of the model on the layer below.
@@ -234,9 +262,12 @@ mod tests {
             let grid = Grid::over([10.0, 5.0], [14.0, 7.0], 1.0, 0.1, 1e9);
             // The last plane lies on the upper face, which counts as above it: it cuts nothing higher.
             for layer in 0..3 {
-                assert_eq!(part.section(layer, &grid).count(), 40 * 20, "{layer}");
+                assert_eq!(part.section(layer, &grid).0.count(), 40 * 20, "{layer}");
             }
-            assert!(part.section(3, &grid).is_empty());
+            assert!(part.section(3, &grid).0.is_empty());
+            assert!(
+                part.section(1, &grid).1 && part.is_along_a_face(2) && !part.is_along_a_face(1)
+            );
             assert!(part.hangs(1, [9.9, 6.0]) && !part.hangs(1, [10.1, 6.0]));
             assert!(!part.hangs(0, [0.0, 0.0]));
         }

@@ -142,6 +142,14 @@ impl Bits {
         self.shrunk(radius).grown(radius)
     }
 
+    /// What a square of `2 × half + 1` pixels reaches that stays within, shrunk by `less`; quick for
+    /// large ones.
+    pub(super) fn squares(&self, half: usize, less: usize) -> Self {
+        let shrunk = self.along_rows(half, true).along_columns(half, true);
+        let grown = half.saturating_sub(less);
+        shrunk.along_rows(grown, false).along_columns(grown, false)
+    }
+
     /// Joins each pixel's disc: all of it (`every`) or any.
     fn with_disc(&self, radius: usize, every: bool) -> Self {
         if radius == 0 || self.is_empty() {
@@ -190,6 +198,35 @@ impl Bits {
         while left > 0 {
             let by = step.min(left);
             out.spread(by, every);
+            left -= by;
+            step *= 2;
+        }
+        out
+    }
+
+    /// As [`Self::along_rows`], up and down.
+    fn along_columns(&self, reach: usize, every: bool) -> Self {
+        let mut out = self.clone();
+        let (mut left, mut step) = (reach, 1);
+        while left > 0 {
+            let by = step.min(left);
+            let before = out.clone();
+            for y in 0..self.size[1] {
+                let near = [y.checked_sub(by), Some(y + by).filter(|y| *y < self.size[1])];
+                let target = &mut out.bits[y * self.words..(y + 1) * self.words];
+                for row in near {
+                    match row {
+                        Some(row) if every => {
+                            target.iter_mut().zip(before.row(row)).for_each(|(a, b)| *a &= b);
+                        }
+                        Some(row) => {
+                            target.iter_mut().zip(before.row(row)).for_each(|(a, b)| *a |= b)
+                        }
+                        None if every => target.fill(0),
+                        None => {}
+                    }
+                }
+            }
             left -= by;
             step *= 2;
         }
@@ -310,6 +347,23 @@ mod tests {
                     prop_assert_eq!(shrunk.has(x, y), whole(x, y));
                 }
             }
+        }
+
+        #[test]
+        fn squares_reach_what_is_wide_enough(
+            (x, y, w, h) in (0..60_usize, 0..20_usize, 1..80_usize, 1..20_usize),
+            half in 1..8_usize,
+            less in 0..3_usize,
+        ) {
+            let mut bits = Bits::new([150, 42]);
+            (y..y + h).for_each(|y| bits.set(y, x..x + w));
+            let less = less.min(half);
+            let side = 2 * half + 1;
+            let found = bits.squares(half, less).count() as usize;
+            // What lies at the edge has nothing beyond it.
+            let expected =
+                if w < side || h < side { 0 } else { (w - 2 * less) * (h - 2 * less) };
+            prop_assert_eq!(found, expected);
         }
 
         #[test]

@@ -22,13 +22,13 @@ const BATCH: usize = 32;
 const BLOCK: usize = 12;
 
 /// Less room for infill tells nothing of its density, mm³.
-const LEAST_ROOM: f64 = 60.0;
+const LEAST_ROOM: f64 = 150.0;
 
 /// Infill of a block may be this part of what is asked for …
 const BLOCK_SLACK: [f64; 2] = [0.5, 1.7];
 
 /// … and that of the whole print this.
-const INFILL_SLACK: [f64; 2] = [0.8, 1.2];
+const INFILL_SLACK: [f64; 2] = [0.75, 1.3];
 
 /// Room for infill that tells the whole print's density, mm³.
 const ENOUGH_ROOM: f64 = 1000.0;
@@ -51,7 +51,7 @@ pub(super) fn check(
     part: &Part,
     terms: &Terms,
     has_roles: bool,
-    found: &mut Findings,
+    (found, notes): (&mut Findings, &mut Vec<String>),
 ) -> Sums {
     let lines = print.moves.iter().filter(|step| is_of_part(step, has_roles));
     let both = [extent(lines), part.extent()];
@@ -70,26 +70,42 @@ pub(super) fn check(
         let end = (first + BATCH).min(print.layers.len());
         layers.extend(batch(&judge, first..end));
     }
+    let unsure = layers.iter().filter(|verdict| verdict.is_unsure).count();
+    if unsure > 0 {
+        notes.push(format!(
+            "{unsure} of {} layers against the part: its outline does not close, or they are cut \
+             along a face of it",
+            layers.len()
+        ));
+    }
     for verdict in &mut layers {
         found.extend(std::mem::take(&mut verdict.findings));
     }
     let areas: Vec<Areas> = layers.iter().map(|verdict| verdict.areas).collect();
-    sums(print, terms, &areas, found)
+    sums(print, terms, (&areas, has_roles), found)
 }
 
 /// Judges some layers side by side.
 fn batch(judge: &Judge<'_>, layers: std::ops::Range<usize>) -> Vec<Verdict> {
     // From the layer below the first to that above the last.
-    let cuts: Vec<Bits> = (layers.start..layers.end + 2)
+    let cuts: Vec<(Bits, bool)> = (layers.start..layers.end + 2)
         .into_par_iter()
         .map(|above| match above.checked_sub(1) {
             Some(layer) => judge.part.section(layer, &judge.grid),
-            None => Bits::new(judge.grid.size),
+            None => (Bits::new(judge.grid.size), true),
         })
         .collect();
     let judged = layers.clone().into_par_iter().map(|index| {
         let k = index - layers.start;
-        judge.layer(index, [&cuts[k], &cuts[k + 1], &cuts[k + 2]])
+        let three = &cuts[k..k + 3];
+        let is_sure = three.iter().all(|(_, closes)| *closes)
+            && (judge.terms.is_own
+                || !(index.saturating_sub(1)..=index + 1).any(|k| judge.part.is_along_a_face(k)));
+        if is_sure {
+            judge.layer(index, [&three[0].0, &three[1].0, &three[2].0])
+        } else {
+            Verdict { is_unsure: true, ..Verdict::default() }
+        }
     });
     judged.collect()
 }
@@ -106,7 +122,12 @@ fn line_width(print: &Print) -> f64 {
 }
 
 /// Adds up, and judges the amounts.
-fn sums(print: &Print, terms: &Terms, areas: &[Areas], found: &mut Findings) -> Sums {
+fn sums(
+    print: &Print,
+    terms: &Terms,
+    (areas, has_roles): (&[Areas], bool),
+    found: &mut Findings,
+) -> Sums {
     let mut sums = Sums::default();
     let heights = print.layers.iter().map(|layer| layer.height);
     for (areas, height) in areas.iter().zip(heights) {
@@ -130,7 +151,11 @@ fn sums(print: &Print, terms: &Terms, areas: &[Areas], found: &mut Findings) -> 
     }
     let [room, plastic] = sums.total.sparse;
     sums.density = (room >= ENOUGH_ROOM).then_some(plastic / room);
-    infill(print, terms, areas, &sums, found);
+    if has_roles {
+        infill(print, terms, areas, &sums, found);
+    } else {
+        sums.density = None;
+    }
     sums
 }
 
@@ -150,8 +175,11 @@ fn infill(print: &Print, terms: &Terms, areas: &[Areas], sums: &Sums, found: &mu
         return;
     }
     let Some(usual) = sums.density.filter(|density| *density > 0.0) else { return };
-    for first in (0..areas.len()).step_by(BLOCK) {
-        let block = first..(first + BLOCK).min(areas.len());
+    // Thick lines fill layers below their own: a last block of a few layers would tell little.
+    for k in 0..(areas.len() / BLOCK).max(1) {
+        let first = k * BLOCK;
+        let rest = areas.len() - first;
+        let block = first..first + if rest < 2 * BLOCK { rest } else { BLOCK };
         let (mut room, mut plastic) = (0.0, 0.0);
         for index in block.clone() {
             room += areas[index].sparse[0] * print.layers[index].height;

@@ -12,6 +12,8 @@ pub struct Terms {
     pub machine: Option<Machine>,
     /// Cross-section of the filament, mm².
     pub filament_area: f64,
+    /// Whether the file is one of this program's, whose rules for faces at the height of a cut are known.
+    pub is_own: bool,
     /// How much more plastic than width times height lines take by settings of the file's own:
     /// walls, skins, sparse infill.
     pub flow: [f64; 3],
@@ -51,6 +53,7 @@ impl Terms {
         Self {
             machine: settings.map(Machine::new),
             filament_area: PI * diameter * diameter / 4.0,
+            is_own: own.is_some(),
             flow: own.map_or([1.0; 3], flow),
             infill: by_file(),
         }
