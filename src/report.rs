@@ -1,5 +1,6 @@
 //! Report: what a run found and made, as versioned JSON (`--report`) and as a three-line summary.
 
+use crate::check::Verdict;
 use crate::error::{Error, Result};
 use crate::gcode::Sums;
 use crate::gcode::flow::Flows;
@@ -49,6 +50,9 @@ pub struct Report {
     pub dual: Option<DualReport>,
     /// Findings.
     pub warnings: Vec<Warning>,
+    /// What `--check` says of the G-code; absent without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub check: Option<Verdict>,
 }
 
 /// The layers of a print.
@@ -284,6 +288,7 @@ pub fn report(
             .chain(tally.warnings())
             .chain(slowed_down(&usage.flows, settings))
             .collect(),
+        check: None,
     })
 }
 

@@ -29,6 +29,11 @@ pub enum Warning {
         /// The area left out, mm², summed over the layers.
         area_mm2: f64,
     },
+    /// Lines that are printed in the air, since the part itself has nothing below there.
+    PartHangs {
+        /// Their length, mm.
+        length_mm: f64,
+    },
     /// Bytes after the last triangle of a binary STL.
     TrailingBytes {
         /// The model's file.
@@ -78,6 +83,11 @@ impl fmt::Display for Warning {
                 "left out {area_mm2:.1} mm² on {} that are thinner than one line; use a smaller \
                  --line-width",
                 plural(*layers as u64, "layer")
+            ),
+            Self::PartHangs { length_mm } => write!(
+                f,
+                "{length_mm:.0} mm of lines begin in the air, where the part has nothing below; \
+                 use --support, or turn the part with --rotate"
             ),
             Self::TrailingBytes { file, count } => {
                 write!(f, "{file}: ignored {} after the last triangle", plural(*count, "byte"))

@@ -55,7 +55,8 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
         text.map_err(|error| Error::input(name, error.to_string()))? + "\n"
     } else {
         let by = judged_by(given.as_ref(), told.as_ref(), &args.against);
-        format!("{name}: {}, {by}\n{}", headline(&verdict), lines(&verdict))
+        let (headline, findings) = (headline(&verdict), findings(&verdict));
+        format!("{name}: {headline}, {by}\n{findings}{}", notes(&verdict))
     };
     Ok(Outcome { text, code })
 }
@@ -77,13 +78,14 @@ fn headline(verdict: &Verdict) -> String {
     format!("{found} in {layers} and {}", plural(verdict.moves as u64, "move"))
 }
 
-/// Findings, measures and what was not judged, a line each.
-pub(super) fn lines(verdict: &Verdict) -> String {
-    let mut text = String::new();
-    for count in &verdict.counts {
-        text.push_str(&of_kind(verdict, count.code, count.count));
-    }
-    text.push_str(&measures(&verdict.measures));
+/// Findings, a line each.
+pub(super) fn findings(verdict: &Verdict) -> String {
+    verdict.counts.iter().map(|count| of_kind(verdict, count.code, count.count)).collect()
+}
+
+/// What was measured, and what was not judged.
+pub(super) fn notes(verdict: &Verdict) -> String {
+    let mut text = measures(&verdict.measures);
     for not in &verdict.not_judged {
         text.push_str(&format!("not judged: {not}\n"));
     }

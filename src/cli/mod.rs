@@ -11,27 +11,18 @@ mod model;
 mod output;
 mod preview;
 mod progress;
+mod slice;
 mod summary;
 mod usage;
 mod viewer;
 
-use args::{Arguments, Command, ProfileCommand, SliceArgs};
+use args::{Arguments, Command, ProfileCommand};
 use clap::{CommandFactory as _, Parser as _};
-use output::Sink;
-use slicer::Job;
-use slicer::error::{Error, Result};
-use slicer::profile::{self, Profile};
-use slicer::progress::Progress;
-use slicer::report::Report;
-use slicer::warning::plural;
+use slicer::error::Result;
+use slicer::profile;
 use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::Path;
-use std::sync::Arc;
-use std::time::Instant;
-
-/// Exit code of a run that is done but has findings, with `--strict`.
-const STRICT: u8 = 1;
 
 /// What a subcommand has to say: the text for standard output, and the exit code.
 struct Outcome {
@@ -68,7 +59,7 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
         Err(error) => return refused(&error, words.get(1).and_then(|word| word.to_str())),
     };
     let done = match &arguments.command {
-        None => slice(&arguments.slice),
+        None => slice::run(&arguments.slice),
         Some(command) => other(command).and_then(Outcome::tell),
     };
     done.unwrap_or_else(|error| {
@@ -111,89 +102,6 @@ fn refused(error: &clap::Error, first: Option<&str>) -> u8 {
 /// Text for people. There is nowhere left to report that it cannot be written.
 fn say(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
-}
-
-fn slice(args: &SliceArgs) -> Result<u8> {
-    let started = Instant::now();
-    interrupt::watch();
-    let Some(out) = args.output.as_deref() else {
-        return Err(Error::Usage("no output; give one with -o".to_owned()));
-    };
-    usage::check(args, out)?;
-    let profile = load(args)?;
-    if args.verbose {
-        say(&summary::settings(&profile));
-    }
-    let mut sink = Sink::open(out)?;
-    let report_sink = args.report.as_deref().map(|path| Ok((path, Sink::open(path)?)));
-    let report_sink = report_sink.transpose()?;
-
-    let report = work(args, out, profile, &mut sink)?;
-    if !args.quiet {
-        say(&summary::notes(&report));
-    }
-    for warning in &report.warnings {
-        say(&format!("warning: {warning}\n"));
-    }
-    // The report is written before the G-code is put in place, so that a full
-    // disk leaves neither.
-    let report_sink = report_sink.map(|(path, sink)| write_report(path, sink, &report));
-    let report_sink = report_sink.transpose()?;
-    sink.commit()?;
-    report_sink.map_or(Ok(()), Sink::commit)?;
-    if args.verbose {
-        say(&summary::roles(&report));
-    }
-    if !args.quiet {
-        say(&summary::summary(&report, started.elapsed()));
-    }
-    Ok(findings(args.strict, report.warnings.len()))
-}
-
-/// The exit code of a run that is done: with `--strict` warnings are a failure, though
-/// the output is there to be looked at.
-fn findings(strict: bool, warnings: usize) -> u8 {
-    if !strict || warnings == 0 {
-        return 0;
-    }
-    let warnings = plural(warnings as u64, "warning");
-    say(&format!("error: {warnings} with --strict; look at them before printing\n"));
-    STRICT
-}
-
-fn load(args: &SliceArgs) -> Result<Profile> {
-    let mut overrides = args::set_overrides(&args.set)?;
-    overrides.extend(args.settings.overrides());
-    profile::load(&args.profile, &overrides)
-}
-
-/// The pipeline itself, in a pool of the threads asked for, under a progress bar.
-fn work(args: &SliceArgs, out: &Path, profile: Profile, sink: &mut Sink) -> Result<Report> {
-    let job = Job {
-        models: args.inputs.clone(),
-        placement: args.place.placement(),
-        settings: profile.settings,
-        profile: profile.name,
-        output: out.to_owned(),
-    };
-    let progress = Arc::new(Progress::default());
-    let _meter = progress::Meter::start(&progress, !args.quiet);
-    let Some(threads) = args.threads else {
-        return slicer::slice(&job, sink, &progress);
-    };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(usize::from(threads))
-        .build()
-        .map_err(|error| Error::Usage(format!("--threads {threads}: {error}; use fewer")))?;
-    pool.install(|| slicer::slice(&job, sink, &progress))
-}
-
-fn write_report(path: &Path, mut sink: Sink, report: &Report) -> Result<Sink> {
-    let failed = |source| output::failed(path, "cannot write", source);
-    let mut text = serde_json::to_string_pretty(report).map_err(|error| failed(error.into()))?;
-    text.push('\n');
-    sink.write_all(text.as_bytes()).and_then(|()| sink.flush()).map_err(failed)?;
-    Ok(sink)
 }
 
 fn other(command: &Command) -> Result<Outcome> {

@@ -1,9 +1,10 @@
 //! Path -> Sink: a file that is there whole or not at all, a device, or standard output.
 
+use super::input::BUFFER;
 use super::interrupt;
 use slicer::error::{Error, Result};
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
+use std::io::{self, BufRead, BufReader, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{NamedTempFile, TempPath};
 
@@ -68,6 +69,20 @@ impl Sink {
             Ok(file) => Ok(Closed { name, file: file.into_temp_path(), path }),
             Err(error) => Err(failed(&name, "cannot write", error.into_error())),
         }
+    }
+
+    /// What was written so far, from its beginning. Nothing is to be written afterwards.
+    ///
+    /// # Errors
+    /// What writing the rest gives.
+    pub(crate) fn read_back(&mut self) -> io::Result<impl BufRead> {
+        self.flush()?;
+        let file = match &mut self.target {
+            Target::Unnamed(out, _) => out.get_mut(),
+            Target::Temporary(out, _) => out.get_mut().as_file_mut(),
+        };
+        file.rewind()?;
+        Ok(BufReader::with_capacity(BUFFER, file))
     }
 
     /// Makes what was written the output.

@@ -1,0 +1,147 @@
+//! Arguments of slicing -> G-code, report and exit code: the program's main job.
+
+use super::args::{self, SliceArgs};
+use super::output::{self, Sink};
+use super::{check, interrupt, progress, say, summary, usage};
+use slicer::Job;
+use slicer::check::Model;
+use slicer::check::terms::Terms;
+use slicer::error::{Error, Result};
+use slicer::profile::{self, Profile};
+use slicer::progress::Progress;
+use slicer::reader::Print;
+use slicer::report::Report;
+use slicer::warning::{Warning, plural};
+use std::io::Write as _;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Exit code of a run that is done but has findings: warnings with `--strict`, or of `--check`.
+const FINDINGS: u8 = 1;
+
+/// Slices, and returns the exit code.
+///
+/// # Errors
+/// Everything that can go wrong; then there is no output.
+pub(super) fn run(args: &SliceArgs) -> Result<u8> {
+    let started = Instant::now();
+    interrupt::watch();
+    let Some(out) = args.output.as_deref() else {
+        return Err(Error::Usage("no output; give one with -o".to_owned()));
+    };
+    usage::check(args, out)?;
+    let profile = load(args)?;
+    if args.verbose {
+        say(&summary::settings(&profile));
+    }
+    let mut sink = Sink::open(out)?;
+    let report_sink = args.report.as_deref().map(|path| Ok((path, Sink::open(path)?)));
+    let report_sink = report_sink.transpose()?;
+
+    let report = work(args, out, profile, &mut sink)?;
+    let is_good = report.check.as_ref().is_none_or(|verdict| verdict.findings.is_empty());
+    if !args.quiet {
+        say(&summary::notes(&report));
+    }
+    for warning in &report.warnings {
+        say(&format!("warning: {warning}\n"));
+    }
+    if let Some(verdict) = &report.check {
+        say(&check::findings(verdict));
+        if !args.quiet {
+            say(&check::notes(verdict));
+        }
+    }
+    // The report is written before the G-code is put in place, so that a full
+    // disk leaves neither.
+    let report_sink = report_sink.map(|(path, sink)| write_report(path, sink, &report));
+    let report_sink = report_sink.transpose()?;
+    if is_good {
+        sink.commit()?;
+    }
+    // It tells of findings, too.
+    report_sink.map_or(Ok(()), Sink::commit)?;
+    if !is_good {
+        say(
+            "error: --check has findings, so that no G-code is written; slice without it to see them\n",
+        );
+        return Ok(FINDINGS);
+    }
+    if args.verbose {
+        say(&summary::roles(&report));
+    }
+    if !args.quiet {
+        say(&summary::summary(&report, started.elapsed()));
+    }
+    Ok(findings(args.strict, report.warnings.len()))
+}
+
+/// The exit code of a run that is done: with `--strict` warnings are a failure, though
+/// the output is there to be looked at.
+fn findings(strict: bool, warnings: usize) -> u8 {
+    if !strict || warnings == 0 {
+        return 0;
+    }
+    let warnings = plural(warnings as u64, "warning");
+    say(&format!("error: {warnings} with --strict; look at them before printing\n"));
+    FINDINGS
+}
+
+fn load(args: &SliceArgs) -> Result<Profile> {
+    let mut overrides = args::set_overrides(&args.set)?;
+    overrides.extend(args.settings.overrides());
+    profile::load(&args.profile, &overrides)
+}
+
+/// The pipeline itself, in a pool of the threads asked for, under a progress bar.
+fn work(args: &SliceArgs, out: &Path, profile: Profile, sink: &mut Sink) -> Result<Report> {
+    let job = Job {
+        models: args.inputs.clone(),
+        placement: args.place.placement(),
+        settings: profile.settings,
+        profile: profile.name,
+        output: out.to_owned(),
+    };
+    let progress = Arc::new(Progress::default());
+    let _meter = progress::Meter::start(&progress, !args.quiet);
+    let mut slice = || slice_and_check(&job, args.check, sink, &progress);
+    let Some(threads) = args.threads else { return slice() };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(usize::from(threads))
+        .build()
+        .map_err(|error| Error::Usage(format!("--threads {threads}: {error}; use fewer")))?;
+    pool.install(slice)
+}
+
+/// Slices; with `check` reads the product back and holds it against the models.
+fn slice_and_check(job: &Job, check: bool, sink: &mut Sink, progress: &Progress) -> Result<Report> {
+    let settings = &job.settings;
+    let placed = slicer::place(&job.models, &job.placement, &slicer::bed(&settings.machine))?;
+    let mut report = slicer::slice_placed(job, &placed, sink, progress)?;
+    if !check {
+        return Ok(report);
+    }
+    let failed = |source| output::failed(&job.output, "cannot read back", source);
+    let print = sink
+        .read_back()
+        .and_then(|mut source| Print::read(&mut source, settings.filament.diameter))
+        .map_err(failed)?;
+    let terms = Terms::new(Some(settings), Some(settings), &print);
+    let model = Model { mesh: &placed.mesh, offset: placed.offset };
+    let verdict = slicer::check::check(&print, &terms, Some(model));
+    let length_mm = verdict.measures.part_hangs_mm;
+    if length_mm > 0.0 {
+        report.warnings.push(Warning::PartHangs { length_mm });
+    }
+    report.check = Some(verdict);
+    Ok(report)
+}
+
+fn write_report(path: &Path, mut sink: Sink, report: &Report) -> Result<Sink> {
+    let failed = |source| output::failed(path, "cannot write", source);
+    let mut text = serde_json::to_string_pretty(report).map_err(|error| failed(error.into()))?;
+    text.push('\n');
+    sink.write_all(text.as_bytes()).and_then(|()| sink.flush()).map_err(failed)?;
+    Ok(sink)
+}
