@@ -120,7 +120,7 @@ impl Judge<'_> {
             });
             verdict.findings.extend(patches);
         }
-        self.amounts(lines(), here, &solid, &mut verdict.areas);
+        self.amounts((lines(), layer.height), here, &solid, &mut verdict.areas);
         verdict
     }
 
@@ -164,13 +164,14 @@ impl Judge<'_> {
     /// Areas and plastic of walls and skins, and of sparse infill away from them.
     fn amounts<'s>(
         &self,
-        lines: impl Iterator<Item = &'s Step>,
+        (lines, height): (impl Iterator<Item = &'s Step>, f64),
         here: &Bits,
         solid: &Bits,
         areas: &mut Areas,
     ) {
         let half = self.grid.pixels(LEAST_WIDE / 2.0);
-        let core = here.clone().minus(solid).squares(half, self.grid.pixels(FROM_WALLS));
+        let inside = here.clone().minus(solid);
+        let core = inside.squares(half, self.grid.pixels(FROM_WALLS));
         let area = self.grid.area();
         areas.part = here.count() as f64 * area;
         areas.solid[0] = solid.count() as f64 * area;
@@ -180,7 +181,8 @@ impl Judge<'_> {
             if step.role == Role::Infill {
                 areas.sparse[1] += plastic * share_in(step, &self.grid, &core);
             } else {
-                areas.solid[1] += plastic;
+                // Of a thick line this layer's part: the rest lies in layers below.
+                areas.solid[1] += plastic * (height / f64::from(step.height)).min(1.0);
             }
         }
     }

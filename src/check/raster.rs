@@ -31,16 +31,20 @@ impl Grid {
 
     /// The pixel that a place lies in.
     pub(super) fn pixel(&self, at: [f64; 2]) -> Option<[usize; 2]> {
-        let place = [0, 1].map(|axis| ((at[axis] - self.low[axis]) / self.pitch).floor());
-        let is_in = (0..2).all(|axis| place[axis] >= 0.0 && place[axis] < self.size[axis] as f64);
-        is_in.then(|| place.map(|at| at as usize))
+        let x = (at[0] - self.low[0]) / self.pitch;
+        let y = (at[1] - self.low[1]) / self.pitch;
+        let is_in = x >= 0.0 && y >= 0.0 && x < self.size[0] as f64 && y < self.size[1] as f64;
+        is_in.then_some([x as usize, y as usize])
     }
 
     /// The pixels of a side whose middles lie in `from..to`, mm along the axis.
     pub(super) fn span(&self, axis: usize, from: f64, to: f64) -> std::ops::Range<usize> {
         let first = |at: f64| {
-            let pixel = ((at - self.low[axis]) / self.pitch - 0.5).ceil();
-            pixel.clamp(0.0, self.size[axis] as f64) as usize
+            let pixel = (at - self.low[axis]) / self.pitch - 0.5;
+            let pixel = pixel.clamp(0.0, self.size[axis] as f64);
+            // Rounded up, without the call that `ceil` is on old processors.
+            let whole = pixel as usize;
+            whole + usize::from((whole as f64) < pixel)
         };
         first(from)..first(to)
     }
@@ -155,38 +159,40 @@ impl Bits {
         if radius == 0 || self.is_empty() {
             return self.clone();
         }
-        let join = |a: u64, b: u64| if every { a & b } else { a | b };
         let mut out = Self::new(self.size);
         if every {
             out.bits.fill(u64::MAX);
         }
-        // The disc as stretches: rows that far away are as wide. Rows of one width share the work.
-        let mut wide: Vec<(usize, Self)> = Vec::new();
-        for away in 0..=radius {
+        // The disc as stretches, from its top and bottom to its middle: they only get wider.
+        let (mut rows, mut known) = (self.clone(), 0);
+        for away in (0..=radius).rev() {
             let reach = ((radius * radius - away * away) as f64 + 0.5 * radius as f64).sqrt();
             let reach = (reach as usize).min(radius);
-            if wide.last().is_none_or(|(known, _)| *known != reach) {
-                wide.push((reach, self.along_rows(reach, every)));
-            }
-            let Some((_, rows)) = wide.last() else { continue };
+            // A stretch joined with itself a little aside is a longer one.
+            rows = rows.along_rows(reach - known, every);
+            known = reach;
             for side in [-1_isize, 1].iter().take(if away == 0 { 1 } else { 2 }) {
-                let shift = side * away as isize;
-                for y in 0..self.size[1] {
-                    let from = y.checked_add_signed(shift).filter(|from| *from < self.size[1]);
-                    let target = &mut out.bits[y * self.words..(y + 1) * self.words];
-                    match from {
-                        Some(from) => {
-                            let source = rows.row(from);
-                            target.iter_mut().zip(source).for_each(|(a, b)| *a = join(*a, *b));
-                        }
-                        None if every => target.fill(0),
-                        None => {}
-                    }
-                }
+                out.join_rows(&rows, side * away as isize, every);
             }
         }
         out.trim();
         out
+    }
+
+    /// Joins each row with that of `other` which lies `shift` rows further.
+    fn join_rows(&mut self, other: &Self, shift: isize, every: bool) {
+        for y in 0..self.size[1] {
+            let from = y.checked_add_signed(shift).filter(|from| *from < self.size[1]);
+            let target = &mut self.bits[y * self.words..(y + 1) * self.words];
+            match from {
+                Some(from) if every => {
+                    target.iter_mut().zip(other.row(from)).for_each(|(a, b)| *a &= b);
+                }
+                Some(from) => target.iter_mut().zip(other.row(from)).for_each(|(a, b)| *a |= b),
+                None if every => target.fill(0),
+                None => {}
+            }
+        }
     }
 
     /// Each pixel joined with its neighbours to `reach` on both sides of its row.
@@ -199,7 +205,7 @@ impl Bits {
             let by = step.min(left);
             out.spread(by, every);
             left -= by;
-            step *= 2;
+            step = (2 * step).min(WORD / 2);
         }
         out
     }
@@ -211,47 +217,27 @@ impl Bits {
         while left > 0 {
             let by = step.min(left);
             let before = out.clone();
-            for y in 0..self.size[1] {
-                let near = [y.checked_sub(by), Some(y + by).filter(|y| *y < self.size[1])];
-                let target = &mut out.bits[y * self.words..(y + 1) * self.words];
-                for row in near {
-                    match row {
-                        Some(row) if every => {
-                            target.iter_mut().zip(before.row(row)).for_each(|(a, b)| *a &= b);
-                        }
-                        Some(row) => {
-                            target.iter_mut().zip(before.row(row)).for_each(|(a, b)| *a |= b)
-                        }
-                        None if every => target.fill(0),
-                        None => {}
-                    }
-                }
-            }
+            out.join_rows(&before, by as isize, every);
+            out.join_rows(&before, -(by as isize), every);
             left -= by;
             step *= 2;
         }
         out
     }
 
-    /// Joins each pixel with those `by` before and after it.
+    /// Joins each pixel with those `by` before and after it, less than a word away.
     fn spread(&mut self, by: usize, every: bool) {
-        let (whole, part) = (by / WORD, by % WORD);
-        let words = self.words;
-        let mut before = vec![0; words];
-        for row in self.bits.chunks_exact_mut(words) {
-            before.copy_from_slice(row);
-            let at = |index: isize| {
-                usize::try_from(index).ok().and_then(|i| before.get(i)).copied().unwrap_or(0)
-            };
-            for (k, word) in row.iter_mut().enumerate() {
-                let k = k as isize;
-                let whole = whole as isize;
-                let (mut up, mut down) = (at(k - whole) << part, at(k + whole) >> part);
-                if part > 0 {
-                    up |= at(k - whole - 1) >> (WORD - part);
-                    down |= at(k + whole + 1) << (WORD - part);
-                }
-                *word = if every { *word & up & down } else { *word | up | down };
+        for row in self.bits.chunks_exact_mut(self.words) {
+            if row.iter().all(|word| *word == 0) {
+                continue;
+            }
+            let mut before = 0;
+            for k in 0..row.len() {
+                let (here, after) = (row[k], row.get(k + 1).copied().unwrap_or(0));
+                let up = here << by | before >> (WORD - by);
+                let down = here >> by | after << (WORD - by);
+                row[k] = if every { here & up & down } else { here | up | down };
+                before = here;
             }
         }
         self.trim();
