@@ -1,11 +1,10 @@
 //! Words of the command line -> Arguments: every flag, its help, and the settings it stands for.
 
 use super::preview::PreviewArgs;
+use super::words::{factor, numbers, parts, words};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
-use slicer::error::{Error, Result};
 use slicer::mesh::{Placement, Unit};
-use slicer::profile::keys::{self, Kind};
 use slicer::profile::{DEFAULT, Override, ValueOrigin};
 use std::path::PathBuf;
 
@@ -328,58 +327,6 @@ impl SettingArgs {
             })
             .collect()
     }
-}
-
-/// The overrides that `--set` gives.
-///
-/// # Errors
-/// [`Error::Usage`] for a word without `=`.
-pub(crate) fn set_overrides(words: &[String]) -> Result<Vec<Override>> {
-    let one = |word: &String| {
-        let (key, value) = word.split_once('=').ok_or_else(|| {
-            let word = word.escape_debug();
-            Error::Usage(format!("--set {word}: there is no `=`; write --set KEY=VALUE"))
-        })?;
-        Ok(Override {
-            key: key.trim().to_owned(),
-            value: value.trim().to_owned(),
-            origin: ValueOrigin::Set,
-        })
-    };
-    words.iter().map(one).collect()
-}
-
-/// `all` is short for every part there is.
-pub(crate) fn parts(list: &str) -> String {
-    let all = || words("dual.parts").join(",");
-    if list.trim() == "all" { all() } else { list.to_owned() }
-}
-
-fn words(key: &str) -> &'static [&'static str] {
-    match keys::find(key).map(|key| key.kind) {
-        Some(Kind::Word(words) | Kind::Words(words)) => words,
-        _ => &[],
-    }
-}
-
-fn factor(text: &str) -> std::result::Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| "it must be a number, such as 0.5".to_owned())?;
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
-    } else {
-        Err("it must be more than 0".to_owned())
-    }
-}
-
-/// `N` finite numbers with commas between them.
-pub(super) fn numbers<const N: usize>(text: &str) -> std::result::Result<[f64; N], String> {
-    let wrong = || format!("it must be {N} numbers with commas between them");
-    let parsed: Vec<f64> = text
-        .split(',')
-        .map(|part| part.trim().parse().ok().filter(|number: &f64| number.is_finite()))
-        .collect::<Option<_>>()
-        .ok_or_else(wrong)?;
-    parsed.try_into().map_err(|_| wrong())
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! `slicer check` -> what is wrong with a G-code file, as lines or as JSON.
 
-use super::args::{self, CheckArgs};
+use super::args::CheckArgs;
+use super::words;
 use super::{Outcome, input};
 use slicer::check::finding::Code;
 use slicer::check::terms::Terms;
@@ -26,7 +27,7 @@ const ANY_BED: Bed = Bed { min: [-5000.0; 2], max: [5000.0; 2], height: 10_000.0
 /// A profile or setting that is wrong, a file or model that cannot be read, a file without a move.
 pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let given = args.profile.as_deref().map(|name| {
-        let overrides = args::set_overrides(&args.set)?;
+        let overrides = words::set_overrides(&args.set)?;
         profile::load(name, &overrides)
     });
     let given = given.transpose()?;

@@ -1,6 +1,7 @@
 //! `slicer compare` -> what plain printing and each way of dual injection take, as a table or as JSON.
 
-use super::args::{self, CompareArgs};
+use super::args::CompareArgs;
+use super::words;
 use slicer::Job;
 use slicer::compare::{self, Comparison, Way};
 use slicer::error::{Error, Result};
@@ -56,7 +57,7 @@ fn ways(args: &CompareArgs) -> Result<Vec<(String, Profile)>> {
         ways.push((format!("--dual --dual-ratio {ratio}"), profile));
     }
     for parts in ["infill", "infill,support", "infill,support,inner-walls", "all"] {
-        let profile = load(args, &[pair, ("dual.parts", &args::parts(parts))])?;
+        let profile = load(args, &[pair, ("dual.parts", &words::parts(parts))])?;
         if profile.settings.dual.parts != ways[1].1.settings.dual.parts {
             ways.push((format!("--dual --dual-parts {parts}"), profile));
         }
@@ -65,7 +66,7 @@ fn ways(args: &CompareArgs) -> Result<Vec<(String, Profile)>> {
 }
 
 fn load(args: &CompareArgs, more: &[(&str, &str)]) -> Result<Profile> {
-    let mut overrides = args::set_overrides(&args.set)?;
+    let mut overrides = words::set_overrides(&args.set)?;
     overrides.extend(args.settings.overrides());
     overrides.extend(more.iter().map(|(key, value)| Override {
         key: (*key).to_owned(),

@@ -2,7 +2,7 @@
 
 mod text;
 
-use super::{Outcome, args, input};
+use super::{Outcome, input, words};
 use clap::Args;
 use serde::Serialize;
 use slicer::diff::{Difference, Side, Tolerances, diff};
@@ -110,7 +110,7 @@ fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Resul
 
 /// The profile by whose limits both files are timed, and where it is from.
 fn clock(args: &DiffArgs, a: &Print, b: &Print) -> Result<(Profile, String)> {
-    let overrides = args::set_overrides(&args.set)?;
+    let overrides = words::set_overrides(&args.set)?;
     let name = args.profile.as_deref();
     let asked = profile::load(name.unwrap_or(profile::DEFAULT), &overrides)?;
     if name.is_some() {

@@ -1,7 +1,8 @@
 //! `slicer estimate` -> how long a G-code file takes, as a table or as JSON.
 
-use super::args::{self, EstimateArgs};
+use super::args::EstimateArgs;
 use super::input;
+use super::words;
 use slicer::error::{Error, Result};
 use slicer::estimate::{self, Estimate, LayerTime, NotCounted, Options};
 use slicer::motion::Limits;
@@ -13,7 +14,7 @@ use slicer::warning::plural;
 /// # Errors
 /// A profile or setting that is wrong, a file that cannot be read or holds no move.
 pub(super) fn run(args: &EstimateArgs) -> Result<String> {
-    let profile = profile::load(&args.profile, &args::set_overrides(&args.set)?)?;
+    let profile = profile::load(&args.profile, &words::set_overrides(&args.set)?)?;
     let settings = &profile.settings;
     let options =
         Options { filament_diameter: settings.filament.diameter, fixed_limits: args.fixed_limits };

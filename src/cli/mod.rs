@@ -15,6 +15,7 @@ mod slice;
 mod summary;
 mod usage;
 mod viewer;
+mod words;
 
 use args::{Arguments, Command, ProfileCommand};
 use clap::{CommandFactory as _, Parser as _};
@@ -91,7 +92,9 @@ fn refused(error: &clap::Error, first: Option<&str>) -> u8 {
             2
         }
         kind => {
-            let command = first.filter(|_| kind == MissingRequiredArgument).and_then(usage::meant);
+            let command = first
+                .filter(|_| kind == MissingRequiredArgument)
+                .and_then(|word| usage::meant(word, &Arguments::command()));
             let told = command.unwrap_or_else(|| usage::one_line(&text.to_string()));
             say(&format!("error: {told}\n"));
             2
@@ -108,7 +111,7 @@ fn other(command: &Command) -> Result<Outcome> {
     let text = match command {
         Command::Profile(ProfileCommand::List) => list()?,
         Command::Profile(ProfileCommand::Show { name, set, verbose }) => {
-            let profile = profile::load(name, &args::set_overrides(set)?)?;
+            let profile = profile::load(name, &words::set_overrides(set)?)?;
             profile::document(&profile, *verbose)
         }
         Command::Profile(ProfileCommand::Check { name }) => {

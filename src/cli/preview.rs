@@ -1,7 +1,7 @@
 //! `slicer preview` -> pictures of what a G-code file prints, a page to look through it, or a picture of a model.
 
 use super::output::{self, Sink};
-use super::{args, input, interrupt, model, say, usage, viewer};
+use super::{input, interrupt, model, say, usage, viewer, words};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use slicer::error::{Error, Result};
@@ -177,7 +177,7 @@ fn model_itself(args: &PreviewArgs, format: Format) -> Result<()> {
 
 /// The file's name for messages, and what it prints.
 fn read(args: &PreviewArgs) -> Result<(&str, Print)> {
-    let profile = profile::load(&args.profile, &args::set_overrides(&args.set)?)?;
+    let profile = profile::load(&args.profile, &words::set_overrides(&args.set)?)?;
     let (name, mut source) = input::open(&args.file)?;
     let print = Print::read(&mut source, profile.settings.filament.diameter)
         .map_err(|error| input::unreadable(name, &error))?;
@@ -295,7 +295,7 @@ fn page(args: &PreviewArgs) -> Result<()> {
             "{flag} is for pictures, and a page shows everything; leave it out, or write .svg or .png"
         )));
     }
-    let profile = profile::load(&args.profile, &args::set_overrides(&args.set)?)?;
+    let profile = profile::load(&args.profile, &words::set_overrides(&args.set)?)?;
     let told = viewer::write(&args.file, &args.output, &profile.settings)?;
     if !args.quiet {
         say(&told);
@@ -328,7 +328,7 @@ fn plane(text: &str) -> std::result::Result<Plane, String> {
 }
 
 fn corners(text: &str) -> std::result::Result<Frame, String> {
-    let [x, y, to_x, to_y] = args::numbers(text)?;
+    let [x, y, to_x, to_y] = words::numbers(text)?;
     let mut frame = Frame::EMPTY;
     frame.include([x, y], 0.0);
     frame.include([to_x, to_y], 0.0);

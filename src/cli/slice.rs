@@ -1,7 +1,8 @@
 //! Arguments of slicing -> G-code, report and exit code: the program's main job.
 
-use super::args::{self, SliceArgs};
+use super::args::SliceArgs;
 use super::output::{self, Sink};
+use super::words;
 use super::{check, interrupt, progress, say, summary, usage};
 use slicer::Job;
 use slicer::check::Model;
@@ -30,7 +31,7 @@ pub(super) fn run(args: &SliceArgs) -> Result<u8> {
     let Some(out) = args.output.as_deref() else {
         return Err(Error::Usage("no output; give one with -o".to_owned()));
     };
-    usage::check(args, out)?;
+    no_file_twice(args, out)?;
     let profile = load(args)?;
     if args.verbose {
         say(&summary::settings(&profile));
@@ -77,6 +78,37 @@ pub(super) fn run(args: &SliceArgs) -> Result<u8> {
     Ok(findings(args.strict, report.warnings.len()))
 }
 
+/// Checks that no two arguments mean the same file.
+///
+/// # Errors
+/// [`Error::Usage`].
+fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
+    if args.inputs.iter().filter(|input| *input == "-").count() > 1 {
+        return usage::refuse("`-` is given twice; standard input holds one model");
+    }
+    let report = args.report.as_deref();
+    if output::is_stdout(out) && report.is_some_and(output::is_stdout) {
+        return usage::refuse(
+            "G-code and report cannot both go to standard output; name a file for one",
+        );
+    }
+    let same = |a: &Path, b: &Path| {
+        !output::is_stdout(a) && !output::is_stdout(b) && usage::is_same_file(a, b)
+    };
+    if report.is_some_and(|report| same(report, out)) {
+        return usage::refuse("-o and --report name the same file; name two");
+    }
+    for product in std::iter::once(out).chain(report) {
+        let read = args.inputs.iter().map(String::as_str).chain([args.profile.as_str()]);
+        if let Some(name) = read.into_iter().find(|name| same(product, Path::new(name))) {
+            return usage::refuse(&format!(
+                "the output would replace {name}; choose another name for it"
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// The exit code of a run that is done: with `--strict` warnings are a failure, though
 /// the output is there to be looked at.
 fn findings(strict: bool, warnings: usize) -> u8 {
@@ -89,7 +121,7 @@ fn findings(strict: bool, warnings: usize) -> u8 {
 }
 
 fn load(args: &SliceArgs) -> Result<Profile> {
-    let mut overrides = args::set_overrides(&args.set)?;
+    let mut overrides = words::set_overrides(&args.set)?;
     overrides.extend(args.settings.overrides());
     profile::load(&args.profile, &overrides)
 }

@@ -1,36 +1,9 @@
-//! Arguments -> verdict: combinations that clap cannot know, and its errors on one line.
+//! Arguments -> verdict: files that are named twice, words that were meant, and clap's errors on one line.
 
-use super::args::SliceArgs;
 use super::output::is_stdout;
-use clap::CommandFactory as _;
 use slicer::error::{Error, Result};
 use slicer::profile::suggest;
 use std::path::{Path, PathBuf};
-
-/// Checks that no two arguments mean the same file.
-///
-/// # Errors
-/// [`Error::Usage`].
-pub(super) fn check(args: &SliceArgs, out: &Path) -> Result<()> {
-    if args.inputs.iter().filter(|input| *input == "-").count() > 1 {
-        return refuse("`-` is given twice; standard input holds one model");
-    }
-    let report = args.report.as_deref();
-    if is_stdout(out) && report.is_some_and(is_stdout) {
-        return refuse("G-code and report cannot both go to standard output; name a file for one");
-    }
-    let same = |a: &Path, b: &Path| !is_stdout(a) && !is_stdout(b) && is_same_file(a, b);
-    if report.is_some_and(|report| same(report, out)) {
-        return refuse("-o and --report name the same file; name two");
-    }
-    for product in std::iter::once(out).chain(report) {
-        let read = args.inputs.iter().map(String::as_str).chain([args.profile.as_str()]);
-        if let Some(name) = read.into_iter().find(|name| same(product, Path::new(name))) {
-            return refuse(&format!("the output would replace {name}; choose another name for it"));
-        }
-    }
-    Ok(())
-}
 
 /// Checks that a product does not replace the file that it is made from.
 ///
@@ -44,8 +17,7 @@ pub(super) fn replaces(product: &Path, input: &str) -> Result<()> {
 }
 
 /// What a first word seems to mean that is neither command nor file, in a sentence.
-pub(super) fn meant(word: &str) -> Option<String> {
-    let commands = super::args::Arguments::command();
+pub(super) fn meant(word: &str, commands: &clap::Command) -> Option<String> {
     let names = commands.get_subcommands().map(clap::Command::get_name).chain(["--help"]);
     // A command that is known lacks something of its own.
     let unknown = |name: &&str| *name != word && !Path::new(word).exists();
@@ -53,13 +25,14 @@ pub(super) fn meant(word: &str) -> Option<String> {
     Some(format!("there is no command {word}; did you mean `slicer {name}`?"))
 }
 
-fn refuse(why: &str) -> Result<()> {
+/// A refusal.
+pub(super) fn refuse(why: &str) -> Result<()> {
     Err(Error::Usage(why.to_owned()))
 }
 
 /// Devices may well be named twice, only files are compared; files that are
 /// not there yet, too.
-fn is_same_file(a: &Path, b: &Path) -> bool {
+pub(super) fn is_same_file(a: &Path, b: &Path) -> bool {
     real_path(a).is_some_and(|a| real_path(b) == Some(a))
 }
 
