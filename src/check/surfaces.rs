@@ -24,6 +24,10 @@ const BLOCK: usize = 12;
 /// Less room for infill tells nothing of its density, mm³.
 const LEAST_ROOM: f64 = 150.0;
 
+/// A layer with less room for infill has none, mm², and a block with fewer layers tells nothing.
+const LEAST_CORE: f64 = 20.0;
+const LEAST_LAYERS: usize = 5;
+
 /// Infill of a block may be this part of what is asked for …
 const BLOCK_SLACK: [f64; 2] = [0.5, 1.7];
 
@@ -186,7 +190,12 @@ fn infill(print: &Print, terms: &Terms, areas: &[Areas], sums: &Sums, found: &mu
             room += areas[index].sparse[0] * print.layers[index].height;
             plastic += areas[index].sparse[1];
         }
-        if room < LEAST_ROOM || is_within(plastic / room / usual, BLOCK_SLACK) {
+        // A thick line fills layers of the block before: of few layers that tells nothing.
+        let layers = block.clone().filter(|k| areas[*k].sparse[0] >= LEAST_CORE).count();
+        if layers < LEAST_LAYERS
+            || room < LEAST_ROOM
+            || is_within(plastic / room / usual, BLOCK_SLACK)
+        {
             continue;
         }
         let percent = [plastic / room, usual].map(|part| short(100.0 * part));
