@@ -15,9 +15,11 @@ use slicer::geom::spans::{Rows, Span, total};
 use slicer::geom::{Contour, Point, double_area, polygon};
 use slicer::mesh::{Bed, stl, transform};
 use slicer::region::Params;
+use slicer::region::bend::LinePoint;
 use slicer::region::classify::Areas;
 use slicer::region::divide::divide;
 use slicer::region::raster::{Raster, Scan};
+use slicer::region::rings::Bead;
 use slicer::slice::{Heights, Layer, Slicer};
 use slicer::units::{Coord, UNITS_PER_MM, to_units};
 
@@ -211,6 +213,70 @@ proptest! {
                 }
             }
         }
+    }
+}
+
+/// A blade, `length` mm long and turned by `degrees`: its walls `wide` mm apart on average
+/// and each bent in its own way by up to a fifth of a millimetre.
+fn blade(length: f64, wide: f64, bends: &[f64], degrees: f64) -> Outline {
+    let (sine, cosine) = degrees.to_radians().sin_cos();
+    let half = bends.len() / 2;
+    let last = (half - 1) as f64;
+    let side = |k: usize| (length * k as f64 / last, wide / 2.0);
+    let below = (0..half).map(|k| (side(k).0, bends[k] - side(k).1));
+    let above = (0..half).rev().map(|k| (side(k).0, bends[half + k] + side(k).1));
+    let turned = |(x, y): (f64, f64)| [x * cosine - y * sine, x * sine + y * cosine];
+    below.chain(above).map(turned).collect()
+}
+
+/// The longest stretch of `beads` that runs along another bead, or back along its own, with
+/// their middles nearer than `apart`; grid units, in steps of 500.
+fn longest_twice(beads: &[Bead], apart: f64) -> f64 {
+    const STEP: f64 = 500.0;
+    let point = |p: &LinePoint| [f64::from(p.u), f64::from(p.v)];
+    let segments: Vec<[[f64; 2]; 2]> =
+        beads.iter().flat_map(|b| b.windows(2)).map(|w| [point(&w[0]), point(&w[1])]).collect();
+    let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+    let minus = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
+    let mut longest = 0.0_f64;
+    for (k, &[a, b]) in segments.iter().enumerate() {
+        let way = minus(b, a);
+        let length = dot(way, way).sqrt();
+        let mut run = 0.0;
+        for n in 0..(length / STEP) as usize {
+            let at = [0, 1].map(|i| a[i] + way[i] * (n as f64 + 0.5) * STEP / length);
+            let beside =
+                segments.iter().enumerate().filter(|(other, _)| *other != k).any(|(_, &[c, d])| {
+                    let along = minus(d, c);
+                    let t = dot(minus(at, c), along) / dot(along, along).max(1.0);
+                    let off = minus(at, [0, 1].map(|i| c[i] + t * along[i]));
+                    (0.0..=1.0).contains(&t) && dot(off, off) < apart * apart
+                });
+            run = if beside { run + STEP } else { 0.0 };
+            longest = longest.max(run);
+        }
+    }
+    longest
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn a_blade_is_not_laid_twice(
+        length in 5.0..20.0_f64, lines in 0.5..3.0_f64, degrees in 0.0..360.0_f64, raster: bool,
+        bends in (2..5_usize).prop_flat_map(|n| prop::collection::vec(-0.2..0.2_f64, 2 * n)),
+    ) {
+        let params = Params::new(&settings("generic-marlin", &[("walls", "1")]));
+        let w = f64::from(params.line_width) / UNITS_PER_MM;
+        // As it comes, or along the lines up to what its walls lean.
+        let degrees = if raster { 45.0 } else { degrees };
+        let outline = blade(length, (2.0 + lines) * w, &bends, degrees);
+        let layers = stack(&params, &[vec![outline]]);
+        let (_, beads) = divide(0, 0..2, &|k| layers.get(k), &params);
+        let twice = longest_twice(&beads, f64::from(params.line_width) / 2.0);
+        // Two beads that come together to go on as one are this near for a short way.
+        prop_assert!(twice <= 20_000.0, "{} of {:?}", twice, beads);
     }
 }
 

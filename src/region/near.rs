@@ -89,6 +89,18 @@ impl Near {
         rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
     }
 
+    /// The edge nearest to `p`, within the area, among those nearer than `distance`.
+    pub(super) fn nearest(&self, p: [f64; 2], distance: f64) -> Option<[[f64; 2]; 2]> {
+        let (low, high) = (p.map(|x| x - distance), p.map(|x| x + distance));
+        let items = self.cells(low, high).flat_map(|cell| {
+            let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
+            self.items[range].iter().map(|&k| self.edges[k as usize])
+        });
+        let far = items.map(|edge| (distance2(p, edge), edge));
+        let nearer = far.filter(|(far, _)| *far < distance * distance);
+        nearer.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, edge)| edge)
+    }
+
     /// Whether no wall is nearer to `p`, within the area, than `distance`.
     pub(super) fn is_free(&self, p: [f64; 2], distance: f64) -> bool {
         let (low, high) = (p.map(|x| x - distance), p.map(|x| x + distance));
@@ -120,6 +132,9 @@ mod tests {
         let square = vec![p(0, 0), p(40_000, 0), p(40_000, 40_000), p(0, 40_000)];
         let area = Area::around([[0.0; 2], [40_000.0; 2]].into_iter(), 10_000.0);
         let near = Near::new(&[square], area, 4_000.0);
+        let bottom = Some([[0.0, 0.0], [40_000.0, 0.0]]);
+        assert_eq!(near.nearest([20_000.0, 3_000.0], 3_001.0), bottom);
+        assert_eq!(near.nearest([20_000.0, 3_000.0], 3_000.0), None);
         for (at, far) in [([20_000.0, 3_000.0], 3_000.0), ([39_000.0, 20_000.0], 1_000.0)] {
             assert!(near.is_free(at, far));
             assert!(!near.is_free(at, far + 1.0));

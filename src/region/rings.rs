@@ -76,8 +76,7 @@ fn place(station: &Station, index: usize, near: &Near, params: &Params) -> Optio
     let single = station.shared && 2.0 * station.depth < SINGLE * w;
     let (width, from) = if single {
         // One of the two walls lays the bead between them.
-        let [x, y] = station.normal;
-        (2.0 * station.depth, (x > 0.0 || (x == 0.0 && y > 0.0)).then_some(0.0)?)
+        (2.0 * station.depth, station.leads.then_some(0.0)?)
     } else {
         let even = station.depth / station.beads as f64;
         let width = if station.shared { even } else { even.max(NARROWEST * w) };
@@ -269,6 +268,40 @@ mod tests {
         for p in beads.iter().flatten().filter(|p| p.u > 20_000 && p.u < 280_000) {
             assert!((p.width - 4_500).abs() <= 2, "{p:?}");
             assert!([6_250, 10_750].iter().any(|v| (p.v - v).abs() <= 2), "{p:?}");
+        }
+    }
+
+    /// The beads of a strip about along x, 1.24 mm wide with its walls at the middle. It is
+    /// `lean` narrower on the right than on the left, and rises by `turn` from left to right.
+    fn leaning(lean: Coord, turn: Coord) -> Vec<Bead> {
+        let p = |x, y| Point { x, y };
+        let (left, right) = (-turn / 2, turn / 2);
+        let half = 6_200;
+        beads(
+            &[vec![
+                p(0, left - half - lean / 4),
+                p(300_000, right - half + lean / 4),
+                p(300_000, right + half - lean / 4),
+                p(0, left + half + lean / 4),
+            ]],
+            10_000,
+        )
+        .0
+    }
+
+    #[test]
+    fn one_of_two_walls_lays_the_bead_between_them_whichever_way_they_lean() {
+        for lean in [-800, -40, 0, 40, 800] {
+            for turn in [-3_000, -300, -10, 0, 10, 300, 3_000] {
+                let beads = leaning(lean, turn);
+                assert_eq!(beads.len(), 1, "lean {lean} turn {turn}: {beads:?}");
+                let steps = beads[0].windows(2).map(|w| f64::from((w[1].u - w[0].u).abs()));
+                let length: f64 = steps.sum();
+                assert!(
+                    (284_000.0..=292_000.0).contains(&length),
+                    "lean {lean} turn {turn}: {length}"
+                );
+            }
         }
     }
 

@@ -62,6 +62,8 @@ pub(super) struct Station {
     pub depth: f64,
     /// The depth ends half-way to another wall, which lays beads as well.
     pub shared: bool,
+    /// Of these two walls this is the one that lays a bead which both share.
+    pub leads: bool,
     /// How many beads it takes; 0 where there is no skin or too much.
     pub beads: usize,
     /// Distance from the wall's first point along the wall.
@@ -105,14 +107,27 @@ fn settled(wall: &Contour, mut found: Vec<Station>, params: &Params) -> Vec<Stat
 impl Station {
     /// Keeps no beads where the wall at the other end of the row is not beside this one:
     /// beyond the middle of a strip the other wall is the nearer one, in a corner it is not.
+    /// Else settles which of the two leads.
     fn confirm(&mut self, near: &Near, params: &Params) {
         let across = 2.0 * (self.depth + f64::from(params.line_width) / 2.0);
         let beyond = [0, 1].map(|k| self.at[k] + BEYOND * across * self.normal[k]);
-        if near.is_free(beyond, (1.0 - BEYOND + SLOPE) * across) {
+        if let Some(other) = near.nearest(beyond, (1.0 - BEYOND + SLOPE) * across) {
+            self.leads = leads(self.normal, other);
+        } else {
             self.shared = false;
             self.beads = 0;
         }
     }
+}
+
+/// Whether a wall with this normal leads the one with edge `other`, by where the strip
+/// between them lies seen from it. The difference of the two normals is the same one
+/// from the other side, but for its sign: of two walls that lean either way one leads.
+fn leads(normal: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
+    let [x, y] = [to[0] - from[0], to[1] - from[1]];
+    let length = (x * x + y * y).sqrt().max(1.0);
+    let [x, y] = [normal[0] + y / length, normal[1] - x / length];
+    x > 0.0 || (x == 0.0 && y > 0.0)
 }
 
 /// Where rows cross the inner edge of the walls: each edge of the wall under the raster
@@ -188,6 +203,7 @@ impl Edge {
                 normal: self.normal(),
                 depth: 0.0,
                 shared: false,
+                leads: false,
                 beads: 0,
                 way: self.way + t * self.length,
                 skin: false,
@@ -308,10 +324,12 @@ fn bridge(stations: &mut [Station], round: f64, params: &Params) {
             continue;
         }
         let model = if before.depth <= after.depth { before } else { after };
+        // Around the end of a strip the wall turns from one side to the other.
+        let leads = before.leads || after.leads;
         for k in from..to {
             let station = &mut stations[k % n];
             let Station { depth, shared, beads, .. } = model;
-            *station = Station { depth, shared, beads, ..*station };
+            *station = Station { depth, shared, leads, beads, ..*station };
         }
     }
 }
@@ -363,7 +381,8 @@ fn with_corners(wall: &Contour, found: &[Station], round: f64, params: &Params) 
             nearest.1.depth
         };
         let beads = if nearest.0 <= most { nearest.1.beads } else { 0 };
-        let corner = Station { at: edge.from, way, depth, beads, ..nearest.1 };
+        let leads = a.1.leads || b.1.leads;
+        let corner = Station { at: edge.from, way, depth, leads, beads, ..nearest.1 };
         add_corner(&before, &edge, corner, &mut out);
         way += edge.length;
         while let Some(station) = found.get(next).filter(|s| s.way <= way) {
