@@ -33,6 +33,9 @@ const FROM_WALLS: f64 = 0.5;
 /// … and how wide a place must be for its lines to show their density, mm.
 const LEAST_WIDE: f64 = 6.0;
 
+/// Heights that differ by less are the same, mm.
+const SAME_HEIGHT: f64 = 1e-3;
+
 /// Pieces that lines are measured in, mm.
 const PIECE: f64 = 0.2;
 
@@ -67,6 +70,8 @@ pub(super) struct Judge<'a> {
     pub(super) grid: Grid,
     /// Usual width of a wall, mm.
     pub(super) line_width: f64,
+    /// Height of the tallest line, mm.
+    pub(super) tallest: f64,
     pub(super) terms: &'a Terms,
     /// Whether roles are told, so that lines of the part can be told from others.
     pub(super) has_roles: bool,
@@ -91,7 +96,9 @@ impl Judge<'_> {
             let into = if step.role == Role::Infill { &mut sparse } else { &mut solid };
             Capsule::of(step, 1.0).draw(&self.grid, into);
         }
-        let printed = sparse.or(&solid);
+        let own = sparse.or(&solid);
+        let reaching = self.from_above(index);
+        let (printed, closed) = (own.clone().or(&reaching), solid.clone().or(&reaching));
         let printable = here.opened(self.grid.pixels(self.line_width * PRINTABLE / 2.0));
 
         let mut verdict = Verdict::default();
@@ -104,7 +111,7 @@ impl Judge<'_> {
         verdict.findings.extend(patches);
 
         let exposed = here.clone().minus(above).or(&here.clone().minus(below)).and(&printable);
-        let open = exposed.clone().minus(&solid);
+        let open = exposed.clone().minus(&closed);
         verdict.areas.surface = self.shares(&exposed, &open);
         // What the outline lacks has been told.
         let open = open.minus(&rim);
@@ -114,7 +121,7 @@ impl Judge<'_> {
         verdict.findings.extend(patches);
 
         if self.has_roles {
-            let out = printed.minus(&here.grown(self.grid.pixels(MOST_OUT)));
+            let out = own.minus(&here.grown(self.grid.pixels(MOST_OUT)));
             let patches = self.patches(&out, index, layer, Code::OutsidePart, |area| {
                 format!("{area} mm² are printed beside the part")
             });
@@ -122,6 +129,24 @@ impl Judge<'_> {
         }
         self.amounts((lines(), layer.height), here, &solid, &mut verdict.areas);
         verdict
+    }
+
+    /// What thick walls and skins of the layers above cover of this one.
+    fn from_above(&self, index: usize) -> Bits {
+        let z = self.print.layers[index].z;
+        let mut bits = Bits::new(self.grid.size);
+        let above = self.print.layers[index + 1..].iter();
+        for layer in above.take_while(|layer| layer.z - self.tallest < z - SAME_HEIGHT) {
+            let reaches = |step: &&Step| {
+                step.role != Role::Infill && layer.z - f64::from(step.height) < z - SAME_HEIGHT
+            };
+            let steps = self.print.moves_of(layer).iter();
+            steps
+                .filter(|step| is_of_part(step, self.has_roles))
+                .filter(reaches)
+                .for_each(|step| Capsule::of(step, 1.0).draw(&self.grid, &mut bits));
+        }
+        bits
     }
 
     /// An area, and it less what is open of it, mm².

@@ -62,6 +62,7 @@ pub(super) fn check(
         part,
         grid: Grid::over(low, high, 1.0, PITCH, MOST_PIXELS),
         line_width: line_width(print),
+        tallest: print.moves.iter().map(|step| f64::from(step.height)).fold(0.0, f64::max),
         terms,
         has_roles,
     };

@@ -180,7 +180,7 @@ fn read(args: &PreviewArgs) -> Result<(&str, Print)> {
     let profile = profile::load(&args.profile, &args::set_overrides(&args.set)?)?;
     let (name, mut source) = input::open(&args.file)?;
     let print = Print::read(&mut source, profile.settings.filament.diameter)
-        .map_err(|error| Error::input(name, format!("cannot read: {error}; check the path")))?;
+        .map_err(|error| input::unreadable(name, &error))?;
     if layer::frame(&print, &print.layers).is_empty() {
         let why = "nothing is printed in it; give a G-code file that a slicer has written";
         return Err(Error::input(name, why));
