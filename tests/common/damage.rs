@@ -87,11 +87,18 @@ pub(crate) fn largest(verdict: &Verdict, code: Code) -> &Finding {
     verdict.findings.iter().find(|finding| finding.code == code).unwrap()
 }
 
-/// The findings of these kinds and no others are there; the largest of the first kind is returned.
+/// The largest finding of the first of these kinds, which are all that are found.
 #[track_caller]
 pub(crate) fn only<'v>(verdict: &'v Verdict, codes: &[Code]) -> &'v Finding {
     assert_eq!(kinds(verdict), codes, "{}", listed(verdict));
     &verdict.findings[0]
+}
+
+/// What is found but for sums, which follow from many faults.
+pub(crate) fn without_sums(mut verdict: Verdict) -> Verdict {
+    verdict.findings.retain(|finding| finding.code != Code::WrongSums);
+    verdict.counts.retain(|count| count.code != Code::WrongSums);
+    verdict
 }
 
 /// Some of what is found, a line each.
