@@ -298,3 +298,34 @@ fn strict_run_with_a_warning_is_done_but_exits_with_1() {
         std::fs::remove_file(folder.path().join("a.gcode")).unwrap();
     }
 }
+
+#[test]
+fn a_product_that_the_check_finds_fault_with_is_not_put_in_place() {
+    let folder = folder();
+    write_block(&folder.path().join("block.stl"));
+    fs::write(folder.path().join("a.gcode"), "old").unwrap();
+    // Axes that are slower than the feeds asked for.
+    let words = ["block.stl", "-q", "--check", "--set", "limits.feed_x=60", "--report", "a.json"];
+    for out in ["a.gcode", "-"] {
+        let run = slicer(&folder).args(words).args(["-o", out]).assert().code(1).stdout("");
+        run.stderr(
+            predicate::str::starts_with("too-fast: line ")
+                .and(predicate::str::contains("error: --check has findings")),
+        );
+        assert_eq!(fs::read(folder.path().join("a.gcode")).unwrap(), b"old");
+        let report = fs::read(folder.path().join("a.json")).unwrap();
+        let report: serde_json::Value = serde_json::from_slice(&report).unwrap();
+        assert_eq!(report["check"]["findings"][0]["code"], "too-fast");
+    }
+    assert_eq!(files(folder.path()), ["a.gcode", "a.json", "block.stl", "part.stl"]);
+}
+
+#[test]
+fn a_product_that_the_check_finds_clean_is_the_same_as_without_it() {
+    let folder = folder();
+    write_block(&folder.path().join("block.stl"));
+    let plain = ["block.stl", "-q", "--dual", "--copies", "2", "-o", "-"];
+    let product = slicer(&folder).args(plain).output().unwrap().stdout;
+    let checked = slicer(&folder).args(plain).arg("--check").assert().success();
+    checked.stdout(product).stderr("");
+}

@@ -97,7 +97,7 @@ impl Judge<'_> {
             Capsule::of(step, 1.0).draw(&self.grid, into);
         }
         let own = sparse.or(&solid);
-        let reaching = self.from_above(index);
+        let reaching = self.reaching_down(index);
         let (printed, closed) = (own.clone().or(&reaching), solid.clone().or(&reaching));
         let printable = here.opened(self.grid.pixels(self.line_width * PRINTABLE / 2.0));
 
@@ -132,7 +132,7 @@ impl Judge<'_> {
     }
 
     /// What thick walls and skins of the layers above cover of this one.
-    fn from_above(&self, index: usize) -> Bits {
+    fn reaching_down(&self, index: usize) -> Bits {
         let z = self.print.layers[index].z;
         let mut bits = Bits::new(self.grid.size);
         let above = self.print.layers[index + 1..].iter();
