@@ -63,7 +63,7 @@ fn is_on(m: &Move, layer: usize, kind: Kind) -> bool {
     m.is_bead() && m.layer == Some(layer) && m.kind == kind
 }
 
-/// Those of the line at `line` with its filament times `times`.
+/// The file with the filament of the move at `line` times `times`.
 fn with_e(good: &Good, line: usize, times: f64) -> String {
     good.with(|m| {
         if m.line == line {
@@ -183,19 +183,17 @@ fn a_skin_line_that_is_missing() {
     for good in [&*CUBE, &RELATIVE, &PAIR] {
         for layer in [0, TOP] {
             let line = long_line(good, layer, Kind::Skin);
-            {
-                let verdict = good.judge(&with_e(good, line.line, 0.0));
-                let found = only(&verdict, &[Code::OpenSurface]);
-                assert_eq!(found.place.layer, Some(layer + 1));
-                let expected = line.length() * line.width;
-                assert!((0.5..1.1).contains(&(found.measure / expected)), "{found}");
-                let at = found.place.at_mm.unwrap();
-                let [low, high] = [0, 1].map(|k| {
-                    let (a, b) = (line.from[k], line.to[k]);
-                    (at[k] - a.min(b) > -0.5, a.max(b) - at[k] > -0.5)
-                });
-                assert_eq!([low, high], [(true, true); 2], "{found}: {line:?}");
-            }
+            let verdict = good.judge(&with_e(good, line.line, 0.0));
+            let found = only(&verdict, &[Code::OpenSurface]);
+            assert_eq!(found.place.layer, Some(layer + 1));
+            let expected = line.length() * line.width;
+            assert!((0.5..1.1).contains(&(found.measure / expected)), "{found}");
+            let at = found.place.at_mm.unwrap();
+            let [low, high] = [0, 1].map(|k| {
+                let (a, b) = (line.from[k], line.to[k]);
+                (at[k] - a.min(b) > -0.5, a.max(b) - at[k] > -0.5)
+            });
+            assert_eq!([low, high], [(true, true); 2], "{found}: {line:?}");
         }
     }
 }
@@ -400,7 +398,8 @@ fn moves_that_are_too_fast() {
         let verdict = fast(12_000_000.0);
         let found = only(&verdict, &[Code::TooFast]);
         assert_eq!(found.place.line, Some(line.line as u64));
-        assert!((found.measure - 200_000.0).abs() < 1.0 || found.measure > 141_000.0, "{found}");
+        // 200 m/s along the line, of which an axis takes at least the root of a half.
+        assert!((141_000.0..200_001.0).contains(&found.measure), "{found}");
         let verdict = fast(17_900.0);
         let found = only(&verdict, &[Code::TooMuchFlow]);
         assert_eq!(found.place.line, Some(line.line as u64));
