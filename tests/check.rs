@@ -13,8 +13,11 @@ use std::sync::LazyLock;
 
 const DUAL: &[(&str, &str)] = &[("dual.mode", "pair")];
 
-/// Profiles and settings of good files.
-const WAYS: &[(&str, &str, &[(&str, &str)])] = &[
+/// Name, profile and settings.
+type Way = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
+
+/// How good files are made.
+const WAYS: &[Way] = &[
     ("marlin", "generic-marlin", &[]),
     ("klipper", "generic-klipper", &[]),
     ("zcube", "zcube-dual", &[]),
@@ -23,7 +26,7 @@ const WAYS: &[(&str, &str, &[(&str, &str)])] = &[
     ("support", "generic-marlin", &[("support.enabled", "true"), ("dual.mode", "pair")]),
 ];
 
-const ALL_PARTS: (&str, &str, &[(&str, &str)]) = (
+const ALL_PARTS: Way = (
     "all parts",
     "zcube-dual",
     &[
@@ -73,7 +76,7 @@ fn with_e(good: &Good, line: usize, times: f64) -> String {
     })
 }
 
-fn good_files(stl: &'static str, ways: &[(&str, &str, &[(&str, &str)])]) {
+fn good_files(stl: &'static str, ways: &[Way]) {
     for &(name, profile, set) in ways {
         let good = Good::of(stl, profile, set);
         let verdict = good.judge(&good.text);
