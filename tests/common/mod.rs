@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 pub(crate) mod checks;
+pub(crate) mod damage;
 pub(crate) mod gcode;
 pub(crate) mod raster;
 pub(crate) mod section;

@@ -1,0 +1,108 @@
+//! Good G-code + a change of its moves -> G-code with that fault, and what `check` says of it.
+
+use super::{Kind, Move, Print, as_it_is, fixtures, slice_placed};
+use slicer::check::finding::{Code, Finding};
+use slicer::check::terms::Terms;
+use slicer::check::{self, Model, Verdict};
+use slicer::mesh::Placement;
+use slicer::profile;
+use slicer::reader;
+
+/// What a run made of a fixture.
+pub(crate) struct Good {
+    pub(crate) text: String,
+    pub(crate) print: Print,
+    pub(crate) stl: &'static str,
+}
+
+impl Good {
+    pub(crate) fn of(stl: &'static str, profile: &str, set: &[(&str, &str)]) -> Self {
+        let run = slice_placed(&super::fixture(stl), profile, set, &as_it_is());
+        Self { text: run.text, print: run.print, stl }
+    }
+
+    /// What is said of `text`, which was made of this one's.
+    pub(crate) fn judge(&self, text: &str) -> Verdict {
+        judge(text, self.stl, &as_it_is())
+    }
+
+    /// The moves of layers, without the start and end blocks.
+    pub(crate) fn moves(&self) -> impl Iterator<Item = &Move> {
+        self.print.moves.iter().filter(|m| m.layer.is_some() && m.kind != Kind::Custom)
+    }
+
+    /// The file with other moves: `change` alters each, or says `false` to leave it out. All
+    /// else stays: where E counts from the start, `G92` sets it to what it would be.
+    pub(crate) fn with(&self, change: impl Fn(&mut Move) -> bool) -> String {
+        let relative = self.text.lines().any(|line| line == "M83");
+        let mut lines: Vec<String> = self.text.lines().map(str::to_owned).collect();
+        // Words are in force until the next: what follows a change is written in full.
+        let mut in_full = false;
+        for old in self.print.moves.iter() {
+            let mut new = *old;
+            let stays = old.layer.is_none() || change(&mut new);
+            let line = &mut lines[old.line - 1];
+            let after = word(line, 'E').filter(|_| !relative);
+            let set_e = after.map_or(String::new(), |e| format!("\nG92 E{e}"));
+            if !stays {
+                *line = set_e.trim_start().to_owned();
+                in_full = true;
+            } else if in_full || new != *old {
+                let [x, y, z] = new.to;
+                let at = format!("G1 X{x:.3} Y{y:.3} Z{z:.3} F{:.3}", new.feed);
+                let before = after.map_or(0.0, |e| e - old.e);
+                let e =
+                    if new.e == 0.0 { String::new() } else { format!(" E{:.5}", before + new.e) };
+                *line = at + &e + if new.e == old.e { "" } else { &set_e };
+                in_full = new != *old;
+            }
+        }
+        lines.join("\n") + "\n"
+    }
+}
+
+fn word(line: &str, letter: char) -> Option<f64> {
+    let code = line.split(';').next()?;
+    code.split_whitespace().skip(1).find_map(|word| word.strip_prefix(letter)?.parse().ok())
+}
+
+/// What is said of `text` against a fixture laid out so, by the file's own settings.
+pub(crate) fn judge(text: &str, stl: &str, placement: &Placement) -> Verdict {
+    let print = reader::Print::read(&mut text.as_bytes(), 1.75).unwrap();
+    let told = profile::recorded(&print.values).unwrap();
+    let settings = &told.unwrap().settings;
+    let terms = Terms::new(Some(settings), Some(settings), &print);
+    let path = fixtures().join(stl).to_str().unwrap().to_owned();
+    let placed = slicer::place(&[path], placement, &slicer::bed(&settings.machine)).unwrap();
+    check::check(&print, &terms, Some(Model { mesh: &placed.mesh, offset: placed.offset }))
+}
+
+/// The kinds of findings, in their order.
+pub(crate) fn kinds(verdict: &Verdict) -> Vec<Code> {
+    verdict.counts.iter().map(|count| count.code).collect()
+}
+
+/// The largest finding of a kind.
+pub(crate) fn largest(verdict: &Verdict, code: Code) -> &Finding {
+    verdict.findings.iter().find(|finding| finding.code == code).unwrap()
+}
+
+/// The largest finding of the first of these kinds, which are all that are found.
+#[track_caller]
+pub(crate) fn only<'v>(verdict: &'v Verdict, codes: &[Code]) -> &'v Finding {
+    assert_eq!(kinds(verdict), codes, "{}", listed(verdict));
+    &verdict.findings[0]
+}
+
+/// What is found but for sums, which follow from many faults.
+pub(crate) fn without_sums(mut verdict: Verdict) -> Verdict {
+    verdict.findings.retain(|finding| finding.code != Code::WrongSums);
+    verdict.counts.retain(|count| count.code != Code::WrongSums);
+    verdict
+}
+
+/// Some of what is found, a line each.
+pub(crate) fn listed(verdict: &Verdict) -> String {
+    let some = verdict.findings.iter().take(9);
+    some.map(|finding| format!("{finding}\n")).collect()
+}
