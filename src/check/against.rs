@@ -127,7 +127,7 @@ impl Judge<'_> {
             });
             verdict.findings.extend(patches);
         }
-        self.amounts((lines(), layer.height), here, &solid, &mut verdict.areas);
+        self.amounts((lines(), layer.height), here, [&solid, &closed], &mut verdict.areas);
         verdict
     }
 
@@ -191,11 +191,11 @@ impl Judge<'_> {
         &self,
         (lines, height): (impl Iterator<Item = &'s Step>, f64),
         here: &Bits,
-        solid: &Bits,
+        [solid, closed]: [&Bits; 2],
         areas: &mut Areas,
     ) {
         let half = self.grid.pixels(LEAST_WIDE / 2.0);
-        let inside = here.clone().minus(solid);
+        let inside = here.clone().minus(closed);
         let core = inside.squares(half, self.grid.pixels(FROM_WALLS));
         let area = self.grid.area();
         areas.part = here.count() as f64 * area;

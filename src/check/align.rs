@@ -81,7 +81,9 @@ pub(super) fn place(
             part.shift(by.map(|by| -by));
         }
     }
-    if fits < LEAST_FIT {
+    // Smaller may be by right, where places are too thin to print: what lacks is told with the outline.
+    let larger = [0, 1].map(|axis| median(offs.iter().map(|off| off.size[axis])));
+    if fits < LEAST_FIT || larger.iter().any(|by| *by > SIZE_SLACK) {
         sizes(&offs, fits, found);
         notes.push(
             "the part's surfaces: it is not the model (see --scale, --rotate, --unit)".into(),

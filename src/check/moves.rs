@@ -20,6 +20,9 @@ const FLOW_SLACK: f64 = 1.05;
 /// Flow is judged on lines of this length: shorter ones are mostly rounding, mm.
 const LEAST_LENGTH: f64 = 0.2;
 
+/// Digits of a command's number.
+const MOST_DIGITS: usize = 6;
+
 /// Filament that may be missing or too much at a restore, mm.
 const FILAMENT_SLACK: f64 = 0.3;
 
@@ -82,11 +85,11 @@ fn codes(print: &Print, terms: &Terms, found: &mut Findings, notes: &mut Vec<Str
     }
 }
 
-/// Whether the word is a letter and a number: those are judged as commands.
+/// Whether the word is a letter and a number that is none beyond reason: those are judged as commands.
 fn is_numbered(word: &str) -> bool {
-    let mut chars = word.chars();
-    chars.next().is_some_and(|c| c.is_ascii_alphabetic())
-        && chars.next().is_some_and(|c| c.is_ascii_digit())
+    let Some(number) = word.strip_prefix(|c: char| c.is_ascii_alphabetic()) else { return false };
+    let digits = number.chars().take_while(char::is_ascii_digit).count();
+    (1..=MOST_DIGITS).contains(&digits)
 }
 
 /// What is known after the moves so far.

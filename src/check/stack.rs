@@ -23,6 +23,9 @@ const MOST_PIXELS: f64 = 4e7;
 /// Plastic may be missing under a line by this part of its height.
 const GAP: f64 = 0.5;
 
+/// A layer may lie higher than its walls are by this part of their height.
+const LEAST_GAP: f64 = 0.4;
+
 /// Support may end so far below the part, mm: it is to come off.
 const SUPPORT_GAP: f64 = 0.45;
 
@@ -57,6 +60,7 @@ pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) ->
     let mut measured = Measured::default();
     let Some(mut pile) = Pile::over(print) else { return measured };
     for (layer, one) in print.layers.iter().enumerate() {
+        gap(print, layer, found);
         pile.owners_from = pile.next_owner;
         let steps = print.moves_of(one);
         let chains = steps.chunk_by(|a, b| a.is_line() && b.is_line() && a.to == b.from);
@@ -66,8 +70,28 @@ pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) ->
             .collect();
         let judge = Judge { layer, part };
         judge.patches(&lines, &mut pile, found, &mut measured);
+        steps.iter().filter(|step| step.is_line()).for_each(|step| pile.raise(step));
     }
     measured
+}
+
+/// A layer whose walls are not as high as it lies above the one below, since one between is
+/// missing. Told by the walls: infill may be as thick as several layers.
+fn gap(print: &Print, layer: usize, found: &mut Findings) {
+    let walls = |layer: usize| {
+        let steps = print.moves_of(&print.layers[layer]).iter();
+        steps.filter(|step| step.is_line() && step.role == Role::OuterWall)
+    };
+    let Some(below) = layer.checked_sub(1).filter(|_| print.tells_height) else { return };
+    // A raft or support below ends lower on purpose.
+    let (Some(first), Some(_)) = (walls(layer).next(), walls(below).next()) else { return };
+    let told = walls(layer).map(|step| f64::from(step.height)).fold(0.0, f64::max);
+    let missing = print.layers[layer].height - told;
+    if missing > LEAST_GAP * told {
+        let text = format!("the layer lies {} mm too high above the one before", short(missing));
+        let finding = Finding::of(Code::InTheAir, missing, "mm", text);
+        found.add(Finding { place: place(layer, first), ..finding });
+    }
 }
 
 /// An unbroken line once it is laid.
@@ -240,7 +264,7 @@ impl Pile {
         core > 0.0 && (core - step.to[2]).abs() < 0.01
     }
 
-    /// Lays a line's plastic, and joins it to the lines of this layer that it touches.
+    /// Lays a line down, and joins it to the lines of this layer that it touches.
     fn lay(&mut self, chain: &[Step]) {
         // Lines of the layer are counted from 0, owners over all layers from 1.
         let line = (self.next_owner - self.owners_from) as usize;
@@ -253,14 +277,9 @@ impl Pile {
         let mut touched: Vec<u32> = Vec::new();
         let width = self.grid.size[0];
         for step in chain {
-            let extra = if step.role == Role::Support { SUPPORT_GAP as f32 } else { 0.0 };
-            let top = step.from[2].max(step.to[2]) + extra;
-            let (tops, owners, before) = (&mut self.tops, &mut self.owners, self.owners_from);
+            let (owners, before) = (&mut self.owners, self.owners_from);
             Capsule::of(step, 1.0).rows(&self.grid, |y, span| {
                 let row = y * width;
-                for known in &mut tops[row + span.start..row + span.end] {
-                    *known = known.max(top);
-                }
                 // Lines that lie side by side touch at a pixel more.
                 let beside = row + span.start.saturating_sub(1)..row + (span.end + 1).min(width);
                 for known in &mut owners[beside] {
@@ -277,6 +296,19 @@ impl Pile {
             let (a, b) = (self.root(line), self.root((other - 1 - self.owners_from) as usize));
             self.parents[a.max(b)] = a.min(b);
         }
+    }
+
+    /// Lets plastic stand where a line was laid, once its layer is done: lines beside it are not
+    /// carried by it.
+    fn raise(&mut self, step: &Step) {
+        let extra = if step.role == Role::Support { SUPPORT_GAP as f32 } else { 0.0 };
+        let top = step.from[2].max(step.to[2]) + extra;
+        let (width, tops) = (self.grid.size[0], &mut self.tops);
+        Capsule::of(step, 1.0).rows(&self.grid, |y, span| {
+            for known in &mut tops[y * width..][span] {
+                *known = known.max(top);
+            }
+        });
     }
 
     fn lay_core(&mut self, step: &Step) {
