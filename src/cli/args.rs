@@ -34,6 +34,10 @@ Exit codes:
 Only the product goes to standard output, everything else to standard error.
 A run that fails leaves no file behind.";
 
+const CHECK_CODES: &str = "\
+Exit codes: 0 clean, 1 findings, 2 wrong arguments or profile, 3 a file cannot be read, prints
+nothing, or a model does not fit the machine. What could not be judged is listed and no finding.";
+
 /// Slices STL models into G-code
 ///
 /// Slices STL models into G-code for FDM printers: fine walls and skins, and
@@ -69,7 +73,7 @@ pub(crate) enum Command {
     Estimate(EstimateArgs),
     /// Say what is wrong with a G-code file, also against the model
     Check(Box<CheckArgs>),
-    /// Draw what a G-code file prints: a layer, every layer, or a cut
+    /// Draw what a G-code file prints: layers, a cut, or a page to look through it; or a model
     Preview(PreviewArgs),
     /// Tell what each way of dual injection saves on a model
     Compare(Box<CompareArgs>),
@@ -134,6 +138,7 @@ pub(crate) struct EstimateArgs {
 
 /// Arguments of checking.
 #[derive(Debug, Args)]
+#[command(after_help = CHECK_CODES)]
 pub(crate) struct CheckArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "FILE")]
