@@ -91,11 +91,26 @@ impl Near {
 
     /// Whether no wall is nearer to `p`, within the area, than `distance`.
     pub(super) fn is_free(&self, p: [f64; 2], distance: f64) -> bool {
+        self.around(p, distance).all(|edge| distance2(p, edge) >= distance * distance)
+    }
+
+    /// What leads away, to the left and with length 1, from the wall that is nearest to `p`, if
+    /// one is nearer than `distance`.
+    pub(super) fn normal(&self, p: [f64; 2], distance: f64) -> Option<[f64; 2]> {
+        let far = |edge| (distance2(p, edge), edge);
+        let all = self.around(p, distance).map(far).filter(|(far, _)| *far < distance * distance);
+        let [a, b] = all.min_by(|a, b| a.0.total_cmp(&b.0))?.1;
+        let along = [b[0] - a[0], b[1] - a[1]];
+        let length = (along[0] * along[0] + along[1] * along[1]).sqrt().max(1.0);
+        Some([-along[1] / length, along[0] / length])
+    }
+
+    /// Edges in the cells around `p`: at least those nearer than `distance`.
+    fn around(&self, p: [f64; 2], distance: f64) -> impl Iterator<Item = [[f64; 2]; 2]> + use<'_> {
         let (low, high) = (p.map(|x| x - distance), p.map(|x| x + distance));
-        self.cells(low, high).all(|cell| {
+        self.cells(low, high).flat_map(|cell| {
             let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
-            let mut edges = self.items[range].iter().map(|&k| self.edges[k as usize]);
-            edges.all(|edge| distance2(p, edge) >= distance * distance)
+            self.items[range].iter().map(|&k| self.edges[k as usize])
         })
     }
 }

@@ -21,12 +21,12 @@ use crate::units::{Coord, nearest};
 /// A bead that follows a wall, in the frame of the skin's raster.
 pub type Bead = Vec<LinePoint>;
 
-/// A strip between two walls up to this many line widths wide gets one bead.
-const SINGLE: f64 = 1.6;
-
 /// Beads may be this much nearer to a wall than asked for, in line widths: walls on
 /// both sides of a strip are not quite parallel.
 const SLACK: f64 = 0.15;
+
+/// Directions with less of x than this lead straight to the back or to the front.
+const LEAST_SIDE: f64 = 1e-9;
 
 /// Changes of place below this are not worth a corner (10 µm).
 const LEAST_BEND: f64 = 100.0;
@@ -73,11 +73,8 @@ fn place(station: &Station, index: usize, near: &Near, params: &Params) -> Optio
         return None;
     }
     let edge = w / 2.0;
-    let single = station.shared && 2.0 * station.depth < SINGLE * w;
-    let (width, from) = if single {
-        // One of the two walls lays the bead between them.
-        let [x, y] = station.normal;
-        (2.0 * station.depth, (x > 0.0 || (x == 0.0 && y > 0.0)).then_some(0.0)?)
+    let (width, from) = if station.is_single(params) {
+        (2.0 * station.depth, lays_single(station).then_some(0.0)?)
     } else {
         let even = station.depth / station.beads as f64;
         let width = if station.shared { even } else { even.max(NARROWEST * w) };
@@ -87,6 +84,13 @@ fn place(station: &Station, index: usize, near: &Near, params: &Params) -> Optio
     let [x, y] = [0, 1].map(|k| station.at[k] + away * station.normal[k]);
     let clear = away - SLACK * w;
     near.is_free([x, y], clear).then_some(Place { at: [x, y], width, clear })
+}
+
+/// Whether of two walls it is this one that lays the bead between them: that from which the
+/// other lies to the right, or to the back. Both come to the same, on a wedge too.
+fn lays_single(station: &Station) -> bool {
+    let [x, y] = [0, 1].map(|k| station.normal[k] - station.taper[k] / 2.0);
+    if x.abs() > LEAST_SIDE { x > 0.0 } else { y > 0.0 }
 }
 
 /// The stretches of a lap around a wall that bead `index` takes, long enough to be

@@ -24,6 +24,9 @@ const WIDEST: f64 = 1.5;
 /// widths, one along either wall: wider ones taper too much for more.
 const SHARED: f64 = 1.6;
 
+/// A strip between two walls up to this many line widths wide gets one bead.
+pub(super) const SINGLE: f64 = 1.6;
+
 /// A bead is stretched to this many line widths to spare another one on a short way.
 const STRETCHED: f64 = 1.75;
 
@@ -62,6 +65,8 @@ pub(super) struct Station {
     pub depth: f64,
     /// The depth ends half-way to another wall, which lays beads as well.
     pub shared: bool,
+    /// The normals of both walls in one, if it is shared: nothing where they are parallel.
+    pub taper: [f64; 2],
     /// How many beads it takes; 0 where there is no skin or too much.
     pub beads: usize,
     /// Distance from the wall's first point along the wall.
@@ -86,6 +91,10 @@ pub(super) fn stations(
     let near = Near::new(walls, Area::around(with_beads, MARGIN * w), 2.0 * w);
     for (lap, wall) in laps.iter_mut().zip(walls) {
         lap.iter_mut().filter(|s| s.shared).for_each(|s| s.confirm(&near, params));
+        if params.only_strips {
+            let others = lap.iter_mut().filter(|s| !s.is_single(params));
+            others.for_each(|s| (s.beads, s.skin) = (0, false));
+        }
         *lap = settled(wall, std::mem::take(lap), params);
     }
     Some((laps, near))
@@ -103,14 +112,23 @@ fn settled(wall: &Contour, mut found: Vec<Station>, params: &Params) -> Vec<Stat
 }
 
 impl Station {
+    /// Whether it is at a strip so thin that one bead fills it.
+    pub(super) fn is_single(&self, params: &Params) -> bool {
+        self.shared && 2.0 * self.depth < SINGLE * f64::from(params.line_width)
+    }
+
     /// Keeps no beads where the wall at the other end of the row is not beside this one:
     /// beyond the middle of a strip the other wall is the nearer one, in a corner it is not.
     fn confirm(&mut self, near: &Near, params: &Params) {
         let across = 2.0 * (self.depth + f64::from(params.line_width) / 2.0);
         let beyond = [0, 1].map(|k| self.at[k] + BEYOND * across * self.normal[k]);
-        if near.is_free(beyond, (1.0 - BEYOND + SLOPE) * across) {
-            self.shared = false;
-            self.beads = 0;
+        match near.normal(beyond, (1.0 - BEYOND + SLOPE) * across) {
+            // Prints with a single wall stay as they were, byte for byte.
+            Some(other) if params.inner_walls => {
+                self.taper = [0, 1].map(|k| self.normal[k] + other[k]);
+            }
+            Some(_) => {}
+            None => (self.shared, self.beads) = (false, 0),
         }
     }
 }
@@ -188,6 +206,7 @@ impl Edge {
                 normal: self.normal(),
                 depth: 0.0,
                 shared: false,
+                taper: [0.0; 2],
                 beads: 0,
                 way: self.way + t * self.length,
                 skin: false,
@@ -310,8 +329,8 @@ fn bridge(stations: &mut [Station], round: f64, params: &Params) {
         let model = if before.depth <= after.depth { before } else { after };
         for k in from..to {
             let station = &mut stations[k % n];
-            let Station { depth, shared, beads, .. } = model;
-            *station = Station { depth, shared, beads, ..*station };
+            let Station { depth, shared, taper, beads, .. } = model;
+            *station = Station { depth, shared, taper, beads, ..*station };
         }
     }
 }
