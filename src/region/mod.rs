@@ -219,7 +219,7 @@ impl Prepared {
             cover: scan.inset(params.cover_inset),
         };
         let rows = scans.iter().map(rows).collect();
-        let strips = if may_be_thin { thin::strips(&scans, params) } else { Vec::new() };
+        let strips = if may_be_thin { thin::strips(&scans, &walls, params) } else { Vec::new() };
         Self { layer, walls, rows, strips }
     }
 }

@@ -25,9 +25,6 @@ pub type Bead = Vec<LinePoint>;
 /// both sides of a strip are not quite parallel.
 const SLACK: f64 = 0.15;
 
-/// Directions with less of x than this lead straight to the back or to the front.
-const LEAST_SIDE: f64 = 1e-9;
-
 /// Changes of place below this are not worth a corner (10 µm).
 const LEAST_BEND: f64 = 100.0;
 
@@ -90,7 +87,7 @@ fn place(station: &Station, index: usize, near: &Near, params: &Params) -> Optio
 /// other lies to the right, or to the back. Both come to the same, on a wedge too.
 fn lays_single(station: &Station) -> bool {
     let [x, y] = [0, 1].map(|k| station.normal[k] - station.taper[k] / 2.0);
-    if x.abs() > LEAST_SIDE { x > 0.0 } else { y > 0.0 }
+    x > 0.0 || (x == 0.0 && y > 0.0)
 }
 
 /// The stretches of a lap around a wall that bead `index` takes, long enough to be

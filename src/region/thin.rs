@@ -9,12 +9,14 @@
 use super::Params;
 use super::raster::Scan;
 use super::stations::SINGLE;
+use super::walls::Wall;
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, edges, polygon};
 use crate::units::{Coord, nearest};
 
-/// Thin places of a loop shorter than this many line widths are left in it: corners.
-const SHORT: f64 = 2.5;
+/// Thin places of a loop shorter than this many line widths are left in it: they are corners,
+/// or hardly longer than the shortest bead.
+const SHORT: f64 = 5.0;
 
 /// Loops are compared, and cut off, so much larger (2 µm), against rounding.
 const ROUNDING: Coord = 20;
@@ -24,7 +26,7 @@ const ROUNDING: Coord = 20;
 pub struct Strip {
     /// Where a bead inside that wall may run.
     pub room: [Rows; 2],
-    /// What of it is too thin for two beads.
+    /// What of it is too thin for two beads, and has no part of the next wall.
     pub narrow: [Rows; 2],
 }
 
@@ -45,15 +47,21 @@ pub fn may_be_thin(scans: &[Scan], params: &Params) -> bool {
         })
 }
 
-/// For each wall, from the outside inwards, the room inside it.
+/// For each of `walls`, from the outside inwards, the room inside it.
 #[must_use]
-pub fn strips(scans: &[Scan], params: &Params) -> Vec<Strip> {
+pub fn strips(scans: &[Scan], walls: &[Wall], params: &Params) -> Vec<Strip> {
     (1..=params.walls)
-        .map(|walls| {
-            let within = params.within(walls);
-            let wide = params.inset_of_narrow(walls);
-            let room = [0, 1].map(|r| scans[r].inset(within.fill_inset));
-            let narrow = [0, 1].map(|r| apart(&room[r], &scans[r].inset(wide)));
+        .map(|depth| {
+            let next = walls.iter().filter(|w| w.depth == depth);
+            let next: Vec<Contour> = next.map(|w| w.path.clone()).collect();
+            let room = [0, 1].map(|r| scans[r].inset(params.within(depth).fill_inset));
+            let narrow = [0, 1].map(|r| {
+                if depth < params.walls {
+                    apart(&room[r], Scan::new(&next, params.rasters[r]).inside())
+                } else {
+                    apart(&room[r], &scans[r].inset(params.inset_of_narrow(depth)))
+                }
+            });
             Strip { room, narrow }
         })
         .collect()
