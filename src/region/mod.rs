@@ -218,8 +218,9 @@ impl Prepared {
             fill: scan.inset(params.fill_inset),
             cover: scan.inset(params.cover_inset),
         };
-        let rows = scans.iter().map(rows).collect();
-        let strips = if may_be_thin { thin::strips(&scans, &walls, params) } else { Vec::new() };
+        let rows: Vec<PreparedRows> = scans.iter().map(rows).collect();
+        let strips =
+            if may_be_thin { thin::strips(&scans, &walls, &rows, params) } else { Vec::new() };
         Self { layer, walls, rows, strips }
     }
 }

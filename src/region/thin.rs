@@ -6,10 +6,10 @@
 //! in a thin strip of skin. The room inside the innermost wall is filled in the same way where
 //! it is too thin for infill. Parts with a single wall are left as they are.
 
-use super::Params;
 use super::raster::Scan;
 use super::stations::SINGLE;
 use super::walls::Wall;
+use super::{Params, PreparedRows};
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, edges, polygon};
 use crate::units::{Coord, nearest};
@@ -47,14 +47,24 @@ pub fn may_be_thin(scans: &[Scan], params: &Params) -> bool {
         })
 }
 
-/// For each of `walls`, from the outside inwards, the room inside it.
+/// For each of `walls`, from the outside inwards, the room inside it; that inside the last is
+/// what `rows` have for lines.
 #[must_use]
-pub fn strips(scans: &[Scan], walls: &[Wall], params: &Params) -> Vec<Strip> {
+pub fn strips(
+    scans: &[Scan],
+    walls: &[Wall],
+    rows: &[PreparedRows],
+    params: &Params,
+) -> Vec<Strip> {
     (1..=params.walls)
         .map(|depth| {
             let next = walls.iter().filter(|w| w.depth == depth);
             let next: Vec<Contour> = next.map(|w| w.path.clone()).collect();
-            let room = [0, 1].map(|r| scans[r].inset(params.within(depth).fill_inset));
+            let inset = params.within(depth).fill_inset;
+            let room = [0, 1].map(|r| match depth == params.walls {
+                true => rows[r].fill.clone(),
+                false => scans[r].inset(inset),
+            });
             let narrow = [0, 1].map(|r| {
                 if depth < params.walls {
                     apart(&room[r], Scan::new(&next, params.rasters[r]).inside())
