@@ -202,10 +202,11 @@ proptest! {
             let scan = Scan::new(&layers[k].layer.contours, Raster { pitch: 500, ..raster });
             for w in beads.iter().flat_map(|b| b.windows(2)) {
                 let (low, high) = if w[0].v < w[1].v { (w[0], w[1]) } else { (w[1], w[0]) };
-                // Half the bead, less what strips of uneven width may take.
-                let edge = params.fill_inset - params.wall_to_fill() + params.line_width / 2;
-                let clear = edge + w[1].width / 2 - params.line_width / 2;
-                let free = scan.inset(clear.max(0));
+                // Half the bead, less what strips of uneven width may take. Strips too thin for
+                // an inner wall have one within the outer wall already.
+                let walls = if layers[k].strips.is_empty() { params.walls } else { 1 };
+                let edge = params.within(walls).fill_inset - params.wall_to_fill();
+                let free = scan.inset((edge + w[1].width / 2).max(0));
                 for j in low.v.div_euclid(500) + 1..high.v.div_euclid(500) + 1 {
                     let t = f64::from(j * 500 - low.v) / f64::from(high.v - low.v);
                     let u = low.u + (t * f64::from(high.u - low.u)) as Coord;

@@ -1,4 +1,4 @@
-//! Contours -> Contours: union and offset of polygons, by the Clipper2 library.
+//! Contours -> Contours: union, difference and offset of polygons, by the Clipper2 library.
 //!
 //! The only place that knows the library, so that it can be exchanged.
 
@@ -6,7 +6,7 @@ use super::{Contour, Point, double_area};
 use crate::units::Coord;
 use clipper2_rust::core::{FillRule, Path64, Paths64, Point64};
 use clipper2_rust::offset::{EndType, JoinType};
-use clipper2_rust::{inflate_paths_64, union_subjects_64};
+use clipper2_rust::{difference_64, inflate_paths_64, union_subjects_64};
 
 /// Sharp corners of an offset are cut off where they would reach further than
 /// this many offsets. At 2 the corner of a square stays sharp and a needle does
@@ -30,15 +30,26 @@ pub fn union(contours: &[Contour]) -> Vec<Contour> {
 /// `contours` (as from [`union`]) shrunk by `distance` > 0, with mitred corners.
 #[must_use]
 pub fn inset(contours: &[Contour], distance: Coord) -> Vec<Contour> {
+    offset(contours, -f64::from(distance))
+}
+
+/// `contours` (as from [`union`]) grown by `distance` > 0, with mitred corners.
+#[must_use]
+pub fn outset(contours: &[Contour], distance: Coord) -> Vec<Contour> {
+    offset(contours, f64::from(distance))
+}
+
+/// What of `contours` is outside of `others` (both as from [`union`]).
+#[must_use]
+pub fn difference(contours: &[Contour], others: &[Contour]) -> Vec<Contour> {
+    let (contours, others) = (to_library(contours), to_library(others));
+    from_library(&difference_64(&contours, &others, FillRule::NonZero))
+}
+
+fn offset(contours: &[Contour], distance: f64) -> Vec<Contour> {
     let paths = to_library(contours);
-    let moved = inflate_paths_64(
-        &paths,
-        -f64::from(distance),
-        JoinType::Miter,
-        EndType::Polygon,
-        MITER_LIMIT,
-        0.0,
-    );
+    let moved =
+        inflate_paths_64(&paths, distance, JoinType::Miter, EndType::Polygon, MITER_LIMIT, 0.0);
     from_library(&clipper2_rust::simplify_paths(&moved, CLEAN, true))
 }
 
@@ -50,7 +61,7 @@ fn to_library(contours: &[Contour]) -> Paths64 {
 }
 
 fn from_library(paths: &Paths64) -> Vec<Contour> {
-    // Coordinates come from contours grown by nothing or shrunk: they fit.
+    // Coordinates come from contours shrunk, or grown no further than they were shrunk before: they fit.
     let point = |p: &Point64| Point { x: p.x as Coord, y: p.y as Coord };
     paths
         .iter()

@@ -4,6 +4,7 @@ use super::classify::{areas, areas_beside, exposed};
 use super::close::Crossed;
 use super::dual::LayerAreas;
 use super::rings::{Bead, rings, taken};
+use super::thin::{Strip, apart};
 use super::walls::Wall;
 use super::{Params, Prepared};
 use crate::geom::Contour;
@@ -23,7 +24,9 @@ pub fn divide<'a>(
     let Some(layer) = layers(k) else { return (out, Vec::new()) };
     let exposed = |r| exposed(k, r, layers, params);
     let skins = [exposed(0), exposed(1)];
-    let beads = beads(k, layer, &skins, params);
+    let innermost = [0, 1].map(|r| &layer.rows[r].fill);
+    let mut beads = along_walls(k, layer, &skins, innermost, params);
+    beads.extend(in_strips(k, layer, &skins, params));
     let along = params.rasters[params.skin_rasters(k).0];
     for r in [0, 1].into_iter().chain(more) {
         if out[r].is_some() {
@@ -48,9 +51,30 @@ pub fn divide<'a>(
     (out, beads)
 }
 
-/// The beads along the walls of layer `k`, whose skin is exposed where `skins` says on
-/// the two skin rasters.
-fn beads(k: usize, layer: &Prepared, skins: &[Rows; 2], params: &Params) -> Vec<Bead> {
+/// The beads of layer `k` where it is too thin for both passes of an inner wall, and where
+/// it is too thin for infill and there is no skin as `skins` says.
+fn in_strips(k: usize, layer: &Prepared, skins: &[Rows; 2], params: &Params) -> Vec<Bead> {
+    let beads = |(walls, Strip { room: [a, b], narrow }): (u32, &Strip)| {
+        let within = params.within(walls);
+        if walls < params.walls {
+            return along_walls(k, layer, narrow, [a, b], &within);
+        }
+        let hollow = params.infill.is_empty();
+        let bare = |r: usize| if hollow { Rows::default() } else { apart(&narrow[r], &skins[r]) };
+        along_walls(k, layer, &[bare(0), bare(1)], [a, b], &within)
+    };
+    (1..).zip(&layer.strips).flat_map(beads).collect()
+}
+
+/// The beads along the innermost of `params.walls` walls of layer `k`, whose skin is exposed
+/// where `skins` says within `room`.
+fn along_walls(
+    k: usize,
+    layer: &Prepared,
+    skins: &[Rows; 2],
+    room: [&Rows; 2],
+    params: &Params,
+) -> Vec<Bead> {
     // Without walls the ends of the lines are the part's outside, all of them alike.
     if params.walls == 0 || skins.iter().all(Rows::is_empty) {
         return Vec::new();
@@ -58,9 +82,9 @@ fn beads(k: usize, layer: &Prepared, skins: &[Rows; 2], params: &Params) -> Vec<
     let (along, across) = params.skin_rasters(k);
     let crossed = Crossed {
         skin: &skins[along],
-        fill: &layer.rows[along].fill,
+        fill: room[along],
         columns: &skins[across],
-        fill_columns: &layer.rows[across].fill,
+        fill_columns: room[across],
         left_turn: along == 0,
     };
     let frame = params.rasters[along].frame;

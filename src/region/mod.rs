@@ -22,6 +22,7 @@ pub mod rings;
 pub mod runs;
 mod stations;
 pub mod support;
+pub mod thin;
 pub mod walls;
 pub mod window;
 
@@ -32,6 +33,7 @@ use crate::slice::Layer;
 use crate::units::{Coord, to_units};
 use bend::{Line, LinePoint};
 use raster::{Raster, Scan};
+use thin::Strip;
 use walls::Wall;
 
 /// The numbers that this stage needs, in grid units.
@@ -41,6 +43,10 @@ pub struct Params {
     pub line_width: Coord,
     /// Number of walls.
     pub walls: u32,
+    /// The profile has inner walls, within however many of them these numbers are.
+    pub inner_walls: bool,
+    /// Beads are only laid along the middle of strips, not along walls.
+    pub only_strips: bool,
     /// Distance of the outer wall's middle from the contour.
     pub outer_inset: Coord,
     /// Distance of the ends of skin and infill lines from the contour.
@@ -113,6 +119,8 @@ impl Params {
         let mut params = Self {
             line_width: to_units(w),
             walls: settings.walls,
+            inner_walls: settings.walls > 1,
+            only_strips: false,
             outer_inset: to_units(outer * w),
             fill_inset: to_units(fill_inset * w),
             cover_inset: to_units(cover_inset * w),
@@ -185,6 +193,8 @@ pub struct Prepared {
     pub walls: Vec<Wall>,
     /// For each raster: where skin and infill may go, and where this layer covers its neighbours.
     pub rows: Vec<PreparedRows>,
+    /// The room inside each of its walls, where some of it may be thin.
+    pub strips: Vec<Strip>,
 }
 
 /// One raster's rows of a layer.
@@ -200,19 +210,18 @@ impl Prepared {
     /// Makes the walls of `layer` and lays it under every raster.
     #[must_use]
     pub fn new(layer: Layer, params: &Params) -> Self {
-        let walls = walls::walls(&layer.contours, params);
-        let rows = params
-            .rasters
-            .iter()
-            .map(|&raster| {
-                let scan = Scan::new(&layer.contours, raster);
-                PreparedRows {
-                    fill: scan.inset(params.fill_inset),
-                    cover: scan.inset(params.cover_inset),
-                }
-            })
-            .collect();
-        Self { layer, walls, rows }
+        let scans: Vec<Scan> =
+            params.rasters.iter().map(|&raster| Scan::new(&layer.contours, raster)).collect();
+        let may_be_thin = thin::may_be_thin(&scans, params);
+        let walls = walls::walls(&layer.contours, may_be_thin, params);
+        let rows = |scan: &Scan| PreparedRows {
+            fill: scan.inset(params.fill_inset),
+            cover: scan.inset(params.cover_inset),
+        };
+        let rows: Vec<PreparedRows> = scans.iter().map(rows).collect();
+        let strips =
+            if may_be_thin { thin::strips(&scans, &walls, &rows, params) } else { Vec::new() };
+        Self { layer, walls, rows, strips }
     }
 }
 

@@ -91,23 +91,22 @@ impl Near {
 
     /// The edge nearest to `p`, within the area, among those nearer than `distance`.
     pub(super) fn nearest(&self, p: [f64; 2], distance: f64) -> Option<[[f64; 2]; 2]> {
-        let (low, high) = (p.map(|x| x - distance), p.map(|x| x + distance));
-        let items = self.cells(low, high).flat_map(|cell| {
-            let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
-            self.items[range].iter().map(|&k| self.edges[k as usize])
-        });
-        let far = items.map(|edge| (distance2(p, edge), edge));
+        let far = self.around(p, distance).map(|edge| (distance2(p, edge), edge));
         let nearer = far.filter(|(far, _)| *far < distance * distance);
         nearer.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, edge)| edge)
     }
 
     /// Whether no wall is nearer to `p`, within the area, than `distance`.
     pub(super) fn is_free(&self, p: [f64; 2], distance: f64) -> bool {
+        self.around(p, distance).all(|edge| distance2(p, edge) >= distance * distance)
+    }
+
+    /// Edges in the cells around `p`: at least those nearer than `distance`.
+    fn around(&self, p: [f64; 2], distance: f64) -> impl Iterator<Item = [[f64; 2]; 2]> + use<'_> {
         let (low, high) = (p.map(|x| x - distance), p.map(|x| x + distance));
-        self.cells(low, high).all(|cell| {
+        self.cells(low, high).flat_map(|cell| {
             let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
-            let mut edges = self.items[range].iter().map(|&k| self.edges[k as usize]);
-            edges.all(|edge| distance2(p, edge) >= distance * distance)
+            self.items[range].iter().map(|&k| self.edges[k as usize])
         })
     }
 }

@@ -21,9 +21,6 @@ use crate::units::{Coord, nearest};
 /// A bead that follows a wall, in the frame of the skin's raster.
 pub type Bead = Vec<LinePoint>;
 
-/// A strip between two walls up to this many line widths wide gets one bead.
-const SINGLE: f64 = 1.6;
-
 /// Beads may be this much nearer to a wall than asked for, in line widths: walls on
 /// both sides of a strip are not quite parallel.
 const SLACK: f64 = 0.15;
@@ -73,8 +70,7 @@ fn place(station: &Station, index: usize, near: &Near, params: &Params) -> Optio
         return None;
     }
     let edge = w / 2.0;
-    let single = station.shared && 2.0 * station.depth < SINGLE * w;
-    let (width, from) = if single {
+    let (width, from) = if station.is_single(params) {
         // One of the two walls lays the bead between them.
         (2.0 * station.depth, station.leads.then_some(0.0)?)
     } else {

@@ -24,6 +24,9 @@ const WIDEST: f64 = 1.5;
 /// widths, one along either wall: wider ones taper too much for more.
 const SHARED: f64 = 1.6;
 
+/// A strip between two walls up to this many line widths wide gets one bead.
+pub(super) const SINGLE: f64 = 1.6;
+
 /// A bead is stretched to this many line widths to spare another one on a short way.
 const STRETCHED: f64 = 1.75;
 
@@ -88,6 +91,10 @@ pub(super) fn stations(
     let near = Near::new(walls, Area::around(with_beads, MARGIN * w), 2.0 * w);
     for (lap, wall) in laps.iter_mut().zip(walls) {
         lap.iter_mut().filter(|s| s.shared).for_each(|s| s.confirm(&near, params));
+        if params.only_strips {
+            let others = lap.iter_mut().filter(|s| !s.is_single(params));
+            others.for_each(|s| (s.beads, s.skin) = (0, false));
+        }
         *lap = settled(wall, std::mem::take(lap), params);
     }
     Some((laps, near))
@@ -105,6 +112,11 @@ fn settled(wall: &Contour, mut found: Vec<Station>, params: &Params) -> Vec<Stat
 }
 
 impl Station {
+    /// Whether it is at a strip so thin that one bead fills it.
+    pub(super) fn is_single(&self, params: &Params) -> bool {
+        self.shared && 2.0 * self.depth < SINGLE * f64::from(params.line_width)
+    }
+
     /// Keeps no beads where the wall at the other end of the row is not beside this one:
     /// beyond the middle of a strip the other wall is the nearer one, in a corner it is not.
     /// Else settles which of the two leads.

@@ -1,7 +1,7 @@
 //! Contours -> Walls: loops parallel to the contours, one line width apart.
 
-use super::Params;
 use super::groups::{Block, Grouping};
+use super::{Params, thin};
 use crate::geom::follow::follow;
 use crate::geom::{Contour, double_area, polygon};
 use crate::units::UNITS_PER_MM;
@@ -18,15 +18,18 @@ pub struct Wall {
 }
 
 /// The walls of `contours`, from the outside inwards. Where the part is too thin
-/// for a wall there is none.
+/// for a wall there is none; nor for an inner wall's two passes, if it `may_be_thin`.
 #[must_use]
-pub fn walls(contours: &[Contour], params: &Params) -> Vec<Wall> {
+pub fn walls(contours: &[Contour], may_be_thin: bool, params: &Params) -> Vec<Wall> {
     let mut walls = Vec::new();
     let mut ring = contours.to_vec();
     for depth in 0..params.walls {
         let distance = if depth == 0 { params.outer_inset } else { params.line_width };
         if distance > 0 {
             ring = polygon::inset(&ring, distance);
+        }
+        if depth > 0 && may_be_thin {
+            ring = thin::open(ring, params);
         }
         walls.extend(ring.iter().map(|path| Wall { path: path.clone(), depth, layers: 1 }));
     }

@@ -135,7 +135,9 @@ fn region(c: &mut Criterion, model: &Model) {
     let params = &model.params;
     let mut group = c.benchmark_group("region, middle block");
     group.bench_function(BenchmarkId::new("walls", model.name), |b| {
-        b.iter(|| layers.iter().map(|l| walls::walls(&l.contours, params).len()).sum::<usize>());
+        b.iter(|| {
+            layers.iter().map(|l| walls::walls(&l.contours, false, params).len()).sum::<usize>()
+        });
     });
     group.bench_function(BenchmarkId::new("raster scan", model.name), |b| {
         b.iter(|| layers.iter().map(|l| scan(l, params).inside().total()).sum::<i64>());

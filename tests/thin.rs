@@ -1,0 +1,159 @@
+//! Thin plates and wedges -> G-code, read back: how much plastic is in them, and whether beads lie on each other.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod common;
+
+use common::solid::Outline;
+use common::{Kind, Move, Run, Solid, slice};
+
+const WIDTH: f64 = 0.4;
+const LENGTH: f64 = 24.0;
+/// Away from the ends, mm from the middle.
+const WITHIN: f64 = 8.0;
+/// Skin, and infill far from it.
+const LAYERS: [usize; 2] = [0, 7];
+
+/// An upright plate, 15 layers high, whose thickness goes from `first` to `last` mm.
+fn plate(first: f64, last: f64) -> Solid {
+    let outline: Outline =
+        vec![[0.0, -first / 2.0], [LENGTH, -last / 2.0], [LENGTH, last / 2.0], [0.0, first / 2.0]];
+    Solid::prism(&outline, 0.0, 3.0)
+}
+
+fn turned(solid: &Solid, degrees: f64) -> Solid {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    solid.map(|[x, y, z]| [cos * x - sin * y, sin * x + cos * y, z])
+}
+
+fn sliced(solid: &Solid, walls: u32, angle: f64, set: &[(&str, &str)]) -> Run {
+    let (walls, angle) = (walls.to_string(), angle.to_string());
+    let mut all = vec![("walls", walls.as_str()), ("angle", angle.as_str())];
+    all.extend(set);
+    slice(&solid.stl(), "generic-marlin", &all)
+}
+
+/// Where a place is along the plate that is turned by `degrees`, mm from its middle.
+fn along(run: &Run, degrees: f64, at: [f64; 2]) -> f64 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let middle = run.middle();
+    cos * (at[0] - middle[0]) + sin * (at[1] - middle[1])
+}
+
+/// Plastic of a layer between two places along the plate, mm³.
+fn plastic(run: &Run, degrees: f64, layer: usize, low: f64, high: f64) -> f64 {
+    let part = |m: &Move| {
+        let (a, b) = (along(run, degrees, m.a()), along(run, degrees, m.b()));
+        let inside = (a.max(b).min(high) - a.min(b).max(low)).max(0.0);
+        if (a - b).abs() < 1e-6 {
+            return f64::from(u8::from((low..high).contains(&a)));
+        }
+        inside / (a - b).abs()
+    };
+    let beads = run.print.beads().filter(|m| m.layer == Some(layer));
+    beads.map(|m| m.e * part(m)).sum::<f64>() * run.filament_area()
+}
+
+/// The longest stretch that a bead of a layer runs nearer than half a width to another, or to
+/// itself further on, mm.
+fn longest_twice(run: &Run, degrees: f64, layer: usize) -> f64 {
+    const STEP: f64 = 0.05;
+    let mut places: Vec<([f64; 2], f64)> = Vec::new();
+    let mut way = 0.0;
+    let mut end = [f64::MAX; 2];
+    for m in run.print.beads().filter(|m| m.layer == Some(layer)) {
+        if m.a() != end {
+            way += 100.0;
+        }
+        end = m.b();
+        let count = (m.length() / STEP).ceil().max(1.0);
+        places.extend((0..count as usize).map(|k| {
+            let t = (k as f64 + 0.5) / count;
+            (m.at(t), way + t * m.length())
+        }));
+        way += m.length();
+    }
+    let near = |p: &([f64; 2], f64), q: &([f64; 2], f64)| {
+        (p.1 - q.1).abs() > 1.5 && (p.0[0] - q.0[0]).hypot(p.0[1] - q.0[1]) < 0.49 * WIDTH
+    };
+    let (mut longest, mut from) = (0.0_f64, None::<f64>);
+    for p in &places {
+        let here = along(run, degrees, p.0).abs() < WITHIN && places.iter().any(|q| near(p, q));
+        match (here, from) {
+            (true, Some(start)) if p.1 - start < 90.0 => longest = longest.max(p.1 - start),
+            (true, _) => from = Some(p.1),
+            (false, _) => from = None,
+        }
+    }
+    longest
+}
+
+/// Plates from 0.8 to 3 mm in steps of 0.05.
+fn thicknesses() -> impl Iterator<Item = f64> {
+    (16..=60).map(|k| f64::from(k) / 20.0)
+}
+
+/// How far in the walls and one bead between them reach, mm.
+fn filled_up_to(walls: u32) -> f64 {
+    (2.0 * f64::from(walls) + 1.6) * WIDTH
+}
+
+#[test]
+fn plates_of_any_thickness_are_as_full_as_walls_and_one_bead_make_them() {
+    let mut wrong = Vec::new();
+    for walls in [2, 3] {
+        for thickness in thicknesses() {
+            for (turn, angle) in [(0.0, 0.0), (0.0, 45.0), (20.0, 0.0)] {
+                let run = sliced(&turned(&plate(thickness, thickness), turn), walls, angle, &[]);
+                for layer in LAYERS {
+                    let volume = thickness * 2.0 * WITHIN * 0.2;
+                    let ratio = plastic(&run, turn, layer, -WITHIN, WITHIN) / volume;
+                    let sparse = layer == LAYERS[1] && thickness > filled_up_to(walls) - 0.01;
+                    let least =
+                        if sparse { 2.0 * f64::from(walls) * WIDTH / thickness } else { 0.9 };
+                    let twice = longest_twice(&run, turn, layer);
+                    if !(least - 0.01..=1.12).contains(&ratio) || twice > 1.0 {
+                        wrong.push(format!("{walls} walls, {thickness} mm at {turn}/{angle}, layer {layer}: {ratio:.3}, {twice:.1} mm twice"));
+                    }
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn a_wedge_is_full_all_along() {
+    let mut wrong = Vec::new();
+    for walls in [2, 3] {
+        for (turn, angle) in [(0.0, 0.0), (0.0, 45.0), (20.0, 0.0)] {
+            let run = sliced(&turned(&plate(0.8, filled_up_to(walls)), turn), walls, angle, &[]);
+            for layer in LAYERS {
+                let twice = longest_twice(&run, turn, layer);
+                if twice > 1.0 {
+                    wrong.push(format!(
+                        "{walls} walls at {turn}/{angle}, layer {layer}: {twice:.1} mm twice"
+                    ));
+                }
+                for low in (-8..6).map(f64::from) {
+                    let middle = low + 1.0;
+                    let share = middle / LENGTH + 0.5;
+                    let thickness = 0.8 + share * (filled_up_to(walls) - 0.8);
+                    let ratio =
+                        plastic(&run, turn, layer, low, low + 2.0) / (thickness * 2.0 * 0.2);
+                    if !(0.85..=1.15).contains(&ratio) {
+                        wrong.push(format!("{walls} walls, {thickness:.2} mm at {turn}/{angle}, layer {layer}: {ratio:.3}"));
+                    }
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn one_wall_is_left_as_it_is() {
+    let run = sliced(&plate(1.2, 1.2), 1, 0.0, &[]);
+    let beads = run.print.beads().filter(|m| m.layer == Some(LAYERS[1]));
+    assert!(beads.into_iter().all(|m| m.kind == Kind::OuterWall));
+}
