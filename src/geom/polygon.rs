@@ -39,11 +39,13 @@ pub fn outset(contours: &[Contour], distance: Coord) -> Vec<Contour> {
     offset(contours, f64::from(distance))
 }
 
-/// What of `contours` is outside of `others` (both as from [`union`]).
+/// What of `contours` is outside of `others` (both as from [`union`]), simplified to
+/// `tolerance`: without the tiny edges that near coincidence leaves.
 #[must_use]
-pub fn difference(contours: &[Contour], others: &[Contour]) -> Vec<Contour> {
+pub fn difference(contours: &[Contour], others: &[Contour], tolerance: Coord) -> Vec<Contour> {
     let (contours, others) = (to_library(contours), to_library(others));
-    from_library(&difference_64(&contours, &others, FillRule::NonZero))
+    let left = difference_64(&contours, &others, FillRule::NonZero);
+    from_library(&clipper2_rust::simplify_paths(&left, f64::from(tolerance), true))
 }
 
 fn offset(contours: &[Contour], distance: f64) -> Vec<Contour> {

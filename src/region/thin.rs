@@ -88,13 +88,13 @@ pub fn apart(rows: &Rows, others: &Rows) -> Rows {
 pub fn open(loops: Vec<Contour>, params: &Params) -> Vec<Contour> {
     let half = (params.least_apart() / 2).max(1);
     let opened = polygon::outset(&polygon::inset(&loops, half), half + ROUNDING);
-    let mut thin = polygon::difference(&loops, &opened);
+    let mut thin = polygon::difference(&loops, &opened, ROUNDING);
     let least = 2.0 * SHORT * f64::from(params.line_width);
     thin.retain(|c| edges(c).map(|(p, q)| p.distance(q)).sum::<f64>() >= least);
     if thin.is_empty() {
         return loops;
     }
-    polygon::difference(&loops, &polygon::outset(&thin, ROUNDING))
+    polygon::difference(&loops, &polygon::outset(&thin, ROUNDING), 2 * ROUNDING)
 }
 
 impl Params {
