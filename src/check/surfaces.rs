@@ -32,7 +32,7 @@ const LEAST_LAYERS: usize = 5;
 const BLOCK_SLACK: [f64; 2] = [0.5, 1.7];
 
 /// … and that of the whole print this.
-const INFILL_SLACK: [f64; 2] = [0.75, 1.3];
+const INFILL_SLACK: [f64; 2] = [0.65, 1.4];
 
 /// Room for infill that tells the whole print's density, mm³.
 const ENOUGH_ROOM: f64 = 1000.0;
