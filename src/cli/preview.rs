@@ -72,6 +72,22 @@ pub(crate) struct PreviewArgs {
     quiet: bool,
 }
 
+impl PreviewArgs {
+    /// The first flag given that only pictures of layers and cuts have.
+    fn of_layers(&self) -> Option<&'static str> {
+        let flags = [
+            ("--crop", self.crop.is_some()),
+            ("--layer", self.layer.is_some()),
+            ("--all", self.all),
+            ("--fit", self.fit),
+            ("--below", self.below > 0),
+            ("--travels", self.travels),
+            ("--cut", self.cut.is_some()),
+        ];
+        flags.into_iter().find(|(_, given)| *given).map(|(flag, _)| flag)
+    }
+}
+
 /// What a picture is written as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Format {
@@ -144,17 +160,8 @@ fn format(args: &PreviewArgs) -> Result<Format> {
 
 /// Draws a model, which has no layers yet.
 fn model_itself(args: &PreviewArgs, format: Format) -> Result<()> {
-    let of_gcode = [
-        ("--layer", args.layer.is_some()),
-        ("--all", args.all),
-        ("--fit", args.fit),
-        ("--below", args.below > 0),
-        ("--travels", args.travels),
-        ("--cut", args.cut.is_some()),
-        ("--crop", args.crop.is_some()),
-    ];
     let file = &args.file;
-    if let Some((flag, _)) = of_gcode.iter().find(|(_, given)| *given) {
+    if let Some(flag) = args.of_layers() {
         return Err(Error::Usage(format!("{flag}: {file} is a model; slice it first")));
     }
     if format != Format::Png {
@@ -280,17 +287,7 @@ fn write(encode: Encode, drawing: &Drawing, name: &Path, sink: &mut Sink) -> Res
 
 /// The page with all layers in it, for which nothing can be chosen.
 fn page(args: &PreviewArgs) -> Result<()> {
-    let given = [
-        ("--size", args.size.is_some()),
-        ("--crop", args.crop.is_some()),
-        ("--layer", args.layer.is_some()),
-        ("--all", args.all),
-        ("--fit", args.fit),
-        ("--below", args.below > 0),
-        ("--travels", args.travels),
-        ("--cut", args.cut.is_some()),
-    ];
-    if let Some((flag, _)) = given.iter().find(|(_, given)| *given) {
+    if let Some(flag) = args.size.map(|_| "--size").or(args.of_layers()) {
         return Err(Error::Usage(format!(
             "{flag} is for pictures, and a page shows everything; leave it out, or write .svg or .png"
         )));
