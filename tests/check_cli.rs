@@ -306,3 +306,17 @@ fn files_of_other_form_are_judged_as_far_as_they_tell() {
         assert!(code == 1 && out.contains("open-surface: layer 5 at 1 mm"), "{out}");
     }
 }
+
+#[test]
+fn lines_as_wide_as_no_machine_take_no_time() {
+    let text =
+        ";LAYER_CHANGE\n;TYPE:Perimeter\nG1 Z0.2\nG1 X1 Y1 E1\nG1 X900000000 E2\nG1 Y90000000 E3\n";
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("wide.gcode");
+    std::fs::write(&path, text).unwrap();
+    let mut command = assert_cmd::Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
+    let run = command.arg("check").arg(&path).args(["--against", "fixtures/cube_20.stl"]);
+    let run = run.timeout(std::time::Duration::from_secs(20)).assert().code(1);
+    let told = String::from_utf8(run.get_output().stdout.clone()).unwrap();
+    assert!(told.contains("mm apart, further than on any machine"), "{told}");
+}

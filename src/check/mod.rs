@@ -22,12 +22,15 @@ pub mod terms;
 use crate::mesh::Mesh;
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};
-use finding::{Count, Finding, Findings};
+use finding::{Code, Count, Finding, Findings};
 use serde::Serialize;
 use terms::Terms;
 
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
 pub const SCHEMA: u32 = 1;
+
+/// No print is wider or deeper, mm.
+const WIDEST: f64 = 10_000.0;
 
 /// What was meant to be printed.
 #[derive(Debug, Clone, Copy)]
@@ -90,14 +93,23 @@ pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict 
     moves::check(print, terms, &mut found, &mut not_judged);
     beads::odd(print, terms, &mut found);
     beads::sums(print, &mut found);
-    let part = model.and_then(|model| {
+    // What is as wide as no machine is not looked at place by place.
+    let absurd = is_absurd(print, &mut found);
+    let part = model.filter(|_| !absurd).and_then(|model| {
         let say = (&mut found, &mut not_judged);
         align::place(print, model, has_roles, say)
     });
-    let stacked = stack::check(print, part.as_ref(), &mut found);
-    let sums = part
-        .as_ref()
-        .map(|part| surfaces::check(print, part, terms, has_roles, (&mut found, &mut not_judged)));
+    let looked_at = if absurd { &Print::default() } else { print };
+    // Side by side, each with findings of its own: how lines lie on each other, and on the part.
+    let mut piled = Findings::default();
+    let (stacked, sums) = rayon::join(
+        || stack::check(looked_at, part.as_ref(), &mut piled),
+        || {
+            let say = (&mut found, &mut not_judged);
+            part.as_ref().map(|part| surfaces::check(print, part, terms, has_roles, say))
+        },
+    );
+    found.extend(piled);
 
     let lines = print.layers.iter().flat_map(|layer| print.moves_of(layer));
     let filament: f64 =
@@ -123,6 +135,19 @@ pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict 
             infill: sums.and_then(|sums| sums.density),
         },
     }
+}
+
+/// Whether lines lie further apart than on any machine; then that is a finding.
+fn is_absurd(print: &Print, found: &mut Findings) -> bool {
+    let lines = print.layers.iter().flat_map(|layer| print.moves_of(layer));
+    let Some((low, high)) = extent(lines.filter(|step| step.is_line())) else { return false };
+    let side = (high[0] - low[0]).max(high[1] - low[1]);
+    if side <= WIDEST {
+        return false;
+    }
+    let text = format!("lines lie {side:.0} mm apart, further than on any machine");
+    found.add(Finding::of(Code::OutsideVolume, side, "mm", text));
+    true
 }
 
 /// What the file, or who asks, does not tell.

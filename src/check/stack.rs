@@ -18,7 +18,7 @@ use crate::reader::{Print, Role};
 const PITCH: f64 = 0.1;
 
 /// Pixels of the map at most; larger beds get larger pixels.
-const MOST_PIXELS: f64 = 4e7;
+const MOST_PIXELS: f64 = 2e7;
 
 /// Plastic may be missing under a line by this part of its height.
 const GAP: f64 = 0.5;
