@@ -5,6 +5,7 @@ use super::capsule::Capsule;
 use super::finding::{Code, Finding, Place, short};
 use super::part::Part;
 use super::raster::{Bits, Grid};
+use super::samples::Samples;
 use super::terms::Terms;
 use crate::reader::print::{Layer, Step};
 use crate::reader::{Print, Role};
@@ -215,14 +216,7 @@ impl Judge<'_> {
 
 /// What part of a line lies in an area.
 pub(super) fn share_in(step: &Step, grid: &Grid, area: &Bits) -> f64 {
-    let count = (step.length() / PIECE).ceil().max(1.0) as usize;
-    let inside = (0..count).filter(|k| {
-        let part = (*k as f64 + 0.5) / count as f64;
-        let at = [0, 1].map(|axis| {
-            let (from, to) = (f64::from(step.from[axis]), f64::from(step.to[axis]));
-            from + part * (to - from)
-        });
-        grid.pixel(at).is_some_and(|[x, y]| area.has(x, y))
-    });
-    inside.count() as f64 / count as f64
+    let is_in = |at| grid.pixel(at).is_some_and(|[x, y]| area.has(x, y));
+    let inside = Samples::of(step, PIECE).filter(|piece| is_in(piece.at)).count();
+    inside as f64 / Samples::of(step, PIECE).count() as f64
 }

@@ -2,10 +2,10 @@
 
 use super::Model;
 use super::against::{PRINTABLE, SOME_WIDTH, is_of_part, share_in};
-use super::extent;
 use super::finding::{Code, Finding, Findings, short};
 use super::part::Part;
 use super::raster::Grid;
+use super::{extent, median};
 use crate::reader::print::{Layer, Step};
 use crate::reader::{Print, Role};
 
@@ -69,7 +69,10 @@ pub(super) fn place(
         .filter_map(|(index, layer)| off(print, layer, part.extent_of(index)?, has_roles))
         .collect();
     let mut fits = fit(print, &part, has_roles);
-    let by = [0, 1].map(|axis| median(offs.iter().map(|off| off.middle[axis])));
+    let usual = |of: fn(&Off) -> [f64; 2]| {
+        [0, 1].map(|axis| median(offs.iter().map(|off| of(off)[axis]).collect()).unwrap_or(0.0))
+    };
+    let by = usual(|off| off.middle);
     if fits < 1.0 && by.iter().any(|by| by.abs() > MOST_OFF) {
         part.shift(by);
         let shifted = fit(print, &part, has_roles);
@@ -82,9 +85,9 @@ pub(super) fn place(
         }
     }
     // Smaller may be by right, where places are too thin to print: what lacks is told with the outline.
-    let larger = [0, 1].map(|axis| median(offs.iter().map(|off| off.size[axis])));
+    let larger = usual(|off| off.size);
     if fits < LEAST_FIT || larger.iter().any(|by| *by > SIZE_SLACK) {
-        sizes(&offs, fits, found);
+        sizes(larger, fits, found);
         notes.push(
             "the part's surfaces: it is not the model (see --scale, --rotate, --unit)".into(),
         );
@@ -138,10 +141,9 @@ fn off(
 }
 
 /// Tells what of the size is wrong, or else that the shape is.
-fn sizes(offs: &[Off], fits: f64, found: &mut Findings) {
+fn sizes(larger: [f64; 2], fits: f64, found: &mut Findings) {
     let before = found.len();
-    for (axis, name) in ["x", "y"].into_iter().enumerate() {
-        let larger = median(offs.iter().map(|off| off.size[axis]));
+    for (larger, name) in larger.into_iter().zip(["x", "y"]) {
         if larger.abs() > SIZE_SLACK {
             let than = if larger > 0.0 { "larger" } else { "smaller" };
             let size = short(larger.abs());
@@ -182,14 +184,4 @@ fn height(print: &Print, model: Model<'_>, part: &Part, found: &mut Findings) {
     if (0..above).any(|layer| area(layer) >= LEAST_AREA) {
         tell("lower");
     }
-}
-
-/// The middle one; 0 of none.
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    let middle = values.len() / 2;
-    if values.is_empty() {
-        return 0.0;
-    }
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }

@@ -1,6 +1,7 @@
 //! Print + Terms -> findings of amounts: lines with odd amounts of plastic, and sums that the file itself tells.
 
 use super::finding::{Code, Finding, Findings, Place, short};
+use super::median;
 use super::terms::Terms;
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};
@@ -35,13 +36,11 @@ pub(super) fn odd(print: &Print, terms: &Terms, found: &mut Findings) {
     for role in Role::ALL {
         let ratio =
             |step: &Step| f64::from(step.filament) * terms.filament_area / room(print, step);
-        let mut ratios: Vec<f64> = lines(role).map(|(_, step)| ratio(step)).collect();
+        let ratios: Vec<f64> = lines(role).map(|(_, step)| ratio(step)).collect();
         if ratios.len() < LEAST_LINES {
             continue;
         }
-        let middle = ratios.len() / 2;
-        let (_, usual, _) = ratios.select_nth_unstable_by(middle, f64::total_cmp);
-        let usual = *usual;
+        let Some(usual) = median(ratios) else { continue };
         for (layer, step) in lines(role) {
             let times = ratio(step) / usual;
             let is_odd = if print.tells_width {

@@ -15,6 +15,7 @@ mod heat;
 mod moves;
 mod part;
 mod raster;
+mod samples;
 mod stack;
 mod surfaces;
 pub mod terms;
@@ -111,9 +112,7 @@ pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict 
     );
     found.extend(piled);
 
-    let lines = print.layers.iter().flat_map(|layer| print.moves_of(layer));
-    let filament: f64 =
-        lines.filter(|step| step.is_line()).map(|step| f64::from(step.filament)).sum();
+    let filament: f64 = print.lines().map(|step| f64::from(step.filament)).sum();
     let share = |[all, some]: [f64; 2]| if all > 0.0 { some / all } else { 1.0 };
     let (findings, counts) = found.sorted();
     Verdict {
@@ -139,8 +138,7 @@ pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict 
 
 /// Whether lines lie further apart than on any machine; then that is a finding.
 fn is_absurd(print: &Print, found: &mut Findings) -> bool {
-    let lines = print.layers.iter().flat_map(|layer| print.moves_of(layer));
-    let Some((low, high)) = extent(lines.filter(|step| step.is_line())) else { return false };
+    let Some((low, high)) = extent(print.lines()) else { return false };
     let side = (high[0] - low[0]).max(high[1] - low[1]);
     if side <= WIDEST {
         return false;
@@ -171,6 +169,12 @@ fn what_is_missing(
     if !print.tells_width {
         say("the plastic of single lines: no comment tells how wide they are");
     }
+}
+
+/// The middle one of some values by their order; `None` of none.
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    let middle = values.len() / 2;
+    (middle < values.len()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// Lowest and highest x and y that lines cover, mm.

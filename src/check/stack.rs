@@ -11,6 +11,7 @@ use super::capsule::Capsule;
 use super::finding::{Code, Finding, Findings, short};
 use super::part::Part;
 use super::raster::Grid;
+use super::samples::{Sample, Samples};
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};
 
@@ -61,7 +62,7 @@ pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) ->
     let Some(mut pile) = Pile::over(print) else { return measured };
     for (layer, one) in print.layers.iter().enumerate() {
         gap(print, layer, found);
-        pile.owners_from = pile.next_owner;
+        pile.begin_layer();
         let steps = print.moves_of(one);
         let chains = steps.chunk_by(|a, b| a.is_line() && b.is_line() && a.to == b.from);
         let lines: Vec<Line> = chains
@@ -174,7 +175,6 @@ struct Pile {
     cores: Vec<f32>,
     /// The line that was laid there last, counted over all layers from 1.
     owners: Vec<u32>,
-    next_owner: u32,
     /// The owner before the first line of this layer.
     owners_from: u32,
     /// For each line of the layer a line that it touches, and so on to the first of its patch.
@@ -183,8 +183,7 @@ struct Pile {
 
 impl Pile {
     fn over(print: &Print) -> Option<Self> {
-        let steps = print.layers.iter().flat_map(|layer| print.moves_of(layer));
-        let (low, high) = super::extent(steps.filter(|step| step.is_line()))?;
+        let (low, high) = super::extent(print.lines())?;
         let grid = Grid::over(low, high, 0.5, PITCH, MOST_PIXELS);
         let count = grid.size[0] * grid.size[1];
         Some(Self {
@@ -192,7 +191,6 @@ impl Pile {
             tops: vec![0.0; count],
             cores: vec![0.0; count],
             owners: vec![0; count],
-            next_owner: 0,
             owners_from: 0,
             parents: Vec::new(),
         })
@@ -200,6 +198,12 @@ impl Pile {
 
     fn at<T: Copy>(&self, map: &[T], place: [f64; 2]) -> Option<T> {
         self.grid.pixel(place).map(|[x, y]| map[y * self.grid.size[0] + x])
+    }
+
+    /// Forgets which lines touch; those to come are of another layer.
+    fn begin_layer(&mut self) {
+        self.owners_from += self.parents.len() as u32;
+        self.parents.clear();
     }
 
     /// The first line of the patch that a line of this layer belongs to.
@@ -267,13 +271,9 @@ impl Pile {
     /// Lays a line down, and joins it to the lines of this layer that it touches.
     fn lay(&mut self, chain: &[Step]) {
         // Lines of the layer are counted from 0, owners over all layers from 1.
-        let line = (self.next_owner - self.owners_from) as usize;
-        self.next_owner += 1;
-        if line == 0 {
-            self.parents.clear();
-        }
+        let line = self.parents.len();
         self.parents.push(line);
-        let owner = self.next_owner;
+        let owner = self.owners_from + self.parents.len() as u32;
         let mut touched: Vec<u32> = Vec::new();
         let width = self.grid.size[0];
         for step in chain {
@@ -314,55 +314,6 @@ impl Pile {
     fn lay_core(&mut self, step: &Step) {
         let (width, cores, z) = (self.grid.size[0], &mut self.cores, step.to[2]);
         Capsule::of(step, CORE).rows(&self.grid, |y, span| cores[y * width..][span].fill(z));
-    }
-}
-
-/// A short piece of a line.
-#[derive(Clone, Copy)]
-struct Sample {
-    /// Its middle.
-    at: [f64; 2],
-    z: f64,
-    /// Across the line, of length 1.
-    across: [f64; 2],
-    /// mm.
-    length: f64,
-}
-
-/// The pieces of a line.
-struct Samples {
-    from: [f64; 3],
-    way: [f64; 3],
-    length: f64,
-    count: usize,
-    next: usize,
-}
-
-impl Samples {
-    fn of(step: &Step, pitch: f64) -> Self {
-        let from = step.from.map(f64::from);
-        let way = [0, 1, 2].map(|axis| f64::from(step.to[axis]) - from[axis]);
-        let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
-        let count = (length / pitch).ceil().max(1.0) as usize;
-        Self { from, way, length, count, next: 0 }
-    }
-}
-
-impl Iterator for Samples {
-    type Item = Sample;
-
-    fn next(&mut self) -> Option<Sample> {
-        if self.next == self.count {
-            return None;
-        }
-        let part = (self.next as f64 + 0.5) / self.count as f64;
-        self.next += 1;
-        Some(Sample {
-            at: [0, 1].map(|axis| self.from[axis] + part * self.way[axis]),
-            z: self.from[2] + part * self.way[2],
-            across: [-self.way[1] / self.length, self.way[0] / self.length],
-            length: self.length / self.count as f64,
-        })
     }
 }
 

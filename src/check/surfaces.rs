@@ -1,11 +1,11 @@
 //! Print + Part -> findings against the model, layer by layer, and the sums over all of them.
 
 use super::against::{Areas, Judge, SOME_WIDTH, Verdict, is_of_part};
-use super::extent;
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::part::{Part, extent_of};
 use super::raster::{Bits, Grid};
 use super::terms::Terms;
+use super::{extent, median};
 use crate::reader::{Print, Role};
 use rayon::prelude::*;
 
@@ -117,13 +117,8 @@ fn batch(judge: &Judge<'_>, layers: std::ops::Range<usize>) -> Vec<Verdict> {
 
 /// The usual width of the walls that are seen, mm.
 fn line_width(print: &Print) -> f64 {
-    let of = |role| print.moves.iter().filter(move |step| step.role == role && step.is_line());
-    let mut widths: Vec<f32> = of(Role::OuterWall).map(|step| step.width).collect();
-    if widths.is_empty() {
-        return SOME_WIDTH;
-    }
-    let middle = widths.len() / 2;
-    f64::from(*widths.select_nth_unstable_by(middle, f32::total_cmp).1)
+    let walls = print.lines().filter(|step| step.role == Role::OuterWall);
+    median(walls.map(|step| f64::from(step.width)).collect()).unwrap_or(SOME_WIDTH)
 }
 
 /// Adds up, and judges the amounts.

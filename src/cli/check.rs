@@ -18,9 +18,6 @@ const DIAMETER: f64 = 1.75;
 /// Findings of a kind that people get to read.
 const MOST_SHOWN: usize = 5;
 
-/// A bed that every model fits, for files of unknown machines, mm.
-const ANY_BED: Bed = Bed { min: [-5000.0; 2], max: [5000.0; 2], height: 10_000.0 };
-
 /// What standard output gets, and 1 if there are findings.
 ///
 /// # Errors
@@ -42,7 +39,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let judge = given.as_ref().or(told.as_ref());
     let machine = judge.map(|profile| &profile.settings);
     let terms = Terms::new(machine, told.as_ref().map(|profile| &profile.settings), &print);
-    let bed = judge.map_or(ANY_BED, |profile| slicer::bed(&profile.settings.machine));
+    let bed = judge.map_or(Bed::ANY, |profile| slicer::bed(&profile.settings.machine));
     let placed = if args.against.is_empty() {
         None
     } else {

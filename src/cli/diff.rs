@@ -98,7 +98,7 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
 
 fn print((name, bytes): &(&str, Vec<u8>)) -> Result<Print> {
     Print::read(&mut bytes.as_slice(), SOME_DIAMETER)
-        .map_err(|error| Error::input(name, error.to_string()))
+        .map_err(|error| input::unreadable(name, &error))
 }
 
 fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Result<Side> {

@@ -1,9 +1,8 @@
 //! STL file -> PNG: the model itself, for `slicer preview`.
 
 use slicer::error::{Error, Result};
-use slicer::mesh::{Bed, Placement, Unit, stl, transform};
+use slicer::mesh::{Bed, Placement, Unit, stl};
 use slicer::render::{self, Ground};
-use slicer::units::MAX_COORDINATE_MM;
 use slicer::warning::Warning;
 use std::fs::File;
 use std::io::Read as _;
@@ -48,10 +47,8 @@ pub(super) fn draw(file: &str, size: u32) -> Result<Drawn> {
         let why = format!("--size {size}: a model is drawn with at most {MOST} pixels; use fewer");
         return Err(Error::Usage(why));
     }
-    let half = MAX_COORDINATE_MM / 2.0;
-    let bed = Bed { min: [-half; 2], max: [half; 2], height: MAX_COORDINATE_MM };
     let placement = Placement { unit: Unit::Mm, scale: 1.0, rotate: [0.0; 3], at: None, copies: 1 };
-    let placed = transform::place(vec![stl::load(file)?], &placement, &bed)?;
+    let placed = slicer::place(&[file.to_owned()], &placement, &Bed::ANY)?;
     let picture = render::draw(&placed.mesh, render::fitting(&placed.mesh, size), Ground::White);
     let png = picture.png().map_err(|error| Error::input(file, error.to_string()))?;
     let [x, y, z] = placed.size_mm;

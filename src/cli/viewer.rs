@@ -2,7 +2,7 @@
 
 use super::input;
 use super::output::{self, Sink};
-use slicer::error::{Error, Result};
+use slicer::error::Result;
 use slicer::estimate::{self, Options};
 use slicer::motion::Limits;
 use slicer::preview::html;
@@ -22,8 +22,8 @@ pub(super) fn write(file: &str, out: &Path, settings: &Settings) -> Result<Strin
     let diameter = settings.filament.diameter;
     let options = Options { filament_diameter: diameter, fixed_limits: false };
     let estimate = estimate::estimate(&mut &bytes[..], name, &Limits::new(settings), options)?;
-    let print = Print::read(&mut &bytes[..], diameter)
-        .map_err(|error| Error::input(name, format!("cannot read: {error}; check the path")))?;
+    let print =
+        Print::read(&mut &bytes[..], diameter).map_err(|error| input::unreadable(name, &error))?;
     // The file is not needed any more, and may be large.
     drop(bytes);
     let base = Path::new(name).file_name().map_or(name.into(), |base| base.to_string_lossy());

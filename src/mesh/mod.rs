@@ -12,6 +12,7 @@ mod measure;
 mod sniff;
 mod weld;
 
+use crate::units::MAX_COORDINATE_MM;
 use serde::Serialize;
 
 /// The triangles of one file as read: vertices welded where they are bit-equal,
@@ -99,4 +100,13 @@ pub struct Bed {
     pub max: [f64; 2],
     /// Highest z.
     pub height: f64,
+}
+
+impl Bed {
+    /// One that every model fits, where the machine is not known.
+    pub const ANY: Self = Self {
+        min: [-MAX_COORDINATE_MM / 2.0; 2],
+        max: [MAX_COORDINATE_MM / 2.0; 2],
+        height: MAX_COORDINATE_MM,
+    };
 }

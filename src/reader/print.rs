@@ -146,6 +146,12 @@ impl Print {
         &self.moves[layer.moves.clone()]
     }
 
+    /// The lines of all layers.
+    pub fn lines(&self) -> impl Iterator<Item = &Step> {
+        let steps = self.layers.iter().flat_map(|layer| self.moves_of(layer));
+        steps.filter(|step| step.is_line())
+    }
+
     /// The last of the values with this key.
     #[must_use]
     pub fn value(&self, key: &str) -> Option<&str> {

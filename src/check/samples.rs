@@ -1,0 +1,54 @@
+//! A line -> Samples: its short pieces, one after the other.
+
+use crate::reader::print::Step;
+
+/// A short piece of a line.
+#[derive(Clone, Copy)]
+pub(super) struct Sample {
+    /// Its middle.
+    pub(super) at: [f64; 2],
+    /// Height of the nozzle, mm.
+    pub(super) z: f64,
+    /// Across the line, of length 1.
+    pub(super) across: [f64; 2],
+    /// mm.
+    pub(super) length: f64,
+}
+
+/// The pieces of a line.
+pub(super) struct Samples {
+    from: [f64; 3],
+    way: [f64; 3],
+    length: f64,
+    count: usize,
+    next: usize,
+}
+
+impl Samples {
+    /// Of about `pitch` mm each.
+    pub(super) fn of(step: &Step, pitch: f64) -> Self {
+        let from = step.from.map(f64::from);
+        let way = [0, 1, 2].map(|axis| f64::from(step.to[axis]) - from[axis]);
+        let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
+        let count = (length / pitch).ceil().max(1.0) as usize;
+        Self { from, way, length, count, next: 0 }
+    }
+}
+
+impl Iterator for Samples {
+    type Item = Sample;
+
+    fn next(&mut self) -> Option<Sample> {
+        if self.next == self.count {
+            return None;
+        }
+        let part = (self.next as f64 + 0.5) / self.count as f64;
+        self.next += 1;
+        Some(Sample {
+            at: [0, 1].map(|axis| self.from[axis] + part * self.way[axis]),
+            z: self.from[2] + part * self.way[2],
+            across: [-self.way[1] / self.length, self.way[0] / self.length],
+            length: self.length / self.count as f64,
+        })
+    }
+}
