@@ -1,5 +1,7 @@
 //! Triangles -> Adjacency: finds the triangle on the other side of every edge.
 
+use super::vector::minus;
+
 /// No half-edge: what [`Adjacency::neighbour`] says at an open edge.
 pub const NONE: u32 = u32::MAX;
 
@@ -34,28 +36,50 @@ pub fn parts(half_edge: u32) -> (usize, usize) {
 ///
 /// Half-edges are bucketed by their lower vertex (a counting sort), then
 /// sorted by the other one within the few of a bucket: linear time. Where an
-/// edge has more than two half-edges, those of each direction are put in the
-/// order of the coordinates of their triangles' third corners and paired in
-/// that order, so that the order of the triangles does not matter. An edge
-/// from a vertex to itself has no neighbour.
+/// edge has more than two half-edges, they are taken in the order of their
+/// triangles around the edge, and those that bound the same wedge of solid are
+/// paired; the order of the triangles does not matter. An edge from a vertex to
+/// itself has no neighbour.
 ///
 /// # Panics
 /// If a triangle names a vertex that is not there.
 #[must_use]
 pub fn adjacency(vertices: &[[i32; 3]], triangles: &[[u32; 3]]) -> Adjacency {
-    let (mut entries, ends) = bucketed(vertices.len(), triangles);
     let mut result =
         Adjacency { neighbour: vec![[NONE; 3]; triangles.len()], unpaired: 0, non_manifold: 0 };
+    each_edge(vertices.len(), triangles, |(low, high), sides| {
+        if low == high {
+            result.unpaired += sides.len();
+        } else {
+            pair(sides, low, vertices, triangles, &mut result);
+        }
+    });
+    result
+}
+
+/// Calls `visit` with every edge of `triangles`, its lower and its higher vertex, and the
+/// half-edges on it in both directions, at least one. Edges come in the order of their vertices.
+///
+/// # Panics
+/// If a triangle names a vertex that is not below `vertices`.
+pub(crate) fn each_edge(
+    vertices: usize,
+    triangles: &[[u32; 3]],
+    mut visit: impl FnMut((u32, u32), &[u32]),
+) {
+    let (mut entries, ends) = bucketed(vertices, triangles);
     let mut start = 0;
-    for (low, end) in ends.into_iter().enumerate() {
+    let mut sides = Vec::new();
+    for (low, end) in (0_u32..).zip(ends) {
         let bucket = &mut entries[start..end as usize];
         start = end as usize;
         bucket.sort_unstable();
         for edge in bucket.chunk_by(|a, b| a >> 32 == b >> 32) {
-            pair(edge, low, vertices, triangles, &mut result);
+            sides.clear();
+            sides.extend(edge.iter().map(|&entry| number(entry)));
+            visit((low, number(edge[0] >> 32)), &sides);
         }
     }
-    result
 }
 
 /// All half-edges as `higher vertex << 32 | half-edge`, grouped by their lower
@@ -97,42 +121,95 @@ fn number(entry: u64) -> u32 {
     entry as u32
 }
 
-/// Pairs the half-edges of one edge, whose lower vertex is `low`.
+/// Whether a half-edge starts at vertex `low`.
+pub(crate) fn starts_at(low: u32, half: u32, triangles: &[[u32; 3]]) -> bool {
+    let (triangle, edge) = parts(half);
+    triangles[triangle][edge] == low
+}
+
+/// Pairs the half-edges `sides` of one edge, whose lower vertex is `low`.
 fn pair(
-    edge: &[u64],
-    low: usize,
+    sides: &[u32],
+    low: u32,
     vertices: &[[i32; 3]],
     triangles: &[[u32; 3]],
     result: &mut Adjacency,
 ) {
-    let upwards = |half: u32| {
-        let (triangle, edge) = parts(half);
-        triangles[triangle][edge] as usize == low
-    };
-    if let &[a, b] = edge {
-        let (a, b) = (number(a), number(b));
-        if upwards(a) != upwards(b) {
-            join(a, b, result);
-            return;
-        }
-    }
-    if edge[0] >> 32 == low as u64 {
-        result.unpaired += edge.len();
+    let upwards = |half: u32| starts_at(low, half, triangles);
+    if let &[a, b] = sides
+        && upwards(a) != upwards(b)
+    {
+        join(a, b, result);
         return;
     }
-    let (mut up, mut down): (Vec<u32>, Vec<u32>) =
-        edge.iter().map(|&entry| number(entry)).partition(|&half| upwards(half));
-    for side in [&mut up, &mut down] {
-        side.sort_unstable_by_key(|&half| {
-            let (triangle, edge) = parts(half);
-            (vertices[triangles[triangle][(edge + 2) % 3] as usize], half)
-        });
+    let is_balanced = 2 * sides.iter().filter(|&&half| upwards(half)).count() == sides.len();
+    result.non_manifold += usize::from(is_balanced);
+    let around = in_order_around(sides, vertices, triangles, upwards);
+    // Like brackets in a ring: a face that goes up is closed by the next free one that goes
+    // down, so that bodies that touch along the edge stay apart.
+    let count = around.len();
+    let mut taken = vec![false; count];
+    let mut waiting = Vec::new();
+    for step in 0..2 * count {
+        let k = step % count;
+        if taken[k] {
+            continue;
+        }
+        if upwards(around[k]) {
+            // In the second round they wait already.
+            waiting.extend((step < count).then_some(k));
+        } else if let Some(opened) = waiting.pop() {
+            join(around[opened], around[k], result);
+            (taken[k], taken[opened]) = (true, true);
+        }
     }
-    for (&a, &b) in up.iter().zip(&down) {
-        join(a, b, result);
-    }
-    result.unpaired += up.len().abs_diff(down.len());
-    result.non_manifold += usize::from(up.len() == down.len());
+    result.unpaired += taken.iter().filter(|&&taken| !taken).count();
+}
+
+/// The half-edges of one edge by the angle of their triangles about it; those that go down
+/// come first where angles are equal, then by the coordinates of the third corner.
+fn in_order_around(
+    sides: &[u32],
+    vertices: &[[i32; 3]],
+    triangles: &[[u32; 3]],
+    upwards: impl Fn(u32) -> bool,
+) -> Vec<u32> {
+    let corner = |half: u32, step: usize| {
+        let (triangle, edge) = parts(half);
+        vertices[triangles[triangle][(edge + step) % 3] as usize]
+    };
+    let Some(&first) = sides.iter().find(|&&half| upwards(half)).or(sides.first()) else {
+        return Vec::new();
+    };
+    let from = if upwards(first) { corner(first, 0) } else { corner(first, 1) };
+    let to = if upwards(first) { corner(first, 1) } else { corner(first, 0) };
+    let along = minus(to, from).map(|side| side as f64);
+    // Across the edge in the plane of its two longer extents, and across both.
+    let least = (0..3).min_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs())).unwrap_or(0);
+    let (j, k) = ((least + 1) % 3, (least + 2) % 3);
+    let mut u = [0.0; 3];
+    (u[j], u[k]) = (-along[k], along[j]);
+    let v: [f64; 3] = std::array::from_fn(|axis| {
+        let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
+        along[a] * u[b] - along[b] * u[a]
+    });
+    let turn = |half: u32| {
+        let side = minus(corner(half, 2), from).map(|side| side as f64);
+        let part = |axis: [f64; 3]| (0..3).map(|i| axis[i] * side[i]).sum::<f64>();
+        // Scaled to like lengths; a measure that grows with the angle, from 0 to 4.
+        let length = along.iter().map(|side| side * side).sum::<f64>().sqrt();
+        let (x, y) = (part(u) * length, part(v));
+        let share = if x == 0.0 && y == 0.0 { 0.0 } else { y / (x.abs() + y.abs()) };
+        if x < 0.0 { 2.0 - share } else if share < 0.0 { 4.0 + share } else { share }
+    };
+    let mut keyed: Vec<_> = sides
+        .iter()
+        .map(|&half| (turn(half), upwards(half), corner(half, 2), half))
+        .collect();
+    keyed.sort_unstable_by(|a, b| {
+        a.0.total_cmp(&b.0).then_with(|| (a.1, a.2, a.3).cmp(&(b.1, b.2, b.3)))
+    });
+    keyed.into_iter().map(|(.., half)| half).collect()
 }
 
 fn join(a: u32, b: u32, result: &mut Adjacency) {

@@ -1,35 +1,35 @@
 //! Mesh -> volume: measures a placed mesh in integers, so that the order of triangles does not matter.
 
 use super::Mesh;
+use super::vector::{Corner, cross, dot, minus, normal};
 use crate::units::UNITS_PER_MM;
 
 /// Whether any triangle has area.
 pub(crate) fn has_area(mesh: &Mesh) -> bool {
-    mesh.triangles.iter().any(|corners| {
-        let [a, b, c] = corners.map(|corner| mesh.vertices[corner as usize].map(i64::from));
-        let (u, v) = (minus(b, a), minus(c, a));
-        cross(u, v) != [0; 3]
-    })
+    mesh.triangles.iter().any(|&corners| normal(corners_of(&mesh.vertices, corners)) != [0; 3])
 }
 
-fn minus(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
-    std::array::from_fn(|axis| a[axis] - b[axis])
-}
-
-fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+/// The corners of a triangle.
+pub(crate) fn corners_of(vertices: &[Corner], triangle: [u32; 3]) -> [Corner; 3] {
+    triangle.map(|corner| vertices[corner as usize])
 }
 
 /// The signed volume: a sixth of the sum of the triangles' determinants, in
 /// integers, so that no order of the triangles changes it.
-#[expect(clippy::cast_precision_loss, reason = "rounded once, at the end")]
 pub(crate) fn volume_mm3(mesh: &Mesh) -> f64 {
-    let determinant = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|corner| mesh.vertices[corner as usize].map(i64::from));
-        let normal = cross(b, c);
-        (0..3).map(|axis| i128::from(a[axis]) * i128::from(normal[axis])).sum::<i128>()
-    };
-    let sum: i128 = mesh.triangles.iter().map(determinant).sum();
+    let sum = mesh.triangles.iter().map(|&t| determinant(corners_of(&mesh.vertices, t))).sum();
+    of_determinants(sum)
+}
+
+/// Six times the signed volume of the tetrahedron from the origin to a triangle; exact.
+pub(crate) fn determinant([a, b, c]: [Corner; 3]) -> i128 {
+    let from_origin = |corner| minus(corner, [0; 3]);
+    dot(from_origin(a), cross(from_origin(b), from_origin(c)))
+}
+
+/// The volume that a sum of [`determinant`]s stands for, mm³.
+#[expect(clippy::cast_precision_loss, reason = "rounded once, at the end")]
+pub(crate) fn of_determinants(sum: i128) -> f64 {
     sum as f64 / (6.0 * UNITS_PER_MM.powi(3))
 }
 

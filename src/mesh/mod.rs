@@ -10,6 +10,7 @@ mod fit;
 mod layout;
 mod measure;
 mod sniff;
+mod vector;
 mod weld;
 
 use crate::units::MAX_COORDINATE_MM;
