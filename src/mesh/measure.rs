@@ -12,11 +12,13 @@ pub(crate) fn has_area(mesh: &Mesh) -> bool {
     })
 }
 
-fn minus(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
+/// The vector from `b` to `a`.
+pub(super) fn minus(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
     std::array::from_fn(|axis| a[axis] - b[axis])
 }
 
-fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
+/// The cross product; of differences of coordinates it fits.
+pub(super) fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 

@@ -3,8 +3,10 @@
 pub mod edges;
 pub mod stl;
 pub mod transform;
+pub mod tree;
 
 mod ascii;
+mod bounds;
 mod coordinate;
 mod fit;
 mod layout;
