@@ -29,6 +29,14 @@ impl Bounds {
         }
     }
 
+    /// What both have in common, if they touch.
+    pub(super) fn common(self, other: Self) -> Self {
+        Self {
+            low: std::array::from_fn(|axis| self.low[axis].max(other.low[axis])),
+            high: std::array::from_fn(|axis| self.high[axis].min(other.high[axis])),
+        }
+    }
+
     /// Whether both have a point in common.
     pub(super) fn touches(&self, other: &Self) -> bool {
         (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])

@@ -1,5 +1,6 @@
 //! Bytes -> Mesh: what a model is once it is read and placed.
 
+pub mod crossings;
 pub mod edges;
 pub mod stl;
 pub mod transform;
