@@ -2,6 +2,7 @@
 
 pub mod crossings;
 pub mod edges;
+pub mod spikes;
 pub mod stl;
 pub mod transform;
 pub mod tree;
