@@ -244,30 +244,38 @@ mod tests {
         assert!((found - 0.3).abs() < 1e-9, "{found}");
     }
 
-    /// Upright triangles through the z axis, each across all others.
-    fn fan(count: i32) -> Vec<Triangle> {
-        let blade = |k: i32| {
-            let (x, y) = (10_000 - k, 10_000 + k);
-            [[-x, -y, 0], [x, y, 0], [x / 2, y / 2, 9 + k]]
+    /// Upright triangles through the z axis, each across all others; those of each `floor` above those of the last.
+    fn fans(floors: i32, of: i32) -> Vec<Triangle> {
+        let blade = |floor: i32, k: i32| {
+            let (x, y, z) = (10_000 - k, 10_000 + k, floor * 10_000);
+            [[-x, -y, z], [x, y, z], [x / 2, y / 2, z + 9 + k]]
         };
-        (0..count).map(blade).collect()
+        (0..floors).flat_map(|floor| (0..of).map(move |k| blade(floor, k))).collect()
     }
 
     #[test]
     fn what_crosses_all_over_is_left_early() {
-        let (few, many) = (crossings_of(&fan(200)), crossings_of(&fan(3000)));
-        assert_eq!((few.pairs.len(), few.complete), (200 * 199 / 2, true));
-        assert_eq!((many.pairs.len(), many.complete), (MOST_PAIRS, false));
+        let of = |floors, of| {
+            let found = crossings_of(&fans(floors, of));
+            (found.pairs.len(), found.complete)
+        };
+        assert_eq!(of(1, 200), (200 * 199 / 2, true));
+        assert_eq!(of(50, 200), (50 * 200 * 199 / 2, true));
+        assert_eq!(of(60, 200), (MOST_PAIRS, false));
+        assert_eq!(of(1, 3000), (MOST_PAIRS, false));
     }
 
     #[test]
     fn what_has_too_many_touching_boxes_is_left_early() {
-        let shelf = |k: i32| [[k, -k, k], [90_000 + k, 90_000, k], [0, 90_000 - k, 500 + k]];
-        let (vertices, triangles) = mesh_of(&(0..2000).map(shelf).collect::<Vec<_>>());
-        let tree = Tree::new(&vertices, &triangles);
-        let all = crossings_within(&tree, u64::MAX / 2);
-        let some = crossings_within(&tree, 100_000);
-        assert!(all.complete && !some.complete, "{} {}", all.pairs.len(), some.pairs.len());
+        // All in one place, then in many: of these no group takes more than its part.
+        for (soup, steps) in [(fans(1, 200), 10_000), (fans(50, 100), 200_000)] {
+            let (vertices, triangles) = mesh_of(&soup);
+            let tree = Tree::new(&vertices, &triangles);
+            let all = crossings_within(&tree, u64::MAX / 2);
+            let some = crossings_within(&tree, steps);
+            assert!(all.complete && !some.complete);
+            assert!(all.pairs.len() > some.pairs.len() && !some.pairs.is_empty());
+        }
     }
 
     /// Whether triangles cross, by the ends of their stretches of the common line as fractions.
