@@ -1,10 +1,14 @@
 //! Bytes -> Mesh: what a model is once it is read and placed.
 
+pub mod crossings;
 pub mod edges;
+pub mod spikes;
 pub mod stl;
 pub mod transform;
+pub mod tree;
 
 mod ascii;
+mod bounds;
 mod coordinate;
 mod fit;
 mod layout;

@@ -1,0 +1,50 @@
+//! Corners -> Bounds: boxes along the axes, on the grid.
+
+/// A box along the axes, grid units; both corners belong to it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Bounds {
+    /// The lowest x, y and z.
+    pub(super) low: [i32; 3],
+    /// The highest.
+    pub(super) high: [i32; 3],
+}
+
+impl Bounds {
+    /// The box that no box is smaller than; [`Bounds::join`] leaves the other as it is.
+    pub(super) const NONE: Self = Self { low: [i32::MAX; 3], high: [i32::MIN; 3] };
+
+    /// The box around three corners.
+    pub(super) fn of([a, b, c]: [[i32; 3]; 3]) -> Self {
+        Self {
+            low: std::array::from_fn(|axis| a[axis].min(b[axis]).min(c[axis])),
+            high: std::array::from_fn(|axis| a[axis].max(b[axis]).max(c[axis])),
+        }
+    }
+
+    /// The box around both.
+    pub(super) fn join(self, other: Self) -> Self {
+        Self {
+            low: std::array::from_fn(|axis| self.low[axis].min(other.low[axis])),
+            high: std::array::from_fn(|axis| self.high[axis].max(other.high[axis])),
+        }
+    }
+
+    /// What both have in common, if they touch.
+    pub(super) fn common(self, other: Self) -> Self {
+        Self {
+            low: std::array::from_fn(|axis| self.low[axis].max(other.low[axis])),
+            high: std::array::from_fn(|axis| self.high[axis].min(other.high[axis])),
+        }
+    }
+
+    /// Whether both have a point in common.
+    pub(super) fn touches(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+    }
+
+    /// Whether the ray up from the point, moved as [`super::tree::Tree::above`] says, can meet what is inside.
+    pub(super) fn is_over(&self, point: [i32; 3]) -> bool {
+        let beside = |axis: usize| point[axis] < self.low[axis] || self.high[axis] <= point[axis];
+        !beside(0) && !beside(1) && point[2] < self.high[2]
+    }
+}

@@ -1,0 +1,34 @@
+//! Corners on the grid -> differences and products: the little vector algebra that the mesh stage needs, exact.
+
+/// A corner on the integer grid.
+pub(crate) type Corner = [i32; 3];
+
+/// `a` − `b`; exact.
+pub(crate) fn minus<T: Copy + Into<i64>>(a: [T; 3], b: [T; 3]) -> [i64; 3] {
+    std::array::from_fn(|axis| a[axis].into() - b[axis].into())
+}
+
+/// The cross product of two differences of corners; exact below 2³¹ units a side.
+pub(crate) fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The scalar product; exact for a cross product and a difference.
+pub(crate) fn dot(a: [i64; 3], b: [i64; 3]) -> i128 {
+    (0..3).map(|axis| i128::from(a[axis]) * i128::from(b[axis])).sum()
+}
+
+/// The square of the distance between two corners, grid units²; exact.
+pub(crate) fn distance2(a: Corner, b: Corner) -> i64 {
+    minus(a, b).map(|side| side * side).iter().sum()
+}
+
+/// Normal of a triangle, as long as twice its area, grid units².
+pub(crate) fn normal([a, b, c]: [Corner; 3]) -> [i64; 3] {
+    cross(minus(b, a), minus(c, a))
+}
+
+/// Length of a vector.
+pub(crate) fn length(v: [i64; 3]) -> f64 {
+    v.iter().map(|&side| side as f64 * side as f64).sum::<f64>().sqrt()
+}
