@@ -234,6 +234,58 @@ fn what_was_once_a_fault_is_none() {
     }
 }
 
+/// Reads a text; the triangles that it gives, or why it gives none.
+fn read(bytes: &[u8]) -> Result<usize, String> {
+    hostile::stl(bytes);
+    let mesh = slicer::mesh::stl::parse("x.stl", bytes, 1000);
+    mesh.map(|mesh| mesh.triangles.len()).map_err(|error| error.to_string())
+}
+
+#[test]
+fn odd_texts_are_read_or_refused_with_their_line() {
+    let cube = String::from_utf8(low(fixture("cube_ascii.stl"))).unwrap();
+    let (_, facets) = cube.split_once('\n').unwrap();
+    let named = |name: &[u8]| [b"solid ", name, b"\n", facets.as_bytes()].concat();
+    let digits = format!("0.{}", "0".repeat(10_000));
+    let utf16 =
+        |bytes: fn(u16) -> [u8; 2]| cube.encode_utf16().flat_map(bytes).collect::<Vec<u8>>();
+    for good in [
+        named(b"W\xfcrfel"),
+        named("Würfel 立方体".as_bytes()),
+        named(&b"x".repeat(10_000_000)),
+        [b"\xef\xbb\xbf", cube.as_bytes()].concat(),
+        cube.replace('\n', "\r").into_bytes(),
+        cube.replacen('\n', &" ".repeat(10_000_000), 1).into_bytes(),
+        cube.replace(" 0", " -0").into_bytes(),
+        cube.replace(" 0", " 0.").into_bytes(),
+        cube.replace(" 0", " .0e-0").into_bytes(),
+        cube.replace(" 0", &format!(" {digits}")).into_bytes(),
+    ] {
+        assert_eq!(read(&good), Ok(12), "{}", String::from_utf8_lossy(&good[..60]));
+    }
+    assert_eq!(read(cube.repeat(3).as_bytes()), Ok(36));
+    for word in ["1e400", "0x10", "1_000", "١", "nan(0x1)", "1,5", "--1", "1e", "∞"] {
+        let said = read(cube.replacen("vertex 0", &format!("vertex {word}"), 1).as_bytes());
+        assert!(
+            said.as_ref().is_err_and(|said| said.starts_with("x.stl: line ")),
+            "{word}: {said:?}"
+        );
+    }
+    for (bad, says) in [
+        (b"solid".to_vec(), "no triangles"),
+        (utf16(u16::to_le_bytes), "UTF-16"),
+        (utf16(u16::to_be_bytes), "UTF-16"),
+        (
+            cube.replacen("outer loop", "facet normal 0 0 0 outer loop", 1).into_bytes(),
+            "'facet' stands",
+        ),
+        (cube.replacen("vertex", "vertex\0", 1).into_bytes(), "NUL"),
+    ] {
+        let said = read(&bad);
+        assert!(said.as_ref().is_err_and(|said| said.contains(says)), "{says}: {said:?}");
+    }
+}
+
 /// Runs the program with `bytes` at its standard input; exit code and standard error.
 fn run(words: &[&str], bytes: &[u8], folder: &Path) -> (Option<i32>, String) {
     use std::io::Write as _;
@@ -300,6 +352,8 @@ fn a_source_that_never_ends_is_refused() {
         let (code, said) = run(&[name, "-q", "-o", "x.gcode"], b"", folder.path());
         assert!(code == Some(3) && said.lines().count() == 1, "{said}");
     }
+    let (code, said) = run(&["-", "-o", "x.gcode", "-p", "/dev/zero"], b"", folder.path());
+    assert!(code == Some(2) && said.contains("larger than any profile"), "{said}");
     // 40 MB of text, of which far less may be read.
     let text = b"solid\n".repeat(7_000_000);
     let (code, said) = run(&["-", "-q", "-o", "x.gcode"], &text, folder.path());
