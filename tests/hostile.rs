@@ -213,10 +213,13 @@ fn any_triangles_are_cut_into_contours_that_do_not_overlap() {
     });
 }
 
+/// What has to hold of a file's bytes.
+type Property = fn(&[u8]);
+
 /// Every file that was once a fault: the folder's name says which property it goes to.
 #[test]
 fn what_was_once_a_fault_is_none() {
-    let properties: [(&str, fn(&[u8])); 4] = [
+    let properties: [(&str, Property); 4] = [
         ("stl", hostile::stl),
         ("profile", hostile::profile),
         ("gcode", hostile::gcode),

@@ -72,7 +72,7 @@ pub(crate) fn read(
 /// Whether a file of this `length` can have the triangles that it `announced`.
 fn check_length(announced: u64, count: [u8; 4], length: u64) -> Result<()> {
     let surplus = length.saturating_sub(length_of(announced));
-    if length == length_of(announced) || (announced > 0 && surplus % RECORD as u64 > 0) {
+    if length == length_of(announced) || (announced > 0 && !surplus.is_multiple_of(RECORD as u64)) {
         return Ok(());
     }
     if length_of(u64::from(u32::from_be_bytes(count))) == length {

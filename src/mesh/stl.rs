@@ -36,7 +36,7 @@ pub fn load(path: &str, max_triangles: usize) -> Result<RawMesh> {
     if data.is_dir() {
         return Err(Error::input(path, "is a directory; name a file in it"));
     }
-    let length = data.is_file().then(|| data.len());
+    let length = data.is_file().then_some(data.len());
     read(path, &mut file, length, max_triangles)
 }
 

@@ -160,7 +160,7 @@ fn are_apart(contours: &[Contour]) {
     let area = |contours: &[Contour]| contours.iter().map(|c| double_area(c)).sum::<i128>();
     assert!(contours.iter().all(|contour| contour.len() >= 3 && double_area(contour) != 0));
     let (once, twice) = (area(contours), area(&polygon::union(contours)));
-    let around: f64 = contours.iter().map(|contour| length(contour)).sum();
+    let around: f64 = contours.iter().map(length).sum();
     // Slivers of a unit's width are rounding: 1 mm of one is 10⁴ square units, or 10⁻⁴ mm².
     let rounding = 8.0 * around + 1e4;
     assert!(once as f64 >= -rounding, "inside out: {once}");
