@@ -102,7 +102,8 @@ pub(crate) fn profile(text: &[u8]) {
             let again = profile::recorded(&dumped).unwrap().unwrap();
             assert_eq!(profile::dump(&again.settings), dumped);
         }
-        Err(error) => is_good_refusal(&error, 2, "mine.toml"),
+        // Of this file, or of one beside it that it inherits from.
+        Err(error) => is_good_refusal(&error, 2, folder.path().to_str().unwrap()),
     }
 }
 
