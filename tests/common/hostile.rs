@@ -162,8 +162,8 @@ fn are_apart(contours: &[Contour]) {
     assert!(contours.iter().all(|contour| contour.len() >= 3 && double_area(contour) != 0));
     let (once, twice) = (area(contours), area(&polygon::union(contours)));
     let around: f64 = contours.iter().map(length).sum();
-    // Slivers of a unit's width are rounding: 1 mm of one is 10⁴ square units, or 10⁻⁴ mm².
-    let rounding = 8.0 * around + 1e4;
+    // Needles of 2 µm are rounding: the union loses some of them, a third of what simplifying may.
+    let rounding = 20.0 * around + 1e4;
     assert!(once as f64 >= -rounding, "inside out: {once}");
     assert!(((once - twice) as f64).abs() <= rounding, "{once} {twice} {contours:?}");
 }
