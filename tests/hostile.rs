@@ -50,7 +50,7 @@ const FLOATS: [f32; 10] =
     [0.0, -0.0, 1e-42, 1e9, -1e9, 1.000_000_1e9, 3.4e38, f32::INFINITY, f32::NAN, 1e-7];
 
 /// The same in texts, and words that have a meaning somewhere.
-const WORDS: [&str; 24] = [
+const WORDS: [&str; 25] = [
     "1e400",
     "-0",
     "0x10",
@@ -62,6 +62,7 @@ const WORDS: [&str; 24] = [
     "nan",
     "-inf",
     "1e9",
+    "0.000000000000000000000000000001",
     "99999999999",
     "-1",
     "0",
