@@ -72,7 +72,8 @@ pub fn place(
     placement: &mesh::Placement,
     bed: &mesh::Bed,
 ) -> Result<mesh::transform::Placed> {
-    let models = models.iter().map(|file| mesh::stl::load(file)).collect::<Result<_>>()?;
+    let load = |file: &String| mesh::stl::load(file, placement.max_triangles);
+    let models = models.iter().map(load).collect::<Result<_>>()?;
     mesh::transform::place(models, placement, bed)
 }
 

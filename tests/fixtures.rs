@@ -3,7 +3,7 @@
 //! `UPDATE_FIXTURES=1 cargo test --test fixtures` rewrites them, and fails, so
 //! that nobody leaves the variable set.
 
-use slicer::mesh::{Bed, Placement, Unit, stl, transform};
+use slicer::mesh::{Bed, Placement, stl, transform};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -28,10 +28,10 @@ fn fixtures_are_what_the_generator_makes() {
 #[test]
 fn fixtures_are_closed_and_have_their_volume() {
     let bed = Bed { min: [0.0; 2], max: [220.0; 2], height: 250.0 };
-    let placement = Placement { unit: Unit::Mm, scale: 1.0, rotate: [0.0; 3], at: None, copies: 1 };
+    let placement = Placement::default();
     for (name, bytes) in fixtures() {
         assert!(bytes.len() < 500_000, "{name} is too large for a fixture");
-        let mesh = stl::parse(name, &bytes).unwrap();
+        let mesh = stl::parse(name, &bytes, stl::DEFAULT_MAX_TRIANGLES).unwrap();
         let placed = transform::place(vec![mesh], &placement, &bed).unwrap();
         assert_eq!(placed.warnings, [], "{name}");
         let report = &placed.reports[0];

@@ -363,7 +363,7 @@ fn the_report_counts_what_the_file_holds() {
 
 /// The layers of `solid`, 0.1 mm high, simplified within `tolerance` mm.
 fn layers(solid: &Solid, tolerance: f64) -> Vec<Layer> {
-    let mesh = stl::parse("test", &solid.stl()).unwrap();
+    let mesh = stl::parse("test", &solid.stl(), stl::DEFAULT_MAX_TRIANGLES).unwrap();
     let bed = Bed { min: [-100.0; 2], max: [100.0; 2], height: 100.0 };
     let placed = transform::place(vec![mesh], &as_it_is(), &bed).unwrap();
     assert_eq!(placed.reports[0].open_edges, 0);

@@ -2,8 +2,10 @@
 
 use proptest::prelude::*;
 use slicer::error::Error;
-use slicer::mesh::{Bed, Placement, RawMesh, Unit, stl, transform};
+use slicer::mesh::{Bed, Placement, RawMesh, stl, transform};
 use std::path::{Path, PathBuf};
+
+const MOST: usize = stl::DEFAULT_MAX_TRIANGLES;
 
 type Corners = [[f32; 3]; 3];
 
@@ -65,8 +67,8 @@ proptest! {
 
     #[test]
     fn binary_and_ascii_are_one_mesh(triangles in triangles()) {
-        let a = stl::parse("x", &binary(&triangles)).unwrap();
-        let b = stl::parse("x", &ascii(&triangles)).unwrap();
+        let a = stl::parse("x", &binary(&triangles), MOST).unwrap();
+        let b = stl::parse("x", &ascii(&triangles), MOST).unwrap();
         prop_assert_eq!(&a.vertices, &b.vertices);
         prop_assert_eq!(&a.triangles, &b.triangles);
         prop_assert_eq!(a.report.degenerate, b.report.degenerate);
@@ -77,7 +79,7 @@ proptest! {
     fn the_order_of_triangles_changes_nothing(
         (plain, shuffled) in triangles().prop_flat_map(|all| (Just(all.clone()), Just(all).prop_shuffle()))
     ) {
-        let [a, b] = [plain, shuffled].map(|all| stl::parse("x", &binary(&all)).unwrap());
+        let [a, b] = [plain, shuffled].map(|all| stl::parse("x", &binary(&all), MOST).unwrap());
         prop_assert_eq!(canonical(&a), canonical(&b));
         prop_assert_eq!(a.vertices.len(), b.vertices.len());
         // Where there is something to place, it is measured alike.
@@ -113,14 +115,14 @@ proptest! {
 }
 
 fn placed(mesh: RawMesh) -> Result<transform::Placed, Error> {
-    let placement = Placement { unit: Unit::Mm, scale: 1.0, rotate: [0.0; 3], at: None, copies: 1 };
+    let placement = Placement::default();
     let bed = Bed { min: [0.0; 2], max: [400.0; 2], height: 400.0 };
     transform::place(vec![mesh], &placement, &bed)
 }
 
 /// Reads and places; a refusal must be one line that names the file.
 fn check(bytes: &[u8]) -> Result<transform::Placed, Error> {
-    let result = stl::parse("x.stl", bytes).and_then(placed);
+    let result = stl::parse("x.stl", bytes, MOST).and_then(placed);
     if let Err(error) = &result {
         let text = error.to_string();
         assert!(text.starts_with("x.stl: ") && !text.contains(char::is_control), "{text:?}");
@@ -185,7 +187,7 @@ fn good_files_read_as_by_another_reader() {
             corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]
         };
         let theirs: Vec<Corners> = theirs.into_iter().filter(same).collect();
-        let mesh = stl::parse(&name, &bytes).unwrap();
+        let mesh = stl::parse(&name, &bytes, MOST).unwrap();
         let ours = mesh.triangles.iter().map(|corners| corners.map(|v| mesh.vertices[v as usize]));
         assert!(ours.eq(theirs), "{name}");
     }
@@ -195,7 +197,8 @@ fn good_files_read_as_by_another_reader() {
 fn broken_models_are_read_or_refused_with_a_reason() {
     let Some(folder) = models() else { return println!("{SKIPPED}") };
     let table = std::fs::read_to_string(folder.join("broken/EXPECT.tsv")).unwrap();
-    let good = placed(stl::load(&folder.join("broken/good_tower.stl").to_string_lossy()).unwrap());
+    let good =
+        placed(stl::load(&folder.join("broken/good_tower.stl").to_string_lossy(), MOST).unwrap());
     let good = good.unwrap().reports[0].volume_mm3;
     let mut seen = 0;
     for line in table.lines().skip(1) {
@@ -222,7 +225,7 @@ fn broken_models_are_read_or_refused_with_a_reason() {
 #[test]
 fn the_fixture_in_both_forms_is_one_mesh() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
-    let load = |name: &str| stl::load(&folder.join(name).to_string_lossy()).unwrap();
+    let load = |name: &str| stl::load(&folder.join(name).to_string_lossy(), MOST).unwrap();
     let (a, b) = (load("cube_20.stl"), load("cube_ascii.stl"));
     assert_eq!((a.report.format, b.report.format), ("binary", "ascii"));
     assert_eq!((&a.vertices, &a.triangles), (&b.vertices, &b.triangles));

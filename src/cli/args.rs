@@ -2,8 +2,9 @@
 
 use super::preview::PreviewArgs;
 use super::words::{factor, numbers, parts, words};
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValuesParser, RangedU64ValueParser};
 use clap::{Args, Parser, Subcommand};
+use slicer::mesh::stl::DEFAULT_MAX_TRIANGLES;
 use slicer::mesh::{Placement, Unit};
 use slicer::profile::{DEFAULT, Override, ValueOrigin};
 use std::path::PathBuf;
@@ -287,6 +288,14 @@ pub(crate) struct PlaceArgs {
     /// Print each model N times
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     copies: u32,
+    /// Refuse models with more triangles, alone or together: 5 million take some 0.5 GB
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_MAX_TRIANGLES, value_parser = triangles())]
+    max_triangles: usize,
+}
+
+/// A number of triangles that a mesh can have.
+pub(super) fn triangles() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..1 << 30)
 }
 
 impl PlaceArgs {
@@ -298,6 +307,7 @@ impl PlaceArgs {
             rotate: self.rotate,
             at: self.at,
             copies: self.copies,
+            max_triangles: self.max_triangles,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! STL file -> PNG: the model itself, for `slicer preview`.
 
 use slicer::error::{Error, Result};
-use slicer::mesh::{Bed, Placement, Unit, stl};
+use slicer::mesh::{Bed, Placement, stl};
 use slicer::render::{self, Ground};
 use slicer::warning::Warning;
 use std::fs::File;
@@ -42,12 +42,12 @@ pub(super) fn is_model(file: &str) -> bool {
 ///
 /// # Errors
 /// A file that is no usable STL, or a picture that is too large.
-pub(super) fn draw(file: &str, size: u32) -> Result<Drawn> {
+pub(super) fn draw(file: &str, size: u32, max_triangles: usize) -> Result<Drawn> {
     if size > MOST {
         let why = format!("--size {size}: a model is drawn with at most {MOST} pixels; use fewer");
         return Err(Error::Usage(why));
     }
-    let placement = Placement { unit: Unit::Mm, scale: 1.0, rotate: [0.0; 3], at: None, copies: 1 };
+    let placement = Placement { max_triangles, ..Placement::default() };
     let placed = slicer::place(&[file.to_owned()], &placement, &Bed::ANY)?;
     let picture = render::draw(&placed.mesh, render::fitting(&placed.mesh, size), Ground::White);
     let png = picture.png().map_err(|error| Error::input(file, error.to_string()))?;

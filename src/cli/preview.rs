@@ -1,10 +1,11 @@
 //! `slicer preview` -> pictures of what a G-code file prints, a page to look through it, or a picture of a model.
 
 use super::output::{self, Sink};
-use super::{input, interrupt, model, say, usage, viewer, words};
+use super::{args, input, interrupt, model, say, usage, viewer, words};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use slicer::error::{Error, Result};
+use slicer::mesh::stl::DEFAULT_MAX_TRIANGLES;
 use slicer::preview::cut::{Axis, Cut, Plane};
 use slicer::preview::drawing::{Drawing, Frame};
 use slicer::preview::{layer, png, svg};
@@ -67,6 +68,9 @@ pub(crate) struct PreviewArgs {
     /// Change any setting of the profile, such as filament.diameter=2.85 (repeatable)
     #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
     set: Vec<String>,
+    /// Refuse a model with more triangles
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_MAX_TRIANGLES, value_parser = args::triangles(), help_heading = "Model")]
+    max_triangles: usize,
     /// Do not say which layer is drawn
     #[arg(short, long, help_heading = "Running")]
     quiet: bool,
@@ -169,7 +173,7 @@ fn model_itself(args: &PreviewArgs, format: Format) -> Result<()> {
         return Err(Error::Usage(why));
     }
     let mut sink = Sink::open(&args.output)?;
-    let drawn = model::draw(file, args.size.unwrap_or(SIZE))?;
+    let drawn = model::draw(file, args.size.unwrap_or(SIZE), args.max_triangles)?;
     let done = sink.write_all(&drawn.png).and_then(|()| sink.flush());
     done.map_err(|source| output::failed(&args.output, "cannot write", source))?;
     sink.commit()?;

@@ -2,180 +2,248 @@
 
 use super::RawMesh;
 use super::coordinate::{complaint, usable};
-use super::weld::{MAX_TRIANGLES, Welder};
-
-/// What a facet takes at least, in bytes, for a bound on what is allocated ahead.
-const FACET_BYTES: usize = 80;
+use super::limit::{CHUNK, Limit, unreadable};
+use super::weld::Welder;
+use std::io::Read;
 
 /// The words that have a place inside a facet only.
 const INNER_WORDS: [&str; 6] = ["normal", "outer", "loop", "vertex", "endloop", "endfacet"];
 
+/// The words that have a place outside of facets only.
+const OUTER_WORDS: [&str; 3] = ["solid", "endsolid", "facet"];
+
 type Result<T> = std::result::Result<T, String>;
 
-/// Reads the ASCII STL that begins at byte `start`. Keywords may be in any case;
-/// `solid` blocks are joined; names, normals and stray words between facets are skipped.
+/// Reads the ASCII STL that begins at byte `start`, and no more of it than as many triangles
+/// as `limit` allows can need. Keywords may be in any case; `solid` blocks are joined; names
+/// and stray words between facets are skipped.
 ///
 /// # Errors
 /// The line, the cause and what to do, as text without the file's name.
-pub(crate) fn parse(bytes: &[u8], start: usize) -> Result<RawMesh> {
-    let mut words = Words { bytes, at: 0, line: 1 };
-    if let Some(nul) = bytes.iter().position(|&byte| byte == 0) {
-        words.bytes = &bytes[..nul];
-        while words.next().is_some() {}
-        return Err(format!(
-            "line {}: NUL bytes within the text; the file is damaged: export it again",
-            words.line
-        ));
-    }
-    while words.at < start {
-        words.blank();
-    }
-    let mut welder = Welder::with_capacity((bytes.len() / FACET_BYTES).min(MAX_TRIANGLES));
-    let mut facets = 0_usize;
-    while let Some(word) = words.next() {
-        if is(word, "solid") || is(word, "endsolid") {
-            words.skip_name();
-        } else if is(word, "facet") {
-            facets += 1;
-            if facets > MAX_TRIANGLES {
-                return Err(format!("has more than {MAX_TRIANGLES} triangles; simplify the model"));
-            }
-            welder.add(facet(&mut words)?);
-        } else if INNER_WORDS.iter().any(|inner| is(word, inner)) {
-            return Err(words.wrong(word, "facet"));
-        }
-    }
-    let mut mesh = welder.finish();
-    mesh.report.format = "ascii";
-    Ok(mesh)
-}
-
-/// Reads what follows `facet` up to `endfacet`.
-fn facet(words: &mut Words) -> Result<[[f32; 3]; 3]> {
-    // The normal says nothing that the corners do not, so that its numbers may be anything.
-    words.skip_to("outer", &["normal"])?;
-    let word = words.expect()?;
-    if !is(word, "loop") {
-        return Err(words.wrong(word, "loop"));
-    }
-    let mut corners = [[0.0; 3]; 3];
-    let mut count = 0;
+pub(crate) fn read(from: &mut dyn Read, start: usize, limit: Limit) -> Result<RawMesh> {
+    let mut parser = Parser { line: 1, ..Parser::default() };
+    let mut text = Vec::new();
+    from.take(start as u64).read_to_end(&mut text).map_err(|error| unreadable(&error))?;
+    text.drain(..).for_each(|byte| parser.blank(byte));
+    let mut length = 0_u64;
     loop {
-        let word = words.expect()?;
-        if is(word, "endloop") {
-            break;
+        let before = text.len();
+        from.take(CHUNK).read_to_end(&mut text).map_err(|error| unreadable(&error))?;
+        let read = text.len() - before;
+        length += read as u64;
+        if read == 0 {
+            parser.word(&text, limit)?;
+            return parser.finish();
         }
-        if !is(word, "vertex") {
-            return Err(words.wrong(word, "vertex or endloop"));
+        let end = text[before..].iter().position(|&byte| byte == 0);
+        let used = parser.words(&text[..end.map_or(text.len(), |end| before + end)], limit)?;
+        let line = parser.line;
+        if end.is_some() {
+            let damage = "NUL bytes within the text; the file is damaged: export it again";
+            return Err(format!("line {line}: {damage}"));
         }
-        let corner = vertex(words)?;
-        if let Some(slot) = corners.get_mut(count) {
-            *slot = corner;
+        if length > limit.most_bytes(parser.welder.count()) {
+            let count = parser.welder.count();
+            return Err(format!(
+                "line {line}: {length} bytes of text and only {count} triangles until here; it is \
+                 damaged or no STL: export it again"
+            ));
         }
-        count += 1;
+        text.drain(..used);
     }
-    if count != 3 {
-        return Err(format!(
-            "line {}: a loop of {count} corners; STL knows triangles only: \
-             triangulate the model and export it again",
-            words.line
-        ));
-    }
-    words.skip_to("endfacet", &[])?;
-    Ok(corners)
 }
 
-/// Reads the three numbers after `vertex`.
-fn vertex(words: &mut Words) -> Result<[f32; 3]> {
-    let mut corner = [0.0; 3];
-    for slot in &mut corner {
-        let word = words.expect()?;
-        let number = std::str::from_utf8(word).ok().and_then(|text| text.parse::<f32>().ok());
-        let Some(number) = number else {
-            return Err(words.no_number(word));
+/// What comes next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum State {
+    /// A facet or a solid, or words that say nothing.
+    #[default]
+    Between,
+    /// The name of a solid: the rest of this line, or what stands before the next facet or
+    /// `endsolid` in a file without line breaks.
+    Name(usize),
+    /// The same after the word `facet`, with which a facet begins if `normal` follows.
+    NameOrFacet(usize),
+    /// The words up to `outer`.
+    Normal,
+    /// `loop`.
+    Loop,
+    /// `vertex` or `endloop`.
+    Corners,
+    /// A number of a corner.
+    Number,
+    /// The words up to `endfacet`.
+    End,
+}
+
+/// Reads words, one after the other.
+#[derive(Debug, Default)]
+struct Parser {
+    welder: Welder,
+    state: State,
+    /// The line, counted from 1; LF, CR LF and CR end one.
+    line: usize,
+    after_return: bool,
+    /// The numbers of the facet's normal, as far as they are numbers, and how many words it has.
+    normal: [f32; 3],
+    normal_words: usize,
+    corners: [[f32; 3]; 3],
+    /// Numbers of corners so far.
+    numbers: usize,
+}
+
+impl Parser {
+    /// Takes the words of `text` that end in it, and says how many bytes of it are done with.
+    fn words(&mut self, text: &[u8], limit: Limit) -> Result<usize> {
+        let mut at = 0;
+        loop {
+            while let Some(&byte) = text.get(at).filter(|&&byte| blank(byte)) {
+                self.blank(byte);
+                at += 1;
+            }
+            let Some(length) = text[at..].iter().position(|&byte| blank(byte)) else {
+                return Ok(at);
+            };
+            self.word(&text[at..at + length], limit)?;
+            at += length;
+        }
+    }
+
+    /// Counts the line that a byte ends.
+    fn blank(&mut self, byte: u8) {
+        if byte == b'\r' || (byte == b'\n' && !self.after_return) {
+            self.line += 1;
+        }
+        self.after_return = byte == b'\r';
+    }
+
+    /// Takes the next word; the empty one is none.
+    fn word(&mut self, word: &[u8], limit: Limit) -> Result<()> {
+        if word.is_empty() {
+            return Ok(());
+        }
+        self.after_return = false;
+        self.state = match self.state {
+            State::Between => self.between(word)?,
+            State::NameOrFacet(_) if is(word, "normal") => self.facet(),
+            State::Name(line) | State::NameOrFacet(line) => self.name(word, line)?,
+            State::Normal => self.normal(word)?,
+            State::Loop if is(word, "loop") => State::Corners,
+            State::Loop => return Err(self.wrong(word, "loop")),
+            State::Corners => self.corner(word)?,
+            State::Number => self.number(word)?,
+            State::End if is(word, "endfacet") => {
+                if self.welder.count() >= limit.triangles {
+                    return Err(limit.exceeded(&format!("has more than {}", limit.triangles)));
+                }
+                self.welder.add(self.normal, self.corners);
+                State::Between
+            }
+            State::End => self.other(word, "endfacet")?,
+        };
+        Ok(())
+    }
+
+    fn between(&mut self, word: &[u8]) -> Result<State> {
+        if is(word, "solid") || is(word, "endsolid") {
+            Ok(State::Name(self.line))
+        } else if is(word, "facet") {
+            Ok(self.facet())
+        } else if INNER_WORDS.iter().any(|inner| is(word, inner)) {
+            Err(self.wrong(word, "facet"))
+        } else {
+            Ok(State::Between)
+        }
+    }
+
+    /// A word after that of `line` with `solid`.
+    fn name(&mut self, word: &[u8], line: usize) -> Result<State> {
+        if self.line != line || is(word, "endsolid") {
+            return self.between(word);
+        }
+        Ok(if is(word, "facet") { State::NameOrFacet(line) } else { State::Name(line) })
+    }
+
+    fn facet(&mut self) -> State {
+        (self.normal, self.normal_words, self.numbers) = ([0.0; 3], 0, 0);
+        State::Normal
+    }
+
+    /// A word before `outer`: part of a normal, which may be anything.
+    fn normal(&mut self, word: &[u8]) -> Result<State> {
+        if is(word, "outer") {
+            if self.normal_words != 3 {
+                self.normal = [0.0; 3];
+            }
+            return Ok(State::Loop);
+        }
+        if is(word, "normal") {
+            return Ok(State::Normal);
+        }
+        let state = self.other(word, "outer")?;
+        if let Some(slot) = self.normal.get_mut(self.normal_words) {
+            *slot = parsed(word).unwrap_or(f32::NAN);
+        }
+        self.normal_words += 1;
+        Ok(state)
+    }
+
+    fn corner(&mut self, word: &[u8]) -> Result<State> {
+        if is(word, "vertex") {
+            return Ok(State::Number);
+        }
+        if !is(word, "endloop") {
+            return Err(self.wrong(word, "vertex or endloop"));
+        }
+        let count = self.numbers / 3;
+        if count != 3 {
+            return Err(format!(
+                "line {}: a loop of {count} corners; STL knows triangles only: \
+                 triangulate the model and export it again",
+                self.line
+            ));
+        }
+        Ok(State::End)
+    }
+
+    fn number(&mut self, word: &[u8]) -> Result<State> {
+        let Some(number) = parsed(word) else {
+            return Err(self.no_number(word));
         };
         if !usable(number) {
             return Err(format!(
                 "line {}: {}; mend or export the model again",
-                words.line,
+                self.line,
                 complaint(number)
             ));
         }
-        *slot = number;
-    }
-    Ok(corner)
-}
-
-/// The words of a text with the line of the last one read.
-#[derive(Debug, Clone, Copy)]
-struct Words<'a> {
-    bytes: &'a [u8],
-    at: usize,
-    /// Counted from 1; LF, CR LF and CR end a line.
-    line: usize,
-}
-
-impl<'a> Words<'a> {
-    fn next(&mut self) -> Option<&'a [u8]> {
-        while self.bytes.get(self.at).copied().is_some_and(blank) {
-            self.blank();
+        // Those of a fourth corner are only counted.
+        if let Some(slot) = self.corners.as_flattened_mut().get_mut(self.numbers) {
+            *slot = number;
         }
-        let rest = &self.bytes[self.at..];
-        let length = rest.iter().position(|&byte| blank(byte)).unwrap_or(rest.len());
-        self.at += length;
-        (length > 0).then(|| &rest[..length])
+        self.numbers += 1;
+        Ok(if self.numbers.is_multiple_of(3) { State::Corners } else { State::Number })
     }
 
-    /// Steps over one byte and counts the line that it ends.
-    fn blank(&mut self) {
-        let byte = self.bytes[self.at];
-        self.at += 1;
-        if byte == b'\n' || (byte == b'\r' && self.bytes.get(self.at) != Some(&b'\n')) {
-            self.line += 1;
+    /// Steps over a word before `goal`, unless it is one of STL's own.
+    fn other(&self, word: &[u8], goal: &str) -> Result<State> {
+        if INNER_WORDS.iter().chain(&OUTER_WORDS).any(|known| is(word, known)) {
+            return Err(self.wrong(word, goal));
         }
+        Ok(self.state)
     }
 
-    /// The next word of a facet.
-    fn expect(&mut self) -> Result<&'a [u8]> {
-        self.next().ok_or_else(|| {
-            format!(
+    fn finish(self) -> Result<RawMesh> {
+        if !matches!(self.state, State::Between | State::Name(_) | State::NameOrFacet(_)) {
+            return Err(format!(
                 "line {}: the file ends within a facet; it is cut off: \
                  export or download it again",
                 self.line
-            )
-        })
-    }
-
-    /// Steps over the name of a solid: the rest of the line, or what stands before
-    /// the next facet or `endsolid` in a file without line breaks.
-    fn skip_name(&mut self) {
-        let line = self.line;
-        loop {
-            let mut ahead = *self;
-            let Some(word) = ahead.next() else { return };
-            if ahead.line != line || is(word, "endsolid") {
-                return;
-            }
-            if is(word, "facet") && { ahead }.next().is_some_and(|word| is(word, "normal")) {
-                return;
-            }
-            *self = ahead;
+            ));
         }
-    }
-
-    /// Steps over words up to and including `goal`; of STL's own words only `allowed` may come before it.
-    fn skip_to(&mut self, goal: &str, allowed: &[&str]) -> Result<()> {
-        loop {
-            let word = self.expect()?;
-            if is(word, goal) {
-                return Ok(());
-            }
-            let outer = ["solid", "endsolid", "facet"];
-            let known = INNER_WORDS.iter().chain(&outer).any(|known| is(word, known));
-            if known && !allowed.iter().any(|known| is(word, known)) {
-                return Err(self.wrong(word, goal));
-            }
-        }
+        let mut mesh = self.welder.finish();
+        mesh.report.format = "ascii";
+        Ok(mesh)
     }
 
     fn wrong(&self, word: &[u8], expected: &str) -> String {
@@ -196,6 +264,11 @@ impl<'a> Words<'a> {
     }
 }
 
+/// The number that a word is, if it is one.
+fn parsed(word: &[u8]) -> Option<f32> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
 fn blank(byte: u8) -> bool {
     byte == b' ' || (0x09..=0x0d).contains(&byte)
 }
@@ -206,7 +279,8 @@ fn is(word: &[u8], keyword: &str) -> bool {
 
 /// The start of some text in quotes, made fit for a message of one line.
 pub(crate) fn quote(text: &[u8]) -> String {
-    let text = String::from_utf8_lossy(text);
+    // A word may be of any length.
+    let text = String::from_utf8_lossy(&text[..text.len().min(100)]);
     let mut short: String = text.chars().take(24).filter(|c| !c.is_control()).collect();
     if text.chars().nth(24).is_some() {
         short.push('…');
@@ -218,15 +292,18 @@ pub(crate) fn quote(text: &[u8]) -> String {
 mod tests {
     use super::*;
 
+    const ANY: Limit = Limit { triangles: 1000 };
+
     const FACET: &str = "facet normal 0 0 nan outer loop\n vertex 0 0 0\n vertex 1 0 0\n \
                          vertex 0 1 0\nendloop endfacet\n";
 
     fn read(text: &str) -> RawMesh {
-        parse(text.as_bytes(), 0).unwrap_or_else(|reason| panic!("{text}: {reason}"))
+        super::read(&mut text.as_bytes(), 0, ANY)
+            .unwrap_or_else(|reason| panic!("{text}: {reason}"))
     }
 
     fn reason(text: &str) -> String {
-        parse(text.as_bytes(), 0).expect_err("must be refused")
+        super::read(&mut text.as_bytes(), 0, ANY).expect_err("must be refused")
     }
 
     #[test]

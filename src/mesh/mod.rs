@@ -9,9 +9,11 @@ pub mod tree;
 
 mod ascii;
 mod bounds;
+mod binary;
 mod coordinate;
 mod fit;
 mod layout;
+mod limit;
 mod measure;
 mod sniff;
 mod vector;
@@ -64,6 +66,9 @@ pub struct MeshReport {
     pub open_edges: usize,
     /// Edges of four or more faces that pair off; the mesh is closed there all the same.
     pub non_manifold_edges: usize,
+    /// Triangles whose stored normal is more than 90° off the one that their winding gives. The
+    /// winding counts.
+    pub wrong_normals: usize,
     /// Bytes after the last triangle.
     pub trailing_bytes: u64,
     /// Size x, y, z as placed (scaled and turned), mm.
@@ -85,6 +90,22 @@ pub struct Placement {
     pub at: Option<[f64; 2]>,
     /// How many times each model is printed.
     pub copies: u32,
+    /// Most triangles of a file, and of all models and copies together.
+    pub max_triangles: usize,
+}
+
+impl Default for Placement {
+    /// Each model once, as it is, in the middle of the bed.
+    fn default() -> Self {
+        Self {
+            unit: Unit::Mm,
+            scale: 1.0,
+            rotate: [0.0; 3],
+            at: None,
+            copies: 1,
+            max_triangles: stl::DEFAULT_MAX_TRIANGLES,
+        }
+    }
 }
 
 /// The unit of an STL file's numbers.

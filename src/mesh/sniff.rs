@@ -5,11 +5,12 @@ const HEAD: usize = 1024;
 
 /// What the bytes seem to be, if that is a known format other than STL, and what to do about it.
 pub(crate) fn foreign(bytes: &[u8]) -> Option<&'static str> {
-    let magic: [(&[u8], &str); 6] = [
+    let magic: [(&[u8], &str); 7] = [
         (b"\x1f\x8b", "a gzip archive; unpack it first"),
         (b"PK\x03\x04", "a ZIP archive or 3MF file; unpack it, or export the model as STL"),
         (b"\xff\xfe", "UTF-16 text; save it as ASCII or export it as binary STL"),
         (b"\xfe\xff", "UTF-16 text; save it as ASCII or export it as binary STL"),
+        (b"\0s\0o\0l\0i\0d", "UTF-16 text; save it as ASCII or export it as binary STL"),
         (b"s\0o\0l\0i\0d\0", "UTF-16 text; save it as ASCII or export it as binary STL"),
         (b"%PDF", "a PDF document; export the model as STL"),
     ];

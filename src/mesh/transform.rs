@@ -174,9 +174,11 @@ fn lay_out(parts: &[Part], placement: &Placement, bed: &Bed) -> Result<Layout> {
         ))
     };
     let triangles: usize = parts.iter().map(|part| part.mesh.triangles.len()).sum();
-    if triangles.saturating_mul(copies) > MAX_TRIANGLES {
+    let (triangles, most) = (triangles.saturating_mul(copies), placement.max_triangles);
+    if triangles > most.min(MAX_TRIANGLES) {
         return Err(Error::Unprintable(format!(
-            "{bodies} models have more than {MAX_TRIANGLES} triangles; print fewer at once"
+            "{bodies} models have {triangles} triangles, and {most} are allowed; print fewer at \
+             once or raise --max-triangles"
         )));
     }
     let boxes: Vec<[i64; 2]> = parts
@@ -224,8 +226,14 @@ mod tests {
     use super::*;
 
     const BED: Bed = Bed { min: [-100.0, -50.0], max: [100.0, 50.0], height: 80.0 };
-    const PLAIN: Placement =
-        Placement { unit: Unit::Mm, scale: 1.0, rotate: [0.0; 3], at: None, copies: 1 };
+    const PLAIN: Placement = Placement {
+        unit: Unit::Mm,
+        scale: 1.0,
+        rotate: [0.0; 3],
+        at: None,
+        copies: 1,
+        max_triangles: MAX_TRIANGLES,
+    };
 
     /// A tetrahedron with right angles at `at`.
     fn corner(at: [f32; 3], size: [f32; 3]) -> RawMesh {

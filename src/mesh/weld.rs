@@ -1,54 +1,75 @@
-//! Corners -> RawMesh: gives bit-equal corners one vertex and drops triangles with two equal corners.
+//! Corners -> RawMesh: gives bit-equal corners one vertex, drops triangles with two equal corners, judges stored normals.
 
 use super::RawMesh;
-use rustc_hash::FxHashMap;
+use hashbrown::hash_table::Entry;
+use hashbrown::{DefaultHashBuilder, HashTable};
+use std::hash::BuildHasher as _;
 
 /// Most triangles a mesh may have: half-edges are numbered `triangle * 4 + edge` in 32 bits.
 pub(crate) const MAX_TRIANGLES: usize = (1 << 30) - 1;
 
-/// The bits of a corner, packed.
-type Key = (u64, u32);
+/// Room for so many triangles at most is taken before they are read.
+const MOST_AHEAD: usize = 1 << 20;
 
-/// Collects triangles into a [`RawMesh`]. The map is only looked up, never
-/// walked, so that a vertex's index is the order of its first use.
+/// Collects triangles into a [`RawMesh`]. The table is only looked up, never
+/// walked, so that a vertex's index is the order of its first use. It is keyed
+/// at random: no file can be made whose corners all meet in one place of it.
 #[derive(Debug, Default)]
 pub(crate) struct Welder {
-    index: FxHashMap<Key, u32>,
+    /// Indices of vertices by the bits of their numbers.
+    index: HashTable<u32>,
+    keys: DefaultHashBuilder,
     mesh: RawMesh,
 }
 
 impl Welder {
-    /// A welder with room for about `triangles`, which must be bounded by the
-    /// length of the input and not only by what its header says.
+    /// A welder with room for about `triangles`, or for as many as are worth it before any is read.
     pub(crate) fn with_capacity(triangles: usize) -> Self {
-        let mut welder = Self::default();
+        let triangles = triangles.min(MOST_AHEAD);
         // A closed mesh has half as many vertices as triangles.
-        welder.index.reserve(triangles / 2);
+        let index = HashTable::with_capacity(triangles / 2);
+        let mut welder = Self { index, ..Self::default() };
         welder.mesh.vertices.reserve(triangles / 2);
         welder.mesh.triangles.reserve(triangles);
         welder
     }
 
-    /// Adds one triangle, unless two of its corners are equal.
-    pub(crate) fn add(&mut self, corners: [[f32; 3]; 3]) {
+    /// Adds one triangle, unless two of its corners are equal. Its stored `normal` is counted
+    /// if it is one and points to where the corners say inside is.
+    pub(crate) fn add(&mut self, normal: [f32; 3], corners: [[f32; 3]; 3]) {
         // Adding zero turns -0 into 0 and leaves every other number as it is.
         let corners = corners.map(|corner| corner.map(|number| number + 0.0));
-        let keys = corners.map(key);
-        if keys[0] == keys[1] || keys[1] == keys[2] || keys[2] == keys[0] {
+        let [a, b, c] = corners.map(|corner| corner.map(f32::to_bits));
+        if a == b || b == c || c == a {
             self.mesh.report.degenerate += 1;
             return;
         }
-        let triangle = std::array::from_fn(|i| self.vertex(keys[i], corners[i]));
+        self.mesh.report.wrong_normals += usize::from(is_against(normal, corners));
+        let triangle = corners.map(|corner| self.vertex(corner));
         self.mesh.triangles.push(triangle);
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "3 * MAX_TRIANGLES fits u32")]
-    fn vertex(&mut self, key: Key, corner: [f32; 3]) -> u32 {
-        let vertices = &mut self.mesh.vertices;
-        *self.index.entry(key).or_insert_with(|| {
-            vertices.push(corner);
-            (vertices.len() - 1) as u32
-        })
+    fn vertex(&mut self, corner: [f32; 3]) -> u32 {
+        let Self { index, keys, mesh: RawMesh { vertices, .. } } = self;
+        let hash = |&[x, y, z]: &[f32; 3]| {
+            keys.hash_one((u64::from(x.to_bits()) << 32 | u64::from(y.to_bits()), z.to_bits()))
+        };
+        let is_same = |&vertex: &u32| vertices[vertex as usize] == corner;
+        match index.entry(hash(&corner), is_same, |&vertex| hash(&vertices[vertex as usize])) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(free) => {
+                let vertex = vertices.len() as u32;
+                free.insert(vertex);
+                vertices.push(corner);
+                vertex
+            }
+        }
+    }
+
+    /// How many triangles were added, those included that were dropped.
+    pub(crate) fn count(&self) -> usize {
+        self.mesh.triangles.len() + self.mesh.report.degenerate
     }
 
     /// The mesh, with the counts of its report filled in.
@@ -60,19 +81,29 @@ impl Welder {
     }
 }
 
-fn key([x, y, z]: [f32; 3]) -> Key {
-    (u64::from(x.to_bits()) << 32 | u64::from(y.to_bits()), z.to_bits())
+/// Whether a stored normal is finite and not zero, and more than 90° off the one that the
+/// winding gives.
+fn is_against(normal: [f32; 3], corners: [[f32; 3]; 3]) -> bool {
+    let [a, b, c] = corners;
+    let from_a = |p: [f32; 3], axis: usize| f64::from(p[axis]) - f64::from(a[axis]);
+    let across = |i: usize, j: usize| from_a(b, i) * from_a(c, j) - from_a(b, j) * from_a(c, i);
+    let [x, y, z] = normal.map(f64::from);
+    let along = x * across(1, 2) + y * across(2, 0) + z * across(0, 1);
+    // Not so for NaN, and an infinite one is none.
+    along < 0.0 && normal.iter().all(|number| number.is_finite())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const NONE: [f32; 3] = [0.0; 3];
+
     #[test]
     fn equal_corners_share_a_vertex_in_the_order_of_first_use() {
         let mut welder = Welder::default();
-        welder.add([[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
-        welder.add([[0.0, 1.0, -0.0], [-0.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
+        welder.add(NONE, [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+        welder.add(NONE, [[0.0, 1.0, -0.0], [-0.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
         let mesh = welder.finish();
         assert_eq!(mesh.triangles, [[0, 1, 2], [2, 1, 3]]);
         assert_eq!(mesh.vertices[3], [0.0, 0.0, 1.0]);
@@ -82,11 +113,32 @@ mod tests {
     #[test]
     fn only_triangles_with_equal_corners_are_dropped() {
         let mut welder = Welder::default();
-        welder.add([[9.0, 9.0, 9.0], [9.0, 9.0, 9.0], [5.0, 5.0, 5.0]]);
-        welder.add([[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [-0.0, 0.0, -0.0]]);
-        welder.add([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
+        welder.add(NONE, [[9.0, 9.0, 9.0], [9.0, 9.0, 9.0], [5.0, 5.0, 5.0]]);
+        welder.add(NONE, [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [-0.0, 0.0, -0.0]]);
+        welder.add(NONE, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
         let mesh = welder.finish();
         assert_eq!((mesh.report.degenerate, mesh.triangles.len()), (2, 1));
         assert_eq!(mesh.vertices.len(), 3, "a dropped triangle leaves no vertex behind");
+    }
+
+    #[test]
+    fn stored_normals_are_judged_by_the_winding() {
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        for (normal, wrong) in [
+            ([0.0, 0.0, 1.0], 0),
+            ([0.0, 0.0, -1.0], 1),
+            ([0.0, 0.0, 0.0], 0),
+            // Less than 90° off is rounding, and so is a right angle.
+            ([9.0, 0.0, 0.1], 0),
+            ([9.0, 0.0, 0.0], 0),
+            ([9.0, 0.0, -0.1], 1),
+            ([f32::NAN, 0.0, -1.0], 0),
+            ([0.0, f32::INFINITY, -1.0], 0),
+            ([0.0, 0.0, -1e-30], 1),
+        ] {
+            let mut welder = Welder::default();
+            welder.add(normal, corners);
+            assert_eq!(welder.finish().report.wrong_normals, wrong, "{normal:?}");
+        }
     }
 }

@@ -6,11 +6,16 @@ use crate::error::{Error, Result};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::fs::File;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use toml::Value;
 
 /// Name of the profile that is used where none is asked for.
 pub const DEFAULT: &str = "zcube-dual";
+
+/// Bytes of a profile, at most; start and end blocks are the longest part of one. A device has no end.
+const MOST_BYTES: u64 = 1 << 20;
 
 /// The shipped profiles: name and text.
 const BUILTIN: &[(&str, &str)] = &[
@@ -160,10 +165,18 @@ impl Layer {
             let text = BUILTIN.iter().find(|(name, _)| *name == self.name);
             return Ok(text.map_or_else(String::new, |(_, text)| (*text).to_owned()));
         };
-        std::fs::read_to_string(path).map_err(|error| {
-            let shown = &self.shown;
-            Error::Config(format!("{shown}: cannot read this profile: {error}; check the path"))
-        })
+        let shown = &self.shown;
+        let mut text = String::new();
+        let read = File::open(path)
+            .and_then(|file| file.take(MOST_BYTES + 1).read_to_string(&mut text))
+            .map_err(|error| {
+                Error::Config(format!("{shown}: cannot read this profile: {error}; check the path"))
+            })?;
+        if read as u64 > MOST_BYTES {
+            let why = "is larger than any profile; check the path";
+            return Err(Error::Config(format!("{shown}: {why}")));
+        }
+        Ok(text)
     }
 }
 

@@ -13,7 +13,7 @@ use slicer::gcode::times::Timer;
 use slicer::gcode::write::WriteParams;
 use slicer::geom::Point;
 use slicer::mesh::transform::{Placed, place};
-use slicer::mesh::{Bed, Placement, Unit, stl};
+use slicer::mesh::{Bed, Placement, stl};
 use slicer::motion::Limits;
 use slicer::profile::{self, Override, Settings, ValueOrigin};
 use slicer::region::groups::Grouping;
@@ -61,7 +61,8 @@ impl Model {
             max: [machine.bed_width, machine.bed_depth],
             height: machine.bed_height,
         };
-        let raw = stl::parse(self.name, &self.bytes).expect("a sound model");
+        let raw =
+            stl::parse(self.name, &self.bytes, stl::DEFAULT_MAX_TRIANGLES).expect("a sound model");
         place(vec![raw], &placement(), &bed).expect("it fits")
     }
 
@@ -83,7 +84,7 @@ impl Model {
 }
 
 fn placement() -> Placement {
-    Placement { unit: Unit::Mm, scale: 1.0, rotate: [0.0; 3], at: None, copies: 1 }
+    Placement::default()
 }
 
 /// The bracket, and the large models that are there.
@@ -109,7 +110,7 @@ fn models() -> Vec<Model> {
 fn mesh_and_slice(c: &mut Criterion, model: &Model) {
     let mut group = c.benchmark_group("mesh");
     group.bench_function(BenchmarkId::new("parse and weld", model.name), |b| {
-        b.iter(|| stl::parse(model.name, black_box(&model.bytes)));
+        b.iter(|| stl::parse(model.name, black_box(&model.bytes), stl::DEFAULT_MAX_TRIANGLES));
     });
     group.bench_function(BenchmarkId::new("parse and place", model.name), |b| {
         b.iter(|| black_box(model).place());

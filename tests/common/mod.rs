@@ -14,7 +14,7 @@ pub(crate) mod stack;
 
 use slicer::Job;
 use slicer::error::Result;
-use slicer::mesh::{Placement, Unit};
+use slicer::mesh::Placement;
 use slicer::profile::{Override, Settings, ValueOrigin, load};
 use slicer::progress::Progress;
 use slicer::report::Report;
@@ -47,7 +47,7 @@ impl Run {
 
 /// One model, resting on the bed's middle as it is.
 pub(crate) fn as_it_is() -> Placement {
-    Placement { unit: Unit::Mm, scale: 1.0, rotate: [0.0; 3], at: None, copies: 1 }
+    Placement::default()
 }
 
 /// The effective settings of `profile` with `set` laid over it, as `--set` would.
