@@ -6,8 +6,8 @@
 #
 # LIST (FOLDER/LIST.tsv unless given) names the files, a line each, three columns with
 # a tab between:  FILE  KIND OF DAMAGE  RIGHT
-# RIGHT is a sound STL file of FOLDER that is the same solid, or `refuse` where there is
-# none. Files that a slicer may as well refuse have RIGHT = `SOUND or refuse`.
+# RIGHT is a sound STL file of FOLDER that is the same solid at the same place (where the
+# lines of infill fall matters in small parts), or `refuse` where there is none. Files that a slicer may as well refuse have RIGHT = `SOUND or refuse`.
 #
 # A file is done right if its filament is within WITHIN % of what the same program uses
 # for the sound one. It says so if it prints a line that it does not print for a sound one
