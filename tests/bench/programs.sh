@@ -1,4 +1,4 @@
-# Sourced by peers.sh and times.sh: where the slicers are, and how each is called so that
+# Sourced by peers.sh, times.sh and broken.sh: where the slicers are, and how each is called so that
 # all do the same work (peers.ini, peers-cura.conf).
 #
 #   SLICER=...    our program, if not target/release/slicer
