@@ -7,19 +7,20 @@ use crate::gcode::flow::Flows;
 use crate::gcode::times::{LayerTime, Times};
 use crate::gcode::usage::Material;
 use crate::job::{self, Job};
-use crate::mesh::MeshReport;
+use crate::geom::double_area;
+use crate::mesh::{MeshReport, Policy};
 use crate::mesh::transform::Placed;
 use crate::plan::Role;
 use crate::profile::{DualMode, DualPart, Settings};
 use crate::region::Region;
 use crate::region::audit::{Apart, Audit};
 use crate::slice::Heights;
-use crate::units::{Coord, sum_mm, to_mm};
-use crate::warning::Warning;
+use crate::units::{Coord, UNITS_PER_MM, sum_mm, to_mm};
+use crate::warning::{Warning, plural};
 use serde::Serialize;
 
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// What one run found and made.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -66,6 +67,9 @@ pub struct LayersReport {
     pub height_mm: f64,
     /// Top of the last, mm.
     pub top_mm: f64,
+    /// What the layers enclose, mm³: the volume of the solid that is printed, whatever
+    /// overlaps in the models.
+    pub volume_mm3: f64,
 }
 
 /// What was extruded in one role.
@@ -201,6 +205,10 @@ pub struct ApartReport {
 /// Thin places of a layer below this are rounding and tips of corners, not shape, mm².
 const LEAST_THIN_MM2: f64 = 1.0;
 
+/// A contour that is open by more than this, mm, is refused unless the mesh is to be sliced as
+/// it is: a straight line across would be a guess that can be seen.
+pub const MOST_GAP_MM: f64 = 2.0;
+
 /// What the layers of a print add up to, beside what is extruded.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Tally {
@@ -208,6 +216,9 @@ pub struct Tally {
     longest_gap: Coord,
     thin_layers: usize,
     thin_mm2: f64,
+    /// The first layer with the longest gap, counted from 1.
+    gap_layer: usize,
+    volume_mm3: f64,
 }
 
 impl Tally {
@@ -215,12 +226,35 @@ impl Tally {
     pub fn layer(&mut self, region: &Region) {
         if region.layer.closed_gap > 0 {
             self.open_layers += 1;
-            self.longest_gap = self.longest_gap.max(region.layer.closed_gap);
+            if region.layer.closed_gap > self.longest_gap {
+                self.longest_gap = region.layer.closed_gap;
+                self.gap_layer = region.layer.index + 1;
+            }
         }
+        let area: i128 = region.layer.contours.iter().map(|c| double_area(c)).sum();
+        let area_mm2 = area as f64 / (2.0 * UNITS_PER_MM * UNITS_PER_MM);
+        self.volume_mm3 += area_mm2 * to_mm(region.layer.height);
         if region.thin_mm2 > LEAST_THIN_MM2 {
             self.thin_layers += 1;
             self.thin_mm2 += region.thin_mm2;
         }
+    }
+
+    /// Refuses layers that are open too far.
+    fn refuse_gaps(&self, job: &Job) -> Result<()> {
+        let gap_mm = to_mm(self.longest_gap);
+        if job.placement.policy == Policy::Warn || gap_mm <= MOST_GAP_MM {
+            return Ok(());
+        }
+        Err(Error::input(
+            &job.models.join(", "),
+            format!(
+                "the mesh cannot be mended: contours are open on {}, most on layer {} by {gap_mm:.1} mm; \
+                 mend the model, or slice it as it is with --mesh warn",
+                plural(self.open_layers as u64, "layer"),
+                self.gap_layer,
+            ),
+        ))
     }
 
     fn warnings(self) -> impl Iterator<Item = Warning> {
@@ -247,6 +281,7 @@ pub fn report(
     tally: &Tally,
 ) -> Result<Report> {
     let settings = &job.settings;
+    tally.refuse_gaps(job)?;
     let Sums { usage, times } = sums;
     let filament_mm = usage.filament();
     if filament_mm <= 0.0 {
@@ -268,6 +303,7 @@ pub fn report(
             first_height_mm: to_mm(heights.first),
             height_mm: to_mm(heights.other),
             top_mm: to_mm(heights.top(heights.count - 1)),
+            volume_mm3: tally.volume_mm3,
         },
         roles: roles(sums, settings),
         travel: TravelReport {

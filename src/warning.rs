@@ -8,12 +8,19 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "code", rename_all = "kebab-case")]
 pub enum Warning {
-    /// Sides of triangles that no oppositely wound neighbour continues.
+    /// Holes were filled, or surfaces that enclose nothing dropped.
+    MeshMended {
+        /// The model's file.
+        file: String,
+        /// How much of what was done, and where.
+        what: String,
+    },
+    /// A mesh that is not closed.
     OpenMesh {
         /// The model's file.
         file: String,
-        /// How many such sides.
-        edges: usize,
+        /// The faults that leave it open, and where.
+        what: String,
     },
     /// Contours that did not close on some layers and were closed by a straight line.
     OpenContours {
@@ -66,11 +73,14 @@ pub enum Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::OpenMesh { file, edges } => write!(
+            Self::MeshMended { file, what } => write!(
                 f,
-                "{file}: the mesh is not closed, {} without a matching neighbour; check the \
-                 print or mend the model",
-                plural(*edges as u64, "edge")
+                "{file}: the mesh was mended: {what}; look whether it is what was meant, or mend \
+                 the model"
+            ),
+            Self::OpenMesh { file, what } => write!(
+                f,
+                "{file}: the mesh is not closed: {what}; check the print or mend the model"
             ),
             Self::OpenContours { layers, longest_gap_mm } => write!(
                 f,

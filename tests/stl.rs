@@ -71,8 +71,8 @@ proptest! {
         let b = stl::parse("x", &ascii(&triangles), MOST).unwrap();
         prop_assert_eq!(&a.vertices, &b.vertices);
         prop_assert_eq!(&a.triangles, &b.triangles);
-        prop_assert_eq!(a.report.degenerate, b.report.degenerate);
-        prop_assert_eq!(a.triangles.len() + a.report.degenerate, triangles.len());
+        prop_assert_eq!(a.degenerate, b.degenerate);
+        prop_assert_eq!(a.triangles.len() + a.degenerate, triangles.len());
     }
 
     #[test]

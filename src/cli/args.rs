@@ -5,7 +5,7 @@ use super::words::{factor, numbers, parts, words};
 use clap::builder::{PossibleValuesParser, RangedU64ValueParser};
 use clap::{Args, Parser, Subcommand};
 use slicer::mesh::stl::DEFAULT_MAX_TRIANGLES;
-use slicer::mesh::{Placement, Unit};
+use slicer::mesh::{Placement, Policy, Unit};
 use slicer::profile::{DEFAULT, Override, ValueOrigin};
 use std::path::PathBuf;
 
@@ -283,7 +283,7 @@ pub(crate) struct PlaceArgs {
     #[arg(long, value_name = "X,Y", value_parser = numbers::<2>, allow_hyphen_values = true)]
     at: Option<[f64; 2]>,
     /// Unit of the models' numbers
-    #[arg(long, default_value = "mm", value_parser = ["mm", "inch"])]
+    #[arg(long, default_value = "mm", value_parser = ["mm", "cm", "m", "inch"])]
     unit: String,
     /// Print each model N times
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=10_000))]
@@ -291,6 +291,9 @@ pub(crate) struct PlaceArgs {
     /// Refuse models with more triangles, alone or together: 5 million take some 0.5 GB
     #[arg(long, value_name = "N", default_value_t = DEFAULT_MAX_TRIANGLES, value_parser = triangles())]
     max_triangles: usize,
+    /// What to do about faults of a mesh: mend it, slice it as it is, or refuse it
+    #[arg(long, value_name = "POLICY", default_value = "repair", value_parser = ["repair", "warn", "strict"])]
+    mesh: String,
 }
 
 /// A number of triangles that a mesh can have.
@@ -302,12 +305,22 @@ impl PlaceArgs {
     /// As the mesh stage takes it.
     pub(crate) fn placement(&self) -> Placement {
         Placement {
-            unit: if self.unit == "inch" { Unit::Inch } else { Unit::Mm },
+            unit: match self.unit.as_str() {
+                "cm" => Unit::Cm,
+                "m" => Unit::M,
+                "inch" => Unit::Inch,
+                _ => Unit::Mm,
+            },
             scale: self.scale,
             rotate: self.rotate,
             at: self.at,
             copies: self.copies,
             max_triangles: self.max_triangles,
+            policy: match self.mesh.as_str() {
+                "warn" => Policy::Warn,
+                "strict" => Policy::Strict,
+                _ => Policy::Repair,
+            },
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Report -> lines for people: the three-line summary, and more with -v.
 
-use slicer::mesh::MeshReport;
+use slicer::mesh::{MeshReport, faults};
 use slicer::profile::{Profile, dump};
 use slicer::report::Report;
 use std::time::Duration;
@@ -38,16 +38,13 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// What was mended without harm, one line each.
+/// What was mended as a matter of form, one line a model.
 pub(crate) fn notes(report: &Report) -> String {
-    let mended = report.models.iter().filter(|model| model.degenerate > 0);
     let note = |model: &MeshReport| {
-        let MeshReport { file, degenerate, .. } = model;
-        format!(
-            "note: {file}: dropped {degenerate} of its triangles, which have two equal corners\n"
-        )
+        let what = faults::tidied(&model.mended)?;
+        Some(format!("note: {}: mended: {what}\n", model.file))
     };
-    mended.map(note).collect()
+    report.models.iter().filter_map(note).collect()
 }
 
 /// How the filament is shared out, such as ` (outer wall 30 %, skin 70 %)`.

@@ -2,14 +2,18 @@
 
 pub mod crossings;
 pub mod edges;
+pub mod faults;
+pub mod inspect;
+pub mod mend;
+pub mod part;
 pub mod spikes;
 pub mod stl;
 pub mod transform;
 pub mod tree;
 
 mod ascii;
-mod bounds;
 mod binary;
+mod bounds;
 mod coordinate;
 mod fit;
 mod layout;
@@ -20,6 +24,7 @@ mod vector;
 mod weld;
 
 use crate::units::MAX_COORDINATE_MM;
+use faults::{Counted, Fault, Mending};
 use serde::Serialize;
 
 /// The triangles of one file as read: vertices welded where they are bit-equal,
@@ -34,6 +39,11 @@ pub struct RawMesh {
     pub vertices: Vec<[f32; 3]>,
     /// Triangles as indices into `vertices`, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
+    /// Triangles with two equal corners that were dropped.
+    pub degenerate: usize,
+    /// Triangles whose stored normal is more than 90° off the one that their winding gives. The
+    /// winding counts.
+    pub wrong_normals: usize,
     /// What reading met.
     pub report: MeshReport,
 }
@@ -56,25 +66,36 @@ pub struct MeshReport {
     pub file: String,
     /// `binary` or `ascii`.
     pub format: &'static str,
-    /// Triangles kept.
+    /// Triangles, as they are sliced.
     pub triangles: usize,
-    /// Distinct vertices.
+    /// Distinct vertices of the file.
     pub vertices: usize,
-    /// Triangles with two equal corners that were dropped.
-    pub degenerate: usize,
-    /// Sides of triangles that no oppositely wound neighbour continues; 0 for a closed mesh.
-    pub open_edges: usize,
-    /// Edges of four or more faces that pair off; the mesh is closed there all the same.
-    pub non_manifold_edges: usize,
-    /// Triangles whose stored normal is more than 90° off the one that their winding gives. The
-    /// winding counts.
-    pub wrong_normals: usize,
+    /// Surfaces that hang together: bodies and cavities.
+    pub shells: usize,
     /// Bytes after the last triangle.
     pub trailing_bytes: u64,
     /// Size x, y, z as placed (scaled and turned), mm.
     pub size_mm: [f64; 3],
-    /// Volume as placed, mm³ (signed sum over the triangles).
+    /// Volume as placed, mm³ (signed sum over the triangles; what overlaps counts twice).
     pub volume_mm3: f64,
+    /// Faults of the file.
+    pub found: Vec<Counted<Fault>>,
+    /// What was done about them, in this order.
+    pub mended: Vec<Counted<Mending>>,
+    /// Faults of the mesh that is sliced.
+    pub left: Vec<Counted<Fault>>,
+}
+
+/// What becomes of a mesh with faults.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Policy {
+    /// It is mended; what cannot be mended is refused when it is sliced.
+    #[default]
+    Repair,
+    /// It is sliced as it is, by the winding rule; gaps are closed by straight lines.
+    Warn,
+    /// It is refused.
+    Strict,
 }
 
 /// How models are laid on the bed.
@@ -92,6 +113,8 @@ pub struct Placement {
     pub copies: u32,
     /// Most triangles of a file, and of all models and copies together.
     pub max_triangles: usize,
+    /// What becomes of faults.
+    pub policy: Policy,
 }
 
 impl Default for Placement {
@@ -104,6 +127,7 @@ impl Default for Placement {
             at: None,
             copies: 1,
             max_triangles: stl::DEFAULT_MAX_TRIANGLES,
+            policy: Policy::Repair,
         }
     }
 }
@@ -113,6 +137,10 @@ impl Default for Placement {
 pub enum Unit {
     /// Millimetres.
     Mm,
+    /// Centimetres.
+    Cm,
+    /// Metres.
+    M,
     /// Inches of 25.4 mm.
     Inch,
 }

@@ -73,7 +73,7 @@ fn read(
     let limit = Limit { triangles: max_triangles.min(MAX_TRIANGLES) };
     let mut mesh = read_any(from, length, limit).map_err(|reason| Error::input(name, reason))?;
     if mesh.triangles.is_empty() {
-        let dropped = mesh.report.degenerate;
+        let dropped = mesh.degenerate;
         let reason = if dropped == 0 {
             "holds no triangles; export the model again".to_owned()
         } else {

@@ -1,20 +1,20 @@
-//! RawMesh -> Mesh: scales, turns, drops to the bed, lays out, and rounds to the integer grid.
+//! RawMesh -> Mesh: lays the mended models out on the bed, in one mesh.
 
 use super::edges::{self, Adjacency};
-use super::fit::{check_placement, check_size, offset, sides};
+use super::faults;
+use super::fit::{check_placement, offset, sides};
 use super::layout::{Layout, shelves};
-use super::measure::{has_area, volume_mm3};
+use super::part::{Part, part};
 use super::weld::MAX_TRIANGLES;
-use super::{Bed, Mesh, MeshReport, Placement, RawMesh, Unit};
+use super::{Bed, Mesh, MeshReport, Placement, RawMesh};
 use crate::error::{Error, Result};
-use crate::units::{MAX_COORDINATE_MM, sin_cos, sum_mm, to_units};
+use crate::units::{MAX_COORDINATE_MM, sum_mm, to_units};
 use crate::warning::Warning;
-use nalgebra::{Matrix3, Vector3};
 
 pub use super::layout::GAP_MM;
 
 /// Models whose largest side is below this are suspected of another unit, mm.
-pub const TINY_MM: f64 = 1.0;
+pub const TINY_MM: f64 = 3.0;
 
 /// The models as they lie on the bed, and what was found on the way.
 #[derive(Debug, Clone, Default)]
@@ -33,14 +33,6 @@ pub struct Placed {
     pub warnings: Vec<Warning>,
 }
 
-/// One model on the grid, its bounding box's middle at x = y = 0.
-struct Part {
-    mesh: Mesh,
-    adjacency: Adjacency,
-    /// Width, depth and height, grid units. The first two are even.
-    size: [i64; 3],
-}
-
 /// Lays `models` on the `bed`.
 ///
 /// Order: unit and scale; turns about x, then y, then z; down to the bed; the
@@ -56,14 +48,12 @@ struct Part {
 /// is pushed off it. Sizes in messages are mm.
 pub fn place(models: Vec<RawMesh>, placement: &Placement, bed: &Bed) -> Result<Placed> {
     check_placement(placement)?;
-    let turn = rotation(placement.rotate);
     let mut placed = Placed::default();
     let mut parts = Vec::with_capacity(models.len());
     for mut model in models {
-        let part = part(&mut model, &turn, placement, bed)?;
-        let report = report(model.report, &part)?;
-        warn(&report, &mut placed.warnings);
-        placed.reports.push(report);
+        let part = part(&mut model, placement, bed)?;
+        warn(&model.report, &mut placed.warnings);
+        placed.reports.push(model.report);
         parts.push(part);
     }
     let layout = lay_out(&parts, placement, bed)?;
@@ -75,90 +65,21 @@ pub fn place(models: Vec<RawMesh>, placement: &Placement, bed: &Bed) -> Result<P
     Ok(placed)
 }
 
-/// The turns about x, then y, then z by `degrees`, as one matrix.
-fn rotation(degrees: [f64; 3]) -> Matrix3<f64> {
-    let [(sx, cx), (sy, cy), (sz, cz)] = degrees.map(sin_cos);
-    let x = Matrix3::new(1.0, 0.0, 0.0, 0.0, cx, -sx, 0.0, sx, cx);
-    let y = Matrix3::new(cy, 0.0, sy, 0.0, 1.0, 0.0, -sy, 0.0, cy);
-    let z = Matrix3::new(cz, -sz, 0.0, sz, cz, 0.0, 0.0, 0.0, 1.0);
-    z * y * x
-}
-
-/// Brings one model onto the grid and takes its triangles.
-fn part(
-    model: &mut RawMesh,
-    turn: &Matrix3<f64>,
-    placement: &Placement,
-    bed: &Bed,
-) -> Result<Part> {
-    let unit = match placement.unit {
-        Unit::Mm => 1.0,
-        Unit::Inch => 25.4,
-    };
-    let factor = unit * placement.scale;
-    let points: Vec<Vector3<f64>> = model
-        .vertices
-        .iter()
-        .map(|corner| turn * (Vector3::from(corner.map(f64::from)) * factor))
-        .collect();
-    let first = points.first().copied().unwrap_or_default();
-    let (low, high) =
-        points.iter().fold((first, first), |(low, high), point| (low.inf(point), high.sup(point)));
-    check_size((high - low).into(), &model.report.file, placement, bed)?;
-    // In this order, so that a mirrored model gives exactly the mirrored middle.
-    let zero = Vector3::new((low.x + high.x) / 2.0, (low.y + high.y) / 2.0, low.z);
-    let on_grid = |point: &Vector3<f64>| <[f64; 3]>::from(point - zero).map(to_units);
-    let mesh = Mesh {
-        vertices: points.iter().map(on_grid).collect(),
-        triangles: std::mem::take(&mut model.triangles),
-    };
-    let adjacency = edges::adjacency(&mesh.vertices, &mesh.triangles);
-    // The middle of the box is at 0, so that both sides round alike.
-    let half = to_units_of(&(high - zero));
-    Ok(Part { mesh, adjacency, size: [2 * half[0], 2 * half[1], half[2]] })
-}
-
-fn to_units_of(point: &Vector3<f64>) -> [i64; 3] {
-    <[f64; 3]>::from(*point).map(|mm| i64::from(to_units(mm)))
-}
-
-/// Completes the report of a model and refuses one that encloses nothing.
-fn report(read: MeshReport, part: &Part) -> Result<MeshReport> {
-    let flat = |what: &str| {
-        let size = sides(&part.size.map(sum_mm));
-        let advice = "check the model, --unit and --scale";
-        Err(Error::input(&read.file, format!("{what} ({size} mm), nothing to print; {advice}")))
-    };
-    if part.mesh.triangles.len() < 4 {
-        return flat("fewer than four triangles enclose no body");
-    }
-    if part.size[2] == 0 {
-        return flat("the model has no height");
-    }
-    if part.size[0] == 0 || part.size[1] == 0 || !has_area(&part.mesh) {
-        return flat("the model is flat and has no area in any layer");
-    }
-    Ok(MeshReport {
-        open_edges: part.adjacency.unpaired,
-        non_manifold_edges: part.adjacency.non_manifold,
-        size_mm: part.size.map(sum_mm),
-        volume_mm3: volume_mm3(&part.mesh),
-        ..read
-    })
-}
-
+/// Warns of what a model's report says.
 fn warn(report: &MeshReport, warnings: &mut Vec<Warning>) {
-    let file = &report.file;
+    let file = || report.file.clone();
     if report.trailing_bytes > 0 {
-        let count = report.trailing_bytes;
-        warnings.push(Warning::TrailingBytes { file: file.clone(), count });
+        warnings.push(Warning::TrailingBytes { file: file(), count: report.trailing_bytes });
     }
-    if report.open_edges > 0 {
-        warnings.push(Warning::OpenMesh { file: file.clone(), edges: report.open_edges });
+    if let Some(guessed) = faults::guessed(&report.mended) {
+        warnings.push(Warning::MeshMended { file: file(), what: guessed });
+    }
+    if let Some(left) = faults::open(&report.left) {
+        warnings.push(Warning::OpenMesh { file: file(), what: left });
     }
     let size_mm = report.size_mm.into_iter().fold(0.0, f64::max);
     if size_mm < TINY_MM {
-        warnings.push(Warning::TinyModel { file: file.clone(), size_mm });
+        warnings.push(Warning::TinyModel { file: file(), size_mm });
     }
 }
 

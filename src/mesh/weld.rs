@@ -41,10 +41,10 @@ impl Welder {
         let corners = corners.map(|corner| corner.map(|number| number + 0.0));
         let [a, b, c] = corners.map(|corner| corner.map(f32::to_bits));
         if a == b || b == c || c == a {
-            self.mesh.report.degenerate += 1;
+            self.mesh.degenerate += 1;
             return;
         }
-        self.mesh.report.wrong_normals += usize::from(is_against(normal, corners));
+        self.mesh.wrong_normals += usize::from(is_against(normal, corners));
         let triangle = corners.map(|corner| self.vertex(corner));
         self.mesh.triangles.push(triangle);
     }
@@ -69,7 +69,7 @@ impl Welder {
 
     /// How many triangles were added, those included that were dropped.
     pub(crate) fn count(&self) -> usize {
-        self.mesh.triangles.len() + self.mesh.report.degenerate
+        self.mesh.triangles.len() + self.mesh.degenerate
     }
 
     /// The mesh, with the counts of its report filled in.
@@ -117,7 +117,7 @@ mod tests {
         welder.add(NONE, [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [-0.0, 0.0, -0.0]]);
         welder.add(NONE, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
         let mesh = welder.finish();
-        assert_eq!((mesh.report.degenerate, mesh.triangles.len()), (2, 1));
+        assert_eq!((mesh.degenerate, mesh.triangles.len()), (2, 1));
         assert_eq!(mesh.vertices.len(), 3, "a dropped triangle leaves no vertex behind");
     }
 
@@ -138,7 +138,7 @@ mod tests {
         ] {
             let mut welder = Welder::default();
             welder.add(normal, corners);
-            assert_eq!(welder.finish().report.wrong_normals, wrong, "{normal:?}");
+            assert_eq!(welder.finish().wrong_normals, wrong, "{normal:?}");
         }
     }
 }

@@ -1,0 +1,185 @@
+//! Faults -> counts and places: what is wrong with a mesh and what was done about it, as the report tells it.
+
+use serde::Serialize;
+use std::fmt;
+
+/// Places told of each kind of fault, at most.
+pub const MOST_PLACES: usize = 8;
+
+/// What is wrong with a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fault {
+    /// Triangles with two equal corners, or with three on one line.
+    Degenerate,
+    /// Triangles over the same three corners as another.
+    Duplicate,
+    /// Edges of a single triangle.
+    OpenEdge,
+    /// Edges of more than two triangles.
+    CrowdedEdge,
+    /// Edges whose two triangles are wound against each other.
+    FlippedEdge,
+    /// Corners in the middle of another triangle's edge.
+    TJunction,
+    /// Openings in the surface, each with a closed rim.
+    Hole,
+    /// Surfaces that enclose nothing.
+    Sheet,
+    /// Closed surfaces turned inside out.
+    InvertedShell,
+    /// Triangles whose stored normal contradicts their winding, which counts.
+    WrongNormal,
+    /// Pairs of triangles that pass through each other.
+    Crossing,
+    /// Corners that stick out as needles do.
+    Spike,
+}
+
+impl Fault {
+    /// What one of them is called.
+    #[must_use]
+    pub fn one(self) -> &'static str {
+        match self {
+            Self::Degenerate => "triangle without area",
+            Self::Duplicate => "copy of a triangle",
+            Self::OpenEdge => "open edge",
+            Self::CrowdedEdge => "edge of more than two triangles",
+            Self::FlippedEdge => "edge of two triangles wound against each other",
+            Self::TJunction => "corner on another triangle's edge",
+            Self::Hole => "hole",
+            Self::Sheet => "triangle that encloses nothing",
+            Self::InvertedShell => "shell turned inside out",
+            Self::WrongNormal => "wrong normal",
+            Self::Crossing => "pair of triangles that cross",
+            Self::Spike => "spike",
+        }
+    }
+
+    fn many(self) -> &'static str {
+        match self {
+            Self::Degenerate => "triangles without area",
+            Self::Duplicate => "copies of triangles",
+            Self::OpenEdge => "open edges",
+            Self::CrowdedEdge => "edges of more than two triangles",
+            Self::FlippedEdge => "edges of two triangles wound against each other",
+            Self::TJunction => "corners on other triangles' edges",
+            Self::Hole => "holes",
+            Self::Sheet => "triangles that enclose nothing",
+            Self::InvertedShell => "shells turned inside out",
+            Self::WrongNormal => "wrong normals",
+            Self::Crossing => "pairs of triangles that cross",
+            Self::Spike => "spikes",
+        }
+    }
+}
+
+/// What was done to a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Mending {
+    /// Corners moved onto another one near by.
+    Welded,
+    /// Triangles without area dropped.
+    DroppedDegenerate,
+    /// Copies of triangles dropped.
+    DroppedDuplicate,
+    /// Triangles split at corners that lie on their edges.
+    SplitTJunction,
+    /// Triangles wound the other way, like their neighbours.
+    Turned,
+    /// Holes closed by new triangles.
+    FilledHole,
+    /// Triangles of surfaces that enclose nothing dropped.
+    DroppedSheet,
+    /// Closed surfaces turned outside out.
+    TurnedShell,
+}
+
+impl Mending {
+    /// What was done, to how many of what: `{}` stands for the number.
+    fn deed(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Welded => ("welded", "corner"),
+            Self::DroppedDegenerate => ("dropped without area", "triangle"),
+            Self::DroppedDuplicate => ("dropped as copies", "triangle"),
+            Self::SplitTJunction => ("split at corners on their edges", "triangle"),
+            Self::Turned => ("turned like their neighbours", "triangle"),
+            Self::FilledHole => ("filled", "hole"),
+            Self::DroppedSheet => ("dropped since they enclose nothing", "triangle"),
+            Self::TurnedShell => ("turned outside out", "shell"),
+        }
+    }
+
+    /// Whether it is a guess of what was meant, rather than a matter of form.
+    fn is_guess(self) -> bool {
+        matches!(self, Self::FilledHole | Self::DroppedSheet)
+    }
+}
+
+/// How many of a kind, and where the first of them are.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Counted<K> {
+    /// Of what kind.
+    pub kind: K,
+    /// How many.
+    pub count: usize,
+    /// How large the largest is, or how far the furthest was moved, mm; 0 where that means nothing.
+    pub largest_mm: f64,
+    /// Where the first [`MOST_PLACES`] are, in the file's own coordinates and unit.
+    pub places: Vec<[f64; 3]>,
+}
+
+impl fmt::Display for Counted<Fault> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = if self.count == 1 { self.kind.one() } else { self.kind.many() };
+        write!(f, "{} {name}", self.count)?;
+        size(f, self.largest_mm)
+    }
+}
+
+impl fmt::Display for Counted<Mending> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (deed, thing) = self.kind.deed();
+        let s = if self.count == 1 { "" } else { "s" };
+        write!(f, "{} {thing}{s} {deed}", self.count)?;
+        size(f, self.largest_mm)
+    }
+}
+
+fn size(f: &mut fmt::Formatter<'_>, largest_mm: f64) -> fmt::Result {
+    if largest_mm > 0.0 { write!(f, " (up to {largest_mm:.3} mm)") } else { Ok(()) }
+}
+
+/// A list in words, with the place of its first; `None` if it is empty.
+fn listed<K: Copy>(list: &[&Counted<K>]) -> Option<String>
+where
+    Counted<K>: fmt::Display,
+{
+    let first = list.first()?;
+    let words: Vec<String> = list.iter().map(ToString::to_string).collect();
+    let place = first.places.first();
+    let place = place.map_or_else(String::new, |[x, y, z]| format!(", the first at {x}, {y}, {z}"));
+    Some(words.join(", ") + &place)
+}
+
+/// What of the mending is a guess of what was meant, in words.
+#[must_use]
+pub fn guessed(mended: &[Counted<Mending>]) -> Option<String> {
+    listed(&mended.iter().filter(|one| one.kind.is_guess()).collect::<Vec<_>>())
+}
+
+/// What of the mending is a matter of form, in words.
+#[must_use]
+pub fn tidied(mended: &[Counted<Mending>]) -> Option<String> {
+    listed(&mended.iter().filter(|one| !one.kind.is_guess()).collect::<Vec<_>>())
+}
+
+/// What of the faults leaves layers open, in words.
+#[must_use]
+pub fn open(left: &[Counted<Fault>]) -> Option<String> {
+    let is_open = |fault: &&Counted<Fault>| {
+        matches!(fault.kind, Fault::OpenEdge | Fault::FlippedEdge)
+    };
+    listed(&left.iter().filter(is_open).collect::<Vec<_>>())
+}

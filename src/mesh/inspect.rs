@@ -1,0 +1,39 @@
+//! Mesh -> Faults that its edges do not tell: surfaces that pass through each other, and spikes.
+
+use super::{Mesh, RawMesh};
+use super::crossings::{crossings, depth};
+use super::faults::{Counted, Fault};
+use super::mend::{Notes, told};
+use super::part::Part;
+use super::spikes::spikes;
+use super::tree::Tree;
+use crate::units::UNITS_PER_MM;
+
+/// Triangles that pass through each other by less are rounding of the file's numbers, mm.
+pub const LEAST_DEPTH_MM: f64 = 0.01;
+
+/// As [`part()`](super::part::part) with [`Policy::Strict`](super::Policy::Strict) tells of a
+/// part and the model it was made of.
+#[must_use]
+pub fn seen(part: &Part, model: &RawMesh) -> Vec<Counted<Fault>> {
+    told(inspect(&part.mesh), &model.vertices)
+}
+
+/// What is seen in a mesh by looking at all its triangles. Linear but for a sort; bounded in
+/// time and memory for soups, where not all crossings are counted.
+pub(super) fn inspect(mesh: &Mesh) -> Notes<Fault> {
+    let mut notes = Notes::default();
+    let tree = Tree::new(&mesh.vertices, &mesh.triangles);
+    let crossings = crossings(&tree);
+    for &pair in &crossings.pairs {
+        let depth = depth(&tree, pair);
+        if depth >= LEAST_DEPTH_MM {
+            let at = mesh.triangles[pair[0] as usize][0];
+            notes.sized(Fault::Crossing, at, depth * UNITS_PER_MM);
+        }
+    }
+    for spike in spikes(&mesh.vertices, &mesh.triangles) {
+        notes.sized(Fault::Spike, spike.vertex, spike.length_mm * UNITS_PER_MM);
+    }
+    notes
+}

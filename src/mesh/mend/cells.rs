@@ -1,0 +1,69 @@
+//! Points -> cells: a hash of cubes, to find the points near a place.
+
+use crate::mesh::vector::Corner;
+use hashbrown::HashMap;
+
+/// Points by the cube they lie in. Looked up only, never walked.
+pub(super) struct Cells {
+    size: i64,
+    /// Where each cube's points begin in `points`, and how many there are.
+    cubes: HashMap<[i32; 3], (u32, u32)>,
+    points: Vec<u32>,
+}
+
+impl Cells {
+    /// Sorts `points`, indices into `vertices`, into cubes with sides of `size` grid units.
+    pub(super) fn new(vertices: &[Corner], points: &[u32], size: i64) -> Self {
+        let size = size.max(1);
+        let mut keyed: Vec<([i32; 3], u32)> =
+            points.iter().map(|&p| (cube_of(vertices[p as usize], size), p)).collect();
+        keyed.sort_unstable();
+        let mut cubes = HashMap::default();
+        let mut start = 0;
+        for group in keyed.chunk_by(|a, b| a.0 == b.0) {
+            let count = u32::try_from(group.len()).unwrap_or(u32::MAX);
+            cubes.insert(group[0].0, (start, count));
+            start += count;
+        }
+        Self { size, cubes, points: keyed.into_iter().map(|(_, point)| point).collect() }
+    }
+
+    /// The points in the cubes that touch the box from `low` to `high`.
+    pub(super) fn near(&self, low: Corner, high: Corner, mut visit: impl FnMut(u32)) {
+        let (low, high) = (cube_of(low, self.size), cube_of(high, self.size));
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                for z in low[2]..=high[2] {
+                    let (start, count) = self.cubes.get(&[x, y, z]).copied().unwrap_or((0, 0));
+                    let (start, count) = (start as usize, count as usize);
+                    self.points[start..start + count].iter().for_each(|&point| visit(point));
+                }
+            }
+        }
+    }
+
+    /// The points in the cubes along the line from `a` to `b` and around it by `reach`;
+    /// some may come twice.
+    pub(super) fn along(&self, a: Corner, b: Corner, reach: i32, mut visit: impl FnMut(u32)) {
+        // Pieces as long as a cube: then each piece's box holds few cubes.
+        let extent = (0..3).map(|axis| (i64::from(b[axis]) - i64::from(a[axis])).abs()).max();
+        let pieces = extent.unwrap_or(0) / self.size + 1;
+        let at = |k: i64| -> Corner {
+            std::array::from_fn(|axis| {
+                let run = i64::from(b[axis]) - i64::from(a[axis]);
+                a[axis] + i32::try_from(run * k / pieces).unwrap_or(0)
+            })
+        };
+        for k in 0..pieces {
+            let (from, to) = (at(k), at(k + 1));
+            let low = std::array::from_fn(|axis| from[axis].min(to[axis]) - reach);
+            let high = std::array::from_fn(|axis| from[axis].max(to[axis]) + reach);
+            self.near(low, high, &mut visit);
+        }
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "a quotient of an i32")]
+fn cube_of(corner: Corner, size: i64) -> [i32; 3] {
+    corner.map(|side| i64::from(side).div_euclid(size) as i32)
+}

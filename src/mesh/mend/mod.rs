@@ -1,0 +1,179 @@
+//! Mesh -> mended Mesh: welds, drops, splits, turns and fills until the surface is closed, and counts what it did.
+//!
+//! In this order, since each step relies on those before it: corners that nearly meet are
+//! welded, triangles without area and copies dropped, corners on edges joined to them,
+//! neighbours wound alike, holes filled, sheets dropped, and shells turned outward. Corners
+//! are never moved but by welding, and no new ones are made: a mended triangle has corners
+//! of the file. Nothing depends on the order of the triangles.
+//!
+//! Shells that overlap stay as they are: the winding rule makes one solid of them when they
+//! are cut into layers.
+
+mod cells;
+mod duplicates;
+mod fill;
+mod holes;
+mod junctions;
+mod near;
+mod notes;
+mod orient;
+mod patches;
+mod shells;
+
+pub use holes::SMALL_MM;
+pub use near::TOLERANCE_MM;
+
+use super::Mesh;
+use super::edges::{self, Adjacency};
+use super::faults::{Counted, Fault, Mending};
+use super::measure::{corners_of, determinant};
+use super::vector::{Corner, length, normal};
+use near::TOLERANCE;
+pub(super) use notes::{Note, Notes, told_mm};
+
+/// What mending found and did.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Mended {
+    /// Which half-edge of the mended mesh continues which.
+    pub(super) adjacency: Adjacency,
+    /// Faults of the mesh as it was.
+    pub(super) found: Notes<Fault>,
+    /// What was done.
+    pub(super) done: Notes<Mending>,
+    /// Faults that are left.
+    pub(super) left: Notes<Fault>,
+    /// Closed surfaces, or surfaces left open, that hang together.
+    pub(super) shells: usize,
+}
+
+/// Mends `mesh`.
+pub(super) fn mend(mesh: &mut Mesh) -> Mended {
+    let mut adjacency = edges::adjacency(&mesh.vertices, &mesh.triangles);
+    let (found, done) = (Notes::default(), Notes::default());
+    let triangles = std::mem::take(&mut mesh.triangles);
+    let mut work = Work { vertices: &mesh.vertices, triangles, found, done };
+    let is_closed = adjacency.unpaired == 0;
+    if !is_closed || adjacency.non_manifold > 0 {
+        work.found = faults(work.vertices, &work.triangles);
+        let count = work.count();
+        duplicates::drop_duplicates(&mut work);
+        if !is_closed || work.count() != count {
+            close(&mut work);
+            adjacency = edges::adjacency(work.vertices, &work.triangles);
+        }
+    }
+    let (shells, is_changed) = shells::settle(&mut work, &adjacency);
+    let Work { triangles, found, done, .. } = work;
+    if is_changed {
+        adjacency = edges::adjacency(&mesh.vertices, &triangles);
+    }
+    let is_sound = adjacency.unpaired == 0 && adjacency.non_manifold == 0;
+    let left =
+        if is_sound { Notes::default() } else { faults(&mesh.vertices, &triangles) };
+    mesh.triangles = triangles;
+    Mended { adjacency, found, done, left, shells }
+}
+
+/// The mesh as it is.
+pub(super) fn inspect(mesh: &Mesh) -> Mended {
+    let adjacency = edges::adjacency(&mesh.vertices, &mesh.triangles);
+    let found = faults(&mesh.vertices, &mesh.triangles);
+    let shells = shells::count(&adjacency);
+    Mended { adjacency, left: found.clone(), found, done: Notes::default(), shells }
+}
+
+/// The steps that close a mesh.
+fn close(work: &mut Work) {
+    work.drop_degenerate();
+    near::weld(work);
+    duplicates::drop_duplicates(work);
+    junctions::split_junctions(work);
+    orient::orient(work);
+    holes::fill_holes(work);
+    // What fills the rim of a sheet is its copy.
+    duplicates::drop_duplicates(work);
+}
+
+/// The faults that the edges of a mesh tell.
+pub(super) fn faults(vertices: &[Corner], triangles: &[[u32; 3]]) -> Notes<Fault> {
+    let mut notes = Notes::default();
+    edges::each_edge(vertices.len(), triangles, |(low, _), sides| match *sides {
+        [_] => notes.add(Fault::OpenEdge, low),
+        [a, b] => {
+            if edges::starts_at(low, a, triangles) == edges::starts_at(low, b, triangles) {
+                notes.add(Fault::FlippedEdge, low);
+            }
+        }
+        _ => notes.add(Fault::CrowdedEdge, low),
+    });
+    notes
+}
+
+/// A mesh while it is mended.
+struct Work<'a> {
+    vertices: &'a [Corner],
+    triangles: Vec<[u32; 3]>,
+    found: Notes<Fault>,
+    done: Notes<Mending>,
+}
+
+impl Work<'_> {
+    /// The number of triangles.
+    fn count(&self) -> u32 {
+        u32::try_from(self.triangles.len()).unwrap_or(u32::MAX)
+    }
+
+    /// Drops the marked triangles.
+    fn drop_marked(&mut self, drop: &[bool]) {
+        let mut marks = drop.iter();
+        self.triangles.retain(|_| !marks.next().copied().unwrap_or(false));
+    }
+
+    /// Drops triangles without area: those with two equal corners, and those with three on a
+    /// line, whose neighbours are joined by splitting.
+    fn drop_degenerate(&mut self) {
+        let Self { vertices, triangles, found, done } = self;
+        triangles.retain(|&triangle| {
+            let has_area = normal(corners_of(vertices, triangle)) != [0; 3];
+            if !has_area {
+                found.add(Fault::Degenerate, triangle[0]);
+                done.add(Mending::DroppedDegenerate, triangle[0]);
+            }
+            has_area
+        });
+    }
+
+    /// Six times the signed volume that some triangles have about their own middle: as far as
+    /// they enclose something, that of it.
+    fn volume(&self, triangles: impl Iterator<Item = [u32; 3]> + Clone) -> i128 {
+        let corners = triangles.map(|triangle| corners_of(self.vertices, triangle));
+        let (mut sum, mut count) = ([0_i64; 3], 0);
+        for corner in corners.clone().flatten() {
+            (0..3).for_each(|axis| sum[axis] += i64::from(corner[axis]));
+            count += 1;
+        }
+        let middle = sum.map(|side| i32::try_from(side / count.max(1)).unwrap_or(0));
+        let about = |corner: Corner| std::array::from_fn(|axis| corner[axis] - middle[axis]);
+        corners.map(|corners| determinant(corners.map(about))).sum()
+    }
+
+    /// Whether some triangles enclose next to nothing: less than a body as thick as the
+    /// tolerance of welding would.
+    fn is_flat(&self, triangles: impl Iterator<Item = [u32; 3]> + Clone) -> bool {
+        let volume = self.volume(triangles.clone()).unsigned_abs() as f64 / 6.0;
+        let area = triangles.map(|t| length(normal(corners_of(self.vertices, t)))).sum::<f64>();
+        // The doubled area is that of both sides, so that a quarter of it is one side.
+        volume <= area / 4.0 * f64::from(TOLERANCE)
+    }
+}
+
+/// Notes as the report tells them, with places in the file's own coordinates.
+pub(super) fn told<K: Copy>(notes: Notes<K>, vertices: &[[f32; 3]]) -> Vec<Counted<K>> {
+    let of = |note: Note<K>| Counted {
+        kind: note.kind,
+        count: note.count,
+        largest_mm: told_mm(note.largest),
+        places: note.at.iter().map(|&v| vertices[v as usize].map(f64::from)).collect(),
+    };
+    notes.0.into_iter().map(of).collect()
+}

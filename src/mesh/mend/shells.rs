@@ -1,0 +1,167 @@
+//! Surfaces that hang together -> shells wound outward: drops those that enclose nothing, turns those that are inside out.
+
+use super::Work;
+use super::patches::Links;
+use crate::mesh::edges::{Adjacency, NONE, parts};
+use crate::mesh::faults::{Fault, Mending};
+use crate::mesh::measure::{corners_of, determinant};
+use crate::mesh::tree::Tree;
+use crate::mesh::vector::Corner;
+
+/// The shells of a mesh.
+struct Shells {
+    /// The shell of each triangle.
+    of: Vec<u32>,
+    each: Vec<Shell>,
+}
+
+/// A surface that hangs together.
+#[derive(Clone)]
+struct Shell {
+    first: u32,
+    is_closed: bool,
+    /// Six times its volume, negative if it is wound inward.
+    volume: i128,
+    /// Its least and its greatest corner, by x, then y, then z: two that are the same
+    /// whatever the order of the triangles.
+    ends: [Corner; 2],
+}
+
+/// Drops closed shells without volume and turns inverted ones. Returns the number of shells,
+/// and whether anything was changed.
+///
+/// A shell that is wound inward and lies in no other is inverted, and with it all that lies
+/// within it: such files come from mirroring. A shell wound inward within another is a cavity.
+pub(super) fn settle(work: &mut Work, adjacency: &Adjacency) -> (usize, bool) {
+    let shells = shells(work, adjacency);
+    let flat = flat(work, &shells);
+    let is_inverted = inverted(work, &shells, &flat);
+    for (shell, _) in shells.each.iter().zip(&is_inverted).filter(|(_, inverted)| **inverted) {
+        let at = work.triangles[shell.first as usize][0];
+        work.found.add(Fault::InvertedShell, at);
+        work.done.add(Mending::TurnedShell, at);
+    }
+    let mut drop = vec![false; work.triangles.len()];
+    for (t, &shell) in shells.of.iter().enumerate() {
+        if is_inverted[shell as usize] {
+            work.triangles[t].swap(1, 2);
+        }
+        if flat[shell as usize] {
+            drop[t] = true;
+            work.found.add(Fault::Sheet, work.triangles[t][0]);
+            work.done.add(Mending::DroppedSheet, work.triangles[t][0]);
+        }
+    }
+    let is_left = |flat: &&bool| !**flat;
+    let is_changed = flat.contains(&true) || is_inverted.contains(&true);
+    work.drop_marked(&drop);
+    (flat.iter().filter(is_left).count(), is_changed)
+}
+
+/// The number of surfaces that hang together.
+pub(super) fn count(adjacency: &Adjacency) -> usize {
+    let mut links = links(adjacency);
+    (0_u32..).zip(&adjacency.neighbour).filter(|(t, _)| links.root(*t) == *t).count()
+}
+
+/// The triangles, joined across their sides.
+fn links(adjacency: &Adjacency) -> Links {
+    let mut links = Links::new(adjacency.neighbour.len());
+    for (t, sides) in (0_u32..).zip(&adjacency.neighbour) {
+        for &side in sides.iter().filter(|side| **side != NONE) {
+            let other = parts(side).0 as u32;
+            // From one of the two is enough.
+            if other < t {
+                links.join(t, other);
+            }
+        }
+    }
+    links
+}
+
+fn shells(work: &Work, adjacency: &Adjacency) -> Shells {
+    let mut links = links(adjacency);
+    let mut shells = Shells { of: Vec::with_capacity(work.triangles.len()), each: Vec::new() };
+    for (t, sides) in (0_u32..).zip(&adjacency.neighbour) {
+        let root = links.root(t);
+        let corners = corners_of(work.vertices, work.triangles[t as usize]);
+        // A set's root is its least number, so that it was met before.
+        let k = if root == t { shells.each.len() as u32 } else { shells.of[root as usize] };
+        if root == t {
+            let ends = [corners[0]; 2];
+            shells.each.push(Shell { first: t, is_closed: true, volume: 0, ends });
+        }
+        shells.of.push(k);
+        let shell = &mut shells.each[k as usize];
+        shell.volume += determinant(corners);
+        shell.is_closed &= !sides.contains(&NONE);
+        for corner in corners {
+            shell.ends = [shell.ends[0].min(corner), shell.ends[1].max(corner)];
+        }
+    }
+    shells
+}
+
+/// Which closed shells enclose next to nothing.
+fn flat(work: &Work, shells: &Shells) -> Vec<bool> {
+    let mut triangles = vec![Vec::new(); shells.each.len()];
+    // Of a single shell there is nothing to drop.
+    if shells.each.len() > 1 {
+        for (t, &shell) in shells.of.iter().enumerate() {
+            if shells.each[shell as usize].is_closed {
+                triangles[shell as usize].push(work.triangles[t]);
+            }
+        }
+    }
+    triangles.iter().map(|own| !own.is_empty() && work.is_flat(own.iter().copied())).collect()
+}
+
+/// Which shells are to be turned.
+fn inverted(work: &Work, shells: &Shells, flat: &[bool]) -> Vec<bool> {
+    let is_inward = |k: usize| {
+        let shell = &shells.each[k];
+        shell.is_closed && shell.volume < 0 && !flat[k]
+    };
+    let mut is_inverted = vec![false; shells.each.len()];
+    if !(0..shells.each.len()).any(is_inward) {
+        return is_inverted;
+    }
+    if let [_] = &shells.each[..] {
+        return vec![true];
+    }
+    let tree = Tree::new(work.vertices, &work.triangles);
+    let around = |k: usize| around(&tree, shells, flat, k);
+    for k in (0..shells.each.len()).filter(|&k| is_inward(k)) {
+        is_inverted[k] = around(k).is_empty();
+    }
+    if !is_inverted.contains(&true) {
+        return is_inverted;
+    }
+    let roots = is_inverted.clone();
+    for k in (0..shells.each.len()).filter(|&k| !roots[k] && !flat[k]) {
+        is_inverted[k] = around(k).iter().any(|&outer| roots[outer as usize]);
+    }
+    is_inverted
+}
+
+/// The shells that shell `k` lies in with both its ends.
+fn around(tree: &Tree, shells: &Shells, flat: &[bool], k: usize) -> Vec<u32> {
+    let [mut first, second] = shells.each[k].ends.map(|end| {
+        // How often each shell winds around the corner, as far as not at all is not it.
+        let mut windings: Vec<(u32, i32)> = Vec::new();
+        tree.above(end, |t, sign| {
+            let shell = shells.of[t as usize];
+            if shell as usize == k || flat[shell as usize] {
+                return;
+            }
+            match windings.iter_mut().find(|(known, _)| *known == shell) {
+                Some((_, winding)) => *winding += sign,
+                None => windings.push((shell, sign)),
+            }
+        });
+        windings.retain(|(_, winding)| *winding != 0);
+        windings.into_iter().map(|(shell, _)| shell).collect::<Vec<u32>>()
+    });
+    first.retain(|shell| second.contains(shell));
+    first
+}
