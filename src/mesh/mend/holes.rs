@@ -8,6 +8,7 @@ use crate::mesh::faults::{Fault, Mending};
 use crate::mesh::measure::corners_of;
 use crate::mesh::vector::{length, normal};
 use crate::units::UNITS_PER_MM;
+use hashbrown::HashMap;
 
 /// Holes up to this across are closed whatever their shape, mm.
 pub const SMALL_MM: f64 = 2.0;
@@ -72,20 +73,39 @@ fn rims(work: &Work, neighbours: &Adjacency) -> Vec<Vec<u32>> {
                     (t, e) = (u, (other + 1) % 3);
                 }
             }
-            if rim.len() >= 3 {
-                rim.reverse();
-                rims.push(from_least(work, rim));
-            }
+            rim.reverse();
+            let simple = without_repeats(rim).into_iter().filter(|rim| rim.len() >= 3);
+            rims.extend(simple.map(|rim| from_least(work, rim)));
         }
     }
     rims
 }
 
+/// A rim that passes some corners more than once, as rims that do not: two holes that touch,
+/// or a hole and what stands in it, are closed each by itself.
+fn without_repeats(rim: Vec<u32>) -> Vec<Vec<u32>> {
+    let mut simple = Vec::new();
+    let mut way: Vec<u32> = Vec::new();
+    // Where on the way a vertex is.
+    let mut place = HashMap::new();
+    for vertex in rim {
+        if let Some(&at) = place.get(&vertex) {
+            let own = way.split_off(at);
+            own.iter().for_each(|vertex| {
+                place.remove(vertex);
+            });
+            simple.push(own);
+        }
+        place.insert(vertex, way.len());
+        way.push(vertex);
+    }
+    simple.push(way);
+    simple
+}
+
 /// A rim from its least corner on, so that the order of the triangles does not show.
 fn from_least(work: &Work, mut rim: Vec<u32>) -> Vec<u32> {
-    let at = |k: usize| work.vertices[rim[k % rim.len()] as usize];
-    // A rim may pass its least corner twice: then what follows decides.
-    let start = (0..rim.len()).min_by_key(|&k| (at(k), at(k + 1), at(k + rim.len() - 1)));
+    let start = (0..rim.len()).min_by_key(|&k| work.vertices[rim[k] as usize]);
     rim.rotate_left(start.unwrap_or(0));
     rim
 }
