@@ -7,7 +7,6 @@ use crate::gcode::flow::Flows;
 use crate::gcode::times::{LayerTime, Times};
 use crate::gcode::usage::Material;
 use crate::job::{self, Job};
-use crate::geom::double_area;
 use crate::mesh::{MeshReport, Policy};
 use crate::mesh::transform::Placed;
 use crate::plan::Role;
@@ -15,7 +14,7 @@ use crate::profile::{DualMode, DualPart, Settings};
 use crate::region::Region;
 use crate::region::audit::{Apart, Audit};
 use crate::slice::Heights;
-use crate::units::{Coord, UNITS_PER_MM, sum_mm, to_mm};
+use crate::units::{Coord, sum_mm, to_mm};
 use crate::warning::{Warning, plural};
 use serde::Serialize;
 
@@ -231,9 +230,7 @@ impl Tally {
                 self.gap_layer = region.layer.index + 1;
             }
         }
-        let area: i128 = region.layer.contours.iter().map(|c| double_area(c)).sum();
-        let area_mm2 = area as f64 / (2.0 * UNITS_PER_MM * UNITS_PER_MM);
-        self.volume_mm3 += area_mm2 * to_mm(region.layer.height);
+        self.volume_mm3 += region.layer.volume_mm3();
         if region.thin_mm2 > LEAST_THIN_MM2 {
             self.thin_layers += 1;
             self.thin_mm2 += region.thin_mm2;

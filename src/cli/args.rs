@@ -20,6 +20,7 @@ Examples:
   slicer estimate part.gcode -p ./mine.toml
   slicer check part.gcode --against part.stl
   slicer preview part.gcode --layer 40 -o part.png
+  slicer mesh part.stl -o mended.stl
 
 A model whose file is named like a subcommand is given as ./profile.";
 
@@ -76,6 +77,8 @@ pub(crate) enum Command {
     Check(Box<CheckArgs>),
     /// Draw what a G-code file prints: layers, a cut, or a page to look through it; or a model
     Preview(PreviewArgs),
+    /// Say what is wrong with a model's mesh, and mend it
+    Mesh(super::mesh::MeshArgs),
     /// Tell what each way of dual injection saves on a model
     Compare(Box<CompareArgs>),
     /// Tell whether two G-code files print the same, and where not
@@ -283,7 +286,7 @@ pub(crate) struct PlaceArgs {
     #[arg(long, value_name = "X,Y", value_parser = numbers::<2>, allow_hyphen_values = true)]
     at: Option<[f64; 2]>,
     /// Unit of the models' numbers
-    #[arg(long, default_value = "mm", value_parser = ["mm", "cm", "m", "inch"])]
+    #[arg(long, default_value = "mm", value_parser = UNITS)]
     unit: String,
     /// Print each model N times
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=10_000))]
@@ -296,6 +299,19 @@ pub(crate) struct PlaceArgs {
     mesh: String,
 }
 
+/// Units that a model's numbers may have.
+pub(super) const UNITS: [&str; 4] = ["mm", "cm", "m", "inch"];
+
+/// One of [`UNITS`].
+pub(super) fn unit(name: &str) -> Unit {
+    match name {
+        "cm" => Unit::Cm,
+        "m" => Unit::M,
+        "inch" => Unit::Inch,
+        _ => Unit::Mm,
+    }
+}
+
 /// A number of triangles that a mesh can have.
 pub(super) fn triangles() -> RangedU64ValueParser<usize> {
     RangedU64ValueParser::new().range(1..1 << 30)
@@ -305,12 +321,7 @@ impl PlaceArgs {
     /// As the mesh stage takes it.
     pub(crate) fn placement(&self) -> Placement {
         Placement {
-            unit: match self.unit.as_str() {
-                "cm" => Unit::Cm,
-                "m" => Unit::M,
-                "inch" => Unit::Inch,
-                _ => Unit::Mm,
-            },
+            unit: unit(&self.unit),
             scale: self.scale,
             rotate: self.rotate,
             at: self.at,

@@ -7,6 +7,7 @@ mod diff;
 mod estimate;
 mod input;
 mod interrupt;
+mod mesh;
 mod model;
 mod output;
 mod preview;
@@ -128,6 +129,7 @@ fn other(command: &Command) -> Result<Outcome> {
         // Its product is a file, unless it is told otherwise.
         Command::Preview(args) => preview::run(args).map(|()| String::new())?,
         Command::Diff(args) => return diff::run(args),
+        Command::Mesh(args) => return mesh::run(args),
         Command::Completions { shell } => {
             let mut text = Vec::new();
             clap_complete::generate(*shell, &mut Arguments::command(), "slicer", &mut text);

@@ -10,6 +10,7 @@ pub mod spikes;
 pub mod stl;
 pub mod transform;
 pub mod tree;
+pub mod write;
 
 mod ascii;
 mod binary;

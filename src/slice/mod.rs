@@ -11,8 +11,8 @@ mod simplify;
 
 pub use chain::Slicer;
 
-use crate::geom::Contour;
-use crate::units::Coord;
+use crate::geom::{Contour, double_area};
+use crate::units::{Coord, UNITS_PER_MM};
 
 /// The heights of a print's layers, grid units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -84,6 +84,15 @@ pub struct Layer {
     pub contours: Vec<Contour>,
     /// The longest gap that had to be closed by a straight line, grid units; 0 if none.
     pub closed_gap: Coord,
+}
+
+impl Layer {
+    /// What the contours enclose over the layer's height, mm³.
+    #[must_use]
+    pub fn volume_mm3(&self) -> f64 {
+        let area: i128 = self.contours.iter().map(|contour| double_area(contour)).sum();
+        area as f64 / 2.0 * f64::from(self.height) / UNITS_PER_MM.powi(3)
+    }
 }
 
 #[cfg(test)]

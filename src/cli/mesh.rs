@@ -1,0 +1,145 @@
+//! `slicer mesh` -> what is wrong with a model, as lines or as JSON, and the mended mesh as STL.
+
+use super::output::{self, Sink};
+use super::{Outcome, interrupt, usage};
+use clap::Args;
+use serde::Serialize;
+use slicer::error::{Error, Result};
+use slicer::mesh::faults::{Counted, Fault};
+use slicer::mesh::part::part;
+use slicer::mesh::{Bed, MeshReport, Placement, inspect, stl, write};
+use slicer::warning::plural;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+/// Version of the JSON schema; raised when a field changes its meaning or goes away.
+const SCHEMA: u32 = 1;
+
+/// Places of a kind that people get to read.
+const MOST_SHOWN: usize = 3;
+
+/// Arguments of looking at a mesh.
+#[derive(Debug, Args)]
+#[command(after_help = "Exit codes: 0 the mesh is closed, or could be closed; 1 it cannot be; \
+2 wrong arguments;\n3 the file cannot be read or encloses nothing; 4 the output cannot be written.\n\
+Places and the mended mesh are in the file's own coordinates.")]
+pub(crate) struct MeshArgs {
+    /// STL file; `-` reads standard input
+    #[arg(value_name = "FILE")]
+    file: String,
+    /// Write the mended mesh here, as binary STL; `-` is standard output
+    #[arg(short, long, value_name = "STL")]
+    output: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+    /// Unit of the model's numbers: sizes are told and gaps measured in mm
+    #[arg(long, default_value = "mm", value_parser = super::args::UNITS)]
+    unit: String,
+    /// Refuse a model with more triangles
+    #[arg(long, value_name = "N", default_value_t = stl::DEFAULT_MAX_TRIANGLES, value_parser = super::args::triangles())]
+    max_triangles: usize,
+}
+
+/// What is told of a mesh.
+#[derive(Debug, Serialize)]
+struct Told<'a> {
+    schema: u32,
+    slicer: &'static str,
+    /// As in the report of slicing.
+    #[serde(flatten)]
+    report: &'a MeshReport,
+    /// What layers through the mended mesh enclose, mm³: what overlaps counts once.
+    solid_mm3: f64,
+    /// What the eye would see in the mended mesh, and is not mended.
+    seen: &'a [Counted<Fault>],
+}
+
+/// Looks at a mesh and mends it.
+///
+/// # Errors
+/// A file that cannot be read, a model that encloses nothing, an output that cannot be written.
+pub(super) fn run(args: &MeshArgs) -> Result<Outcome> {
+    interrupt::watch();
+    if args.json && args.output.as_deref().is_some_and(output::is_stdout) {
+        usage::refuse("mesh and JSON cannot both go to standard output; name a file for the mesh")?;
+    }
+    if let Some(out) = args.output.as_deref()
+        && args.file != "-"
+        && usage::is_same_file(out, Path::new(&args.file))
+    {
+        usage::refuse("the output would replace the model; choose another name for it")?;
+    }
+    let sink = args.output.as_deref().map(|out| Ok((out, Sink::open(out)?))).transpose()?;
+    let placement = Placement {
+        unit: super::args::unit(&args.unit),
+        max_triangles: args.max_triangles,
+        ..Placement::default()
+    };
+    let mut model = stl::load(&args.file, args.max_triangles)?;
+    let part = part(&mut model, &placement, &Bed::ANY)?;
+    let seen = inspect::seen(&part, &model);
+    let told = Told {
+        schema: SCHEMA,
+        slicer: slicer::NAME,
+        report: &model.report,
+        solid_mm3: slicer::solid_mm3(&part.mesh, &part.adjacency),
+        seen: &seen,
+    };
+    let text = if args.json {
+        let text = serde_json::to_string_pretty(&told);
+        text.map_err(|error| Error::input(&args.file, error.to_string()))? + "\n"
+    } else {
+        lines(&told)
+    };
+    let code = u8::from(part.adjacency.unpaired > 0);
+    if let Some((out, mut sink)) = sink {
+        write::write(&mut sink, &model.vertices, &part.mesh.triangles)
+            .map_err(|source| output::failed(out, "cannot write", source))?;
+        sink.commit()?;
+        if output::is_stdout(out) {
+            super::say(&text);
+            return Ok(Outcome { text: String::new(), code });
+        }
+    }
+    Ok(Outcome { text, code })
+}
+
+/// For people.
+fn lines(told: &Told) -> String {
+    let MeshReport { file, format, triangles, shells, size_mm, volume_mm3, .. } = told.report;
+    let [x, y, z] = size_mm;
+    let mut text = format!(
+        "{file}: {format} STL; mended: {}, {}, {x:.3} x {y:.3} x {z:.3} mm, {volume_mm3:.1} mm³ \
+         (solid: {:.1} mm³)\n",
+        plural(*triangles as u64, "triangle"),
+        plural(*shells as u64, "shell"),
+        told.solid_mm3,
+    );
+    if told.report.trailing_bytes > 0 {
+        let bytes = plural(told.report.trailing_bytes, "byte");
+        text.push_str(&format!("found: {bytes} after the last triangle\n"));
+    }
+    text.push_str(&list("found", &told.report.found));
+    text.push_str(&list("mended", &told.report.mended));
+    text.push_str(&list("left", &told.report.left));
+    text.push_str(&list("seen", told.seen));
+    if text.lines().count() == 1 {
+        text.push_str("no faults\n");
+    }
+    text
+}
+
+fn list<K>(title: &str, all: &[Counted<K>]) -> String
+where
+    Counted<K>: Display,
+{
+    let line = |one: &Counted<K>| {
+        let places = one.places.iter().take(MOST_SHOWN).map(|[x, y, z]| format!("{x} {y} {z}"));
+        let places = places.collect::<Vec<_>>().join("; ");
+        let more = if one.count > MOST_SHOWN { "; …" } else { "" };
+        let at = if places.is_empty() { String::new() } else { format!(", at {places}{more}") };
+        format!("{title}: {one}{at}\n")
+    };
+    all.iter().map(line).collect()
+}
