@@ -5,7 +5,7 @@ use super::{Outcome, interrupt, usage};
 use clap::Args;
 use serde::Serialize;
 use slicer::error::{Error, Result};
-use slicer::mesh::faults::{Counted, Fault};
+use slicer::mesh::faults::{self, Counted, Fault};
 use slicer::mesh::part::part;
 use slicer::mesh::{Bed, MeshReport, Placement, inspect, stl, write};
 use slicer::warning::plural;
@@ -135,7 +135,7 @@ where
     Counted<K>: Display,
 {
     let line = |one: &Counted<K>| {
-        let places = one.places.iter().take(MOST_SHOWN).map(|[x, y, z]| format!("{x} {y} {z}"));
+        let places = one.places.iter().take(MOST_SHOWN).map(|&place| faults::told(place));
         let places = places.collect::<Vec<_>>().join("; ");
         let more = if one.count > MOST_SHOWN { "; …" } else { "" };
         let at = if places.is_empty() { String::new() } else { format!(", at {places}{more}") };

@@ -159,8 +159,16 @@ where
     let first = list.first()?;
     let words: Vec<String> = list.iter().map(ToString::to_string).collect();
     let place = first.places.first();
-    let place = place.map_or_else(String::new, |[x, y, z]| format!(", the first at {x}, {y}, {z}"));
+    let place = place.map_or_else(String::new, |&place| format!(", the first at {}", told(place)));
     Some(words.join(", ") + &place)
+}
+
+/// A place for people, to a thousandth of the file's unit.
+#[must_use]
+pub fn told(place: [f64; 3]) -> String {
+    // Adding zero takes the sign off what is rounded to it.
+    let rounded = place.map(|side| ((side * 1e3).round() / 1e3 + 0.0).to_string());
+    rounded.join(", ")
 }
 
 /// What of the mending is a guess of what was meant, in words.

@@ -1,7 +1,7 @@
 //! RawMesh -> Part: scales and turns one model, mends it, sets it down and rounds it to the integer grid.
 
 use super::edges::Adjacency;
-use super::faults::Fault;
+use super::faults::{self, Fault};
 use super::fit::{check_size, sides};
 use super::measure::{has_area, volume_mm3};
 use super::mend::{self, Mended, Notes, told};
@@ -45,6 +45,11 @@ pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Par
         }
     };
     tell(model, &mut mended);
+    if mended.is_lost {
+        let why = "the mesh cannot be mended: more of its faces meet no others than enclose a \
+                   body; mend the model, or slice it as it is with --mesh warn";
+        return Err(Error::input(&model.report.file, why));
+    }
     if placement.policy == Policy::Strict {
         refuse_faults(model)?;
     }
@@ -136,8 +141,8 @@ fn tell(model: &mut RawMesh, mended: &mut Mended) {
 fn refuse_faults(model: &RawMesh) -> Result<()> {
     let Some(first) = model.report.found.first() else { return Ok(()) };
     let all: Vec<String> = model.report.found.iter().map(ToString::to_string).collect();
-    let place = first.places.first().map_or_else(String::new, |[x, y, z]| {
-        format!(" (the first {} at {x}, {y}, {z})", first.kind.one())
+    let place = first.places.first().map_or_else(String::new, |&place| {
+        format!(" (the first {} at {})", first.kind.one(), faults::told(place))
     });
     Err(Error::input(
         &model.report.file,

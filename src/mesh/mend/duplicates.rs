@@ -35,7 +35,7 @@ pub(super) fn drop_duplicates(work: &mut Work) {
     }
     for t in needless(work, &drop, &doubled) {
         drop[t as usize] = true;
-        work.done.add(Mending::DroppedSheet, work.triangles[t as usize][0]);
+        work.drop_sheet(work.triangles[t as usize]);
     }
     work.drop_marked(&drop);
 }

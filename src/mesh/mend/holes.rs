@@ -5,8 +5,6 @@ use super::fill::{Filled, fill};
 use super::notes::extent;
 use crate::mesh::edges::{Adjacency, NONE, adjacency, parts};
 use crate::mesh::faults::{Fault, Mending};
-use crate::mesh::measure::corners_of;
-use crate::mesh::vector::{length, normal};
 use crate::units::UNITS_PER_MM;
 use hashbrown::HashMap;
 
@@ -26,7 +24,7 @@ pub(super) fn fill_holes(work: &mut Work) {
     if neighbours.unpaired == 0 {
         return;
     }
-    let surface: f64 = work.triangles.iter().map(|&t| area(work, t)).sum();
+    let surface: f64 = work.triangles.iter().map(|&t| work.area(t)).sum();
     for rim in rims(work, &neighbours) {
         let size = extent(rim.iter().map(|&v| work.vertices[v as usize]));
         work.found.sized(Fault::Hole, rim[0], size);
@@ -44,13 +42,8 @@ fn is_sure(work: &Work, filled: &Filled, size: f64, surface: f64) -> bool {
         return true;
     }
     let is_bent = filled.depth > BENT * size;
-    let closing: f64 = filled.triangles.iter().map(|&t| area(work, t)).sum();
+    let closing: f64 = filled.triangles.iter().map(|&t| work.area(t)).sum();
     !filled.is_crooked && (!is_bent || closing <= MOST_BENT * surface)
-}
-
-/// Twice the area of a triangle, grid units².
-fn area(work: &Work, triangle: [u32; 3]) -> f64 {
-    length(normal(corners_of(work.vertices, triangle)))
 }
 
 /// The rims of the holes, as the triangles that fill them have to run along them.

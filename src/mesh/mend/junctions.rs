@@ -2,7 +2,7 @@
 
 use super::Work;
 use super::cells::Cells;
-use super::near::{TOLERANCE, open_edges};
+use super::near::open_edges;
 use crate::mesh::faults::{Fault, Mending};
 use crate::mesh::vector::{Corner, distance2, dot, length, minus};
 use hashbrown::HashMap;
@@ -14,9 +14,9 @@ type Split = ((u32, u32), Vec<u32>);
 ///
 /// Each pass splits a triangle along one edge: its other edges come into one piece each,
 /// so that a third pass leaves nothing to do.
-pub(super) fn split_junctions(work: &mut Work) {
+pub(super) fn split_junctions(work: &mut Work, tolerance: i32) {
     for _ in 0..3 {
-        let splits = splits(work);
+        let splits = splits(work, tolerance);
         if splits.is_empty() {
             return;
         }
@@ -37,15 +37,15 @@ pub(super) fn split_junctions(work: &mut Work) {
 }
 
 /// For each triangle to be split the edge to begin with: its longest.
-fn splits(work: &Work) -> HashMap<u32, Split> {
+fn splits(work: &Work, tolerance: i32) -> HashMap<u32, Split> {
     let edges = open_edges(work);
     let mut ends: Vec<u32> = edges.iter().flat_map(|&(a, b, _)| [a, b]).collect();
     ends.sort_unstable();
     ends.dedup();
-    let cells = Cells::new(work.vertices, &ends, cube(work, &edges));
+    let cells = Cells::new(work.vertices, &ends, cube(work, &edges, tolerance));
     let mut splits: HashMap<u32, Split> = HashMap::default();
     for (a, b, t) in edges {
-        let between = between(work, &cells, (a, b), work.triangles[t as usize]);
+        let between = between(work, &cells, (a, b), (work.triangles[t as usize], tolerance));
         if between.is_empty() {
             continue;
         }
@@ -63,22 +63,27 @@ fn splits(work: &Work) -> HashMap<u32, Split> {
 
 /// The side of the cubes that open corners are sorted into: the mean length of an open edge,
 /// so that an edge touches few cubes and a cube holds few corners.
-fn cube(work: &Work, edges: &[(u32, u32, u32)]) -> i64 {
+fn cube(work: &Work, edges: &[(u32, u32, u32)], tolerance: i32) -> i64 {
     let lengths = edges
         .iter()
         .map(|&(a, b, _)| length(minus(work.vertices[a as usize], work.vertices[b as usize])));
     let mean = lengths.sum::<f64>() / edges.len().max(1) as f64;
-    (mean as i64).max(i64::from(TOLERANCE))
+    (mean as i64).max(i64::from(tolerance))
 }
 
 /// The open corners on the line from `a` to `b`, in the order along it.
-fn between(work: &Work, cells: &Cells, (a, b): (u32, u32), triangle: [u32; 3]) -> Vec<u32> {
+fn between(
+    work: &Work,
+    cells: &Cells,
+    (a, b): (u32, u32),
+    (triangle, tolerance): ([u32; 3], i32),
+) -> Vec<u32> {
     let (from, to) = (work.vertices[a as usize], work.vertices[b as usize]);
     let mut on_it: Vec<(i128, Corner, u32)> = Vec::new();
-    cells.along(from, to, TOLERANCE, |v| {
+    cells.along(from, to, tolerance, |v| {
         if !triangle.contains(&v) {
             let at = work.vertices[v as usize];
-            on_it.extend(place_on(from, to, at).map(|place| (place, at, v)));
+            on_it.extend(place_on((from, to), at, f64::from(tolerance)).map(|place| (place, at, v)));
         }
     });
     on_it.sort_unstable();
@@ -88,10 +93,9 @@ fn between(work: &Work, cells: &Cells, (a, b): (u32, u32), triangle: [u32; 3]) -
 
 /// How far along the line `v` lies, if it is within the tolerance of it and further than that
 /// from its ends.
-fn place_on(from: Corner, to: Corner, v: Corner) -> Option<i128> {
+fn place_on((from, to): (Corner, Corner), v: Corner, tolerance: f64) -> Option<i128> {
     let (line, side) = (minus(to, from), minus(v, from));
     let (long, place) = (length(line), dot(line, side));
-    let tolerance = f64::from(TOLERANCE);
     let along = place as f64 / long;
     let off2 = length(side).powi(2) - along * along;
     let is_inside = along > tolerance && along < long - tolerance;

@@ -18,17 +18,18 @@ mod near;
 mod notes;
 mod orient;
 mod patches;
+mod probes;
 mod shells;
 
 pub use holes::SMALL_MM;
-pub use near::TOLERANCE_MM;
+pub use near::TOLERANCES_MM;
 
 use super::Mesh;
 use super::edges::{self, Adjacency};
 use super::faults::{Counted, Fault, Mending};
 use super::measure::{corners_of, determinant};
 use super::vector::{Corner, length, normal};
-use near::TOLERANCE;
+use near::TOLERANCES;
 pub(super) use notes::{Note, Notes, told_mm};
 
 /// What mending found and did.
@@ -44,6 +45,9 @@ pub(super) struct Mended {
     pub(super) left: Notes<Fault>,
     /// Closed surfaces, or surfaces left open, that hang together.
     pub(super) shells: usize,
+    /// Whether more of the surface was dropped than is left: then it was no sheets that were
+    /// dropped, but faces that do not meet.
+    pub(super) is_lost: bool,
 }
 
 /// Mends `mesh`.
@@ -51,18 +55,22 @@ pub(super) fn mend(mesh: &mut Mesh) -> Mended {
     let mut adjacency = edges::adjacency(&mesh.vertices, &mesh.triangles);
     let (found, done) = (Notes::default(), Notes::default());
     let triangles = std::mem::take(&mut mesh.triangles);
-    let mut work = Work { vertices: &mesh.vertices, triangles, found, done };
+    let mut work = Work { vertices: &mesh.vertices, triangles, found, done, dropped: 0.0 };
     let is_closed = adjacency.unpaired == 0;
+    let mut is_mended = false;
     if !is_closed || adjacency.non_manifold > 0 {
         work.found = faults(work.vertices, &work.triangles);
         let count = work.count();
         duplicates::drop_duplicates(&mut work);
         if !is_closed || work.count() != count {
             close(&mut work);
+            is_mended = true;
             adjacency = edges::adjacency(work.vertices, &work.triangles);
         }
     }
-    let (shells, is_changed) = shells::settle(&mut work, &adjacency);
+    let (shells, is_changed) = shells::settle(&mut work, &adjacency, is_mended);
+    let kept: f64 = work.triangles.iter().map(|&triangle| work.area(triangle)).sum();
+    let is_lost = work.dropped > kept;
     let Work { triangles, found, done, .. } = work;
     if is_changed {
         adjacency = edges::adjacency(&mesh.vertices, &triangles);
@@ -71,7 +79,7 @@ pub(super) fn mend(mesh: &mut Mesh) -> Mended {
     let left =
         if is_sound { Notes::default() } else { faults(&mesh.vertices, &triangles) };
     mesh.triangles = triangles;
-    Mended { adjacency, found, done, left, shells }
+    Mended { adjacency, found, done, left, shells, is_lost }
 }
 
 /// The mesh as it is.
@@ -79,15 +87,21 @@ pub(super) fn inspect(mesh: &Mesh) -> Mended {
     let adjacency = edges::adjacency(&mesh.vertices, &mesh.triangles);
     let found = faults(&mesh.vertices, &mesh.triangles);
     let shells = shells::count(&adjacency);
-    Mended { adjacency, left: found.clone(), found, done: Notes::default(), shells }
+    let left = found.clone();
+    Mended { adjacency, found, done: Notes::default(), left, shells, is_lost: false }
 }
 
 /// The steps that close a mesh.
 fn close(work: &mut Work) {
     work.drop_degenerate();
-    near::weld(work);
-    duplicates::drop_duplicates(work);
-    junctions::split_junctions(work);
+    for tolerance in near::TOLERANCES {
+        near::weld(work, tolerance);
+        duplicates::drop_duplicates(work);
+        junctions::split_junctions(work, tolerance);
+        if near::open_edges(work).is_empty() {
+            break;
+        }
+    }
     orient::orient(work);
     holes::fill_holes(work);
     // What fills the rim of a sheet is its copy.
@@ -115,9 +129,22 @@ struct Work<'a> {
     triangles: Vec<[u32; 3]>,
     found: Notes<Fault>,
     done: Notes<Mending>,
+    /// Area of the dropped sheets, twice, grid units².
+    dropped: f64,
 }
 
 impl Work<'_> {
+    /// Counts a triangle of a sheet, which the caller drops.
+    fn drop_sheet(&mut self, triangle: [u32; 3]) {
+        self.done.add(Mending::DroppedSheet, triangle[0]);
+        self.dropped += self.area(triangle);
+    }
+
+    /// Twice the area of a triangle, grid units².
+    fn area(&self, triangle: [u32; 3]) -> f64 {
+        length(normal(corners_of(self.vertices, triangle)))
+    }
+
     /// The number of triangles.
     fn count(&self) -> u32 {
         u32::try_from(self.triangles.len()).unwrap_or(u32::MAX)
@@ -132,7 +159,7 @@ impl Work<'_> {
     /// Drops triangles without area: those with two equal corners, and those with three on a
     /// line, whose neighbours are joined by splitting.
     fn drop_degenerate(&mut self) {
-        let Self { vertices, triangles, found, done } = self;
+        let Self { vertices, triangles, found, done, .. } = self;
         triangles.retain(|&triangle| {
             let has_area = normal(corners_of(vertices, triangle)) != [0; 3];
             if !has_area {
@@ -161,9 +188,9 @@ impl Work<'_> {
     /// tolerance of welding would.
     fn is_flat(&self, triangles: impl Iterator<Item = [u32; 3]> + Clone) -> bool {
         let volume = self.volume(triangles.clone()).unsigned_abs() as f64 / 6.0;
-        let area = triangles.map(|t| length(normal(corners_of(self.vertices, t)))).sum::<f64>();
+        let area = triangles.map(|t| self.area(t)).sum::<f64>();
         // The doubled area is that of both sides, so that a quarter of it is one side.
-        volume <= area / 4.0 * f64::from(TOLERANCE)
+        volume <= area / 4.0 * f64::from(TOLERANCES[0])
     }
 }
 

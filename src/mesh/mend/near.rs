@@ -2,18 +2,21 @@
 
 use super::Work;
 use super::cells::Cells;
+use super::patches::Links;
 use crate::mesh::edges::{each_edge, parts};
 use crate::mesh::faults::Mending;
 use crate::mesh::vector::{distance2, length, minus};
 use crate::units::UNITS_PER_MM;
 
-/// Corners of open edges no further apart than this are one, mm. Far below what a printer
-/// can lay, and above what rounding and single precision do to a corner on a bed.
-pub const TOLERANCE_MM: f64 = 0.02;
+/// Corners of open edges no further apart than this are one, mm: the first is far below what a
+/// printer can lay, and above what rounding and single precision do to a corner on a bed; the
+/// second is tried only where that leaves edges open.
+pub const TOLERANCES_MM: [f64; 2] = [0.02, 0.1];
 
-/// [`TOLERANCE_MM`] in grid units.
-#[expect(clippy::cast_possible_truncation, reason = "a small constant")]
-pub(super) const TOLERANCE: i32 = (TOLERANCE_MM * UNITS_PER_MM) as i32;
+/// [`TOLERANCES_MM`] in grid units.
+#[expect(clippy::cast_possible_truncation, reason = "small constants")]
+pub(super) const TOLERANCES: [i32; 2] =
+    [(TOLERANCES_MM[0] * UNITS_PER_MM) as i32, (TOLERANCES_MM[1] * UNITS_PER_MM) as i32];
 
 /// Edges up to this long, grid units, do not keep their ends from being welded: they are
 /// rounding (2 µm).
@@ -23,47 +26,52 @@ const ROUNDING: f64 = 20.0;
 ///
 /// A corner is moved by no more than half of the shortest edge at it, so that no triangle
 /// that is larger than rounding vanishes or turns over.
-pub(super) fn weld(work: &mut Work) {
-    let reach = reaches(work);
+pub(super) fn weld(work: &mut Work, tolerance: i32) {
+    let reach = reaches(work, tolerance);
     let open: Vec<u32> =
         (0_u32..).zip(&reach).filter(|(_, reach)| **reach >= 0.0).map(|(v, _)| v).collect();
-    let cells = Cells::new(work.vertices, &open, i64::from(TOLERANCE));
-    let mut roots: Vec<u32> = (0_u32..).zip(work.vertices).map(|(v, _)| v).collect();
+    let cells = Cells::new(work.vertices, &open, i64::from(tolerance));
+    let mut links = Links::new(work.vertices.len());
     for &a in &open {
         let at = work.vertices[a as usize];
-        let low = at.map(|side| side - TOLERANCE);
-        let high = at.map(|side| side + TOLERANCE);
+        let low = at.map(|side| side - tolerance);
+        let high = at.map(|side| side + tolerance);
         cells.near(low, high, |b| {
             let least = reach[a as usize].min(reach[b as usize]);
             let apart2 = distance2(at, work.vertices[b as usize]) as f64;
             if b > a && apart2 <= least * least {
-                let (a, b) = (root(&mut roots, a), root(&mut roots, b));
-                // The least corner stands for all, whatever the order of the triangles.
-                let key = |v: u32| (work.vertices[v as usize], v);
-                let (keep, other) = if key(a) <= key(b) { (a, b) } else { (b, a) };
-                roots[other as usize] = keep;
+                links.join(a, b);
             }
         });
     }
+    // The least corner stands for all, whatever the order of the triangles.
+    let mut stands: Vec<u32> = (0_u32..).zip(work.vertices).map(|(v, _)| v).collect();
     for &v in &open {
-        let to = root(&mut roots, v);
+        let least = &mut stands[links.root(v) as usize];
+        if work.vertices[v as usize] < work.vertices[*least as usize] {
+            *least = v;
+        }
+    }
+    for &v in &open {
+        let to = stands[links.root(v) as usize];
         if to != v {
             let moved = length(minus(work.vertices[v as usize], work.vertices[to as usize]));
             work.done.sized(Mending::Welded, v, moved);
         }
     }
     for triangle in &mut work.triangles {
-        *triangle = triangle.map(|v| root(&mut roots, v));
+        *triangle = triangle.map(|v| stands[links.root(v) as usize]);
     }
     work.drop_degenerate();
 }
 
 /// How far each vertex may be moved, grid units; negative for those of no open edge.
-fn reaches(work: &Work) -> Vec<f64> {
+fn reaches(work: &Work, tolerance: i32) -> Vec<f64> {
+    let most = f64::from(tolerance);
     let mut reach = vec![-1.0; work.vertices.len()];
     each_edge(work.vertices.len(), &work.triangles, |(a, b), sides| {
         if sides.len() % 2 == 1 {
-            (reach[a as usize], reach[b as usize]) = (f64::from(TOLERANCE), f64::from(TOLERANCE));
+            (reach[a as usize], reach[b as usize]) = (most, most);
         }
     });
     for triangle in &work.triangles {
@@ -79,16 +87,7 @@ fn reaches(work: &Work) -> Vec<f64> {
     reach
 }
 
-/// The vertex that stands for `v`; shortens the way to it.
-fn root(roots: &mut [u32], mut v: u32) -> u32 {
-    while roots[v as usize] != v {
-        roots[v as usize] = roots[roots[v as usize] as usize];
-        v = roots[v as usize];
-    }
-    v
-}
-
-/// Vertices of edges with an odd number of triangles.
+/// The edges of a single triangle: their vertices, the lower first, and the triangle.
 pub(super) fn open_edges(work: &Work) -> Vec<(u32, u32, u32)> {
     let mut open = Vec::new();
     each_edge(work.vertices.len(), &work.triangles, |(a, b), sides| {

@@ -1,69 +1,100 @@
 //! Triangles -> triangles wound alike: turns those that are wound against their neighbours.
 
 use super::Work;
+use super::probes::{MOST_INSIDE, Probes};
 use crate::mesh::edges::{NONE, each_edge, parts, starts_at};
 use crate::mesh::faults::{Fault, Mending};
+use crate::mesh::measure::corners_of;
+use crate::mesh::tree::Tree;
+use crate::mesh::vector::Corner;
 
 /// A patch may have so many of its triangles turned before its winding counts as unknown:
 /// then it is wound so that it encloses a positive volume.
 const MOST_TURNED: f64 = 0.25;
 
 /// Winds the triangles of every patch alike. A patch is what hangs together by edges of two
-/// triangles; the winding that more of its triangles have is right.
+/// triangles; the winding that more of its triangles have is right. Where too many are wound
+/// either way, it is wound as a body, or as a cavity if it lies in an odd number of others.
 pub(super) fn orient(work: &mut Work) {
     let neighbours = neighbours(work);
-    // Whether a triangle is to be turned, and whether it was reached yet.
-    let (mut turned, mut reached) =
-        (vec![false; work.triangles.len()], vec![false; work.triangles.len()]);
-    let mut patch = Vec::new();
+    let mut turned = vec![false; work.triangles.len()];
+    let mut patch_of = vec![u32::MAX; work.triangles.len()];
+    let (mut count, mut unclear) = (0, Vec::new());
     for seed in 0..work.triangles.len() {
-        if reached[seed] {
+        if patch_of[seed] != u32::MAX {
             continue;
         }
-        patch.clear();
-        patch.push(seed);
-        reached[seed] = true;
-        let mut at = 0;
-        while let Some(&t) = patch.get(at) {
-            at += 1;
-            for side in 0..3 {
-                let other = neighbours[t][side];
-                if other == NONE {
-                    continue;
-                }
-                let (u, side_of_other) = parts(other);
-                if reached[u] {
-                    continue;
-                }
-                reached[u] = true;
-                let alike = work.triangles[t][side] != work.triangles[u][side_of_other];
-                turned[u] = if alike { turned[t] } else { !turned[t] };
-                patch.push(u);
-            }
+        let patch = reach(work, &neighbours, (seed, count), &mut patch_of, &mut turned);
+        let against = patch.iter().filter(|&&t| turned[t]).count();
+        if 2 * against > patch.len() {
+            patch.iter().for_each(|&t| turned[t] = !turned[t]);
         }
-        settle(work, &patch, &mut turned);
+        if against.min(patch.len() - against) as f64 > MOST_TURNED * patch.len() as f64 {
+            unclear.push(patch);
+        }
+        count += 1;
     }
+    as_they_lie(work, &patch_of, &unclear, &mut turned);
     for (triangle, _) in work.triangles.iter_mut().zip(&turned).filter(|(_, turned)| **turned) {
         work.done.add(Mending::Turned, triangle[0]);
         triangle.swap(1, 2);
     }
 }
 
-/// Chooses between the two windings of a patch.
-fn settle(work: &Work, patch: &[usize], turned: &mut [bool]) {
-    let count = patch.iter().filter(|&&t| turned[t]).count();
-    let share = count.min(patch.len() - count) as f64 / patch.len() as f64;
-    let other = if share <= MOST_TURNED {
-        2 * count > patch.len()
-    } else {
-        let as_turned = patch.iter().map(|&t| {
+/// The triangles of a patch from its first, `seed`, on; marks them with the patch's `number`,
+/// and those that are wound against the first as to be turned.
+fn reach(
+    work: &Work,
+    neighbours: &[[u32; 3]],
+    (seed, number): (usize, u32),
+    patch_of: &mut [u32],
+    turned: &mut [bool],
+) -> Vec<usize> {
+    let mut patch = vec![seed];
+    patch_of[seed] = number;
+    let mut at = 0;
+    while let Some(&t) = patch.get(at) {
+        at += 1;
+        for (side, &other) in neighbours[t].iter().enumerate().filter(|(_, o)| **o != NONE) {
+            let (u, side_of_other) = parts(other);
+            if patch_of[u] != u32::MAX {
+                continue;
+            }
+            let alike = work.triangles[t][side] != work.triangles[u][side_of_other];
+            turned[u] = turned[t] ^ !alike;
+            patch_of[u] = number;
+            patch.push(u);
+        }
+    }
+    patch
+}
+
+/// Winds patches of unclear winding by what they lie in.
+fn as_they_lie(work: &Work, patch_of: &[u32], unclear: &[Vec<usize>], turned: &mut [bool]) {
+    if unclear.is_empty() {
+        return;
+    }
+    let tree = Tree::new(work.vertices, &work.triangles);
+    for patch in unclear {
+        let own = patch_of[patch[0]];
+        let mut probes = Probes::default();
+        for &t in patch {
+            probes.add(corners_of(work.vertices, work.triangles[t]));
+        }
+        let is_inside = |place: &Corner| {
+            let mut crossed = 0;
+            tree.above(*place, |t, _| crossed += u32::from(patch_of[t as usize] != own));
+            crossed % 2 == 1
+        };
+        let is_cavity = probes.places().iter().filter(|p| is_inside(p)).count() >= MOST_INSIDE;
+        let wound = patch.iter().map(|&t| {
             let [a, b, c] = work.triangles[t];
             if turned[t] { [a, c, b] } else { [a, b, c] }
         });
-        work.volume(as_turned) < 0
-    };
-    if other {
-        patch.iter().for_each(|&t| turned[t] = !turned[t]);
+        let volume = work.volume(wound);
+        if volume != 0 && (volume < 0) != is_cavity {
+            patch.iter().for_each(|&t| turned[t] = !turned[t]);
+        }
     }
 }
 

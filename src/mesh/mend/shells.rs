@@ -2,11 +2,11 @@
 
 use super::Work;
 use super::patches::Links;
+use super::probes::{MOST_INSIDE, Probes};
 use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::mesh::faults::{Fault, Mending};
 use crate::mesh::measure::{corners_of, determinant};
 use crate::mesh::tree::Tree;
-use crate::mesh::vector::Corner;
 
 /// The shells of a mesh.
 struct Shells {
@@ -22,19 +22,17 @@ struct Shell {
     is_closed: bool,
     /// Six times its volume, negative if it is wound inward.
     volume: i128,
-    /// Its least and its greatest corner, by x, then y, then z: two that are the same
-    /// whatever the order of the triangles.
-    ends: [Corner; 2],
+    probes: Probes,
 }
 
-/// Drops closed shells without volume and turns inverted ones. Returns the number of shells,
+/// Drops closed shells without volume (of a mesh that was `mended`: with next to none) and turns inverted ones. Returns the number of shells,
 /// and whether anything was changed.
 ///
 /// A shell that is wound inward and lies in no other is inverted, and with it all that lies
 /// within it: such files come from mirroring. A shell wound inward within another is a cavity.
-pub(super) fn settle(work: &mut Work, adjacency: &Adjacency) -> (usize, bool) {
+pub(super) fn settle(work: &mut Work, adjacency: &Adjacency, is_mended: bool) -> (usize, bool) {
     let shells = shells(work, adjacency);
-    let flat = flat(work, &shells);
+    let flat = flat(work, &shells, is_mended);
     let is_inverted = inverted(work, &shells, &flat);
     for (shell, _) in shells.each.iter().zip(&is_inverted).filter(|(_, inverted)| **inverted) {
         let at = work.triangles[shell.first as usize][0];
@@ -49,7 +47,7 @@ pub(super) fn settle(work: &mut Work, adjacency: &Adjacency) -> (usize, bool) {
         if flat[shell as usize] {
             drop[t] = true;
             work.found.add(Fault::Sheet, work.triangles[t][0]);
-            work.done.add(Mending::DroppedSheet, work.triangles[t][0]);
+            work.drop_sheet(work.triangles[t]);
         }
     }
     let is_left = |flat: &&bool| !**flat;
@@ -88,27 +86,27 @@ fn shells(work: &Work, adjacency: &Adjacency) -> Shells {
         // A set's root is its least number, so that it was met before.
         let k = if root == t { shells.each.len() as u32 } else { shells.of[root as usize] };
         if root == t {
-            let ends = [corners[0]; 2];
-            shells.each.push(Shell { first: t, is_closed: true, volume: 0, ends });
+            let probes = Probes::default();
+            shells.each.push(Shell { first: t, is_closed: true, volume: 0, probes });
         }
         shells.of.push(k);
         let shell = &mut shells.each[k as usize];
         shell.volume += determinant(corners);
         shell.is_closed &= !sides.contains(&NONE);
-        for corner in corners {
-            shell.ends = [shell.ends[0].min(corner), shell.ends[1].max(corner)];
-        }
+        shell.probes.add(corners);
     }
     shells
 }
 
-/// Which closed shells enclose next to nothing.
-fn flat(work: &Work, shells: &Shells) -> Vec<bool> {
+/// Which closed shells enclose nothing, or next to nothing if they were `mended`: the tiny
+/// bodies of a sound scan stay.
+fn flat(work: &Work, shells: &Shells, is_mended: bool) -> Vec<bool> {
     let mut triangles = vec![Vec::new(); shells.each.len()];
     // Of a single shell there is nothing to drop.
     if shells.each.len() > 1 {
         for (t, &shell) in shells.of.iter().enumerate() {
-            if shells.each[shell as usize].is_closed {
+            let of = &shells.each[shell as usize];
+            if of.is_closed && (is_mended || of.volume == 0) {
                 triangles[shell as usize].push(work.triangles[t]);
             }
         }
@@ -144,12 +142,13 @@ fn inverted(work: &Work, shells: &Shells, flat: &[bool]) -> Vec<bool> {
     is_inverted
 }
 
-/// The shells that shell `k` lies in with both its ends.
+/// The shells that shell `k` lies in.
 fn around(tree: &Tree, shells: &Shells, flat: &[bool], k: usize) -> Vec<u32> {
-    let [mut first, second] = shells.each[k].ends.map(|end| {
-        // How often each shell winds around the corner, as far as not at all is not it.
+    // Each shell that winds around one of the places, once for each.
+    let mut outer: Vec<u32> = Vec::new();
+    for place in shells.each[k].probes.places() {
         let mut windings: Vec<(u32, i32)> = Vec::new();
-        tree.above(end, |t, sign| {
+        tree.above(place, |t, sign| {
             let shell = shells.of[t as usize];
             if shell as usize == k || flat[shell as usize] {
                 return;
@@ -159,9 +158,9 @@ fn around(tree: &Tree, shells: &Shells, flat: &[bool], k: usize) -> Vec<u32> {
                 None => windings.push((shell, sign)),
             }
         });
-        windings.retain(|(_, winding)| *winding != 0);
-        windings.into_iter().map(|(shell, _)| shell).collect::<Vec<u32>>()
-    });
-    first.retain(|shell| second.contains(shell));
-    first
+        outer.extend(windings.iter().filter(|(_, winding)| *winding != 0).map(|(shell, _)| shell));
+    }
+    outer.sort_unstable();
+    let most = outer.chunk_by(|a, b| a == b).filter(|same| same.len() >= MOST_INSIDE);
+    most.map(|same| same[0]).collect()
 }
