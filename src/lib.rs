@@ -227,8 +227,7 @@ pub fn solid_mm3(mesh: &mesh::Mesh, adjacency: &mesh::edges::Adjacency) -> f64 {
     const LAYERS: i32 = 400;
     let top = mesh.vertices.iter().map(|v| v[2]).max().unwrap_or(0);
     let height = (top / LAYERS).max(1);
-    let slicer =
-        slice::Slicer::new(mesh, adjacency, slice::Heights::new(height, height, top), 1);
+    let slicer = slice::Slicer::new(mesh, adjacency, slice::Heights::new(height, height, top), 1);
     let blocks = (0..slicer.blocks()).flat_map(|block| slicer.block(block));
     let volume: f64 = blocks.map(|layer| layer.volume_mm3()).sum();
     // The last layer is cut off by the top, or does not reach it.

@@ -7,8 +7,8 @@ use crate::gcode::flow::Flows;
 use crate::gcode::times::{LayerTime, Times};
 use crate::gcode::usage::Material;
 use crate::job::{self, Job};
-use crate::mesh::{MeshReport, Policy};
 use crate::mesh::transform::Placed;
+use crate::mesh::{MeshReport, Policy};
 use crate::plan::Role;
 use crate::profile::{DualMode, DualPart, Settings};
 use crate::region::Region;
@@ -34,6 +34,9 @@ pub struct Report {
     pub models: Vec<MeshReport>,
     /// Size of the whole layout x, y, z, mm.
     pub size_mm: [f64; 3],
+    /// What the layers enclose, mm³: the volume of the solid that is printed, where what
+    /// overlaps in the models counts once.
+    pub solid_mm3: f64,
     /// The layers.
     pub layers: LayersReport,
     /// Length and material by role, in the order of printing.
@@ -66,9 +69,6 @@ pub struct LayersReport {
     pub height_mm: f64,
     /// Top of the last, mm.
     pub top_mm: f64,
-    /// What the layers enclose, mm³: the volume of the solid that is printed, whatever
-    /// overlaps in the models.
-    pub volume_mm3: f64,
 }
 
 /// What was extruded in one role.
@@ -217,7 +217,7 @@ pub struct Tally {
     thin_mm2: f64,
     /// The first layer with the longest gap, counted from 1.
     gap_layer: usize,
-    volume_mm3: f64,
+    solid_mm3: f64,
 }
 
 impl Tally {
@@ -230,7 +230,7 @@ impl Tally {
                 self.gap_layer = region.layer.index + 1;
             }
         }
-        self.volume_mm3 += region.layer.volume_mm3();
+        self.solid_mm3 += region.layer.volume_mm3();
         if region.thin_mm2 > LEAST_THIN_MM2 {
             self.thin_layers += 1;
             self.thin_mm2 += region.thin_mm2;
@@ -295,12 +295,12 @@ pub fn report(
         profile: job.profile.clone(),
         models: placed.reports.clone(),
         size_mm: placed.size_mm,
+        solid_mm3: tally.solid_mm3,
         layers: LayersReport {
             count: heights.count,
             first_height_mm: to_mm(heights.first),
             height_mm: to_mm(heights.other),
             top_mm: to_mm(heights.top(heights.count - 1)),
-            volume_mm3: tally.volume_mm3,
         },
         roles: roles(sums, settings),
         travel: TravelReport {

@@ -366,7 +366,7 @@ fn layers(solid: &Solid, tolerance: f64) -> Vec<Layer> {
     let mesh = stl::parse("test", &solid.stl(), stl::DEFAULT_MAX_TRIANGLES).unwrap();
     let bed = Bed { min: [-100.0; 2], max: [100.0; 2], height: 100.0 };
     let placed = transform::place(vec![mesh], &as_it_is(), &bed).unwrap();
-    assert_eq!(placed.reports[0].open_edges, 0);
+    assert!(placed.reports[0].left.is_empty());
     let top = placed.mesh.vertices.iter().map(|v| v[2]).max().unwrap();
     let heights = Heights::new(1000, 1000, top);
     let slicer = Slicer::new(&placed.mesh, &placed.adjacency, heights, to_units(tolerance));

@@ -1,7 +1,7 @@
 //! Tree -> Crossings: finds the pairs of triangles that pass through each other.
 
-use super::vector::{cross, minus};
 use super::tree::Tree;
+use super::vector::{cross, minus};
 use crate::units::UNITS_PER_MM;
 use rayon::prelude::*;
 use std::cmp::Ordering;

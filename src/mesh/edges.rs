@@ -200,12 +200,16 @@ fn in_order_around(
         let length = along.iter().map(|side| side * side).sum::<f64>().sqrt();
         let (x, y) = (part(u) * length, part(v));
         let share = if x == 0.0 && y == 0.0 { 0.0 } else { y / (x.abs() + y.abs()) };
-        if x < 0.0 { 2.0 - share } else if share < 0.0 { 4.0 + share } else { share }
+        if x < 0.0 {
+            2.0 - share
+        } else if share < 0.0 {
+            4.0 + share
+        } else {
+            share
+        }
     };
-    let mut keyed: Vec<_> = sides
-        .iter()
-        .map(|&half| (turn(half), upwards(half), corner(half, 2), half))
-        .collect();
+    let mut keyed: Vec<_> =
+        sides.iter().map(|&half| (turn(half), upwards(half), corner(half, 2), half)).collect();
     keyed.sort_unstable_by(|a, b| {
         a.0.total_cmp(&b.0).then_with(|| (a.1, a.2, a.3).cmp(&(b.1, b.2, b.3)))
     });

@@ -186,8 +186,7 @@ pub fn tidied(mended: &[Counted<Mending>]) -> Option<String> {
 /// What of the faults leaves layers open, in words.
 #[must_use]
 pub fn open(left: &[Counted<Fault>]) -> Option<String> {
-    let is_open = |fault: &&Counted<Fault>| {
-        matches!(fault.kind, Fault::OpenEdge | Fault::FlippedEdge)
-    };
+    let is_open =
+        |fault: &&Counted<Fault>| matches!(fault.kind, Fault::OpenEdge | Fault::FlippedEdge);
     listed(&left.iter().filter(is_open).collect::<Vec<_>>())
 }

@@ -1,12 +1,12 @@
 //! Mesh -> Faults that its edges do not tell: surfaces that pass through each other, and spikes.
 
-use super::{Mesh, RawMesh};
 use super::crossings::{crossings, depth};
 use super::faults::{Counted, Fault};
 use super::mend::{Notes, told};
 use super::part::Part;
 use super::spikes::spikes;
 use super::tree::Tree;
+use super::{Mesh, RawMesh};
 use crate::units::UNITS_PER_MM;
 
 /// Triangles that pass through each other by less are rounding of the file's numbers, mm.

@@ -159,10 +159,8 @@ fn keep_used(model: &mut RawMesh, points: &mut Vec<Vector3<f64>>, mesh: &mut Mes
     for &vertex in mesh.triangles.as_flattened() {
         place[vertex as usize] = 0;
     }
-    let mut count = 0;
-    for place in place.iter_mut().filter(|place| **place == 0) {
-        *place = count;
-        count += 1;
+    for (new, place) in (0..).zip(place.iter_mut().filter(|place| **place == 0)) {
+        *place = new;
     }
     let mut used = place.iter().map(|&place| place != u32::MAX);
     points.retain(|_| used.next().unwrap_or(false));

@@ -145,6 +145,8 @@ fn join(parts: Vec<Part>, layout: &Layout, copies: usize, placed: &mut Placed) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::faults::{Fault, Mending};
+    use crate::mesh::{Policy, Unit};
 
     const BED: Bed = Bed { min: [-100.0, -50.0], max: [100.0, 50.0], height: 80.0 };
     const PLAIN: Placement = Placement {
@@ -154,6 +156,7 @@ mod tests {
         at: None,
         copies: 1,
         max_triangles: MAX_TRIANGLES,
+        policy: Policy::Repair,
     };
 
     /// A tetrahedron with right angles at `at`.
@@ -163,7 +166,7 @@ mod tests {
         let vertices = vec![at, [x + a, y, z], [x, y + b, z], [x, y, z + c]];
         let triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         let report = MeshReport { file: "x.stl".to_owned(), ..MeshReport::default() };
-        RawMesh { vertices, triangles, report }
+        RawMesh { vertices, triangles, report, ..RawMesh::default() }
     }
 
     fn one(model: RawMesh, placement: &Placement) -> Placed {
@@ -184,7 +187,8 @@ mod tests {
         assert_eq!(placed.mesh.vertices[3], [-100_000, -50_000, 50_000]);
         assert_eq!((placed.offset, placed.size_mm), ([0.0, 0.0], [20.0, 10.0, 5.0]));
         let report = &placed.reports[0];
-        assert_eq!((report.size_mm, report.open_edges), ([20.0, 10.0, 5.0], 0));
+        assert_eq!((report.size_mm, report.shells), ([20.0, 10.0, 5.0], 1));
+        assert!(report.found.is_empty() && report.mended.is_empty());
         assert!((report.volume_mm3 - 1000.0 / 6.0).abs() < 1e-9);
         assert!(placed.warnings.is_empty());
     }
@@ -292,16 +296,19 @@ mod tests {
         model.triangles.push([0, 1, 2]);
         model.triangles.push([0, 1, 3]);
         model.report.trailing_bytes = 3;
-        let placed = one(model, &PLAIN);
+        let placed = one(model.clone(), &Placement { policy: Policy::Warn, ..PLAIN });
         let file = || "x.stl".to_owned();
-        assert_eq!(placed.reports[0].open_edges, 6);
+        assert_eq!(placed.reports[0].left[0].kind, Fault::CrowdedEdge);
+        let tiny = Warning::TinyModel { file: file(), size_mm: 0.5 };
         assert_eq!(
             placed.warnings,
-            [
-                Warning::TrailingBytes { file: file(), count: 3 },
-                Warning::OpenMesh { file: file(), edges: 6 },
-                Warning::TinyModel { file: file(), size_mm: 0.5 },
-            ]
+            [Warning::TrailingBytes { file: file(), count: 3 }, tiny.clone()]
         );
+        // Mended, as a matter of form.
+        let placed = one(model, &PLAIN);
+        assert_eq!(placed.warnings.last(), Some(&tiny));
+        let mended = &placed.reports[0].mended[..];
+        assert_eq!((mended[0].kind, mended[0].count), (Mending::DroppedDuplicate, 2));
+        assert_eq!(placed.mesh.triangles.len(), 4);
     }
 }

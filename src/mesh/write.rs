@@ -15,11 +15,7 @@ const TITLE: &[u8] = b"binary STL";
 ///
 /// # Panics
 /// If a triangle names a vertex that is not there.
-pub fn write(
-    out: &mut dyn Write,
-    vertices: &[[f32; 3]],
-    triangles: &[[u32; 3]],
-) -> io::Result<()> {
+pub fn write(out: &mut dyn Write, vertices: &[[f32; 3]], triangles: &[[u32; 3]]) -> io::Result<()> {
     let mut header = [b' '; 80];
     header[..TITLE.len()].copy_from_slice(TITLE);
     out.write_all(&header)?;

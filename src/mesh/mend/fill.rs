@@ -94,9 +94,8 @@ impl<'a> Ears<'a> {
         let count = corners.len();
         let before: Vec<usize> = (0..count).map(|k| (k + count - 1) % count).collect();
         let after: Vec<usize> = (0..count).map(|k| (k + 1) % count).collect();
-        let mut hollow: Vec<usize> = (0..count)
-            .filter(|&k| turn(flat[before[k]], flat[k], flat[after[k]]) <= 0)
-            .collect();
+        let mut hollow: Vec<usize> =
+            (0..count).filter(|&k| turn(flat[before[k]], flat[k], flat[after[k]]) <= 0).collect();
         hollow.sort_unstable_by_key(|&k| (flat[k], k));
         let queue = BinaryHeap::with_capacity(count);
         let is_cut = vec![false; count];
@@ -132,7 +131,9 @@ impl<'a> Ears<'a> {
             }
             refused.push(candidate);
         }
-        let is_crooked = found.is_none();
+        // What is left in the end of a rim that crosses itself may be turned over.
+        let is_last = self.left == 3;
+        let is_crooked = found.is_none_or(|k| is_last && self.turn_at(k) < 0);
         let k = found.or_else(|| refused.first().map(|candidate| candidate.2[0]))?;
         self.queue.extend(refused.into_iter().map(Reverse));
         let (a, b) = (self.before[k], self.after[k]);
@@ -144,9 +145,13 @@ impl<'a> Ears<'a> {
         Some(([a, k, b], is_crooked))
     }
 
+    fn turn_at(&self, k: usize) -> i64 {
+        turn(self.flat[self.before[k]], self.flat[k], self.flat[self.after[k]])
+    }
+
     fn is_ear(&self, k: usize) -> bool {
         let ear = [self.flat[self.before[k]], self.flat[k], self.flat[self.after[k]]];
-        if turn(ear[0], ear[1], ear[2]) < 0 {
+        if self.turn_at(k) < 0 {
             return false;
         }
         let low = ear[0][0].min(ear[1][0]).min(ear[2][0]);
@@ -209,7 +214,7 @@ mod tests {
 
     #[test]
     fn a_rim_that_crosses_itself_is_told() {
-        let bow = [[0, 0, 0], [100, 100, 0], [100, 0, 0], [30, 100, 0], [0, 200, 0]];
+        let bow = [[0, 0, 0], [200, 100, 0], [200, 0, 0], [0, 40, 0]];
         assert!(filled(&bow).is_crooked);
     }
 

@@ -83,7 +83,8 @@ fn between(
     cells.along(from, to, tolerance, |v| {
         if !triangle.contains(&v) {
             let at = work.vertices[v as usize];
-            on_it.extend(place_on((from, to), at, f64::from(tolerance)).map(|place| (place, at, v)));
+            on_it
+                .extend(place_on((from, to), at, f64::from(tolerance)).map(|place| (place, at, v)));
         }
     });
     on_it.sort_unstable();
@@ -109,8 +110,7 @@ fn fan(triangle: [u32; 3], (from, to): (u32, u32), between: &[u32], out: &mut Ve
         ends == (from, to) || ends == (to, from)
     });
     let side = side.unwrap_or(0);
-    let (first, last, apex) =
-        (triangle[side], triangle[(side + 1) % 3], triangle[(side + 2) % 3]);
+    let (first, last, apex) = (triangle[side], triangle[(side + 1) % 3], triangle[(side + 2) % 3]);
     let mut way: Vec<u32> = vec![from];
     way.extend(between);
     way.push(to);

@@ -32,6 +32,9 @@ use super::vector::{Corner, length, normal};
 use near::TOLERANCES;
 pub(super) use notes::{Note, Notes, told_mm};
 
+/// So many faces a body has at least: with fewer, sheets are no body that came apart.
+const LEAST_FACES: usize = 4;
+
 /// What mending found and did.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Mended {
@@ -55,7 +58,8 @@ pub(super) fn mend(mesh: &mut Mesh) -> Mended {
     let mut adjacency = edges::adjacency(&mesh.vertices, &mesh.triangles);
     let (found, done) = (Notes::default(), Notes::default());
     let triangles = std::mem::take(&mut mesh.triangles);
-    let mut work = Work { vertices: &mesh.vertices, triangles, found, done, dropped: 0.0 };
+    let mut work =
+        Work { vertices: &mesh.vertices, triangles, found, done, dropped: 0.0, sheets: 0 };
     let is_closed = adjacency.unpaired == 0;
     let mut is_mended = false;
     if !is_closed || adjacency.non_manifold > 0 {
@@ -70,14 +74,13 @@ pub(super) fn mend(mesh: &mut Mesh) -> Mended {
     }
     let (shells, is_changed) = shells::settle(&mut work, &adjacency, is_mended);
     let kept: f64 = work.triangles.iter().map(|&triangle| work.area(triangle)).sum();
-    let is_lost = work.dropped > kept;
+    let is_lost = work.dropped > kept && work.sheets >= LEAST_FACES;
     let Work { triangles, found, done, .. } = work;
     if is_changed {
         adjacency = edges::adjacency(&mesh.vertices, &triangles);
     }
     let is_sound = adjacency.unpaired == 0 && adjacency.non_manifold == 0;
-    let left =
-        if is_sound { Notes::default() } else { faults(&mesh.vertices, &triangles) };
+    let left = if is_sound { Notes::default() } else { faults(&mesh.vertices, &triangles) };
     mesh.triangles = triangles;
     Mended { adjacency, found, done, left, shells, is_lost }
 }
@@ -131,6 +134,8 @@ struct Work<'a> {
     done: Notes<Mending>,
     /// Area of the dropped sheets, twice, grid units².
     dropped: f64,
+    /// Dropped sheets that hung together with nothing.
+    sheets: usize,
 }
 
 impl Work<'_> {

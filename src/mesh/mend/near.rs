@@ -52,15 +52,18 @@ pub(super) fn weld(work: &mut Work, tolerance: i32) {
             *least = v;
         }
     }
+    let mut to: Vec<u32> = (0_u32..).zip(work.vertices).map(|(v, _)| v).collect();
     for &v in &open {
-        let to = stands[links.root(v) as usize];
-        if to != v {
-            let moved = length(minus(work.vertices[v as usize], work.vertices[to as usize]));
+        let stand = stands[links.root(v) as usize];
+        let moved = length(minus(work.vertices[v as usize], work.vertices[stand as usize]));
+        // In a row of near corners the last may be far from the first.
+        if stand != v && moved <= f64::from(tolerance) {
+            to[v as usize] = stand;
             work.done.sized(Mending::Welded, v, moved);
         }
     }
     for triangle in &mut work.triangles {
-        *triangle = triangle.map(|v| stands[links.root(v) as usize]);
+        *triangle = triangle.map(|v| to[v as usize]);
     }
     work.drop_degenerate();
 }

@@ -52,6 +52,7 @@ pub(super) fn settle(work: &mut Work, adjacency: &Adjacency, is_mended: bool) ->
     }
     let is_left = |flat: &&bool| !**flat;
     let is_changed = flat.contains(&true) || is_inverted.contains(&true);
+    work.sheets = flat.iter().filter(|flat| **flat).count();
     work.drop_marked(&drop);
     (flat.iter().filter(is_left).count(), is_changed)
 }
