@@ -4,7 +4,7 @@
 //!
 //! The modules in the order of the way an STL takes; [`slice()`] shows it whole:
 //!
-//! - [`mesh`]: bytes -> triangles, welded and laid on the bed
+//! - [`mesh`]: bytes -> triangles, welded, mended and laid on the bed
 //! - [`mod@slice`]: triangles -> layers of closed contours
 //! - [`region`]: layers -> walls, and spans of skin, sparse infill and support
 //! - [`plan`]: regions -> paths in order, with travels

@@ -147,7 +147,8 @@ fn refuse_faults(model: &RawMesh) -> Result<()> {
     Err(Error::input(
         &model.report.file,
         format!(
-            "the mesh has faults: {}{place}; mend the model, or slice without --mesh strict",
+            "the mesh has faults: {}{place}; mend the model, as `slicer mesh` does, or slice without \
+             --mesh strict",
             all.join(", ")
         ),
     ))

@@ -64,6 +64,8 @@ pub(super) fn mend(mesh: &mut Mesh) -> Mended {
     let mut is_mended = false;
     if !is_closed || adjacency.non_manifold > 0 {
         work.found = faults(work.vertices, &work.triangles);
+        // Counted when gaps are closed, since they show only then.
+        work.found.0.retain(|note| note.kind != Fault::FlippedEdge);
         let count = work.count();
         duplicates::drop_duplicates(&mut work);
         if !is_closed || work.count() != count {
