@@ -32,6 +32,8 @@ pub enum Fault {
     WrongNormal,
     /// Pairs of triangles that pass through each other.
     Crossing,
+    /// Bodies that lie wholly within another, and vanish in it.
+    NestedShell,
     /// Corners that stick out as needles do.
     Spike,
 }
@@ -52,6 +54,7 @@ impl Fault {
             Self::InvertedShell => "shell turned inside out",
             Self::WrongNormal => "wrong normal",
             Self::Crossing => "pair of triangles that cross",
+            Self::NestedShell => "body within another",
             Self::Spike => "spike",
         }
     }
@@ -69,6 +72,7 @@ impl Fault {
             Self::InvertedShell => "shells turned inside out",
             Self::WrongNormal => "wrong normals",
             Self::Crossing => "pairs of triangles that cross",
+            Self::NestedShell => "bodies within others",
             Self::Spike => "spikes",
         }
     }

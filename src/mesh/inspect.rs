@@ -1,8 +1,9 @@
-//! Mesh -> Faults that its edges do not tell: surfaces that pass through each other, and spikes.
+//! Mesh -> Faults that its edges do not tell: surfaces that pass through each other, bodies within others, spikes.
 
 use super::crossings::{crossings, depth};
+use super::edges::Adjacency;
 use super::faults::{Counted, Fault};
-use super::mend::{Notes, told};
+use super::mend::{self, Notes, told};
 use super::part::Part;
 use super::spikes::spikes;
 use super::tree::Tree;
@@ -16,14 +17,14 @@ pub const LEAST_DEPTH_MM: f64 = 0.01;
 /// part and the model it was made of.
 #[must_use]
 pub fn seen(part: &Part, model: &RawMesh) -> Vec<Counted<Fault>> {
-    told(inspect(&part.mesh), &model.vertices)
+    told(inspect(&part.mesh, &part.adjacency), &model.vertices)
 }
 
 /// What is seen in a mesh by looking at all its triangles. Linear but for a sort; bounded in
 /// time and memory for soups, where not all crossings are counted.
-pub(super) fn inspect(mesh: &Mesh) -> Notes<Fault> {
-    let mut notes = Notes::default();
+pub(super) fn inspect(mesh: &Mesh, adjacency: &Adjacency) -> Notes<Fault> {
     let tree = Tree::new(&mesh.vertices, &mesh.triangles);
+    let mut notes = mend::nested(mesh, adjacency, &tree);
     let crossings = crossings(&tree);
     for &pair in &crossings.pairs {
         let depth = depth(&tree, pair);

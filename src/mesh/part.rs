@@ -40,7 +40,7 @@ pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Par
         Policy::Strict => {
             let mut mended = mend::mend(&mut mesh);
             // Of the mended mesh, since gaps and copies would be taken for crossings.
-            mended.found.extend(inspect::inspect(&mesh));
+            mended.found.extend(inspect::inspect(&mesh, &mended.adjacency));
             mended
         }
     };

@@ -28,6 +28,7 @@ use super::Mesh;
 use super::edges::{self, Adjacency};
 use super::faults::{Counted, Fault, Mending};
 use super::measure::{corners_of, determinant};
+use super::tree::Tree;
 use super::vector::{Corner, length, normal};
 use near::TOLERANCES;
 pub(super) use notes::{Note, Notes, told_mm};
@@ -94,6 +95,14 @@ pub(super) fn inspect(mesh: &Mesh) -> Mended {
     let shells = shells::count(&adjacency);
     let left = found.clone();
     Mended { adjacency, found, done: Notes::default(), left, shells, is_lost: false }
+}
+
+/// The bodies of a mended mesh that lie within others.
+pub(super) fn nested(mesh: &Mesh, adjacency: &Adjacency, tree: &Tree) -> Notes<Fault> {
+    let (found, done) = (Notes::default(), Notes::default());
+    let triangles = mesh.triangles.clone();
+    let work = Work { vertices: &mesh.vertices, triangles, found, done, dropped: 0.0, sheets: 0 };
+    shells::nested(&work, adjacency, tree)
 }
 
 /// The steps that close a mesh.

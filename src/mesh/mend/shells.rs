@@ -1,8 +1,8 @@
 //! Surfaces that hang together -> shells wound outward: drops those that enclose nothing, turns those that are inside out.
 
-use super::Work;
 use super::patches::Links;
 use super::probes::{MOST_INSIDE, Probes};
+use super::{Notes, Work};
 use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::mesh::faults::{Fault, Mending};
 use crate::mesh::measure::{corners_of, determinant};
@@ -55,6 +55,25 @@ pub(super) fn settle(work: &mut Work, adjacency: &Adjacency, is_mended: bool) ->
     work.sheets = flat.iter().filter(|flat| **flat).count();
     work.drop_marked(&drop);
     (flat.iter().filter(is_left).count(), is_changed)
+}
+
+/// The bodies that lie within others.
+pub(super) fn nested(work: &Work, adjacency: &Adjacency, tree: &Tree) -> Notes<Fault> {
+    let mut notes = Notes::default();
+    let shells = shells(work, adjacency);
+    let flat = vec![false; shells.each.len()];
+    let is_body = |shell: &Shell| shell.is_closed && shell.volume > 0;
+    // Of a single shell there is nothing to find.
+    let bodies = (0..shells.each.len()).filter(|&k| flat.len() > 1 && is_body(&shells.each[k]));
+    for k in bodies {
+        let outer = around(tree, &shells, &flat, k);
+        let within = outer.iter().filter(|&&o| shells.each[o as usize].volume > 0).count();
+        // As many cavities as bodies around it: it stands free in a cavity.
+        if 2 * within > outer.len() {
+            notes.add(Fault::NestedShell, work.triangles[shells.each[k].first as usize][0]);
+        }
+    }
+    notes
 }
 
 /// The number of surfaces that hang together.
