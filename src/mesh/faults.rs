@@ -90,6 +90,8 @@ pub enum Mending {
     Turned,
     /// Holes closed by new triangles.
     FilledHole,
+    /// Gaps between two rims closed by a band of new triangles.
+    Bridged,
     /// Triangles of surfaces that enclose nothing dropped.
     DroppedSheet,
     /// Closed surfaces turned outside out.
@@ -106,6 +108,7 @@ impl Mending {
             Self::SplitTJunction => ("split at corners on their edges", "triangle"),
             Self::Turned => ("turned like their neighbours", "triangle"),
             Self::FilledHole => ("filled", "hole"),
+            Self::Bridged => ("joined across", "gap"),
             Self::DroppedSheet => ("dropped since they enclose nothing", "triangle"),
             Self::TurnedShell => ("turned outside out", "shell"),
         }
@@ -113,7 +116,7 @@ impl Mending {
 
     /// Whether it is a guess of what was meant, rather than a matter of form.
     fn is_guess(self) -> bool {
-        matches!(self, Self::FilledHole | Self::DroppedSheet)
+        matches!(self, Self::FilledHole | Self::Bridged | Self::DroppedSheet)
     }
 }
 
@@ -186,8 +189,7 @@ pub fn tidied(mended: &[Counted<Mending>]) -> Option<String> {
 /// What of the faults leaves layers open, in words.
 #[must_use]
 pub fn open(left: &[Counted<Fault>]) -> Option<String> {
-    let is_open = |fault: &&Counted<Fault>| {
-        matches!(fault.kind, Fault::OpenEdge | Fault::FlippedEdge)
-    };
+    let is_open =
+        |fault: &&Counted<Fault>| matches!(fault.kind, Fault::OpenEdge | Fault::FlippedEdge);
     listed(&left.iter().filter(is_open).collect::<Vec<_>>())
 }

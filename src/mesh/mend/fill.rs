@@ -38,7 +38,7 @@ pub(super) fn fill(vertices: &[Corner], rim: &[u32]) -> Filled {
 
 /// The normal of a closed line of corners, as long as twice the area that it has as seen
 /// along it.
-fn newell(corners: &[Corner]) -> [f64; 3] {
+pub(super) fn newell(corners: &[Corner]) -> [f64; 3] {
     let mut sum = [0_i128; 3];
     for k in 1..corners.len().saturating_sub(1) {
         let part = cross(minus(corners[k], corners[0]), minus(corners[k + 1], corners[0]));
@@ -94,9 +94,8 @@ impl<'a> Ears<'a> {
         let count = corners.len();
         let before: Vec<usize> = (0..count).map(|k| (k + count - 1) % count).collect();
         let after: Vec<usize> = (0..count).map(|k| (k + 1) % count).collect();
-        let mut hollow: Vec<usize> = (0..count)
-            .filter(|&k| turn(flat[before[k]], flat[k], flat[after[k]]) <= 0)
-            .collect();
+        let mut hollow: Vec<usize> =
+            (0..count).filter(|&k| turn(flat[before[k]], flat[k], flat[after[k]]) <= 0).collect();
         hollow.sort_unstable_by_key(|&k| (flat[k], k));
         let queue = BinaryHeap::with_capacity(count);
         let is_cut = vec![false; count];
