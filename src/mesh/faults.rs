@@ -94,6 +94,8 @@ pub enum Mending {
     Turned,
     /// Holes closed by new triangles.
     FilledHole,
+    /// Gaps between two rims closed by a band of new triangles.
+    Bridged,
     /// Triangles of surfaces that enclose nothing dropped.
     DroppedSheet,
     /// Closed surfaces turned outside out.
@@ -110,6 +112,7 @@ impl Mending {
             Self::SplitTJunction => ("split at corners on their edges", "triangle"),
             Self::Turned => ("turned like their neighbours", "triangle"),
             Self::FilledHole => ("filled", "hole"),
+            Self::Bridged => ("joined across", "gap"),
             Self::DroppedSheet => ("dropped since they enclose nothing", "triangle"),
             Self::TurnedShell => ("turned outside out", "shell"),
         }
@@ -117,7 +120,7 @@ impl Mending {
 
     /// Whether it is a guess of what was meant, rather than a matter of form.
     fn is_guess(self) -> bool {
-        matches!(self, Self::FilledHole | Self::DroppedSheet)
+        matches!(self, Self::FilledHole | Self::Bridged | Self::DroppedSheet)
     }
 }
 

@@ -38,7 +38,7 @@ pub(super) fn fill(vertices: &[Corner], rim: &[u32]) -> Filled {
 
 /// The normal of a closed line of corners, as long as twice the area that it has as seen
 /// along it.
-fn newell(corners: &[Corner]) -> [f64; 3] {
+pub(super) fn newell(corners: &[Corner]) -> [f64; 3] {
     let mut sum = [0_i128; 3];
     for k in 1..corners.len().saturating_sub(1) {
         let part = cross(minus(corners[k], corners[0]), minus(corners[k + 1], corners[0]));

@@ -1,10 +1,14 @@
 //! Open edges -> rims -> filled holes: closes every opening whose shape leaves no doubt.
 
-use super::Work;
+use super::bridge::{band, pairs};
 use super::fill::{Filled, fill};
 use super::notes::extent;
+use super::patches::Links;
+use super::{Work, shells};
+use crate::mesh::crossings::{crossings, depth};
 use crate::mesh::edges::{Adjacency, NONE, adjacency, parts};
 use crate::mesh::faults::{Fault, Mending};
+use crate::mesh::tree::Tree;
 use crate::units::UNITS_PER_MM;
 use hashbrown::HashMap;
 
@@ -18,22 +22,96 @@ const BENT: f64 = 0.05;
 /// then the mesh is rather a sheet than a body.
 const MOST_BENT: f64 = 0.2;
 
-/// Fills holes with triangles over the corners of their rims.
+/// Crossings up to this deep do not tell against what closes a hole, mm.
+const MOST_CROSSING_MM: f64 = 0.05;
+
+/// The rim of a hole.
+pub(super) struct Rim {
+    /// Its corners, as the triangles that fill the hole have to run along them.
+    pub(super) way: Vec<u32>,
+    /// The diagonal of the box around it, grid units.
+    pub(super) size: f64,
+    /// A triangle beside it.
+    beside: u32,
+}
+
+/// What may close a hole, or the gap between two.
+struct Closing {
+    triangles: Vec<[u32; 3]>,
+    /// The patch that it must not pass through; none if that does not matter.
+    patch: Option<u32>,
+}
+
+/// Fills holes with triangles over the corners of their rims, and gaps between two rims.
 pub(super) fn fill_holes(work: &mut Work) {
     let neighbours = adjacency(work.vertices, &work.triangles);
     if neighbours.unpaired == 0 {
         return;
     }
+    let mut links = shells::links(&neighbours);
     let surface: f64 = work.triangles.iter().map(|&t| work.area(t)).sum();
-    for rim in rims(work, &neighbours) {
-        let size = extent(rim.iter().map(|&v| work.vertices[v as usize]));
-        work.found.sized(Fault::Hole, rim[0], size);
-        let filled = fill(work.vertices, &rim);
-        if is_sure(work, &filled, size, surface) {
-            work.done.sized(Mending::FilledHole, rim[0], size);
-            work.triangles.extend(filled.triangles);
+    let rims = rims(work, &neighbours);
+    let patches: Vec<u32> = rims.iter().map(|rim| links.root(rim.beside)).collect();
+    let pairs = pairs(work.vertices, &rims);
+    let mut is_joined = vec![false; rims.len()];
+    // First those of the rims, then those of the pairs.
+    let mut closings: Vec<Closing> = Vec::new();
+    for (rim, &patch) in rims.iter().zip(&patches) {
+        work.found.sized(Fault::Hole, rim.way[0], rim.size);
+        let filled = fill(work.vertices, &rim.way);
+        let is_sure = is_sure(work, &filled, rim.size, surface);
+        let triangles = if is_sure { filled.triangles } else { Vec::new() };
+        let is_large = rim.size > SMALL_MM * UNITS_PER_MM;
+        closings.push(Closing { triangles, patch: is_large.then_some(patch) });
+    }
+    for pair in &pairs {
+        let [a, b] = pair.rims;
+        let triangles = band(work.vertices, &rims[a].way, &rims[b].way);
+        let is_same = patches[a] == patches[b];
+        closings.push(Closing { triangles, patch: is_same.then_some(patches[a]) });
+    }
+    let is_bad = crossing(work, &mut links, &closings);
+    for (k, pair) in pairs.iter().enumerate() {
+        let ([a, b], own) = (pair.rims, rims.len() + k);
+        let is_same = closings[own].patch.is_some();
+        if !is_same || (!is_bad[own] && (is_bad[a] || is_bad[b])) {
+            is_joined[a] = true;
+            is_joined[b] = true;
+            work.done.sized(Mending::Bridged, rims[a].way[0], pair.apart);
+            work.triangles.extend(&closings[own].triangles);
         }
     }
+    for (k, rim) in rims.iter().enumerate() {
+        if !is_joined[k] && !is_bad[k] && !closings[k].triangles.is_empty() {
+            work.done.sized(Mending::FilledHole, rim.way[0], rim.size);
+            work.triangles.extend(&closings[k].triangles);
+        }
+    }
+}
+
+/// Which closings pass through the patch whose hole they close.
+fn crossing(work: &Work, links: &mut Links, closings: &[Closing]) -> Vec<bool> {
+    let mut is_bad = vec![false; closings.len()];
+    if closings.iter().all(|closing| closing.patch.is_none()) {
+        return is_bad;
+    }
+    let first = work.triangles.len();
+    let mut triangles = work.triangles.clone();
+    let mut owners = Vec::new();
+    for (k, closing) in closings.iter().enumerate().filter(|(_, one)| one.patch.is_some()) {
+        triangles.extend(&closing.triangles);
+        owners.resize(triangles.len() - first, k);
+    }
+    let tree = Tree::new(work.vertices, &triangles);
+    for pair in crossings(&tree).pairs {
+        let [own, new] = pair.map(|t| t as usize);
+        if own < first && new >= first {
+            let k = owners[new - first];
+            let is_own = closings[k].patch == Some(links.root(pair[0]));
+            is_bad[k] |= is_own && depth(&tree, pair) > MOST_CROSSING_MM;
+        }
+    }
+    is_bad
 }
 
 /// Whether a hole is closed as its rim says.
@@ -50,7 +128,7 @@ fn is_sure(work: &Work, filled: &Filled, size: f64, surface: f64) -> bool {
 ///
 /// An open half-edge is followed by the one that is met first when turning about its end
 /// within the surface. So each has one successor and one predecessor, and rims are closed.
-fn rims(work: &Work, neighbours: &Adjacency) -> Vec<Vec<u32>> {
+fn rims(work: &Work, neighbours: &Adjacency) -> Vec<Rim> {
     let mut seen = vec![[false; 3]; work.triangles.len()];
     let mut rims = Vec::new();
     for first in 0..work.triangles.len() {
@@ -68,7 +146,11 @@ fn rims(work: &Work, neighbours: &Adjacency) -> Vec<Vec<u32>> {
             }
             rim.reverse();
             let simple = without_repeats(rim).into_iter().filter(|rim| rim.len() >= 3);
-            rims.extend(simple.map(|rim| from_least(work, rim)));
+            rims.extend(simple.map(|rim| {
+                let way = from_least(work, rim);
+                let size = extent(way.iter().map(|&v| work.vertices[v as usize]));
+                Rim { way, size, beside: first as u32 }
+            }));
         }
     }
     rims

@@ -2,13 +2,14 @@
 //!
 //! In this order, since each step relies on those before it: corners that nearly meet are
 //! welded, triangles without area and copies dropped, corners on edges joined to them,
-//! neighbours wound alike, holes filled, sheets dropped, and shells turned outward. Corners
+//! neighbours wound alike, gaps bridged and holes filled, sheets dropped, and shells turned outward. Corners
 //! are never moved but by welding, and no new ones are made: a mended triangle has corners
 //! of the file. Nothing depends on the order of the triangles.
 //!
 //! Shells that overlap stay as they are: the winding rule makes one solid of them when they
 //! are cut into layers.
 
+mod bridge;
 mod cells;
 mod duplicates;
 mod fill;

@@ -83,7 +83,7 @@ pub(super) fn count(adjacency: &Adjacency) -> usize {
 }
 
 /// The triangles, joined across their sides.
-fn links(adjacency: &Adjacency) -> Links {
+pub(super) fn links(adjacency: &Adjacency) -> Links {
     let mut links = Links::new(adjacency.neighbour.len());
     for (t, sides) in (0_u32..).zip(&adjacency.neighbour) {
         for &side in sides.iter().filter(|side| **side != NONE) {

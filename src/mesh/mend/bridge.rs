@@ -1,0 +1,233 @@
+//! Rims -> pairs and bands: joins two rims that run along each other across a gap.
+//!
+//! Where a strip of the surface is missing all round, its two rims face each other closely.
+//! A band between them closes the gap as it was; a cap on each would cut the body in two.
+
+use super::fill::newell;
+use super::holes::Rim;
+use crate::mesh::vector::{Corner, distance2};
+
+/// Rims are joined if no corner of one is further from the other than this share of the
+/// smaller one's extent.
+const MOST_APART: f64 = 0.25;
+
+/// How far a rim may lie behind the plane of the one that it faces, as a share of its extent:
+/// for rims in one plane, as those of the end face of a tube.
+const MOST_BEHIND: f64 = 0.01;
+
+/// Looks at a corner and a side, for all pairs together; what is beyond is not joined.
+const MOST_LOOKS: u64 = 1 << 29;
+
+/// Two rims that face each other.
+pub(super) struct Pair {
+    /// The numbers of the rims; the one with the lesser first corner first.
+    pub(super) rims: [usize; 2],
+    /// The largest distance from a corner of one to the other, grid units.
+    pub(super) apart: f64,
+}
+
+/// The pairs of rims that face each other and are each other's nearest.
+pub(super) fn pairs(vertices: &[Corner], rims: &[Rim]) -> Vec<Pair> {
+    let seen: Vec<Seen> = rims.iter().map(|rim| Seen::new(vertices, rim)).collect();
+    let mut order: Vec<usize> = (0..rims.len()).collect();
+    order.sort_by_key(|&k| (seen[k].low, seen[k].corners[0]));
+    // The nearest of each, and how far it is.
+    let mut nearest: Vec<Option<(f64, usize)>> = vec![None; rims.len()];
+    let mut looks = MOST_LOOKS;
+    for (place, &a) in order.iter().enumerate() {
+        for &b in &order[place + 1..] {
+            let most = MOST_APART * seen[a].size.min(seen[b].size);
+            if f64::from(seen[b].low[0]) - f64::from(seen[a].low[0]) > MOST_APART * seen[a].size {
+                break;
+            }
+            let Some(apart) = seen[a].apart(&seen[b], most, &mut looks) else { continue };
+            for (one, other) in [(a, b), (b, a)] {
+                if nearest[one].is_none_or(|(known, _)| apart < known) {
+                    nearest[one] = Some((apart, other));
+                }
+            }
+        }
+    }
+    let mutual = |&a: &usize| {
+        let (apart, b) = nearest[a]?;
+        let is_first = seen[a].corners[0] < seen[b].corners[0];
+        let is_mutual = nearest[b].is_some_and(|(_, back)| back == a);
+        (is_first && is_mutual).then_some(Pair { rims: [a, b], apart })
+    };
+    order.iter().filter_map(mutual).collect()
+}
+
+/// A rim with what is needed to compare it.
+struct Seen {
+    corners: Vec<Corner>,
+    low: Corner,
+    high: Corner,
+    /// The mean of its corners.
+    middle: [f64; 3],
+    /// Where the triangles that fill it would face, of length 1 or 0.
+    normal: [f64; 3],
+    size: f64,
+}
+
+impl Seen {
+    fn new(vertices: &[Corner], rim: &Rim) -> Self {
+        let corners: Vec<Corner> = rim.way.iter().map(|&v| vertices[v as usize]).collect();
+        let of = |axis: usize| corners.iter().map(move |corner| corner[axis]);
+        let low = std::array::from_fn(|axis| of(axis).min().unwrap_or(0));
+        let high = std::array::from_fn(|axis| of(axis).max().unwrap_or(0));
+        let count = corners.len() as f64;
+        let middle = std::array::from_fn(|axis| of(axis).map(f64::from).sum::<f64>() / count);
+        let normal = newell(&corners);
+        let long = normal.iter().map(|side| side * side).sum::<f64>().sqrt().max(1.0);
+        let normal = normal.map(|side| side / long);
+        Self { low, high, middle, normal, size: rim.size, corners }
+    }
+
+    /// How far this rim and another are apart if they face each other and it is at most `most`.
+    fn apart(&self, other: &Self, most: f64, looks: &mut u64) -> Option<f64> {
+        let is_near = |a: Corner, b: Corner| {
+            (0..3).all(|axis| (f64::from(a[axis]) - f64::from(b[axis])).abs() <= most)
+        };
+        let may_be = is_near(self.low, other.low) && is_near(self.high, other.high);
+        if !may_be || !self.faces(other) || !other.faces(self) {
+            return None;
+        }
+        let one = self.reach(other, most, looks)?;
+        Some(one.max(other.reach(self, most, looks)?))
+    }
+
+    /// Whether the other rim is not behind what would fill this one: two faces of a thin plate
+    /// are near each other too, but back to back.
+    fn faces(&self, other: &Self) -> bool {
+        let ahead: f64 =
+            (0..3).map(|axis| self.normal[axis] * (other.middle[axis] - self.middle[axis])).sum();
+        ahead >= -MOST_BEHIND * self.size.min(other.size)
+    }
+
+    /// The largest distance from a corner of this rim to the other, if at most `most`.
+    fn reach(&self, other: &Self, most: f64, looks: &mut u64) -> Option<f64> {
+        let count = other.corners.len();
+        let mut largest = 0.0_f64;
+        for &corner in &self.corners {
+            *looks = looks.checked_sub(count as u64)?;
+            let to = |k: usize| to_side(corner, other.corners[k], other.corners[(k + 1) % count]);
+            largest = largest.max((0..count).map(to).fold(f64::INFINITY, f64::min));
+            if largest > most * most {
+                return None;
+            }
+        }
+        Some(largest.sqrt())
+    }
+}
+
+/// The square of the distance from a point to the line from `a` to `b`.
+fn to_side(point: Corner, a: Corner, b: Corner) -> f64 {
+    let from = |to: Corner| -> [f64; 3] {
+        std::array::from_fn(|axis| f64::from(to[axis]) - f64::from(a[axis]))
+    };
+    let dot = |u: [f64; 3], v: [f64; 3]| (0..3).map(|axis| u[axis] * v[axis]).sum::<f64>();
+    let (way, out) = (from(b), from(point));
+    let share = (dot(way, out) / dot(way, way).max(1.0)).clamp(0.0, 1.0);
+    let off: [f64; 3] = std::array::from_fn(|axis| out[axis] - share * way[axis]);
+    dot(off, off)
+}
+
+/// The triangles between two rims, which run against each other: each side of both once.
+///
+/// From the closest corners on, always across the shorter diagonal.
+pub(super) fn band(vertices: &[Corner], one: &[u32], other: &[u32]) -> Vec<[u32; 3]> {
+    let at = |vertex: u32| vertices[vertex as usize];
+    let start = closest(vertices, one, other);
+    let a = |k: usize| one[(start[0] + k) % one.len()];
+    // Backwards.
+    let b = |k: usize| other[(start[1] + other.len() - k % other.len()) % other.len()];
+    let (mut i, mut j) = (0, 0);
+    let mut band = Vec::with_capacity(one.len() + other.len());
+    while i < one.len() || j < other.len() {
+        let on_one = distance2(at(a(i + 1)), at(b(j)));
+        let on_other = distance2(at(a(i)), at(b(j + 1)));
+        if j == other.len() || (i < one.len() && on_one <= on_other) {
+            band.push([a(i), a(i + 1), b(j)]);
+            i += 1;
+        } else {
+            band.push([b(j + 1), b(j), a(i)]);
+            j += 1;
+        }
+    }
+    band
+}
+
+/// Where on each of two rims the corners are that are closest to each other.
+fn closest(vertices: &[Corner], one: &[u32], other: &[u32]) -> [usize; 2] {
+    let at = |vertex: u32| vertices[vertex as usize];
+    let all = (0..one.len()).flat_map(|i| (0..other.len()).map(move |j| [i, j]));
+    let key =
+        |&[i, j]: &[usize; 2]| (distance2(at(one[i]), at(other[j])), at(one[i]), at(other[j]));
+    all.min_by_key(key).unwrap_or([0, 0])
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::mesh::Mesh;
+    use crate::mesh::faults::Mending;
+    use crate::mesh::measure::{corners_of, determinant};
+    use crate::mesh::mend::mend;
+    use crate::mesh::vector::Corner;
+
+    const MM: i32 = 10_000;
+
+    /// Corners of squares of `half` the side at some heights, mm, four each.
+    fn squares(of: &[[i32; 2]]) -> Vec<Corner> {
+        let at = |&[half, z]: &[i32; 2]| {
+            [[-half, -half, z], [half, -half, z], [half, half, z], [-half, half, z]]
+        };
+        of.iter().flat_map(at).map(|corner| corner.map(|side| side * MM)).collect()
+    }
+
+    /// The strip from square `a` to square `b`: outward if `a` is below `b`.
+    fn strip(a: u32, b: u32) -> Vec<[u32; 3]> {
+        let (a, b) = (4 * a, 4 * b);
+        let side = |k: u32| {
+            let next = (k + 1) % 4;
+            [[a + k, a + next, b + next], [a + k, b + next, b + k]]
+        };
+        (0..4).flat_map(side).collect()
+    }
+
+    /// Volume of what was mended, mm³, and what was done how often.
+    fn mended(squares_of: &[[i32; 2]], strips: &[[u32; 2]]) -> (i128, usize, usize) {
+        let vertices = squares(squares_of);
+        let triangles: Vec<[u32; 3]> = strips.iter().flat_map(|&[a, b]| strip(a, b)).collect();
+        let mut mesh = Mesh { vertices, triangles };
+        let mended = mend(&mut mesh);
+        assert_eq!(mended.left.0.len(), 0, "{:?}", mended.left);
+        let of = |&t: &[u32; 3]| determinant(corners_of(&mesh.vertices, t));
+        let volume = mesh.triangles.iter().map(of).sum::<i128>() / 6 / i128::from(MM).pow(3);
+        (volume, mended.done.count(Mending::Bridged), mended.done.count(Mending::FilledHole))
+    }
+
+    #[test]
+    fn a_missing_ring_is_joined() {
+        // A tube of 20 mm with a bore of 12 mm; its outside lacks what is between 14 and 17 mm.
+        let of = [[10, 0], [10, 14], [10, 17], [10, 30], [6, 0], [6, 30]];
+        let strips = [[0, 1], [2, 3], [3, 5], [5, 4], [4, 0]];
+        assert_eq!(mended(&of, &strips), ((400 - 144) * 30, 1, 0));
+    }
+
+    #[test]
+    fn end_faces_of_a_tube_are_joined() {
+        let of = [[10, 0], [10, 30], [6, 0], [6, 30]];
+        assert_eq!(mended(&of, &[[0, 1], [3, 2]]), ((400 - 144) * 30, 2, 0));
+    }
+
+    #[test]
+    fn a_body_in_two_halves_is_joined() {
+        let of = [[10, 0], [10, 14], [10, 15], [10, 30]];
+        assert_eq!(mended(&of, &[[0, 1], [2, 3]]), (400 * 30, 1, 2));
+    }
+
+    #[test]
+    fn a_thin_plate_is_filled_on_both_sides() {
+        assert_eq!(mended(&[[10, 0], [10, 1]], &[[0, 1]]), (400, 0, 2));
+    }
+}
