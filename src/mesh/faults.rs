@@ -24,6 +24,8 @@ pub enum Fault {
     TJunction,
     /// Openings in the surface, each with a closed rim.
     Hole,
+    /// Strips that the surface lacks all round, each between two rims.
+    Gap,
     /// Surfaces that enclose nothing.
     Sheet,
     /// Closed surfaces turned inside out.
@@ -50,6 +52,7 @@ impl Fault {
             Self::FlippedEdge => "edge of two triangles wound against each other",
             Self::TJunction => "corner on another triangle's edge",
             Self::Hole => "hole",
+            Self::Gap => "gap between two rims",
             Self::Sheet => "triangle that encloses nothing",
             Self::InvertedShell => "shell turned inside out",
             Self::WrongNormal => "wrong normal",
@@ -68,6 +71,7 @@ impl Fault {
             Self::FlippedEdge => "edges of two triangles wound against each other",
             Self::TJunction => "corners on other triangles' edges",
             Self::Hole => "holes",
+            Self::Gap => "gaps between two rims",
             Self::Sheet => "triangles that enclose nothing",
             Self::InvertedShell => "shells turned inside out",
             Self::WrongNormal => "wrong normals",

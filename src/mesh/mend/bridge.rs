@@ -29,7 +29,7 @@ pub(super) struct Pair {
 /// The pairs of rims that face each other and are each other's nearest.
 pub(super) fn pairs(vertices: &[Corner], rims: &[Rim]) -> Vec<Pair> {
     let seen: Vec<Seen> = rims.iter().map(|rim| Seen::new(vertices, rim)).collect();
-    let mut order: Vec<usize> = (0..rims.len()).collect();
+    let mut order: Vec<usize> = (0..rims.len()).filter(|&k| !rims[k].is_fin).collect();
     order.sort_by_key(|&k| (seen[k].low, seen[k].corners[0]));
     // The nearest of each, and how far it is.
     let mut nearest: Vec<Option<(f64, usize)>> = vec![None; rims.len()];

@@ -33,6 +33,8 @@ pub(super) struct Rim {
     pub(super) size: f64,
     /// A triangle beside it.
     beside: u32,
+    /// Whether it runs round a triangle that is there, as that of a fin does.
+    pub(super) is_fin: bool,
 }
 
 /// What may close a hole, or the gap between two.
@@ -50,18 +52,18 @@ pub(super) fn fill_holes(work: &mut Work) {
     }
     let mut links = shells::links(&neighbours);
     let surface: f64 = work.triangles.iter().map(|&t| work.area(t)).sum();
-    let rims = rims(work, &neighbours);
+    let mut rims = rims(work, &neighbours);
+    mark_fins(work, &mut rims);
     let patches: Vec<u32> = rims.iter().map(|rim| links.root(rim.beside)).collect();
     let pairs = pairs(work.vertices, &rims);
     let mut is_joined = vec![false; rims.len()];
     // First those of the rims, then those of the pairs.
     let mut closings: Vec<Closing> = Vec::new();
     for (rim, &patch) in rims.iter().zip(&patches) {
-        work.found.sized(Fault::Hole, rim.way[0], rim.size);
         let filled = fill(work.vertices, &rim.way);
         let is_sure = is_sure(work, &filled, rim.size, surface);
         let triangles = if is_sure { filled.triangles } else { Vec::new() };
-        let is_large = rim.size > SMALL_MM * UNITS_PER_MM;
+        let is_large = !rim.is_fin && rim.size > SMALL_MM * UNITS_PER_MM;
         closings.push(Closing { triangles, patch: is_large.then_some(patch) });
     }
     for pair in &pairs {
@@ -77,14 +79,33 @@ pub(super) fn fill_holes(work: &mut Work) {
         if !is_same || (!is_bad[own] && (is_bad[a] || is_bad[b])) {
             is_joined[a] = true;
             is_joined[b] = true;
+            work.found.sized(Fault::Gap, rims[a].way[0], pair.apart);
             work.done.sized(Mending::Bridged, rims[a].way[0], pair.apart);
             work.triangles.extend(&closings[own].triangles);
         }
     }
-    for (k, rim) in rims.iter().enumerate() {
-        if !is_joined[k] && !is_bad[k] && !closings[k].triangles.is_empty() {
+    for (k, rim) in rims.iter().enumerate().filter(|(k, _)| !is_joined[*k]) {
+        work.found.sized(Fault::Hole, rim.way[0], rim.size);
+        if !is_bad[k] && !closings[k].triangles.is_empty() {
             work.done.sized(Mending::FilledHole, rim.way[0], rim.size);
             work.triangles.extend(&closings[k].triangles);
+        }
+    }
+}
+
+/// Marks the rims that run round a triangle of the mesh: what fills them is its copy.
+fn mark_fins(work: &Work, rims: &mut [Rim]) {
+    let key = |way: &[u32]| {
+        let mut corners = [way[0], way[1], way[2]];
+        corners.sort_unstable();
+        corners
+    };
+    let small = rims.iter_mut().filter(|rim| rim.way.len() == 3);
+    let mut of: HashMap<[u32; 3], Vec<&mut Rim>> = HashMap::new();
+    small.for_each(|rim| of.entry(key(&rim.way)).or_default().push(rim));
+    for triangle in &work.triangles {
+        for rim in of.get_mut(&key(triangle)).into_iter().flatten() {
+            rim.is_fin = true;
         }
     }
 }
@@ -149,7 +170,7 @@ fn rims(work: &Work, neighbours: &Adjacency) -> Vec<Rim> {
             rims.extend(simple.map(|rim| {
                 let way = from_least(work, rim);
                 let size = extent(way.iter().map(|&v| work.vertices[v as usize]));
-                Rim { way, size, beside: first as u32 }
+                Rim { way, size, beside: first as u32, is_fin: false }
             }));
         }
     }
