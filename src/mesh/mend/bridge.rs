@@ -216,8 +216,8 @@ mod tests {
 
     #[test]
     fn end_faces_of_a_tube_are_joined() {
-        let of = [[10, 0], [10, 30], [6, 0], [6, 30]];
-        assert_eq!(mended(&of, &[[0, 1], [3, 2]]), ((400 - 144) * 30, 2, 0));
+        let of = [[10, 0], [10, 30], [8, 0], [8, 30]];
+        assert_eq!(mended(&of, &[[0, 1], [3, 2]]), ((400 - 256) * 30, 2, 0));
     }
 
     #[test]
