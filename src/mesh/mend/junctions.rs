@@ -7,6 +7,10 @@ use crate::mesh::faults::{Fault, Mending};
 use crate::mesh::vector::{Corner, distance2, dot, length, minus};
 use hashbrown::HashMap;
 
+/// A corner further from an edge than this share of its length is none of it, even within the
+/// tolerance: in small triangles it is another triangle's.
+const MOST_OFF: f64 = 0.05;
+
 /// An open edge of a triangle and the vertices along it, from the first corner on.
 type Split = ((u32, u32), Vec<u32>);
 
@@ -100,7 +104,8 @@ fn place_on((from, to): (Corner, Corner), v: Corner, tolerance: f64) -> Option<i
     let along = place as f64 / long;
     let off2 = length(side).powi(2) - along * along;
     let is_inside = along > tolerance && along < long - tolerance;
-    (is_inside && off2 <= tolerance * tolerance).then_some(place)
+    let most = tolerance.min(MOST_OFF * long);
+    (is_inside && off2 <= most * most).then_some(place)
 }
 
 /// The pieces of a triangle that is split at the vertices `between` its corners `from` and `to`.

@@ -30,9 +30,12 @@ use super::edges::{self, Adjacency};
 use super::faults::{Counted, Fault, Mending};
 use super::measure::{corners_of, determinant};
 use super::tree::Tree;
-use super::vector::{Corner, length, normal};
+use super::vector::{Corner, distance2, length, normal};
 use near::TOLERANCES;
 pub(super) use notes::{Note, Notes, told_mm};
+
+/// Triangles no higher than this are lines, grid units: their corners were rounded.
+const LEAST_HEIGHT: f64 = 2.0;
 
 /// So many faces a body has at least: with fewer, sheets are no body that came apart.
 const LEAST_FACES: usize = 4;
@@ -78,7 +81,7 @@ pub(super) fn mend(mesh: &mut Mesh) -> Mended {
     }
     let (shells, is_changed) = shells::settle(&mut work, &adjacency, is_mended);
     let kept: f64 = work.triangles.iter().map(|&triangle| work.area(triangle)).sum();
-    let is_lost = work.dropped > kept && work.sheets >= LEAST_FACES;
+    let is_lost = work.dropped > kept && (work.sheets >= LEAST_FACES || kept == 0.0);
     let Work { triangles, found, done, .. } = work;
     if is_changed {
         adjacency = edges::adjacency(&mesh.vertices, &triangles);
@@ -178,7 +181,10 @@ impl Work<'_> {
     fn drop_degenerate(&mut self) {
         let Self { vertices, triangles, found, done, .. } = self;
         triangles.retain(|&triangle| {
-            let has_area = normal(corners_of(vertices, triangle)) != [0; 3];
+            let corners = corners_of(vertices, triangle);
+            let sides = (0..3).map(|k| distance2(corners[k], corners[(k + 1) % 3]));
+            let longest = (sides.max().unwrap_or(0) as f64).sqrt();
+            let has_area = length(normal(corners)) > LEAST_HEIGHT * longest;
             if !has_area {
                 found.add(Fault::Degenerate, triangle[0]);
                 done.add(Mending::DroppedDegenerate, triangle[0]);
