@@ -48,7 +48,8 @@ fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
 /// The one of some copies that stays: one of the more frequent direction.
 fn kept_of(work: &Work, group: &[([u32; 3], u32)]) -> u32 {
     let is_even = |t: u32| {
-        let [a, b, c] = work.triangles[t as usize];
+        // By place, not by number: the order of the triangles must not show.
+        let [a, b, c] = work.triangles[t as usize].map(|v| (work.vertices[v as usize], v));
         (a < b) ^ (b < c) ^ (c < a)
     };
     let even = group.iter().filter(|(_, t)| is_even(*t)).count();
