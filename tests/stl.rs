@@ -162,9 +162,13 @@ fn real_models_load() {
             assert!(result.unwrap_err().to_string().contains("no triangles"), "{name}");
             continue;
         }
+        if name.contains("soup") {
+            assert!(result.unwrap_err().to_string().contains("cannot be mended"), "{name}");
+            continue;
+        }
         let placed = result.unwrap_or_else(|error| panic!("{name}: {error}"));
         // What the list of models says is open.
-        let open = ["castle", "impeller", "spikey", "soup", "multibody"];
+        let open = ["castle", "impeller", "spikey", "multibody"];
         let expected = open.iter().any(|part| name.contains(part));
         let report = &placed.reports[0];
         let of_edges = [Fault::OpenEdge, Fault::FlippedEdge];
