@@ -2,7 +2,7 @@
 
 use super::args::CheckArgs;
 use super::words;
-use super::{Outcome, input};
+use super::{Outcome, input, output};
 use slicer::check::finding::Code;
 use slicer::check::terms::Terms;
 use slicer::check::{self, Measures, Model, Verdict};
@@ -11,6 +11,7 @@ use slicer::mesh::Bed;
 use slicer::profile::{self, Profile};
 use slicer::reader::Print;
 use slicer::warning::plural;
+use std::path::Path;
 
 /// Diameter of the filament where neither file nor profile tells it, mm.
 const DIAMETER: f64 = 1.75;
@@ -49,8 +50,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let verdict = check::check(&print, &terms, model);
     let code = u8::from(!verdict.findings.is_empty());
     let text = if args.json {
-        let text = serde_json::to_string_pretty(&verdict);
-        text.map_err(|error| Error::input(name, error.to_string()))? + "\n"
+        output::json(&verdict, Path::new("-"))?
     } else {
         let by = judged_by(given.as_ref(), told.as_ref(), &args.against);
         let (headline, findings) = (headline(&verdict), findings(&verdict));

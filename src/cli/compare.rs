@@ -1,12 +1,12 @@
 //! `slicer compare` -> what plain printing and each way of dual injection take, as a table or as JSON.
 
 use super::args::CompareArgs;
-use super::words;
+use super::{output, words};
 use slicer::Job;
 use slicer::compare::{self, Comparison, Way};
 use slicer::error::{Error, Result};
 use slicer::profile::{self, Override, Profile, ValueOrigin};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What standard output gets.
 ///
@@ -21,8 +21,7 @@ pub(super) fn run(args: &CompareArgs) -> Result<String> {
         ways(args)?.into_iter().map(|(flags, profile)| (flags, job(args, profile))).collect();
     let found = compare::compare(&jobs)?;
     if args.json {
-        let text = serde_json::to_string_pretty(&found);
-        return text.map(|text| text + "\n").map_err(|error| Error::Usage(error.to_string()));
+        return output::json(&found, Path::new("-"));
     }
     Ok(table(&found))
 }

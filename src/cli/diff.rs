@@ -2,7 +2,7 @@
 
 mod text;
 
-use super::{Outcome, input, words};
+use super::{Outcome, input, output, words};
 use clap::Args;
 use serde::Serialize;
 use slicer::diff::{Difference, Side, Tolerances, diff};
@@ -11,6 +11,7 @@ use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::profile::{self, Profile};
 use slicer::reader::Print;
+use std::path::Path;
 
 const DIFF_RULES: &str = "\
 Equal are files whose plastic and orders to the printer are the same:
@@ -140,8 +141,7 @@ fn json(found: &Difference, limits: &str) -> Result<String> {
         /// Where the limits are from that both files are timed with.
         limits: &'a str,
     }
-    let text = serde_json::to_string_pretty(&Told { difference: found, limits });
-    text.map(|text| text + "\n").map_err(|error| Error::Usage(error.to_string()))
+    output::json(&Told { difference: found, limits }, Path::new("-"))
 }
 
 fn tolerance(text: &str) -> std::result::Result<f64, String> {

@@ -1,13 +1,13 @@
 //! `slicer estimate` -> how long a G-code file takes, as a table or as JSON.
 
 use super::args::EstimateArgs;
-use super::input;
-use super::words;
-use slicer::error::{Error, Result};
+use super::{input, output, words};
+use slicer::error::Result;
 use slicer::estimate::{self, Estimate, LayerTime, NotCounted, Options};
 use slicer::motion::Limits;
 use slicer::profile;
 use slicer::warning::plural;
+use std::path::Path;
 
 /// What standard output gets.
 ///
@@ -21,8 +21,7 @@ pub(super) fn run(args: &EstimateArgs) -> Result<String> {
     let (name, mut source) = input::open(&args.file)?;
     let found = estimate::estimate(&mut source, name, &Limits::new(settings), options)?;
     if args.json {
-        let text = serde_json::to_string_pretty(&found);
-        return text.map(|text| text + "\n").map_err(|error| Error::input(name, error.to_string()));
+        return output::json(&found, Path::new("-"));
     }
     let mut text = table(&found);
     if args.layers {

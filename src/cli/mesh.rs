@@ -4,7 +4,7 @@ use super::output::{self, Sink};
 use super::{Outcome, interrupt, usage};
 use clap::Args;
 use serde::Serialize;
-use slicer::error::{Error, Result};
+use slicer::error::Result;
 use slicer::mesh::faults::{self, Counted, Fault};
 use slicer::mesh::part::part;
 use slicer::mesh::{Bed, MeshReport, Placement, inspect, stl, write};
@@ -86,12 +86,7 @@ pub(super) fn run(args: &MeshArgs) -> Result<Outcome> {
         solid_mm3: slicer::solid_mm3(&part.mesh, &part.adjacency),
         seen: &seen,
     };
-    let text = if args.json {
-        let text = serde_json::to_string_pretty(&told);
-        text.map_err(|error| Error::input(&args.file, error.to_string()))? + "\n"
-    } else {
-        lines(&told)
-    };
+    let text = if args.json { output::json(&told, Path::new("-"))? } else { lines(&told) };
     let code = u8::from(part.adjacency.unpaired > 0);
     if let Some((out, mut sink)) = sink {
         write::write(&mut sink, &model.vertices, &part.mesh.triangles)

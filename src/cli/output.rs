@@ -2,11 +2,22 @@
 
 use super::input::BUFFER;
 use super::interrupt;
+use serde::Serialize;
 use slicer::error::{Error, Result};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead, BufReader, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{NamedTempFile, TempPath};
+
+/// A value as JSON for people and programs, with a line break at its end. `to` is where it goes,
+/// for the message.
+///
+/// # Errors
+/// [`Error::Output`] if it cannot be written as JSON.
+pub(super) fn json(value: &impl Serialize, to: &Path) -> Result<String> {
+    let text = serde_json::to_string_pretty(value);
+    text.map(|text| text + "\n").map_err(|error| failed(to, "cannot write", error.into()))
+}
 
 /// Where a product goes. Opened before the long work, so that a wrong path
 /// costs no time. Without [`Sink::commit`] no file is left or changed.

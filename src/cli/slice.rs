@@ -172,8 +172,7 @@ fn slice_and_check(job: &Job, check: bool, sink: &mut Sink, progress: &Progress)
 
 fn write_report(path: &Path, mut sink: Sink, report: &Report) -> Result<Sink> {
     let failed = |source| output::failed(path, "cannot write", source);
-    let mut text = serde_json::to_string_pretty(report).map_err(|error| failed(error.into()))?;
-    text.push('\n');
+    let text = output::json(report, path)?;
     sink.write_all(text.as_bytes()).and_then(|()| sink.flush()).map_err(failed)?;
     Ok(sink)
 }
