@@ -11,8 +11,8 @@ use hashbrown::HashMap;
 /// tolerance: in small triangles it is another triangle's.
 const MOST_OFF: f64 = 0.05;
 
-/// An open edge of a triangle and the vertices along it, from the first corner on.
-type Split = ((u32, u32), Vec<u32>);
+/// An open side of a triangle and the vertices along it.
+type Split = (usize, Vec<u32>);
 
 /// Splits the triangles of open edges at the open corners that lie on them.
 ///
@@ -25,8 +25,8 @@ pub(super) fn split_junctions(work: &mut Work, tolerance: i32) {
             return;
         }
         let mut split = Vec::with_capacity(work.triangles.len());
-        for (t, &triangle) in (0_u32..).zip(&work.triangles) {
-            let Some(((from, to), between)) = splits.get(&t) else {
+        for (t, &triangle) in work.triangles.iter().enumerate() {
+            let Some((side, between)) = splits.get(&t) else {
                 split.push(triangle);
                 continue;
             };
@@ -34,61 +34,57 @@ pub(super) fn split_junctions(work: &mut Work, tolerance: i32) {
                 work.found.add(Fault::TJunction, v);
             }
             work.done.add(Mending::SplitTJunction, between[0]);
-            fan(triangle, (*from, *to), between, &mut split);
+            fan(triangle, *side, between, &mut split);
         }
         work.triangles = split;
     }
 }
 
-/// For each triangle to be split the edge to begin with: its longest.
-fn splits(work: &Work, tolerance: i32) -> HashMap<u32, Split> {
+/// For each triangle to be split the side to begin with: its longest.
+fn splits(work: &Work, tolerance: i32) -> HashMap<usize, Split> {
     let edges = open_edges(work);
-    let mut ends: Vec<u32> = edges.iter().flat_map(|&(a, b, _)| [a, b]).collect();
+    let ends_of = |(t, side): (usize, usize)| {
+        let triangle = work.triangles[t];
+        [triangle[side], triangle[(side + 1) % 3]]
+    };
+    let line_of = |edge| ends_of(edge).map(|v| work.vertices[v as usize]);
+    let mut ends: Vec<u32> = edges.iter().flat_map(|&edge| ends_of(edge)).collect();
     ends.sort_unstable();
     ends.dedup();
-    let cells = Cells::new(work.vertices, &ends, cube(work, &edges, tolerance));
-    let mut splits: HashMap<u32, Split> = HashMap::default();
-    for (a, b, t) in edges {
-        let between = between(work, &cells, (a, b), (work.triangles[t as usize], tolerance));
+    // An edge touches few cubes as long as the mean of all, and a cube holds few corners.
+    let lengths = edges.iter().map(|&edge| line_of(edge)).map(|[from, to]| length(minus(to, from)));
+    let mean = lengths.sum::<f64>() / edges.len().max(1) as f64;
+    let cells = Cells::new(work.vertices, &ends, (mean as i64).max(i64::from(tolerance)));
+    let mut splits: HashMap<usize, Split> = HashMap::default();
+    for (t, side) in edges {
+        let between = between(work, &cells, (work.triangles[t], line_of((t, side))), tolerance);
         if between.is_empty() {
             continue;
         }
-        let key = |(a, b): (u32, u32)| {
-            let (a, b) = (work.vertices[a as usize], work.vertices[b as usize]);
+        let key = |side: usize| {
+            let [a, b] = line_of((t, side));
             (distance2(a, b), a.min(b), a.max(b))
         };
-        let slot = splits.entry(t).or_insert_with(|| ((a, b), Vec::new()));
-        if slot.1.is_empty() || key((a, b)) > key(slot.0) {
-            *slot = ((a, b), between);
+        if splits.get(&t).is_none_or(|known| key(side) > key(known.0)) {
+            splits.insert(t, (side, between));
         }
     }
     splits
 }
 
-/// The side of the cubes that open corners are sorted into: the mean length of an open edge,
-/// so that an edge touches few cubes and a cube holds few corners.
-fn cube(work: &Work, edges: &[(u32, u32, u32)], tolerance: i32) -> i64 {
-    let lengths = edges
-        .iter()
-        .map(|&(a, b, _)| length(minus(work.vertices[a as usize], work.vertices[b as usize])));
-    let mean = lengths.sum::<f64>() / edges.len().max(1) as f64;
-    (mean as i64).max(i64::from(tolerance))
-}
-
-/// The open corners on the line from `a` to `b`, in the order along it.
+/// The open corners on a line that is a side of a triangle, in the order along it.
 fn between(
     work: &Work,
     cells: &Cells,
-    (a, b): (u32, u32),
-    (triangle, tolerance): ([u32; 3], i32),
+    (triangle, [from, to]): ([u32; 3], [Corner; 2]),
+    tolerance: i32,
 ) -> Vec<u32> {
-    let (from, to) = (work.vertices[a as usize], work.vertices[b as usize]);
     let mut on_it: Vec<(i128, Corner, u32)> = Vec::new();
     cells.along(from, to, tolerance, |v| {
         if !triangle.contains(&v) {
             let at = work.vertices[v as usize];
-            on_it
-                .extend(place_on((from, to), at, f64::from(tolerance)).map(|place| (place, at, v)));
+            let place = place_on([from, to], at, f64::from(tolerance));
+            on_it.extend(place.map(|place| (place, at, v)));
         }
     });
     on_it.sort_unstable();
@@ -98,7 +94,7 @@ fn between(
 
 /// How far along the line `v` lies, if it is within the tolerance of it and further than that
 /// from its ends.
-fn place_on((from, to): (Corner, Corner), v: Corner, tolerance: f64) -> Option<i128> {
+fn place_on([from, to]: [Corner; 2], v: Corner, tolerance: f64) -> Option<i128> {
     let (line, side) = (minus(to, from), minus(v, from));
     let (long, place) = (length(line), dot(line, side));
     let along = place as f64 / long;
@@ -108,20 +104,9 @@ fn place_on((from, to): (Corner, Corner), v: Corner, tolerance: f64) -> Option<i
     (is_inside && off2 <= most * most).then_some(place)
 }
 
-/// The pieces of a triangle that is split at the vertices `between` its corners `from` and `to`.
-fn fan(triangle: [u32; 3], (from, to): (u32, u32), between: &[u32], out: &mut Vec<[u32; 3]>) {
-    let side = (0..3).find(|&k| {
-        let ends = (triangle[k], triangle[(k + 1) % 3]);
-        ends == (from, to) || ends == (to, from)
-    });
-    let side = side.unwrap_or(0);
-    let (first, last, apex) = (triangle[side], triangle[(side + 1) % 3], triangle[(side + 2) % 3]);
-    let mut way: Vec<u32> = vec![from];
-    way.extend(between);
-    way.push(to);
-    if first != from {
-        way.reverse();
-    }
-    debug_assert_eq!((way.first(), way.last()), (Some(&first), Some(&last)));
+/// The pieces of a triangle that is split at the vertices `between` the ends of a side.
+fn fan(triangle: [u32; 3], side: usize, between: &[u32], out: &mut Vec<[u32; 3]>) {
+    let [first, last, apex] = [0, 1, 2].map(|step| triangle[(side + step) % 3]);
+    let way: Vec<u32> = [&[first], between, &[last]].concat();
     out.extend(way.windows(2).map(|ends| [ends[0], ends[1], apex]));
 }

@@ -90,12 +90,12 @@ fn reaches(work: &Work, tolerance: i32) -> Vec<f64> {
     reach
 }
 
-/// The edges of a single triangle: their vertices, the lower first, and the triangle.
-pub(super) fn open_edges(work: &Work) -> Vec<(u32, u32, u32)> {
+/// The edges of a single triangle: the triangle, and which side of it.
+pub(super) fn open_edges(work: &Work) -> Vec<(usize, usize)> {
     let mut open = Vec::new();
-    each_edge(work.vertices.len(), &work.triangles, |(a, b), sides| {
+    each_edge(work.vertices.len(), &work.triangles, |_, sides| {
         if let &[only] = sides {
-            open.push((a, b, u32::try_from(parts(only).0).unwrap_or(0)));
+            open.push(parts(only));
         }
     });
     open
