@@ -29,9 +29,9 @@ pub struct Part {
 /// is flat or encloses nothing, and with [`Policy::Strict`] for one with any fault.
 pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Part> {
     let mut points = points(model, placement);
-    let size = bounds(&points);
-    check_size((size[1] - size[0]).into(), &model.report.file, placement, bed)?;
-    let (vertices, size) = on_grid(&points);
+    let [low, high] = bounds(&points);
+    check_size((high - low).into(), &model.report.file, placement, bed)?;
+    let (vertices, mut size) = on_grid(&points);
     let mut mesh = Mesh { vertices, triangles: std::mem::take(&mut model.triangles) };
     refuse_flat(&mesh, size, &model.report.file)?;
     let mut mended = match placement.policy {
@@ -56,10 +56,9 @@ pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Par
     if !model.report.mended.is_empty() {
         // What was dropped may have been the outermost.
         keep_used(model, &mut points, &mut mesh);
+        (mesh.vertices, size) = on_grid(&points);
+        refuse_flat(&mesh, size, &model.report.file)?;
     }
-    let (vertices, size) = on_grid(&points);
-    mesh.vertices = vertices;
-    refuse_flat(&mesh, size, &model.report.file)?;
     model.report.triangles = mesh.triangles.len();
     model.report.size_mm = size.map(sum_mm);
     model.report.volume_mm3 = volume_mm3(&mesh);
@@ -163,10 +162,10 @@ fn keep_used(model: &mut RawMesh, points: &mut Vec<Vector3<f64>>, mesh: &mut Mes
     for (new, place) in (0..).zip(place.iter_mut().filter(|place| **place == 0)) {
         *place = new;
     }
-    let mut used = place.iter().map(|&place| place != u32::MAX);
-    points.retain(|_| used.next().unwrap_or(false));
-    let mut used = place.iter().map(|&place| place != u32::MAX);
-    model.vertices.retain(|_| used.next().unwrap_or(false));
+    let used = || place.iter().map(|&place| place != u32::MAX);
+    let (mut of_points, mut of_vertices) = (used(), used());
+    points.retain(|_| of_points.next().unwrap_or(false));
+    model.vertices.retain(|_| of_vertices.next().unwrap_or(false));
     for triangle in &mut mesh.triangles {
         *triangle = triangle.map(|vertex| place[vertex as usize]);
     }

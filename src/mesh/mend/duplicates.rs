@@ -30,7 +30,7 @@ pub(super) fn drop_duplicates(work: &mut Work) {
             doubled.push(kept);
         }
     }
-    if work.found.count(Fault::Duplicate) == 0 {
+    if !drop.contains(&true) {
         return;
     }
     for t in needless(work, &drop, &doubled) {

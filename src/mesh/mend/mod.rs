@@ -2,9 +2,9 @@
 //!
 //! In this order, since each step relies on those before it: corners that nearly meet are
 //! welded, triangles without area and copies dropped, corners on edges joined to them,
-//! neighbours wound alike, gaps bridged and holes filled, sheets dropped, and shells turned outward. Corners
-//! are never moved but by welding, and no new ones are made: a mended triangle has corners
-//! of the file. Nothing depends on the order of the triangles.
+//! neighbours wound alike, gaps bridged and holes filled, sheets dropped, and shells turned
+//! outward. Corners are never moved but by welding, and no new ones are made: a mended triangle
+//! has corners of the file. Nothing depends on the order of the triangles.
 //!
 //! Shells that overlap stay as they are: the winding rule makes one solid of them when they
 //! are cut into layers.
@@ -29,10 +29,10 @@ use super::Mesh;
 use super::edges::{self, Adjacency};
 use super::faults::{Counted, Fault, Mending};
 use super::measure::{corners_of, determinant};
-use super::tree::Tree;
 use super::vector::{Corner, distance2, length, normal};
 use near::TOLERANCES;
 pub(super) use notes::{Note, Notes, told_mm};
+pub(super) use shells::nested;
 
 /// Triangles no higher than this are lines, grid units: their corners were rounded.
 const LEAST_HEIGHT: f64 = 2.0;
@@ -80,8 +80,7 @@ pub(super) fn mend(mesh: &mut Mesh) -> Mended {
         }
     }
     let (shells, is_changed) = shells::settle(&mut work, &adjacency, is_mended);
-    let kept: f64 = work.triangles.iter().map(|&triangle| work.area(triangle)).sum();
-    let is_lost = work.dropped > kept && (work.sheets >= LEAST_FACES || kept == 0.0);
+    let is_lost = work.is_lost();
     let Work { triangles, found, done, .. } = work;
     if is_changed {
         adjacency = edges::adjacency(&mesh.vertices, &triangles);
@@ -99,14 +98,6 @@ pub(super) fn inspect(mesh: &Mesh) -> Mended {
     let shells = shells::count(&adjacency);
     let left = found.clone();
     Mended { adjacency, found, done: Notes::default(), left, shells, is_lost: false }
-}
-
-/// The bodies of a mended mesh that lie within others.
-pub(super) fn nested(mesh: &Mesh, adjacency: &Adjacency, tree: &Tree) -> Notes<Fault> {
-    let (found, done) = (Notes::default(), Notes::default());
-    let triangles = mesh.triangles.clone();
-    let work = Work { vertices: &mesh.vertices, triangles, found, done, dropped: 0.0, sheets: 0 };
-    shells::nested(&work, adjacency, tree)
 }
 
 /// The steps that close a mesh.
@@ -158,6 +149,15 @@ impl Work<'_> {
     fn drop_sheet(&mut self, triangle: [u32; 3]) {
         self.done.add(Mending::DroppedSheet, triangle[0]);
         self.dropped += self.area(triangle);
+    }
+
+    /// Whether more of the surface was dropped than is left, as no sheets are.
+    fn is_lost(&self) -> bool {
+        if self.dropped == 0.0 {
+            return false;
+        }
+        let kept: f64 = self.triangles.iter().map(|&triangle| self.area(triangle)).sum();
+        self.dropped > kept && (self.sheets >= LEAST_FACES || kept == 0.0)
     }
 
     /// Twice the area of a triangle, grid units².

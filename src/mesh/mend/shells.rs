@@ -3,10 +3,12 @@
 use super::patches::Links;
 use super::probes::{MOST_INSIDE, Probes};
 use super::{Notes, Work};
+use crate::mesh::Mesh;
 use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::mesh::faults::{Fault, Mending};
 use crate::mesh::measure::{corners_of, determinant};
 use crate::mesh::tree::Tree;
+use crate::mesh::vector::Corner;
 
 /// The shells of a mesh.
 struct Shells {
@@ -16,24 +18,25 @@ struct Shells {
 }
 
 /// A surface that hangs together.
-#[derive(Clone)]
 struct Shell {
     first: u32,
     is_closed: bool,
     /// Six times its volume, negative if it is wound inward.
     volume: i128,
-    probes: Probes,
 }
 
-/// Drops closed shells without volume (of a mesh that was `mended`: with next to none) and turns inverted ones. Returns the number of shells,
-/// and whether anything was changed.
+/// Drops closed shells without volume (of a mesh that was mended: with next to none) and turns
+/// inverted ones. Returns the number of shells, and whether anything was changed.
 ///
 /// A shell that is wound inward and lies in no other is inverted, and with it all that lies
 /// within it: such files come from mirroring. A shell wound inward within another is a cavity.
 pub(super) fn settle(work: &mut Work, adjacency: &Adjacency, is_mended: bool) -> (usize, bool) {
-    let shells = shells(work, adjacency);
+    let shells = shells(work.vertices, &work.triangles, adjacency);
     let flat = flat(work, &shells, is_mended);
     let is_inverted = inverted(work, &shells, &flat);
+    if !flat.contains(&true) && !is_inverted.contains(&true) {
+        return (shells.each.len(), false);
+    }
     for (shell, _) in shells.each.iter().zip(&is_inverted).filter(|(_, inverted)| **inverted) {
         let at = work.triangles[shell.first as usize][0];
         work.found.add(Fault::InvertedShell, at);
@@ -50,27 +53,28 @@ pub(super) fn settle(work: &mut Work, adjacency: &Adjacency, is_mended: bool) ->
             work.drop_sheet(work.triangles[t]);
         }
     }
-    let is_left = |flat: &&bool| !**flat;
-    let is_changed = flat.contains(&true) || is_inverted.contains(&true);
     work.sheets = flat.iter().filter(|flat| **flat).count();
     work.drop_marked(&drop);
-    (flat.iter().filter(is_left).count(), is_changed)
+    (flat.len() - work.sheets, true)
 }
 
-/// The bodies that lie within others.
-pub(super) fn nested(work: &Work, adjacency: &Adjacency, tree: &Tree) -> Notes<Fault> {
+/// The bodies of a mended mesh that lie within others; `tree` is that over its triangles.
+pub(in crate::mesh) fn nested(mesh: &Mesh, adjacency: &Adjacency, tree: &Tree) -> Notes<Fault> {
     let mut notes = Notes::default();
-    let shells = shells(work, adjacency);
-    let flat = vec![false; shells.each.len()];
-    let is_body = |shell: &Shell| shell.is_closed && shell.volume > 0;
+    let shells = shells(&mesh.vertices, &mesh.triangles, adjacency);
     // Of a single shell there is nothing to find.
-    let bodies = (0..shells.each.len()).filter(|&k| flat.len() > 1 && is_body(&shells.each[k]));
-    for k in bodies {
-        let outer = around(tree, &shells, &flat, k);
+    if shells.each.len() == 1 {
+        return notes;
+    }
+    let flat = vec![false; shells.each.len()];
+    let probes = shells.probes(&mesh.vertices, &mesh.triangles);
+    let is_body = |k: &usize| shells.each[*k].is_closed && shells.each[*k].volume > 0;
+    for k in (0..shells.each.len()).filter(is_body) {
+        let outer = around(tree, &shells, &flat, (k, &probes[k]));
         let within = outer.iter().filter(|&&o| shells.each[o as usize].volume > 0).count();
         // As many cavities as bodies around it: it stands free in a cavity.
         if 2 * within > outer.len() {
-            notes.add(Fault::NestedShell, work.triangles[shells.each[k].first as usize][0]);
+            notes.add(Fault::NestedShell, mesh.triangles[shells.each[k].first as usize][0]);
         }
     }
     notes
@@ -97,25 +101,33 @@ pub(super) fn links(adjacency: &Adjacency) -> Links {
     links
 }
 
-fn shells(work: &Work, adjacency: &Adjacency) -> Shells {
+fn shells(vertices: &[Corner], triangles: &[[u32; 3]], adjacency: &Adjacency) -> Shells {
     let mut links = links(adjacency);
-    let mut shells = Shells { of: Vec::with_capacity(work.triangles.len()), each: Vec::new() };
+    let mut shells = Shells { of: Vec::with_capacity(triangles.len()), each: Vec::new() };
     for (t, sides) in (0_u32..).zip(&adjacency.neighbour) {
         let root = links.root(t);
-        let corners = corners_of(work.vertices, work.triangles[t as usize]);
         // A set's root is its least number, so that it was met before.
         let k = if root == t { shells.each.len() as u32 } else { shells.of[root as usize] };
         if root == t {
-            let probes = Probes::default();
-            shells.each.push(Shell { first: t, is_closed: true, volume: 0, probes });
+            shells.each.push(Shell { first: t, is_closed: true, volume: 0 });
         }
         shells.of.push(k);
         let shell = &mut shells.each[k as usize];
-        shell.volume += determinant(corners);
+        shell.volume += determinant(corners_of(vertices, triangles[t as usize]));
         shell.is_closed &= !sides.contains(&NONE);
-        shell.probes.add(corners);
     }
     shells
+}
+
+impl Shells {
+    /// The places by which is told what each shell lies in.
+    fn probes(&self, vertices: &[Corner], triangles: &[[u32; 3]]) -> Vec<Probes> {
+        let mut probes = vec![Probes::default(); self.each.len()];
+        for (&shell, &triangle) in self.of.iter().zip(triangles) {
+            probes[shell as usize].add(corners_of(vertices, triangle));
+        }
+        probes
+    }
 }
 
 /// Which closed shells enclose nothing, or next to nothing if they were `mended`: the tiny
@@ -148,7 +160,8 @@ fn inverted(work: &Work, shells: &Shells, flat: &[bool]) -> Vec<bool> {
         return vec![true];
     }
     let tree = Tree::new(work.vertices, &work.triangles);
-    let around = |k: usize| around(&tree, shells, flat, k);
+    let probes = shells.probes(work.vertices, &work.triangles);
+    let around = |k: usize| around(&tree, shells, flat, (k, &probes[k]));
     for k in (0..shells.each.len()).filter(|&k| is_inward(k)) {
         is_inverted[k] = around(k).is_empty();
     }
@@ -162,11 +175,11 @@ fn inverted(work: &Work, shells: &Shells, flat: &[bool]) -> Vec<bool> {
     is_inverted
 }
 
-/// The shells that shell `k` lies in.
-fn around(tree: &Tree, shells: &Shells, flat: &[bool], k: usize) -> Vec<u32> {
+/// The shells that shell `k` lies in, going by its `probes`; flat ones are none.
+fn around(tree: &Tree, shells: &Shells, flat: &[bool], (k, probes): (usize, &Probes)) -> Vec<u32> {
     // Each shell that winds around one of the places, once for each.
     let mut outer: Vec<u32> = Vec::new();
-    for place in shells.each[k].probes.places() {
+    for place in probes.places() {
         let mut windings: Vec<(u32, i32)> = Vec::new();
         tree.above(place, |t, sign| {
             let shell = shells.of[t as usize];
