@@ -225,7 +225,7 @@ fn bed_corners(bed: &mesh::Bed, offset: [f64; 2]) -> (Point, Point) {
 pub fn solid_mm3(mesh: &mesh::Mesh, adjacency: &mesh::edges::Adjacency) -> f64 {
     /// More layers take longer and tell little more.
     const LAYERS: i32 = 400;
-    let top = mesh.vertices.iter().map(|v| v[2]).max().unwrap_or(0);
+    let top = top(mesh);
     let height = (top / LAYERS).max(1);
     let slicer = slice::Slicer::new(mesh, adjacency, slice::Heights::new(height, height, top), 1);
     let blocks = (0..slicer.blocks()).flat_map(|block| slicer.block(block));
@@ -236,6 +236,11 @@ pub fn solid_mm3(mesh: &mesh::Mesh, adjacency: &mesh::edges::Adjacency) -> f64 {
 
 /// The layers that a mesh is cut into.
 fn heights(settings: &profile::Settings, mesh: &mesh::Mesh) -> slice::Heights {
-    let top = mesh.vertices.iter().map(|v| v[2]).max().unwrap_or(0);
+    let top = top(mesh);
     slice::Heights::new(to_units(settings.first_layer_height), to_units(settings.layer_height), top)
+}
+
+/// The highest corner of a mesh, grid units.
+fn top(mesh: &mesh::Mesh) -> units::Coord {
+    mesh.vertices.iter().map(|v| v[2]).max().unwrap_or(0)
 }

@@ -51,7 +51,7 @@ pub(crate) fn read(
         return Err(limit.exceeded(&format!("announces {announced}")));
     }
     from.take(HEADER as u64).read_to_end(&mut Vec::new()).map_err(|error| unreadable(&error))?;
-    let mesh = records(from, announced)?;
+    let mut mesh = records(from, announced)?;
     // Once more by what was read: the length may not be known, or have changed.
     let mut after = from.take(limit.trailing() + 1);
     let after =
@@ -64,7 +64,6 @@ pub(crate) fn read(
         ));
     }
     check_length(announced, count, length_of(announced) + after)?;
-    let mut mesh = mesh;
     mesh.report.trailing_bytes = after;
     Ok(mesh)
 }

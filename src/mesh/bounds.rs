@@ -1,5 +1,7 @@
 //! Corners -> Bounds: boxes along the axes, on the grid.
 
+use super::vector::{Corner, length, minus};
+
 /// A box along the axes, grid units; both corners belong to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Bounds {
@@ -13,12 +15,15 @@ impl Bounds {
     /// The box that no box is smaller than; [`Bounds::join`] leaves the other as it is.
     pub(super) const NONE: Self = Self { low: [i32::MAX; 3], high: [i32::MIN; 3] };
 
-    /// The box around three corners.
-    pub(super) fn of([a, b, c]: [[i32; 3]; 3]) -> Self {
-        Self {
-            low: std::array::from_fn(|axis| a[axis].min(b[axis]).min(c[axis])),
-            high: std::array::from_fn(|axis| a[axis].max(b[axis]).max(c[axis])),
-        }
+    /// The box around some corners.
+    pub(super) fn of(corners: impl IntoIterator<Item = Corner>) -> Self {
+        let point = |corner| Self { low: corner, high: corner };
+        corners.into_iter().fold(Self::NONE, |all, corner| all.join(point(corner)))
+    }
+
+    /// The length of its diagonal, grid units.
+    pub(super) fn diagonal(&self) -> f64 {
+        length(minus(self.high, self.low))
     }
 
     /// The box around both.

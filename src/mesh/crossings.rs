@@ -1,7 +1,7 @@
 //! Tree -> Crossings: finds the pairs of triangles that pass through each other.
 
 use super::tree::Tree;
-use super::vector::{cross, minus};
+use super::vector::{dot, length, minus, normal};
 use crate::units::UNITS_PER_MM;
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -93,12 +93,11 @@ pub fn place(tree: &Tree, pair: [u32; 2]) -> [i32; 3] {
 pub fn depth(tree: &Tree, pair: [u32; 2]) -> f64 {
     let [a, b] = pair.map(|triangle| tree.corners(triangle).map(|corner| corner.map(i64::from)));
     let past = |plane: [[i64; 3]; 3], corners: [[i64; 3]; 3]| {
-        let normal = cross(minus(plane[1], plane[0]), minus(plane[2], plane[0]));
-        let heights = corners.map(|corner| height(normal, minus(corner, plane[0])) as f64);
+        let normal = normal(plane);
+        let heights = corners.map(|corner| dot(normal, minus(corner, plane[0])) as f64);
         let upper = heights.into_iter().fold(0.0, f64::max);
         let lower = heights.into_iter().fold(0.0, f64::min);
-        let length = normal.iter().map(|&n| n as f64 * n as f64).sum::<f64>().sqrt();
-        upper.min(-lower) / length.max(1.0)
+        upper.min(-lower) / length(normal).max(1.0)
     };
     past(a, b).min(past(b, a)) / UNITS_PER_MM
 }
@@ -154,18 +153,13 @@ fn alone_first(corners: [[i64; 3]; 3], other: [[i64; 3]; 3]) -> Option<([[i64; 3
 
 /// On which side of the plane through three points a point lies; greater is where their normal points.
 fn side([a, b, c]: [[i64; 3]; 3], point: [i64; 3]) -> Ordering {
-    height(cross(minus(b, a), minus(c, a)), minus(point, a)).cmp(&0)
-}
-
-/// How far something is out along a normal, times the length of the normal. Differences are
-/// below 2²⁸, normals below 2⁵⁷, so that this is below 2⁸⁷.
-fn height(normal: [i64; 3], out: [i64; 3]) -> i128 {
-    (0..3).map(|axis| i128::from(normal[axis]) * i128::from(out[axis])).sum()
+    dot(normal([a, b, c]), minus(point, a)).cmp(&0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::vector::cross;
     use proptest::prelude::*;
 
     type Triangle = [[i32; 3]; 3];

@@ -1,5 +1,6 @@
 //! Faults -> counts and places: what is wrong with a mesh and what was done about it, as the report tells it.
 
+use crate::warning::plural;
 use serde::Serialize;
 use std::fmt;
 
@@ -41,44 +42,37 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// What one of them is called.
-    #[must_use]
-    pub fn one(self) -> &'static str {
+    /// What one of them is called, and what several are.
+    fn names(self) -> [&'static str; 2] {
         match self {
-            Self::Degenerate => "triangle without area",
-            Self::Duplicate => "copy of a triangle",
-            Self::OpenEdge => "open edge",
-            Self::CrowdedEdge => "edge of more than two triangles",
-            Self::FlippedEdge => "edge of two triangles wound against each other",
-            Self::TJunction => "corner on another triangle's edge",
-            Self::Hole => "hole",
-            Self::Gap => "gap between two rims",
-            Self::Sheet => "triangle that encloses nothing",
-            Self::InvertedShell => "shell turned inside out",
-            Self::WrongNormal => "wrong normal",
-            Self::Crossing => "pair of triangles that cross",
-            Self::NestedShell => "body within another",
-            Self::Spike => "spike",
+            Self::Degenerate => ["triangle without area", "triangles without area"],
+            Self::Duplicate => ["copy of a triangle", "copies of triangles"],
+            Self::OpenEdge => ["open edge", "open edges"],
+            Self::CrowdedEdge => {
+                ["edge of more than two triangles", "edges of more than two triangles"]
+            }
+            Self::FlippedEdge => [
+                "edge of two triangles wound against each other",
+                "edges of two triangles wound against each other",
+            ],
+            Self::TJunction => {
+                ["corner on another triangle's edge", "corners on other triangles' edges"]
+            }
+            Self::Hole => ["hole", "holes"],
+            Self::Gap => ["gap between two rims", "gaps between two rims"],
+            Self::Sheet => ["triangle that encloses nothing", "triangles that enclose nothing"],
+            Self::InvertedShell => ["shell turned inside out", "shells turned inside out"],
+            Self::WrongNormal => ["wrong normal", "wrong normals"],
+            Self::Crossing => ["pair of triangles that cross", "pairs of triangles that cross"],
+            Self::NestedShell => ["body within another", "bodies within others"],
+            Self::Spike => ["spike", "spikes"],
         }
     }
 
-    fn many(self) -> &'static str {
-        match self {
-            Self::Degenerate => "triangles without area",
-            Self::Duplicate => "copies of triangles",
-            Self::OpenEdge => "open edges",
-            Self::CrowdedEdge => "edges of more than two triangles",
-            Self::FlippedEdge => "edges of two triangles wound against each other",
-            Self::TJunction => "corners on other triangles' edges",
-            Self::Hole => "holes",
-            Self::Gap => "gaps between two rims",
-            Self::Sheet => "triangles that enclose nothing",
-            Self::InvertedShell => "shells turned inside out",
-            Self::WrongNormal => "wrong normals",
-            Self::Crossing => "pairs of triangles that cross",
-            Self::NestedShell => "bodies within others",
-            Self::Spike => "spikes",
-        }
+    /// What one of them is called.
+    #[must_use]
+    pub fn one(self) -> &'static str {
+        self.names()[0]
     }
 }
 
@@ -107,7 +101,7 @@ pub enum Mending {
 }
 
 impl Mending {
-    /// What was done, to how many of what: `{}` stands for the number.
+    /// What was done, and to what.
     fn deed(self) -> (&'static str, &'static str) {
         match self {
             Self::Welded => ("welded", "corner"),
@@ -143,7 +137,7 @@ pub struct Counted<K> {
 
 impl fmt::Display for Counted<Fault> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let name = if self.count == 1 { self.kind.one() } else { self.kind.many() };
+        let name = self.kind.names()[usize::from(self.count != 1)];
         write!(f, "{} {name}", self.count)?;
         size(f, self.largest_mm)
     }
@@ -152,8 +146,7 @@ impl fmt::Display for Counted<Fault> {
 impl fmt::Display for Counted<Mending> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (deed, thing) = self.kind.deed();
-        let s = if self.count == 1 { "" } else { "s" };
-        write!(f, "{} {thing}{s} {deed}", self.count)?;
+        write!(f, "{} {deed}", plural(self.count as u64, thing))?;
         size(f, self.largest_mm)
     }
 }

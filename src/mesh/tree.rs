@@ -1,7 +1,8 @@
 //! Triangles -> Tree: finds the triangles above a point, and the pairs whose boxes touch, in a tree of boxes.
 
 use super::bounds::Bounds;
-use super::vector::{cross, minus};
+use super::measure::corners_of;
+use super::vector::{dot, minus, normal};
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
@@ -86,7 +87,7 @@ impl<'a> Tree<'a> {
     /// The corners of a triangle, grid units.
     #[must_use]
     pub fn corners(&self, triangle: u32) -> [[i32; 3]; 3] {
-        self.triangles[triangle as usize].map(|vertex| self.vertices[vertex as usize])
+        corners_of(self.vertices, self.triangles[triangle as usize])
     }
 
     /// The box of a triangle.
@@ -260,16 +261,14 @@ fn spread(bits: u64) -> u64 {
 fn passes(point: [i32; 3], corners: [[i32; 3]; 3]) -> Option<i32> {
     let p = point.map(i64::from);
     let [a, b, c] = corners.map(|corner| corner.map(i64::from));
-    let normal = cross(minus(b, a), minus(c, a));
+    let normal = normal([a, b, c]);
     let facing = normal[2].cmp(&0);
     let inside = facing != Ordering::Equal
         && [(a, b), (b, c), (c, a)].iter().all(|&(from, to)| side(from, to, p) == facing);
     if !inside {
         return None;
     }
-    let to_point = minus(p, a);
-    let height: i128 =
-        (0..3).map(|axis| i128::from(normal[axis]) * i128::from(to_point[axis])).sum();
+    let height = dot(normal, minus(p, a));
     // The moved point is off the plane by e·normal.x + e²·normal.y + e³·normal.z.
     let out =
         height.cmp(&0).then(normal[0].cmp(&0)).then(normal[1].cmp(&0)).then(normal[2].cmp(&0));
@@ -292,6 +291,7 @@ fn side(from: [i64; 3], to: [i64; 3], point: [i64; 3]) -> Ordering {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::vector::cross;
     use proptest::prelude::*;
     use std::collections::BTreeSet;
 

@@ -13,7 +13,7 @@ pub(crate) fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The scalar product; exact for a cross product and a difference.
+/// The scalar product; exact for a cross product and a difference: below 2⁸⁷ on a grid of 2²⁸.
 pub(crate) fn dot(a: [i64; 3], b: [i64; 3]) -> i128 {
     (0..3).map(|axis| i128::from(a[axis]) * i128::from(b[axis])).sum()
 }
@@ -24,7 +24,7 @@ pub(crate) fn distance2(a: Corner, b: Corner) -> i64 {
 }
 
 /// Normal of a triangle, as long as twice its area, grid units².
-pub(crate) fn normal([a, b, c]: [Corner; 3]) -> [i64; 3] {
+pub(crate) fn normal<T: Copy + Into<i64>>([a, b, c]: [[T; 3]; 3]) -> [i64; 3] {
     cross(minus(b, a), minus(c, a))
 }
 

@@ -5,6 +5,7 @@
 
 use super::fill::newell;
 use super::holes::Rim;
+use crate::mesh::bounds::Bounds;
 use crate::mesh::vector::{Corner, distance2};
 
 /// Rims are joined if no corner of one is further from the other than this share of the
@@ -30,14 +31,16 @@ pub(super) struct Pair {
 pub(super) fn pairs(vertices: &[Corner], rims: &[Rim]) -> Vec<Pair> {
     let seen: Vec<Seen> = rims.iter().map(|rim| Seen::new(vertices, rim)).collect();
     let mut order: Vec<usize> = (0..rims.len()).filter(|&k| !rims[k].is_fin).collect();
-    order.sort_by_key(|&k| (seen[k].low, seen[k].corners[0]));
+    order.sort_by_key(|&k| (seen[k].bounds.low, seen[k].corners[0]));
     // The nearest of each, and how far it is.
     let mut nearest: Vec<Option<(f64, usize)>> = vec![None; rims.len()];
     let mut looks = MOST_LOOKS;
     for (place, &a) in order.iter().enumerate() {
         for &b in &order[place + 1..] {
             let most = MOST_APART * seen[a].size.min(seen[b].size);
-            if f64::from(seen[b].low[0]) - f64::from(seen[a].low[0]) > MOST_APART * seen[a].size {
+            if f64::from(seen[b].bounds.low[0]) - f64::from(seen[a].bounds.low[0])
+                > MOST_APART * seen[a].size
+            {
                 break;
             }
             let Some(apart) = seen[a].apart(&seen[b], most, &mut looks) else { continue };
@@ -60,8 +63,7 @@ pub(super) fn pairs(vertices: &[Corner], rims: &[Rim]) -> Vec<Pair> {
 /// A rim with what is needed to compare it.
 struct Seen {
     corners: Vec<Corner>,
-    low: Corner,
-    high: Corner,
+    bounds: Bounds,
     /// The mean of its corners.
     middle: [f64; 3],
     /// Where the triangles that fill it would face, of length 1 or 0.
@@ -73,14 +75,13 @@ impl Seen {
     fn new(vertices: &[Corner], rim: &Rim) -> Self {
         let corners: Vec<Corner> = rim.way.iter().map(|&v| vertices[v as usize]).collect();
         let of = |axis: usize| corners.iter().map(move |corner| corner[axis]);
-        let low = std::array::from_fn(|axis| of(axis).min().unwrap_or(0));
-        let high = std::array::from_fn(|axis| of(axis).max().unwrap_or(0));
+        let bounds = Bounds::of(corners.iter().copied());
         let count = corners.len() as f64;
         let middle = std::array::from_fn(|axis| of(axis).map(f64::from).sum::<f64>() / count);
         let normal = newell(&corners);
         let long = normal.iter().map(|side| side * side).sum::<f64>().sqrt().max(1.0);
         let normal = normal.map(|side| side / long);
-        Self { low, high, middle, normal, size: rim.size, corners }
+        Self { bounds, middle, normal, size: rim.size, corners }
     }
 
     /// How far this rim and another are apart if they face each other and it is at most `most`.
@@ -88,7 +89,8 @@ impl Seen {
         let is_near = |a: Corner, b: Corner| {
             (0..3).all(|axis| (f64::from(a[axis]) - f64::from(b[axis])).abs() <= most)
         };
-        let may_be = is_near(self.low, other.low) && is_near(self.high, other.high);
+        let (own, its) = (&self.bounds, &other.bounds);
+        let may_be = is_near(own.low, its.low) && is_near(own.high, its.high);
         if !may_be || !self.faces(other) || !other.faces(self) {
             return None;
         }
@@ -203,7 +205,10 @@ mod tests {
         assert_eq!(mended.left.0.len(), 0, "{:?}", mended.left);
         let of = |&t: &[u32; 3]| determinant(corners_of(&mesh.vertices, t));
         let volume = mesh.triangles.iter().map(of).sum::<i128>() / 6 / i128::from(MM).pow(3);
-        (volume, mended.done.count(Mending::Bridged), mended.done.count(Mending::FilledHole))
+        let count = |kind: Mending| {
+            mended.done.0.iter().find(|note| note.kind == kind).map_or(0, |note| note.count)
+        };
+        (volume, count(Mending::Bridged), count(Mending::FilledHole))
     }
 
     #[test]

@@ -2,9 +2,9 @@
 
 use super::bridge::{band, pairs};
 use super::fill::{Filled, fill};
-use super::notes::extent;
 use super::patches::Links;
 use super::{Work, shells};
+use crate::mesh::bounds::Bounds;
 use crate::mesh::crossings::{crossings, depth};
 use crate::mesh::edges::{Adjacency, NONE, adjacency, parts};
 use crate::mesh::faults::{Fault, Mending};
@@ -169,7 +169,7 @@ fn rims(work: &Work, neighbours: &Adjacency) -> Vec<Rim> {
             let simple = without_repeats(rim).into_iter().filter(|rim| rim.len() >= 3);
             rims.extend(simple.map(|rim| {
                 let way = from_least(work, rim);
-                let size = extent(way.iter().map(|&v| work.vertices[v as usize]));
+                let size = Bounds::of(way.iter().map(|&v| work.vertices[v as usize])).diagonal();
                 Rim { way, size, beside: first as u32, is_fin: false }
             }));
         }

@@ -1,7 +1,6 @@
 //! Events -> counts and places: what the steps of mending found and did.
 
 use crate::mesh::faults::MOST_PLACES;
-use crate::mesh::vector::Corner;
 use crate::units::UNITS_PER_MM;
 
 /// Events of some kinds, in the order of their first occurrence.
@@ -48,11 +47,6 @@ impl<K: Copy + PartialEq> Notes<K> {
         }
     }
 
-    /// How many events of a `kind`.
-    pub(crate) fn count(&self, kind: K) -> usize {
-        self.0.iter().find(|note| note.kind == kind).map_or(0, |note| note.count)
-    }
-
     /// One more event of a `kind`, at a vertex.
     pub(crate) fn add(&mut self, kind: K, vertex: u32) {
         self.sized(kind, vertex, 0.0);
@@ -71,19 +65,6 @@ impl<K: Copy + PartialEq> Notes<K> {
             note.at.push(vertex);
         }
     }
-}
-
-/// The diagonal of the box around some corners, grid units.
-pub(crate) fn extent(corners: impl Iterator<Item = Corner>) -> f64 {
-    let bounds = corners.fold(None, |bounds: Option<[Corner; 2]>, corner| {
-        let [low, high] = bounds.unwrap_or([corner; 2]);
-        let low = std::array::from_fn(|axis| low[axis].min(corner[axis]));
-        let high = std::array::from_fn(|axis| high[axis].max(corner[axis]));
-        Some([low, high])
-    });
-    bounds.map_or(0.0, |[low, high]| {
-        crate::mesh::vector::length(crate::mesh::vector::minus(high, low))
-    })
 }
 
 /// Grid units as mm, for what is told.

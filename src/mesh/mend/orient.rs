@@ -9,7 +9,7 @@ use crate::mesh::tree::Tree;
 use crate::mesh::vector::Corner;
 
 /// A patch may have so many of its triangles turned before its winding counts as unknown:
-/// then it is wound so that it encloses a positive volume.
+/// then what it lies in tells whether it is a body or a cavity.
 const MOST_TURNED: f64 = 0.25;
 
 /// Winds the triangles of every patch alike. A patch is what hangs together by edges of two
