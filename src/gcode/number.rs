@@ -2,41 +2,56 @@
 
 use crate::units::nearest;
 
+/// The most characters of a number: 20 digits, a sign and a point.
+const LONGEST: usize = 22;
+
 /// Appends `value · 10^-decimals` to `out` without trailing zeros: `1050` with
-/// three decimals is `1.05`.
+/// three decimals is `1.05`. At most 19 decimals.
+///
+/// Digits are made from the last to the first, so that zeros at the end are known before
+/// anything is written.
 pub fn push_fixed(out: &mut Vec<u8>, value: i64, decimals: u32) {
+    let mut text = [0_u8; LONGEST];
+    let mut at = LONGEST;
+    let mut rest = value.unsigned_abs();
+    for _ in 0..decimals {
+        let digit = (rest % 10) as u8;
+        rest /= 10;
+        if at < LONGEST || digit > 0 {
+            at -= 1;
+            text[at] = b'0' + digit;
+        }
+    }
+    if at < LONGEST {
+        at -= 1;
+        text[at] = b'.';
+    }
+    at = digits(rest, &mut text, at);
     if value < 0 {
-        out.push(b'-');
+        at -= 1;
+        text[at] = b'-';
     }
-    let scale = 10_u64.pow(decimals);
-    let magnitude = value.unsigned_abs();
-    push_integer(out, magnitude / scale);
-    let mut rest = magnitude % scale;
-    if rest == 0 {
-        return;
-    }
-    out.push(b'.');
-    let mut digit = scale / 10;
-    while rest > 0 {
-        out.push(b'0' + (rest / digit) as u8);
-        rest %= digit;
-        digit /= 10;
-    }
+    out.extend_from_slice(&text[at..]);
 }
 
 /// Appends `value` in decimal digits.
-pub fn push_integer(out: &mut Vec<u8>, mut value: u64) {
-    let mut digits = [0_u8; 20];
-    let mut at = digits.len();
+pub fn push_integer(out: &mut Vec<u8>, value: u64) {
+    let mut text = [0_u8; LONGEST];
+    let at = digits(value, &mut text, LONGEST);
+    out.extend_from_slice(&text[at..]);
+}
+
+/// Writes the digits of `value` before `end` of `text`; says where they begin.
+fn digits(mut value: u64, text: &mut [u8; LONGEST], end: usize) -> usize {
+    let mut at = end;
     loop {
         at -= 1;
-        digits[at] = b'0' + (value % 10) as u8;
+        text[at] = b'0' + (value % 10) as u8;
         value /= 10;
         if value == 0 {
-            break;
+            return at;
         }
     }
-    out.extend_from_slice(&digits[at..]);
 }
 
 /// `mm` in thousandths, rounded half away from zero.

@@ -118,6 +118,13 @@ impl Rows {
         Self { first, ends: Vec::new(), spans: Vec::new() }
     }
 
+    /// No rows yet, with room for as much as `other` has; the first one pushed will have index `first`.
+    #[must_use]
+    pub fn with_room_of(other: &Self, first: i32) -> Self {
+        let (rows, spans) = (other.ends.len(), other.spans.len());
+        Self { first, ends: Vec::with_capacity(rows), spans: Vec::with_capacity(spans) }
+    }
+
     /// Appends the next row: `fill` appends its spans, sorted and disjoint.
     pub fn push_row(&mut self, fill: impl FnOnce(&mut Vec<Span>)) {
         fill(&mut self.spans);
@@ -163,7 +170,7 @@ impl Rows {
     /// A set of rows made row by row from two others, over the rows that `self` has.
     #[must_use]
     pub fn combine(&self, other: &Self, op: impl Fn(&[Span], &[Span], &mut Vec<Span>)) -> Self {
-        let mut out = Self::starting_at(self.first);
+        let mut out = Self::with_room_of(self, self.first);
         for (j, row) in self.iter() {
             out.push_row(|spans| op(row, other.row(j), spans));
         }
@@ -206,7 +213,7 @@ impl Rows {
     /// The rows whose spans `keep` says yes to.
     #[must_use]
     pub fn filter(&self, keep: impl Fn(i32, Span) -> bool) -> Self {
-        let mut out = Self::starting_at(self.first);
+        let mut out = Self::with_room_of(self, self.first);
         for (j, row) in self.iter() {
             out.push_row(|spans| spans.extend(row.iter().copied().filter(|&s| keep(j, s))));
         }
@@ -224,7 +231,7 @@ impl Rows {
         let reach = radius / pitch;
         let chords: Vec<Coord> = (0..=reach).map(|m| half_chord(radius, m * pitch)).collect();
         let rows = self.range();
-        let mut out = Self::starting_at(rows.start - reach);
+        let mut out = Self::with_room_of(self, rows.start - reach);
         let mut grown = Vec::new();
         for j in rows.start - reach..rows.end + reach {
             grown.clear();

@@ -74,7 +74,7 @@ fn covered<'a>(
     let above = (1..=params.top_skins).map(|n| layers(k + n));
     let neighbours: Option<Vec<&Rows>> =
         below.chain(above).map(|p| p.map(|p| &p.rows[r].cover)).collect();
-    let mut out = Rows::starting_at(fill.range().start);
+    let mut out = Rows::with_room_of(fill, fill.range().start);
     let (mut now, mut next) = (Vec::<Span>::new(), Vec::new());
     for (j, row) in fill.iter() {
         now.clear();

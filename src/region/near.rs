@@ -101,13 +101,15 @@ impl Near {
         self.around(p, distance).all(|edge| distance2(p, edge) >= distance * distance)
     }
 
-    /// Edges in the cells around `p`: at least those nearer than `distance`.
+    /// Edges whose boxes are nearer to `p` than `distance` in either direction.
     fn around(&self, p: [f64; 2], distance: f64) -> impl Iterator<Item = [[f64; 2]; 2]> + use<'_> {
-        let (low, high) = (p.map(|x| x - distance), p.map(|x| x + distance));
-        self.cells(low, high).flat_map(|cell| {
+        let area = Area { low: p.map(|x| x - distance), high: p.map(|x| x + distance) };
+        let cells = self.cells(area.low, area.high).flat_map(|cell| {
             let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
             self.items[range].iter().map(|&k| self.edges[k as usize])
-        })
+        });
+        // Most edges of a cell are not that near, and boxes are quicker to compare.
+        cells.filter(move |edge| area.meets(edge))
     }
 }
 

@@ -14,6 +14,7 @@ use crate::geom::frame::Frame;
 use crate::geom::spans::{Rows, Span, merge, subtract};
 use crate::geom::{Contour, Point, edges};
 use crate::units::{Coord, between, nearest};
+use std::iter;
 
 /// A set of raster lines: row `j` runs at `v = j · pitch` in `frame`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,7 +73,7 @@ impl Scan {
         }
         let mut chords = chords(&self.contours, self.raster, distance);
         let mut covered = Vec::new();
-        let mut out = Rows::starting_at(self.inside.range().start);
+        let mut out = Rows::with_room_of(&self.inside, self.inside.range().start);
         for (j, row) in self.inside.iter() {
             covered.clear();
             merge(chords.row(j), &mut covered);
@@ -104,13 +105,12 @@ impl Scan {
 /// these are in the raster's frame.
 #[must_use]
 pub fn around(edges: &[(Point, Point, Coord)], raster: Raster) -> Rows {
-    let mut found = Vec::new();
-    for &(p, q, r) in edges {
-        cut(p, q, r, raster, &mut found);
-    }
-    let rows = || found.iter().map(|(j, _)| *j);
-    let Some((first, last)) = rows().min().zip(rows().max()) else { return Rows::default() };
-    let mut chords = Buckets::new(first..last + 1, &found);
+    let all = || edges.iter().copied();
+    let rows = || all().map(|edge| reached(edge, raster)).filter(|rows| !rows.is_empty());
+    let first = rows().map(|rows| rows.start).min();
+    let end = rows().map(|rows| rows.end).max();
+    let Some((first, end)) = first.zip(end) else { return Rows::default() };
+    let mut chords = cut(first..end, all, raster);
     let mut out = Rows::starting_at(first);
     for j in chords.range() {
         out.push_row(|spans| merge(chords.row(j), spans));
@@ -131,37 +131,50 @@ fn crossing(low: Point, high: Point, v: Coord) -> Coord {
     between(low.x, high.x, (v, low.y, high.y))
 }
 
-/// Items in rows, filled in any order: counted first, then placed, then read by row.
+/// Items in rows, pushed in any order: rows get room for what they will hold at most.
 struct Buckets<T> {
     first: i32,
     /// Where each row begins in `items`; one more than there are rows.
     starts: Vec<u32>,
+    /// Where each row ends so far.
+    ends: Vec<u32>,
     items: Vec<T>,
 }
 
 impl<T: Copy + Default> Buckets<T> {
-    /// Sorts `found` into rows `range` by counting.
-    fn new(range: std::ops::Range<i32>, found: &[(i32, T)]) -> Self {
+    /// Room for rows `range`, in each for as many items as `stretches` of rows reach it.
+    fn new(
+        range: std::ops::Range<i32>,
+        stretches: impl Iterator<Item = std::ops::Range<i32>>,
+    ) -> Self {
         let first = range.start;
         let index = |j: i32| (j - first) as usize;
-        let mut next = vec![0_u32; range.len() + 1];
-        for &(j, _) in found {
-            next[index(j) + 1] += 1;
+        // First how many stretches begin less those that end at each row, then how many there are.
+        let mut starts = vec![0_u32; range.len() + 2];
+        for stretch in stretches.filter(|s| !s.is_empty()) {
+            starts[index(stretch.start) + 1] += 1;
+            let end = &mut starts[index(stretch.end) + 1];
+            *end = end.wrapping_sub(1);
         }
-        for k in 1..next.len() {
-            next[k] += next[k - 1];
+        let (mut here, mut sum) = (0_u32, 0_u32);
+        for start in &mut starts {
+            here = here.wrapping_add(*start);
+            sum += here;
+            *start = sum;
         }
-        let starts = next.clone();
-        let mut items = vec![T::default(); found.len()];
-        for &(j, item) in found {
-            items[next[index(j)] as usize] = item;
-            next[index(j)] += 1;
-        }
-        Self { first, starts, items }
+        starts.truncate(range.len() + 1);
+        let ends = starts[..range.len()].to_vec();
+        Self { first, starts, ends, items: vec![T::default(); sum as usize] }
     }
 
     fn range(&self) -> std::ops::Range<i32> {
-        self.first..self.first + (self.starts.len() as i32 - 1)
+        self.first..self.first + self.ends.len() as i32
+    }
+
+    fn push(&mut self, j: i32, item: T) {
+        let end = &mut self.ends[(j - self.first) as usize];
+        self.items[*end as usize] = item;
+        *end += 1;
     }
 
     fn row(&mut self, j: i32) -> &mut [T] {
@@ -169,7 +182,23 @@ impl<T: Copy + Default> Buckets<T> {
             return &mut [];
         }
         let k = (j - self.first) as usize;
-        &mut self.items[self.starts[k] as usize..self.starts[k + 1] as usize]
+        &mut self.items[self.starts[k] as usize..self.ends[k] as usize]
+    }
+}
+
+impl Buckets<Span> {
+    /// Pushes a chord, or joins it to the last one of its row where they meet: neighbouring
+    /// edges have much in common.
+    fn join(&mut self, j: i32, chord: Span) {
+        let k = (j - self.first) as usize;
+        let (start, end) = (self.starts[k] as usize, self.ends[k] as usize);
+        match self.items[start..end].last_mut() {
+            Some(last) if last.start <= chord.end && chord.start <= last.end => {
+                last.start = last.start.min(chord.start);
+                last.end = last.end.max(chord.end);
+            }
+            _ => self.push(j, chord),
+        }
     }
 }
 
@@ -184,15 +213,17 @@ struct Crossing {
 fn inside(contours: &[Contour], raster: Raster) -> Rows {
     let Some((low, high)) = extent(contours) else { return Rows::default() };
     let range = raster.rows(low, high);
-    let mut found = Vec::new();
-    for (p, q) in contours.iter().flat_map(|c| edges(c)) {
+    let all = || contours.iter().flat_map(|c| edges(c));
+    let rows = |p: Point, q: Point| raster.rows(p.y.min(q.y), p.y.max(q.y));
+    let mut crossings = Buckets::new(range.clone(), all().map(|(p, q)| rows(p, q)));
+    for (p, q) in all() {
         // An edge that falls has the solid on its right: entering, seen along u.
         let (low, high, winding) = if p.y < q.y { (p, q, -1) } else { (q, p, 1) };
-        for j in raster.rows(low.y, high.y) {
-            found.push((j, Crossing { u: crossing(low, high, j * raster.pitch), winding }));
+        for j in rows(p, q) {
+            let u = crossing(low, high, j * raster.pitch);
+            crossings.push(j, Crossing { u, winding });
         }
     }
-    let mut crossings = Buckets::new(range.clone(), &found);
     let mut rows = Rows::starting_at(range.start);
     for j in range {
         let row = crossings.row(j);
@@ -223,21 +254,31 @@ fn wound(crossings: &[Crossing], out: &mut Vec<Span>) {
 
 /// The chords that the rows cut from the capsules of radius `r` around all edges.
 fn chords(contours: &[Contour], raster: Raster, r: Coord) -> Buckets<Span> {
-    let Some((low, high)) = extent(contours) else { return Buckets::new(0..0, &[]) };
-    let mut found = Vec::new();
-    for (p, q) in contours.iter().flat_map(|c| edges(c)) {
-        cut(p, q, r, raster, &mut found);
-    }
-    Buckets::new(raster.rows(low - r, high + r), &found)
+    let Some((low, high)) = extent(contours) else { return Buckets::new(0..0, iter::empty()) };
+    let all = || contours.iter().flat_map(|c| edges(c)).map(|(p, q)| (p, q, r));
+    cut(raster.rows(low - r, high + r), all, raster)
 }
 
-/// Adds the chords that the rows cut from the capsule of radius `r` around an edge.
-#[inline]
-fn cut(p: Point, q: Point, r: Coord, raster: Raster, found: &mut Vec<(i32, Span)>) {
-    let capsule = Capsule::new(p, q, r);
-    for j in raster.rows(p.y.min(q.y) - r, p.y.max(q.y) + r) {
-        found.extend(capsule.chord(j * raster.pitch).map(|chord| (j, chord)));
+/// The chords that rows `range` cut from the capsules around edges, each with its radius.
+fn cut<E>(range: std::ops::Range<i32>, edges: impl Fn() -> E, raster: Raster) -> Buckets<Span>
+where
+    E: Iterator<Item = (Point, Point, Coord)>,
+{
+    let mut chords = Buckets::new(range, edges().map(|edge| reached(edge, raster)));
+    for edge @ (p, q, r) in edges() {
+        let capsule = Capsule::new(p, q, r);
+        for j in reached(edge, raster) {
+            if let Some(chord) = capsule.chord(j * raster.pitch) {
+                chords.join(j, chord);
+            }
+        }
     }
+    chords
+}
+
+/// The rows that reach the capsule around an edge.
+fn reached((p, q, r): (Point, Point, Coord), raster: Raster) -> std::ops::Range<i32> {
+    raster.rows(p.y.min(q.y) - r, p.y.max(q.y) + r)
 }
 
 /// All points within `r` of the edge from `low` to `high` (`low.y <= high.y`).
