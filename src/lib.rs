@@ -100,14 +100,7 @@ pub fn slice_placed(
     }
     progress.set_total(heights.count);
     let tolerance = to_units(settings.tolerance);
-    let (pictures, slicer) = rayon::join(
-        || thumbnails(settings, &placed.mesh),
-        || slice::Slicer::new(&placed.mesh, &placed.adjacency, heights, tolerance),
-    );
-    let pictures = pictures.map_err(|source| {
-        let action = "cannot draw the thumbnails";
-        Error::Output { file: job.output.clone(), action, source }
-    })?;
+    let slicer = slice::Slicer::new(&placed.mesh, &placed.adjacency, heights, tolerance);
 
     let params = region::Params::new(settings);
     let support = region::support::SupportParams::new(settings);
@@ -118,12 +111,18 @@ pub fn slice_placed(
     });
     let plan = plan::PlanParams::new(settings, &params, support);
 
-    let mut writer =
-        gcode::Writer::new(out, &job.output, settings, facts, placed.offset, &pictures)?;
     let grouping = region::groups::Grouping::new(&settings.dual, settings.dual_ratio());
     let window = region::window::Window::new(&slicer, &params, &grouping, supports);
     let mut planner = Planner { window, plan, at: None, tally: report::Tally::default() };
-    let mut planned = planner.next();
+    // The pictures stand in the file's head: they are drawn while the first layers are planned.
+    let (pictures, mut planned) =
+        rayon::join(|| thumbnails(settings, &placed.mesh), || planner.next());
+    let pictures = pictures.map_err(|source| {
+        let action = "cannot draw the thumbnails";
+        Error::Output { file: job.output.clone(), action, source }
+    })?;
+    let mut writer =
+        gcode::Writer::new(out, &job.output, settings, facts, placed.offset, &pictures)?;
     while let Some(toolpaths) = planned {
         // Layers are written while the next are planned.
         let (written, next) = rayon::join(|| writer.layers(&toolpaths), || planner.next());
