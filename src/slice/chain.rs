@@ -19,7 +19,7 @@ use std::ops::Range;
 
 /// Layers cut together. A block's triangles are looked up at once; the memory
 /// in use grows with a block, not with the print.
-const BLOCK: usize = 64;
+const BLOCK: usize = 16;
 
 /// A mesh made ready to be cut into blocks of layers, in any order.
 #[derive(Debug)]
