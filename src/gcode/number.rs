@@ -5,51 +5,93 @@ use crate::units::nearest;
 /// The most characters of a number: 20 digits, a sign and a point.
 const LONGEST: usize = 22;
 
+/// The numbers 0 to 99 in two digits: half as many divisions as digit by digit.
+const PAIRS: [[u8; 2]; 100] = {
+    let mut pairs = [[b'0'; 2]; 100];
+    let mut k = 0;
+    while k < pairs.len() {
+        pairs[k] = [b'0' + (k / 10) as u8, b'0' + (k % 10) as u8];
+        k += 1;
+    }
+    pairs
+};
+
 /// Appends `value · 10^-decimals` to `out` without trailing zeros: `1050` with
 /// three decimals is `1.05`. At most 19 decimals.
-///
-/// Digits are made from the last to the first, so that zeros at the end are known before
-/// anything is written.
 pub fn push_fixed(out: &mut Vec<u8>, value: i64, decimals: u32) {
-    let mut text = [0_u8; LONGEST];
-    let mut at = LONGEST;
-    let mut rest = value.unsigned_abs();
-    for _ in 0..decimals {
-        let digit = (rest % 10) as u8;
+    let mut text = Digits::new();
+    let (mut rest, mut places) = (value.unsigned_abs(), decimals);
+    while places > 0 && rest % 10 == 0 {
         rest /= 10;
-        if at < LONGEST || digit > 0 {
-            at -= 1;
-            text[at] = b'0' + digit;
+        places -= 1;
+    }
+    if places > 0 {
+        for _ in 0..places / 2 {
+            rest = text.pair(rest);
         }
+        if places % 2 == 1 {
+            rest = text.digit(rest);
+        }
+        text.put(b'.');
     }
-    if at < LONGEST {
-        at -= 1;
-        text[at] = b'.';
-    }
-    at = digits(rest, &mut text, at);
+    text.integer(rest);
     if value < 0 {
-        at -= 1;
-        text[at] = b'-';
+        text.put(b'-');
     }
-    out.extend_from_slice(&text[at..]);
+    out.extend_from_slice(text.written());
 }
 
 /// Appends `value` in decimal digits.
 pub fn push_integer(out: &mut Vec<u8>, value: u64) {
-    let mut text = [0_u8; LONGEST];
-    let at = digits(value, &mut text, LONGEST);
-    out.extend_from_slice(&text[at..]);
+    let mut text = Digits::new();
+    text.integer(value);
+    out.extend_from_slice(text.written());
 }
 
-/// Writes the digits of `value` before `end` of `text`; says where they begin.
-fn digits(mut value: u64, text: &mut [u8; LONGEST], end: usize) -> usize {
-    let mut at = end;
-    loop {
-        at -= 1;
-        text[at] = b'0' + (value % 10) as u8;
-        value /= 10;
-        if value == 0 {
-            return at;
+/// A number in the making, from its last character to the first: where it ends is known,
+/// how long it gets is not.
+struct Digits {
+    text: [u8; LONGEST],
+    at: usize,
+}
+
+impl Digits {
+    fn new() -> Self {
+        Self { text: [0; LONGEST], at: LONGEST }
+    }
+
+    fn written(&self) -> &[u8] {
+        &self.text[self.at..]
+    }
+
+    fn put(&mut self, character: u8) {
+        self.at -= 1;
+        self.text[self.at] = character;
+    }
+
+    /// The last digit of `value`; gives what is left of it.
+    fn digit(&mut self, value: u64) -> u64 {
+        self.put(b'0' + (value % 10) as u8);
+        value / 10
+    }
+
+    /// The last two digits of `value`; gives what is left of it.
+    fn pair(&mut self, value: u64) -> u64 {
+        let [tens, ones] = PAIRS[(value % 100) as usize];
+        self.put(ones);
+        self.put(tens);
+        value / 100
+    }
+
+    /// All digits of `value`.
+    fn integer(&mut self, mut value: u64) {
+        while value >= 100 {
+            value = self.pair(value);
+        }
+        if value >= 10 {
+            self.pair(value);
+        } else {
+            self.digit(value);
         }
     }
 }

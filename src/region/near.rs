@@ -1,6 +1,7 @@
 //! Walls -> Near: whether a place keeps its distance from all of them.
 
 use crate::geom::{Contour, Point, edges};
+use std::ops::Range;
 
 /// Cells along each side of an area, at most.
 const MOST_CELLS: f64 = 256.0;
@@ -33,15 +34,14 @@ impl Area {
 /// The edges of closed walls that meet an area, sorted into square cells.
 #[derive(Debug)]
 pub(super) struct Near {
-    edges: Vec<[[f64; 2]; 2]>,
     low: [f64; 2],
     side: f64,
     /// Columns and rows of cells.
     size: [usize; 2],
     /// Where each cell begins in `items`; one more than there are cells.
     starts: Vec<u32>,
-    /// Indices of edges whose boxes meet the cell.
-    items: Vec<u32>,
+    /// Edges whose boxes meet the cell.
+    items: Vec<[[f64; 2]; 2]>,
 }
 
 impl Near {
@@ -54,39 +54,39 @@ impl Near {
         let side = side.max(extent[0].max(extent[1]) / MOST_CELLS);
         let size = extent.map(|x| (x / side) as usize + 1);
         let starts = vec![0; size[0] * size[1] + 1];
-        let mut near = Self { edges, low: area.low, side, size, starts, items: Vec::new() };
-        near.sort();
+        let mut near = Self { low: area.low, side, size, starts, items: Vec::new() };
+        near.sort(&edges);
         near
     }
 
-    /// Sorts the edges into the cells by counting.
-    fn sort(&mut self) {
+    /// Sorts `edges` into the cells by counting.
+    fn sort(&mut self, edges: &[[[f64; 2]; 2]]) {
         let mut next = vec![0_u32; self.starts.len()];
-        for [p, q] in &self.edges {
-            self.cells(*p, *q).for_each(|cell| next[cell + 1] += 1);
+        for edge in edges {
+            self.cells(*edge).flatten().for_each(|cell| next[cell + 1] += 1);
         }
         for k in 1..next.len() {
             next[k] += next[k - 1];
         }
         self.starts.clone_from(&next);
-        let mut items = vec![0; next.last().map_or(0, |&n| n as usize)];
-        for (k, [p, q]) in (0..).zip(&self.edges) {
-            for cell in self.cells(*p, *q) {
-                items[next[cell] as usize] = k;
+        let mut items = vec![[[0.0; 2]; 2]; next.last().map_or(0, |&n| n as usize)];
+        for edge in edges {
+            for cell in self.cells(*edge).flatten() {
+                items[next[cell] as usize] = *edge;
                 next[cell] += 1;
             }
         }
         self.items = items;
     }
 
-    /// The cells that meet the box with corners `p` and `q`.
-    fn cells(&self, p: [f64; 2], q: [f64; 2]) -> impl Iterator<Item = usize> + use<> {
+    /// The cells that meet the box with corners `p` and `q`, row by row of cells.
+    fn cells(&self, [p, q]: [[f64; 2]; 2]) -> impl Iterator<Item = Range<usize>> + use<> {
         // Casts to unsigned numbers hold below zero; what is beyond the area counts to its edge.
         let at =
             |x: f64, k: usize| (((x - self.low[k]) / self.side) as usize).min(self.size[k] - 1);
-        let range = |k: usize| at(p[k].min(q[k]), k)..=at(p[k].max(q[k]), k);
-        let (columns, rows, width) = (range(0), range(1), self.size[0]);
-        rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
+        let [columns, rows] = [0, 1].map(|k| (at(p[k].min(q[k]), k), at(p[k].max(q[k]), k)));
+        let width = self.size[0];
+        (rows.0..=rows.1).map(move |row| row * width + columns.0..row * width + columns.1 + 1)
     }
 
     /// The edge nearest to `p`, within the area, among those nearer than `distance`.
@@ -104,12 +104,13 @@ impl Near {
     /// Edges whose boxes are nearer to `p` than `distance` in either direction.
     fn around(&self, p: [f64; 2], distance: f64) -> impl Iterator<Item = [[f64; 2]; 2]> + use<'_> {
         let area = Area { low: p.map(|x| x - distance), high: p.map(|x| x + distance) };
-        let cells = self.cells(area.low, area.high).flat_map(|cell| {
-            let range = self.starts[cell] as usize..self.starts[cell + 1] as usize;
-            self.items[range].iter().map(|&k| self.edges[k as usize])
+        // The edges of cells beside each other stand one after the other.
+        let rows = self.cells([area.low, area.high]).map(|cells| {
+            &self.items[self.starts[cells.start] as usize..self.starts[cells.end] as usize]
         });
+        let all = rows.flatten().copied();
         // Most edges of a cell are not that near, and boxes are quicker to compare.
-        cells.filter(move |edge| area.meets(edge))
+        all.filter(move |edge| area.meets(edge))
     }
 }
 
