@@ -149,20 +149,19 @@ impl<T: Copy + Default> Buckets<T> {
     ) -> Self {
         let first = range.start;
         let index = |j: i32| (j - first) as usize;
-        // First how many stretches begin less those that end at each row, then how many there are.
-        let mut starts = vec![0_u32; range.len() + 2];
+        // How many stretches more reach each row than the row before.
+        let mut change = vec![0_i32; range.len() + 1];
         for stretch in stretches.filter(|s| !s.is_empty()) {
-            starts[index(stretch.start) + 1] += 1;
-            let end = &mut starts[index(stretch.end) + 1];
-            *end = end.wrapping_sub(1);
+            change[index(stretch.start)] += 1;
+            change[index(stretch.end)] -= 1;
         }
-        let (mut here, mut sum) = (0_u32, 0_u32);
-        for start in &mut starts {
-            here = here.wrapping_add(*start);
-            sum += here;
-            *start = sum;
+        let (mut here, mut sum) = (0, 0);
+        let mut starts = Vec::with_capacity(change.len());
+        for more in change {
+            starts.push(sum);
+            here += more;
+            sum += here as u32;
         }
-        starts.truncate(range.len() + 1);
         let ends = starts[..range.len()].to_vec();
         Self { first, starts, ends, items: vec![T::default(); sum as usize] }
     }
