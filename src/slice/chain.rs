@@ -16,6 +16,7 @@ use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::units::{Coord, between};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Mutex;
 
 /// Layers cut together. A block's triangles are looked up at once; the memory
 /// in use grows with a block, not with the print.
@@ -32,6 +33,28 @@ pub struct Slicer<'a> {
     starts: Vec<usize>,
     /// Triangles by the blocks they reach into.
     triangles: Vec<u32>,
+    /// How many planes lie at or below each vertex.
+    below: Vec<u32>,
+    /// Marks that no thread is using: a set for each triangle is too much to make for each layer.
+    free: Mutex<Vec<Marks>>,
+}
+
+/// Which triangles a walk has come through.
+#[derive(Debug)]
+struct Marks {
+    /// The number of the walk that marked each triangle last.
+    of: Vec<u32>,
+    walk: u32,
+}
+
+impl Marks {
+    fn is_set(&self, t: u32) -> bool {
+        self.of[t as usize] == self.walk
+    }
+
+    fn set(&mut self, t: u32) {
+        self.of[t as usize] = self.walk;
+    }
 }
 
 impl<'a> Slicer<'a> {
@@ -44,8 +67,10 @@ impl<'a> Slicer<'a> {
         tolerance: Coord,
     ) -> Self {
         let blocks = heights.count.div_ceil(BLOCK);
+        let below = |v: &[Coord; 3]| u32::try_from(heights.planes_up_to(v[2])).unwrap_or(u32::MAX);
+        let below: Vec<u32> = mesh.vertices.par_iter().map(below).collect();
         let reach = |t: &[u32; 3]| -> Range<usize> {
-            let layers = crossed(mesh, heights, t);
+            let layers = crossed(&below, t);
             if layers.is_empty() {
                 0..0
             } else {
@@ -69,7 +94,8 @@ impl<'a> Slicer<'a> {
                 next[b] += 1;
             }
         }
-        Self { mesh, adjacency, heights, tolerance, starts, triangles }
+        let free = Mutex::default();
+        Self { mesh, adjacency, heights, tolerance, starts, triangles, below, free }
     }
 
     /// The heights that the mesh is cut at.
@@ -90,29 +116,38 @@ impl<'a> Slicer<'a> {
         let layers = b * BLOCK..((b + 1) * BLOCK).min(self.heights.count);
         let mut buckets = vec![Vec::new(); layers.len()];
         for &t in &self.triangles[self.starts[b]..self.starts[b + 1]] {
-            let crossed = crossed(self.mesh, self.heights, &self.mesh.triangles[t as usize]);
+            let crossed = crossed(&self.below, &self.mesh.triangles[t as usize]);
             for k in crossed.start.max(layers.start)..crossed.end.min(layers.end) {
                 buckets[k - layers.start].push(t);
             }
         }
-        let done = || vec![0; self.mesh.triangles.len()];
         layers
             .into_par_iter()
             .zip(buckets)
-            .with_min_len(BLOCK / 8)
-            .map_init(done, |done, (k, triangles)| self.layer(k, &triangles, done))
+            .map(|(k, triangles)| {
+                let mut marks = self.marks();
+                let layer = self.layer(k, &triangles, &mut marks);
+                if let Ok(mut free) = self.free.lock() {
+                    free.push(marks);
+                }
+                layer
+            })
             .collect()
     }
 
-    /// Layer `k`, cut from the triangles that cross its plane. `done` marks triangles by layer.
-    fn layer(&self, k: usize, triangles: &[u32], done: &mut [u32]) -> Layer {
-        let walk = Walk {
-            mesh: self.mesh,
-            adjacency: self.adjacency,
-            plane: self.heights.plane(k),
-            mark: u32::try_from(k + 1).unwrap_or(u32::MAX),
-        };
-        let (mut contours, open) = walk.chains(triangles, done);
+    /// Marks of which none is set.
+    fn marks(&self) -> Marks {
+        let free = self.free.lock().ok().and_then(|mut free| free.pop());
+        let new = || Marks { of: vec![0; self.mesh.triangles.len()], walk: 0 };
+        let marks = free.unwrap_or_else(new);
+        Marks { walk: marks.walk + 1, ..marks }
+    }
+
+    /// Layer `k`, cut from the triangles that cross its plane.
+    fn layer(&self, k: usize, triangles: &[u32], marks: &mut Marks) -> Layer {
+        let plane = self.heights.plane(k);
+        let walk = Walk { mesh: self.mesh, adjacency: self.adjacency, plane };
+        let (mut contours, open) = walk.chains(triangles, marks);
         let closed_gap = close(open, &mut contours);
         let mut contours: Vec<Contour> = contours
             .into_iter()
@@ -132,10 +167,11 @@ impl<'a> Slicer<'a> {
     }
 }
 
-/// The layers whose planes a triangle crosses.
-fn crossed(mesh: &Mesh, heights: Heights, triangle: &[u32; 3]) -> Range<usize> {
-    let z = triangle.map(|v| mesh.vertices[v as usize][2]);
-    heights.crossing(z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]))
+/// The layers whose planes a triangle crosses: those above its lowest corner and not above its
+/// highest.
+fn crossed(below: &[u32], triangle: &[u32; 3]) -> Range<usize> {
+    let [a, b, c] = triangle.map(|v| below[v as usize] as usize);
+    a.min(b).min(c)..a.max(b).max(c)
 }
 
 /// One plane's walk from triangle to triangle.
@@ -143,27 +179,25 @@ struct Walk<'a> {
     mesh: &'a Mesh,
     adjacency: &'a Adjacency,
     plane: Coord,
-    mark: u32,
 }
 
 impl Walk<'_> {
     /// The closed contours, and the open chains that gaps in the mesh leave.
-    fn chains(&self, triangles: &[u32], done: &mut [u32]) -> (Vec<Contour>, Vec<Contour>) {
+    fn chains(&self, triangles: &[u32], marks: &mut Marks) -> (Vec<Contour>, Vec<Contour>) {
         let (mut closed, mut open) = (Vec::new(), Vec::new());
         // Chains that begin at a gap first: a walk from their middle would cut them in two.
         for &t in triangles {
             let entry = self.edge(t, false);
-            if self.adjacency.neighbour[t as usize][entry] == NONE && done[t as usize] != self.mark
-            {
+            if self.adjacency.neighbour[t as usize][entry] == NONE && !marks.is_set(t) {
                 let mut chain = vec![self.crossing(t, entry)];
-                self.follow(t, done, &mut chain);
+                self.follow(t, marks, &mut chain);
                 open.push(chain);
             }
         }
         for &t in triangles {
-            if done[t as usize] != self.mark {
+            if !marks.is_set(t) {
                 let mut chain = Vec::new();
-                self.follow(t, done, &mut chain);
+                self.follow(t, marks, &mut chain);
                 closed.push(chain);
             }
         }
@@ -171,9 +205,9 @@ impl Walk<'_> {
     }
 
     /// Walks from triangle `t` until the chain closes or a gap ends it.
-    fn follow(&self, mut t: u32, done: &mut [u32], chain: &mut Contour) {
-        while done[t as usize] != self.mark {
-            done[t as usize] = self.mark;
+    fn follow(&self, mut t: u32, marks: &mut Marks, chain: &mut Contour) {
+        while !marks.is_set(t) {
+            marks.set(t);
             let exit = self.edge(t, true);
             chain.push(self.crossing(t, exit));
             match self.adjacency.neighbour[t as usize][exit] {

@@ -54,14 +54,10 @@ impl Heights {
         self.top(k) - self.height(k) / 2
     }
 
-    /// The layers whose planes lie in `(low, high]`: those a triangle between these heights crosses.
+    /// How many planes lie at or below `z`. A triangle from `low` to `high` crosses those of
+    /// layers `planes_up_to(low)..planes_up_to(high)`.
     #[must_use]
-    pub fn crossing(&self, low: Coord, high: Coord) -> std::ops::Range<usize> {
-        self.planes_up_to(low)..self.planes_up_to(high)
-    }
-
-    /// How many planes lie at or below `z`.
-    fn planes_up_to(&self, z: Coord) -> usize {
+    pub fn planes_up_to(&self, z: Coord) -> usize {
         if self.count == 0 || z < self.plane(0) {
             return 0;
         }
@@ -117,7 +113,8 @@ mod tests {
                 let expected: Vec<usize> = (0..heights.count)
                     .filter(|&k| low < heights.plane(k) && heights.plane(k) <= high)
                     .collect();
-                assert_eq!(heights.crossing(low, high).collect::<Vec<_>>(), expected);
+                let found = heights.planes_up_to(low)..heights.planes_up_to(high);
+                assert_eq!(found.collect::<Vec<_>>(), expected);
             }
         }
     }
