@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 /// Samples that are drawn at a time: few are little to hold, many go through the triangles
 /// less often.
-const BAND: u32 = 1 << 20;
+const BAND: u32 = 1 << 18;
 
 /// All pixels, row by row from the top.
 pub(super) fn pixels(mesh: &Mesh, view: &View, size: [u32; 2], samples: u32) -> Vec<Pixel> {
