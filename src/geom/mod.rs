@@ -2,6 +2,7 @@
 
 pub mod follow;
 pub mod frame;
+pub mod parallel;
 pub mod polygon;
 pub mod spans;
 
