@@ -6,9 +6,12 @@
 #
 # Every program does the same work (peers.ini, peers-cura.conf) with as many
 # threads as it likes. A round runs each program once, so that a busy machine is
-# busy for all; the medians of all rounds are printed as a Markdown table.
-# "Faster" is by wall time, against the fastest of the other programs.
+# busy for all; the medians of all rounds are printed as a Markdown table, and after it
+# what they come to over all models.
+# "Faster" is by wall time, against the fastest of the other programs; "less" by processor
+# time, against the least of theirs; "memory" is a share of the least of theirs.
 #
+#   JOB=support   three walls and support, instead of one wall and none
 #   ROUNDS=3      rounds
 #   LIMIT=300     seconds after which a program is given up
 #   SLICER, PRUSA, SLIC3R, CURAENGINE, CURA   see programs.sh
@@ -30,15 +33,26 @@ out=$work/out.gcode
 
 title+=([plain]="this slicer" [dual]="this slicer, \`--dual\`")
 programs=(plain dual "${peers[@]}")
+job=() slic3r_job=() cura_job=()
+case ${JOB:-} in
+'') ;;
+support)
+    walls=3 job=(--support)
+    slic3r_job=(--perimeters 3 --support-material)
+    cura_job=(wall_line_count=3 wall_thickness=1.2 support_enable=true)
+    ;;
+*) die "no such JOB: $JOB" ;;
+esac
 
 # once PROGRAM MODEL: notes wall time (s), cpu time (s) and peak memory (KiB), or why there are none.
 once() {
     local times=$work/$1 start end code=0
     grep -qs '[a-z]' "$times" && return
     case $1 in
-    plain) command_of ours "$2" "$out" ;;
-    dual) command_of ours "$2" "$out" --dual ;;
-    *) command_of "$1" "$2" "$out" ;;
+    plain) command_of ours "$2" "$out" "${job[@]}" ;;
+    dual) command_of ours "$2" "$out" --dual "${job[@]}" ;;
+    cura) command_of "$1" "$2" "$out" "${cura_job[@]}" ;;
+    *) command_of "$1" "$2" "$out" "${slic3r_job[@]}" ;;
     esac
     rm -f "$out"
     start=${EPOCHREALTIME/./}
@@ -61,31 +75,47 @@ median() {
         awk '{ v[NR] = $1 } END { print (v[int((NR + 1) / 2)] + v[int(NR / 2) + 1]) / 2 }'
 }
 
-echo "| model | program | wall s | cpu s | peak MiB | faster | memory |"
-echo "|---|---|--:|--:|--:|--:|--:|"
+echo "| model | program | wall s | cpu s | peak MiB | faster | less | memory |"
+echo "|---|---|--:|--:|--:|--:|--:|--:|"
 for model; do
     for program in "${programs[@]}"; do rm -f "$work/$program"; done
     for ((round = 0; round < rounds; round++)); do
         for program in "${programs[@]}"; do once "$program" "$model"; done
     done
-    fastest= least=
+    fastest= laziest= least=
     for program in "${peers[@]}"; do
         grep -q '[a-z]' "$work/$program" && continue
         fastest=$( (echo "$fastest"; median "$program" 1) | sort -n | grep -m 1 .)
+        laziest=$( (echo "$laziest"; median "$program" 2) | sort -n | grep -m 1 .)
         least=$( (echo "$least"; median "$program" 3) | sort -n | grep -m 1 .)
     done
     for program in "${programs[@]}"; do
         name=$(basename "$model" .stl)
         if grep -q '[a-z]' "$work/$program"; then
-            echo "| $name | ${title[$program]} | $(cat "$work/$program") | | | | |"
+            echo "| $name | ${title[$program]} | $(cat "$work/$program") | | | | | |"
             continue
         fi
         awk -v wall="$(median "$program" 1)" -v cpu="$(median "$program" 2)" \
-            -v kib="$(median "$program" 3)" -v fastest="$fastest" -v least="$least" \
-            -v head="| $name | ${title[$program]}" 'BEGIN {
-                printf "%s | %.3f | %.2f | %.1f | %s | %s |\n", head, wall, cpu, kib / 1024,
-                    fastest == "" ? "" : sprintf("%.1f x", fastest / wall),
-                    least == "" ? "" : sprintf("%.2f x", kib / least)
+            -v kib="$(median "$program" 3)" -v fastest="$fastest" -v laziest="$laziest" \
+            -v least="$least" -v head="| $name | ${title[$program]}" \
+            -v ratios="$work/$program.ratios" 'BEGIN {
+                if (fastest != "") {
+                    # Times are told in hundredths: less than one is one.
+                    faster = fastest / wall; less = laziest / (cpu < 0.01 ? 0.01 : cpu)
+                    print faster, less, kib / least >>ratios
+                    tail = sprintf("%.1f x | %.1f x | %.2f x", faster, less, kib / least)
+                } else tail = " | | "
+                printf "%s | %.3f | %.2f | %.1f | %s |\n", head, wall, cpu, kib / 1024, tail
             }'
     done
+done
+for program in plain dual; do
+    [ -s "$work/$program.ratios" ] || continue
+    awk -v title="${title[$program]}" '
+        function worse(a, b) { return NR == 1 || a < b }
+        { f += log($1); l += log($2); m += log($3)
+          if (worse($1, wf)) wf = $1; if (worse($2, wl)) wl = $2; if (worse(-$3, -wm)) wm = $3 }
+        END { row = "| %s | %s | | | | %.1f x | %.1f x | %.2f x |\n"
+              printf row, "geometric mean", title, exp(f / NR), exp(l / NR), exp(m / NR)
+              printf row, "worst", title, wf, wl, wm }' "$work/$program.ratios"
 done

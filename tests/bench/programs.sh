@@ -48,7 +48,7 @@ command_of() {
     local program=$1 model=$2 out=$3
     shift 3
     case $program in
-    ours) command=("$slicer" -q "$model" -p generic-marlin --walls 1 "$@" -o "$out") ;;
+    ours) command=("$slicer" -q "$model" -p generic-marlin --walls "${walls:-1}" "$@" -o "$out") ;;
     prusa) command=("$prusa" --export-gcode --load "$bench/peers.ini" "$@" "$model" -o "$out") ;;
     slic3r) command=("$slic3r" --load "$bench/peers.ini" "$@" "$model" -o "$out") ;;
     cura)

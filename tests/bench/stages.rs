@@ -7,7 +7,9 @@
 #![allow(missing_docs, reason = "criterion's macros make functions without docs")]
 #![allow(clippy::print_stderr, reason = "says what is not measured")]
 
-use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
+use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use hashbrown::HashMap;
+use nalgebra::Vector3;
 use slicer::gcode::moves::{MoveParams, Moves};
 use slicer::gcode::times::Timer;
 use slicer::gcode::write::WriteParams;
@@ -28,8 +30,12 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Name in the results and file in the folder of large models.
-const LARGE: [(&str, &str); 3] =
-    [("femur", "scan_femur.stl"), ("liver", "scan_liver.stl"), ("benchy", "calib_3dbenchy.stl")];
+const LARGE: [(&str, &str); 4] = [
+    ("femur", "scan_femur.stl"),
+    ("liver", "scan_liver.stl"),
+    ("benchy", "calib_3dbenchy.stl"),
+    ("brain", "scan_brain_mni152_500k.stl"),
+];
 
 /// A model, and what it becomes under the settings of the comparison: one wall, dual.
 struct Model {
@@ -106,9 +112,35 @@ fn models() -> Vec<Model> {
     models
 }
 
+/// The least that can be asked of a binary STL: its corners told apart by a hash, and the sum
+/// of its triangles' areas, mm².
+fn weld_and_sum(bytes: &[u8]) -> (usize, f64) {
+    let mut numbers: HashMap<[u32; 3], u32> = HashMap::new();
+    let mut corners: Vec<[f32; 3]> = Vec::new();
+    let mut area = 0.0;
+    for record in bytes[84..].chunks_exact(50) {
+        let float = |at: usize| f32::from_le_bytes(std::array::from_fn(|k| record[at + k]));
+        let triangle = [12, 24, 36].map(|at| {
+            let corner = [float(at), float(at + 4), float(at + 8)];
+            let next = corners.len() as u32;
+            let number = *numbers.entry(corner.map(f32::to_bits)).or_insert(next);
+            if number == next {
+                corners.push(corner);
+            }
+            Vector3::from(corners[number as usize])
+        });
+        let [a, b, c] = triangle;
+        area += f64::from((b - a).cross(&(c - a)).norm()) / 2.0;
+    }
+    (corners.len(), area)
+}
+
 /// Bytes to a welded mesh, to an oriented one on the bed, to contours.
 fn mesh_and_slice(c: &mut Criterion, model: &Model) {
     let mut group = c.benchmark_group("mesh");
+    group.bench_function(BenchmarkId::new("yardstick", model.name), |b| {
+        b.iter(|| weld_and_sum(black_box(&model.bytes)));
+    });
     group.bench_function(BenchmarkId::new("parse and weld", model.name), |b| {
         b.iter(|| stl::parse(model.name, black_box(&model.bytes), stl::DEFAULT_MAX_TRIANGLES));
     });
@@ -202,9 +234,12 @@ fn gcode(c: &mut Criterion, model: &Model) {
     group.bench_function(BenchmarkId::new("moves", model.name), |b| b.iter(moves));
     let layers: Vec<Moves> = moves();
     let params = WriteParams::new(&model.settings);
-    group.bench_function(BenchmarkId::new("text", model.name), |b| {
-        b.iter(|| layers.iter().map(|layer| params.layer(layer, 0.0).text.len()).sum::<usize>());
-    });
+    let text = || layers.iter().map(|layer| params.layer(layer, 0.0).text.len()).sum::<usize>();
+    group.throughput(Throughput::Bytes(text() as u64));
+    group.bench_function(BenchmarkId::new("text", model.name), |b| b.iter(text));
+    group.throughput(Throughput::Elements(
+        layers.iter().map(|layer| layer.moves.len() as u64).sum(),
+    ));
     group.bench_function(BenchmarkId::new("times", model.name), |b| {
         b.iter(|| {
             let mut timer = Timer::new(Limits::new(&model.settings));
