@@ -46,9 +46,14 @@ use error::{Error, Result};
 use geom::Point;
 use profile::template::PrintFacts;
 use rayon::prelude::*;
+use std::collections::VecDeque;
 use units::to_units;
 
 pub use job::{Job, NAME};
+
+/// Batches of layers that are planned before the first is written: about as many as take as
+/// long as the pictures do.
+const AHEAD: usize = 4;
 
 /// Slices `job` and writes the G-code to `out`, which is empty yet.
 ///
@@ -115,20 +120,24 @@ pub fn slice_placed(
     let window = region::window::Window::new(&slicer, &params, &grouping, supports);
     let mut planner = Planner { window, plan, at: None, tally: report::Tally::default() };
     // The pictures stand in the file's head: they are drawn while the first layers are planned.
-    let (pictures, mut planned) =
-        rayon::join(|| thumbnails(settings, &placed.mesh), || planner.next());
+    let (pictures, mut planned) = rayon::join(
+        || thumbnails(settings, &placed.mesh),
+        || planner.by_ref().take(AHEAD).collect::<VecDeque<_>>(),
+    );
     let pictures = pictures.map_err(|source| {
         let action = "cannot draw the thumbnails";
         Error::Output { file: job.output.clone(), action, source }
     })?;
     let mut writer =
         gcode::Writer::new(out, &job.output, settings, facts, placed.offset, &pictures)?;
-    while let Some(toolpaths) = planned {
-        // Layers are written while the next are planned.
-        let (written, next) = rayon::join(|| writer.layers(&toolpaths), || planner.next());
+    while let Some(toolpaths) = planned.pop_front() {
+        // Layers are written while the next are planned, no more of them than are needed.
+        let is_last = planned.is_empty();
+        let (written, next) =
+            rayon::join(|| writer.layers(&toolpaths), || is_last.then(|| planner.next()).flatten());
         written?;
         progress.add(toolpaths.len());
-        planned = next;
+        planned.extend(next);
     }
     let Planner { mut window, tally, .. } = planner;
     let audits = window.audits();
