@@ -38,11 +38,17 @@ struct Samples {
 }
 
 impl Samples {
+    #[expect(
+        clippy::slow_vector_initialization,
+        reason = "memory that comes zeroed is mapped twice: when it is read, and when it is written"
+    )]
     fn new(width: u32, top: u32, rows: u32, samples: u32) -> Self {
         let (width, per_pixel) = ((width * samples) as usize, samples as usize);
         let first = (top * samples) as i32;
         let count = (rows * samples) as usize;
-        Self { per_pixel, width, rows: [first, first + count as i32], seen: vec![0; width * count] }
+        let mut seen = Vec::with_capacity(width * count);
+        seen.resize(width * count, 0);
+        Self { per_pixel, width, rows: [first, first + count as i32], seen }
     }
 
     fn triangle(&mut self, mesh: &Mesh, corners: &[Corner], triangle: [u32; 3]) {

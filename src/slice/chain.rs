@@ -138,7 +138,9 @@ impl<'a> Slicer<'a> {
     /// Marks of which none is set.
     fn marks(&self) -> Marks {
         let free = self.free.lock().ok().and_then(|mut free| free.pop());
-        let new = || Marks { of: vec![0; self.mesh.triangles.len()], walk: 0 };
+        // Filled with what is no zero: pages that are known to be zero are first mapped to be
+        // read, and then once more to be written.
+        let new = || Marks { of: vec![u32::MAX; self.mesh.triangles.len()], walk: 0 };
         let marks = free.unwrap_or_else(new);
         Marks { walk: marks.walk + 1, ..marks }
     }
