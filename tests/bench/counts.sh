@@ -46,7 +46,8 @@ if [ "${1:-}" = --update ]; then
         echo "# $compiler"
         for run in "${runs[@]}"; do
             # shellcheck disable=SC2086 # a run is words
-            printf '%s\t%s\n' "$run" "$(count $run)"
+            found=$(count $run)
+            printf '%s\t%s\n' "$run" "$found"
         done
     } >"$kept.new"
     mv "$kept.new" "$kept"
