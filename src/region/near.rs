@@ -6,6 +6,9 @@ use std::ops::Range;
 /// Cells along each side of an area, at most.
 const MOST_CELLS: f64 = 256.0;
 
+/// An edge of a wall, grid units: from where to where.
+type Edge = [[f64; 2]; 2];
+
 /// A box around some places, grid units.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Area {
@@ -26,7 +29,7 @@ impl Area {
         out
     }
 
-    fn meets(&self, [p, q]: &[[f64; 2]; 2]) -> bool {
+    fn meets(&self, [p, q]: &Edge) -> bool {
         (0..2).all(|k| p[k].min(q[k]) <= self.high[k] && p[k].max(q[k]) >= self.low[k])
     }
 }
@@ -41,7 +44,7 @@ pub(super) struct Near {
     /// Where each cell begins in `items`; one more than there are cells.
     starts: Vec<u32>,
     /// Edges whose boxes meet the cell.
-    items: Vec<[[f64; 2]; 2]>,
+    items: Vec<Edge>,
 }
 
 impl Near {
@@ -49,7 +52,7 @@ impl Near {
     pub(super) fn new(walls: &[Contour], area: Area, side: f64) -> Self {
         let point = |p: Point| [f64::from(p.x), f64::from(p.y)];
         let all = walls.iter().flat_map(|w| edges(w)).map(|(p, q)| [point(p), point(q)]);
-        let edges: Vec<[[f64; 2]; 2]> = all.filter(|edge| area.meets(edge)).collect();
+        let edges: Vec<Edge> = all.filter(|edge| area.meets(edge)).collect();
         let extent = [0, 1].map(|k| (area.high[k] - area.low[k]).max(0.0));
         let side = side.max(extent[0].max(extent[1]) / MOST_CELLS);
         let size = extent.map(|x| (x / side) as usize + 1);
@@ -60,7 +63,7 @@ impl Near {
     }
 
     /// Sorts `edges` into the cells by counting.
-    fn sort(&mut self, edges: &[[[f64; 2]; 2]]) {
+    fn sort(&mut self, edges: &[Edge]) {
         let mut next = vec![0_u32; self.starts.len()];
         for edge in edges {
             self.cells(*edge).flatten().for_each(|cell| next[cell + 1] += 1);
@@ -90,32 +93,55 @@ impl Near {
     }
 
     /// The edge nearest to `p`, within the area, among those nearer than `distance`.
-    pub(super) fn nearest(&self, p: [f64; 2], distance: f64) -> Option<[[f64; 2]; 2]> {
-        let far = self.around(p, distance).map(|edge| (distance2(p, edge), edge));
-        let nearer = far.filter(|(far, _)| *far < distance * distance);
-        nearer.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, edge)| edge)
+    pub(super) fn nearest(&self, p: [f64; 2], distance: f64) -> Option<Edge> {
+        let square = distance * distance;
+        let near = self.around(&[p], distance).flatten().filter(|edge| is_nearer(p, edge, square));
+        let nearest = near.map(|edge| (distance2(p, edge), edge));
+        nearest.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, edge)| *edge)
     }
 
-    /// Whether no wall is nearer to `p`, within the area, than `distance`.
-    pub(super) fn is_free(&self, p: [f64; 2], distance: f64) -> bool {
-        self.around(p, distance).all(|edge| distance2(p, edge) >= distance * distance)
+    /// Whether no wall is nearer to any of `places`, within the area, than `distance`.
+    pub(super) fn is_free<const N: usize>(&self, places: [[f64; 2]; N], distance: f64) -> bool {
+        let square = distance * distance;
+        let far = |edge: &Edge| places.iter().all(|&p| !is_nearer(p, edge, square));
+        self.around(&places, distance).all(|edges| edges.iter().all(far))
     }
 
-    /// Edges whose boxes are nearer to `p` than `distance` in either direction.
-    fn around(&self, p: [f64; 2], distance: f64) -> impl Iterator<Item = [[f64; 2]; 2]> + use<'_> {
-        let area = Area { low: p.map(|x| x - distance), high: p.map(|x| x + distance) };
+    /// The edges of all cells that are nearer to the box around `places` than `distance` in either
+    /// direction, row by row of cells.
+    fn around(
+        &self,
+        places: &[[f64; 2]],
+        distance: f64,
+    ) -> impl Iterator<Item = &[Edge]> + use<'_> {
+        let area = Area::around(places.iter().copied(), distance);
         // The edges of cells beside each other stand one after the other.
-        let rows = self.cells([area.low, area.high]).map(|cells| {
+        self.cells([area.low, area.high]).map(|cells| {
             &self.items[self.starts[cells.start] as usize..self.starts[cells.end] as usize]
-        });
-        let all = rows.flatten().copied();
-        // Most edges of a cell are not that near, and boxes are quicker to compare.
-        all.filter(move |edge| area.meets(edge))
+        })
+    }
+}
+
+/// Whether `p` is nearer to an edge than the square root of `square`. This decides for nearly all
+/// edges of a cell, so it does without dividing.
+fn is_nearer(p: [f64; 2], [a, b]: &Edge, square: f64) -> bool {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let from = [p[0] - a[0], p[1] - a[1]];
+    let length2 = along[0] * along[0] + along[1] * along[1];
+    let ahead = from[0] * along[0] + from[1] * along[1];
+    if ahead <= 0.0 {
+        from[0] * from[0] + from[1] * from[1] < square
+    } else if ahead >= length2 {
+        let from = [p[0] - b[0], p[1] - b[1]];
+        from[0] * from[0] + from[1] * from[1] < square
+    } else {
+        let aside = from[0] * along[1] - from[1] * along[0];
+        aside * aside < square * length2
     }
 }
 
 /// The squared distance from `p` to an edge.
-fn distance2(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
+fn distance2(p: [f64; 2], [a, b]: &Edge) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let from = [p[0] - a[0], p[1] - a[1]];
     let square = (along[0] * along[0] + along[1] * along[1]).max(1.0);
@@ -138,11 +164,11 @@ mod tests {
         assert_eq!(near.nearest([20_000.0, 3_000.0], 3_001.0), bottom);
         assert_eq!(near.nearest([20_000.0, 3_000.0], 3_000.0), None);
         for (at, far) in [([20_000.0, 3_000.0], 3_000.0), ([39_000.0, 20_000.0], 1_000.0)] {
-            assert!(near.is_free(at, far));
-            assert!(!near.is_free(at, far + 1.0));
+            assert!(near.is_free([at], far));
+            assert!(!near.is_free([at], far + 1.0));
         }
         // Around a corner it is the corner itself that counts.
-        assert!(near.is_free([43_000.0, 44_000.0], 5_000.0));
-        assert!(!near.is_free([43_000.0, 44_000.0], 5_001.0));
+        assert!(near.is_free([[43_000.0, 44_000.0]], 5_000.0));
+        assert!(!near.is_free([[43_000.0, 44_000.0]], 5_001.0));
     }
 }

@@ -81,7 +81,7 @@ fn place(station: &Station, index: usize, near: &Near, params: &Params) -> Optio
     let away = edge + from + width / 2.0;
     let [x, y] = [0, 1].map(|k| station.at[k] + away * station.normal[k]);
     let clear = away - SLACK * w;
-    near.is_free([x, y], clear).then_some(Place { at: [x, y], width, clear })
+    near.is_free([[x, y]], clear).then_some(Place { at: [x, y], width, clear })
 }
 
 /// The stretches of a lap around a wall that bead `index` takes, long enough to be
@@ -120,8 +120,7 @@ fn joins(a: &Place, b: &Place, near: &Near, params: &Params) -> bool {
     let far = distance(a.at, b.at);
     let clear = a.clear.min(b.clear) - SLACK * w;
     let on_the_way = |t: f64| [0, 1].map(|k| a.at[k] + t * (b.at[k] - a.at[k]));
-    far <= w / 2.0
-        || far <= SHORT * w && [0.25, 0.5, 0.75].iter().all(|&t| near.is_free(on_the_way(t), clear))
+    far <= w / 2.0 || far <= SHORT * w && near.is_free([0.25, 0.5, 0.75].map(on_the_way), clear)
 }
 
 /// Where on `raster` no line may end because of `beads`, which are in `frame`: lines
