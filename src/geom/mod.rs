@@ -4,6 +4,7 @@ pub mod follow;
 pub mod frame;
 pub mod parallel;
 pub mod polygon;
+pub mod simple;
 pub mod spans;
 
 use crate::units::Coord;

@@ -3,11 +3,14 @@
 //! Where an offset's sides grow apart their corner is mitred. Where they cross, the library's
 //! own offset keeps both sides whole with a detour to the corner and leaves it to its union
 //! to cut off the loop: three points, and most of the union's work. Here the two sides are
-//! cut at their crossing, as long as each side keeps its direction; else they are left whole
-//! in the same way. So what the union has to find are crossings of parts that lie apart.
+//! cut at their crossing, and a side that is too short for that vanishes; what is left whole
+//! in the library's way are sides whose neighbours do not meet. So most curves are free of
+//! crossings, and the others cross only where parts lie apart.
 //!
 //! Roundings are those of the library (Clipper2: offset points to the nearest unit, crossings
-//! cut off towards zero), so that it does not show which way a corner was made.
+//! cut off towards zero), so that it does not show which way a corner was made. Only between
+//! sides so nearly parallel that rounding leaves them no crossing the corner is at its mitre, where
+//! the library has several points around it.
 
 use super::{Contour, Point};
 use crate::units::{Coord, nearest};
@@ -21,9 +24,6 @@ const STRAIGHT: f64 = 0.999;
 /// `contour` moved by `distance` grid units to its right (outwards from what it runs around
 /// counter-clockwise; inwards if negative). Corners are mitred; none if one is so sharp that
 /// its mitre reaches further than `limit` distances, or folds back.
-///
-/// Corners at level sides are left whole: there it would show in where the union begins its
-/// contours.
 #[must_use]
 pub fn parallel(contour: &[Point], distance: f64, limit: f64) -> Option<Contour> {
     let n = contour.len();
@@ -34,32 +34,90 @@ pub fn parallel(contour: &[Point], distance: f64, limit: f64) -> Option<Contour>
         Corner::new(contour[k], before, after, distance, limit)
     };
     let corners: Vec<Corner> = (0..n).map(corner).collect::<Option<_>>()?;
-    let sides: Vec<Side> = (0..n)
-        .map(|k| Side { from: corners[k].after(), to: corners[(k + 1) % n].before() })
-        .collect();
-    let cuts: Vec<Option<Cut>> = (0..n)
-        .map(|k| match corners[k] {
-            Corner::Mitred(_) => None,
-            Corner::Crossed { .. } => sides[(k + n - 1) % n].cut(&sides[k]),
-        })
-        .collect();
-    // A side that its two cuts turn round keeps its loops: they are what is left of it.
-    let keeps = |k: usize| {
-        let begin = cuts[k].map_or(0.0, |cut| cut.along_after);
-        let end = cuts[(k + 1) % n].map_or(1.0, |cut| cut.along_before);
-        begin < end
-    };
-    let mut out = Vec::with_capacity(n);
-    for k in 0..n {
-        match (corners[k], cuts[k]) {
-            (Corner::Mitred(at), _) => out.push(at),
-            (Corner::Crossed { .. }, Some(cut)) if keeps(k) && keeps((k + n - 1) % n) => {
-                out.push(cut.at);
-            }
-            (Corner::Crossed { before, corner, after }, _) => out.extend([before, corner, after]),
+    let mut sides = Sides::new(&corners);
+    sides.cut_all(&corners);
+    Some(sides.curve(&corners))
+}
+
+/// The sides of a curve in a ring, without those that vanished.
+struct Sides {
+    sides: Vec<Side>,
+    /// Where each side is cut off the one before it that is left.
+    cuts: Vec<Option<Cut>>,
+    before: Vec<usize>,
+    after: Vec<usize>,
+}
+
+impl Sides {
+    fn new(corners: &[Corner]) -> Self {
+        let n = corners.len();
+        let side = |k: usize| Side { from: corners[k].after(), to: corners[(k + 1) % n].before() };
+        Self {
+            sides: (0..n).map(side).collect(),
+            cuts: vec![None; n],
+            before: (0..n).map(|k| (k + n - 1) % n).collect(),
+            after: (0..n).map(|k| (k + 1) % n).collect(),
         }
     }
-    Some(out)
+
+    /// Cuts each side off the one before it. A side too short for its cuts vanishes: its
+    /// neighbours are cut off each other.
+    fn cut_all(&mut self, corners: &[Corner]) {
+        let n = corners.len();
+        let cut = |k: usize| corners[k].cut(&self.sides[self.before[k]], &self.sides[k]);
+        self.cuts = (0..n).map(cut).collect();
+        let mut short: Vec<usize> = (0..n).rev().filter(|&k| self.is_short(k, corners)).collect();
+        while let Some(k) = short.pop() {
+            let (p, q) = (self.before[k], self.after[k]);
+            if self.after[k] == k || p == q || !self.is_short(k, corners) {
+                continue;
+            }
+            let Some(cut) = self.sides[p].cut(&self.sides[q]) else { continue };
+            (self.after[p], self.before[q]) = (q, p);
+            self.after[k] = k;
+            self.cuts[q] = Some(cut);
+            short.extend([q, p].into_iter().filter(|&k| self.is_short(k, corners)));
+        }
+    }
+
+    /// Whether the sides before and after this one cross it beyond its ends, or its cuts turn it
+    /// round.
+    fn is_short(&self, k: usize, corners: &[Corner]) -> bool {
+        let length = || self.sides[k].from.distance(self.sides[k].to);
+        // Where there is no cut it is still the side's own corner.
+        let is_beyond = |k: usize| {
+            self.cuts[k].is_none() && corners[k].overlap().is_some_and(|o| o >= length())
+        };
+        is_beyond(k) || is_beyond(self.after[k]) || !self.keeps(k)
+    }
+
+    /// Whether a side keeps its direction between its cuts.
+    fn keeps(&self, k: usize) -> bool {
+        let begin = self.cuts[k].map_or(0.0, |cut| cut.along_after);
+        let end = self.cuts[self.after[k]].map_or(1.0, |cut| cut.along_before);
+        begin < end
+    }
+
+    /// The curve: the cuts, or what the corners are where there are none.
+    fn curve(&self, corners: &[Corner]) -> Contour {
+        let n = corners.len();
+        let mut out = Contour::with_capacity(n);
+        for k in (0..n).filter(|&k| self.after[k] != k) {
+            let before = self.before[k];
+            match self.cuts[k].filter(|_| self.keeps(k) && self.keeps(before)) {
+                Some(cut) => out.push(cut.at),
+                // Sides that are left whole keep their loops.
+                None => {
+                    let mut corner = before;
+                    while corner != k {
+                        corner = (corner + 1) % n;
+                        corners[corner].push_to(&mut out);
+                    }
+                }
+            }
+        }
+        out
+    }
 }
 
 /// The direction to the right of the way from `a` to `b`, of length 1.
@@ -74,8 +132,9 @@ fn normal(a: Point, b: Point) -> Option<[f64; 2]> {
 enum Corner {
     /// Where the two sides moved apart meet.
     Mitred(Point),
-    /// The sides cross: where the one before ends, the corner itself, where the one after begins.
-    Crossed { before: Point, corner: Point, after: Point },
+    /// The sides cross at the mitre, `overlap` from their ends: where the one before ends, the
+    /// corner itself, where the one after begins.
+    Crossed { before: Point, corner: Point, after: Point, mitre: Point, overlap: f64 },
 }
 
 impl Corner {
@@ -84,13 +143,43 @@ impl Corner {
         let sine = after[1] * before[0] - before[1] * after[0];
         let cosine = before[0] * after[0] + before[1] * after[1];
         let moved = |by: [f64; 2], far: f64| rounded(p, [by[0] * far, by[1] * far]);
+        let both = [before[0] + after[0], before[1] + after[1]];
+        let mitre = moved(both, distance / (cosine + 1.0));
         if cosine > FOLDED && sine * distance < 0.0 {
             let (before, after) = (moved(before, distance), moved(after, distance));
-            return Some(Self::Crossed { before, corner: p, after });
+            let overlap = (distance * sine / (cosine + 1.0)).abs();
+            return Some(Self::Crossed { before, corner: p, after, mitre, overlap });
         }
-        let mitre = cosine > STRAIGHT || cosine > 2.0 / (limit * limit) - 1.0;
-        let both = [before[0] + after[0], before[1] + after[1]];
-        mitre.then(|| Self::Mitred(moved(both, distance / (cosine + 1.0))))
+        let reaches = cosine > STRAIGHT || cosine > 2.0 / (limit * limit) - 1.0;
+        reaches.then_some(Self::Mitred(mitre))
+    }
+
+    /// How far from their ends its sides cross, if they do.
+    fn overlap(self) -> Option<f64> {
+        match self {
+            Self::Mitred(_) => None,
+            Self::Crossed { overlap, .. } => Some(overlap),
+        }
+    }
+
+    /// Where its sides are cut off each other. If they are nearly parallel rounding may leave no
+    /// crossing: then at the mitre.
+    fn cut(self, before: &Side, after: &Side) -> Option<Cut> {
+        let Self::Crossed { mitre, overlap, .. } = self else { return None };
+        before.cut(after).or_else(|| {
+            let part = |side: &Side| overlap / side.from.distance(side.to);
+            let (along_before, along_after) = (1.0 - part(before), part(after));
+            let within = along_before > 0.0 && along_after < 1.0;
+            within.then_some(Cut { at: mitre, along_before, along_after })
+        })
+    }
+
+    /// Appends the points that both sides have whole.
+    fn push_to(self, curve: &mut Contour) {
+        match self {
+            Self::Mitred(at) => curve.push(at),
+            Self::Crossed { before, corner, after, .. } => curve.extend([before, corner, after]),
+        }
     }
 
     /// Where the side before it ends.
@@ -136,7 +225,7 @@ impl Side {
         [along(self.from.x, self.to.x), along(self.from.y, self.to.y)]
     }
 
-    /// Where it crosses `next` between the ends of both, if neither is level.
+    /// Where it crosses `next` between the ends of both.
     fn cut(&self, next: &Self) -> Option<Cut> {
         let ([ax, ay], [bx, by]) = (self.vector(), next.vector());
         let [x, y] = Self { from: self.from, to: next.from }.vector();
@@ -144,8 +233,7 @@ impl Side {
         let along_before = (x * by - y * bx) / cross;
         let along_after = (x * ay - y * ax) / cross;
         let within = |along: f64| along > 0.0 && along < 1.0;
-        let is_level = ay == 0.0 || by == 0.0;
-        (!is_level && within(along_before) && within(along_after)).then(|| Cut {
+        (within(along_before) && within(along_after)).then(|| Cut {
             at: self.at(next),
             along_before,
             along_after,
@@ -156,6 +244,11 @@ impl Side {
     /// further left at greater y, from its end there.
     fn at(&self, next: &Self) -> Point {
         let (a, b) = (self.downwards(), next.downwards());
+        match (a.from.y == a.to.y, b.from.y == b.to.y) {
+            (true, _) => return b.at_height(a.from.y),
+            (_, true) => return a.at_height(b.from.y),
+            _ => {}
+        }
         let ([ax, ay], [bx, by]) = (a.vector(), b.vector());
         let (a, b) = if ax / ay <= bx / by { (a, b) } else { (b, a) };
         let ([ax, ay], [bx, by]) = (a.vector(), b.vector());
@@ -163,6 +256,14 @@ impl Side {
         let along = (x * by - y * bx) / (ay * bx - by * ax);
         let place = |from: Coord, run: f64| (f64::from(from) + along * run) as Coord;
         Point { x: place(a.from.x, ax), y: place(a.from.y, ay) }
+    }
+
+    /// Where a line at `y` crosses it, which is not level; from its end with the greater y.
+    fn at_height(&self, y: Coord) -> Point {
+        let [run, rise] = self.vector();
+        let along = f64::from(y) - f64::from(self.from.y);
+        let by = (run / rise * along).round_ties_even();
+        Point { x: self.from.x + by as Coord, y }
     }
 
     /// From the end with the greater y to the other.

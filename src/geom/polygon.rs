@@ -3,13 +3,15 @@
 //! The only place that knows the library, so that it can be exchanged.
 
 use super::parallel::parallel;
-use super::{Contour, Point, double_area};
+use super::simple::windings;
+use super::{Contour, Point, double_area, side};
 use crate::units::Coord;
 use clipper2_rust::core::{FillRule, Path64, Paths64, Point64};
 use clipper2_rust::engine::ClipType;
 use clipper2_rust::engine_public::Clipper64;
 use clipper2_rust::offset::{EndType, JoinType};
 use clipper2_rust::{difference_64, inflate_paths_64, union_subjects_64};
+use std::cmp::Reverse;
 
 /// Sharp corners of an offset are cut off where they would reach further than
 /// this many offsets. At 2 the corner of a square stays sharp and a needle does
@@ -27,7 +29,9 @@ const LEAST_AREA: i128 = 1_000;
 /// that neither cross nor overlap, outside counter-clockwise, holes clockwise.
 #[must_use]
 pub fn union(contours: &[Contour]) -> Vec<Contour> {
-    from_library(&union_subjects_64(&to_library(contours), FillRule::NonZero))
+    disjoint(contours, |winding| winding != 0, 0.0).unwrap_or_else(|| {
+        from_library(&union_subjects_64(&to_library(contours), FillRule::NonZero))
+    })
 }
 
 /// `contours` (as from [`union`]) shrunk by `distance` > 0, with mitred corners.
@@ -55,14 +59,74 @@ fn offset(contours: &[Contour], distance: f64) -> Vec<Contour> {
     let sides: Option<Vec<Contour>> =
         contours.iter().map(|c| parallel(c, distance, MITER_LIMIT)).collect();
     let moved = match sides {
-        Some(sides) => clean(&to_library(&sides)),
+        Some(sides) => disjoint(&sides, |winding| winding > 0, distance)
+            .unwrap_or_else(|| from_library(&clean(&to_library(&sides)))),
         // The library knows what to do about corners that are too sharp.
         None => {
             let (join, end) = (JoinType::Miter, EndType::Polygon);
-            inflate_paths_64(&to_library(contours), distance, join, end, MITER_LIMIT, 0.0)
+            let contours = to_library(contours);
+            from_library(&inflate_paths_64(&contours, distance, join, end, MITER_LIMIT, 0.0))
         }
     };
-    from_library(&clipper2_rust::simplify_paths(&moved, CLEAN, true))
+    moved.into_iter().map(cleaned).filter(is_shape).collect()
+}
+
+/// What a union of `curves` gives if none of them cross: those that part what is inside, by its
+/// winding number, from what is not. None if they do cross. They come as from the
+/// library, so that it does not show which way they went, if they are offset by `distance`.
+fn disjoint(
+    curves: &[Contour],
+    is_inside: impl Fn(i32) -> bool,
+    distance: f64,
+) -> Option<Vec<Contour>> {
+    let windings = windings(curves)?;
+    let mut out = Vec::with_capacity(curves.len());
+    for (curve, left) in curves.iter().zip(windings) {
+        match (is_inside(left), is_inside(left - 1)) {
+            (true, false) => out.push(begun_last(curve, distance)?),
+            (false, true) => return None,
+            _ => {}
+        }
+    }
+    out.sort_by_key(|curve| curve.iter().map(|p| (Reverse(p.y), p.x)).min());
+    out.retain(is_shape);
+    Some(out)
+}
+
+/// A curve with its points in the library's order, which begins where its sweep from high to low
+/// y ends: behind the last of the lowest corners, or at a level side's if that was cut there.
+fn begun_last(curve: &Contour, distance: f64) -> Option<Contour> {
+    let n = curve.len();
+    let at = |k: usize| curve[k % n];
+    let end = curve.iter().map(|p| p.y).min()?;
+    let right = (0..n).filter(|&k| at(k).y == end).max_by_key(|&k| at(k).x)?;
+    let last = (right..right + n).find(|&k| at(k + 1).y != end)?;
+    let (before, after) = (at(last + n - 1), at(last + 1));
+    let was_cut = side(before, at(last), after) as f64 * distance < 0.0;
+    let first = if before.y == end && was_cut { last } else { last + 1 } % n;
+    Some([&curve[first..], &curve[..first]].concat())
+}
+
+/// `contour` without vertices that are close to the line between their neighbours.
+fn cleaned(contour: Contour) -> Contour {
+    let n = contour.len();
+    // A little more than would do, as the library may round otherwise.
+    let least = 1.01 * CLEAN * CLEAN;
+    let is_close = |k: usize| {
+        let (before, after) = (contour[(k + n - 1) % n], contour[(k + 1) % n]);
+        let aside = side(before, after, contour[k]) as f64;
+        aside * aside <= least * before.distance2(after) as f64
+    };
+    if !(0..n).any(is_close) {
+        return contour;
+    }
+    let cleaned = clipper2_rust::simplify_path(&path(&contour), CLEAN, true);
+    cleaned.iter().map(point).collect()
+}
+
+/// Whether a contour is more than rounding.
+fn is_shape(contour: &Contour) -> bool {
+    contour.len() >= 3 && double_area(contour).abs() >= 2 * LEAST_AREA
 }
 
 /// Contours where offset curves wind around counter-clockwise.
@@ -76,20 +140,20 @@ fn clean(curves: &Paths64) -> Paths64 {
 }
 
 fn to_library(contours: &[Contour]) -> Paths64 {
-    let path = |c: &Contour| -> Path64 {
-        c.iter().map(|p| Point64::new(i64::from(p.x), i64::from(p.y))).collect()
-    };
     contours.iter().map(path).collect()
 }
 
 fn from_library(paths: &Paths64) -> Vec<Contour> {
+    paths.iter().map(|path| path.iter().map(point).collect()).filter(is_shape).collect()
+}
+
+fn path(contour: &Contour) -> Path64 {
+    contour.iter().map(|p| Point64::new(i64::from(p.x), i64::from(p.y))).collect()
+}
+
+fn point(p: &Point64) -> Point {
     // Coordinates come from contours shrunk, or grown no further than they were shrunk before: they fit.
-    let point = |p: &Point64| Point { x: p.x as Coord, y: p.y as Coord };
-    paths
-        .iter()
-        .map(|path| path.iter().map(point).collect::<Contour>())
-        .filter(|c| c.len() >= 3 && double_area(c).abs() >= 2 * LEAST_AREA)
-        .collect()
+    Point { x: p.x as Coord, y: p.y as Coord }
 }
 
 #[cfg(test)]
@@ -131,6 +195,52 @@ mod tests {
             let apart = (area(&ours) - area(&theirs)).abs();
             prop_assert!(apart <= 10.0 * round, "{apart} of {}", area(&theirs));
         }
+    }
+
+    /// Stars with corners on a coarse grid: many sides are level, many corners at one height.
+    fn stars() -> impl Strategy<Value = Vec<Contour>> {
+        let shape = (prop::collection::vec(20.0..60.0, 3..12), -80..80, -80..80, any::<bool>());
+        let shape = shape.prop_map(|(radii, x, y, hole): (Vec<f64>, i32, i32, bool)| {
+            let coarse = |from: Coord, c: Coord| (from + c) / 4 * 4_000;
+            let move_to = |p: Point| Point { x: coarse(x, p.x), y: coarse(y, p.y) };
+            let mut star: Contour = star(&radii).into_iter().map(move_to).collect();
+            star.dedup();
+            if hole {
+                star.reverse();
+            }
+            star
+        });
+        prop::collection::vec(shape, 1..5)
+    }
+
+    proptest! {
+        #[test]
+        fn curves_free_of_crossings_come_as_the_library_would_give_them(curves in stars()) {
+            prop_assume!(curves.iter().all(|c| c.len() > 2));
+            let library = |fill| from_library(&union_subjects_64(&to_library(&curves), fill));
+            if let Some(ours) = disjoint(&curves, |winding| winding != 0, 0.0) {
+                prop_assert_eq!(ours, library(FillRule::NonZero));
+            }
+            if let Some(ours) = disjoint(&curves, |winding| winding > 0, 0.0) {
+                prop_assert_eq!(ours, library(FillRule::Positive));
+            }
+        }
+    }
+
+    #[test]
+    fn a_side_too_short_for_its_cuts_vanishes() {
+        let p = |x, y| Point { x, y };
+        // A square on its corner, one corner cut off a little.
+        let cut = vec![
+            p(0, -100_000),
+            p(100_000, 0),
+            p(1_000, 99_000),
+            p(-1_000, 99_000),
+            p(-100_000, 0),
+        ];
+        let moved = parallel(&cut, -7_071.067_8, MITER_LIMIT).unwrap();
+        assert_eq!(moved.len(), 4, "{moved:?}");
+        assert!(moved.iter().any(|at| at.distance2(p(0, 90_000)) <= 2), "{moved:?}");
     }
 
     #[test]
