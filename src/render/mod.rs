@@ -65,8 +65,8 @@ pub fn fitting(mesh: &Mesh, longer: u32) -> [u32; 2] {
 /// Samples along each side of a pixel: many where pixels are few.
 fn samples(size: [u32; 2]) -> u32 {
     /// Samples along the longer side of a small picture.
-    const WISHED: u32 = 800;
-    (WISHED / size[0].max(size[1]).max(1)).clamp(3, 8)
+    const WISHED: u32 = 600;
+    (WISHED / size[0].max(size[1]).max(1)).clamp(2, 8)
 }
 
 impl Picture {
@@ -79,8 +79,9 @@ impl Picture {
         let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
         encoder.set_color(png::ColorType::Rgba);
         encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_deflate_compression(png::DeflateCompression::Level(4));
-        encoder.set_filter(png::Filter::Up);
+        // A tenth more bytes than the usual way, in a tenth of its time.
+        encoder.set_deflate_compression(png::DeflateCompression::FdeflateUltraFast);
+        encoder.set_filter(png::Filter::Paeth);
         let mut writer = encoder.write_header()?;
         writer.write_image_data(&self.rgba)?;
         writer.finish()?;

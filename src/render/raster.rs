@@ -5,8 +5,8 @@ use super::{Pixel, light};
 use crate::mesh::Mesh;
 use rayon::prelude::*;
 
-/// Samples that are drawn at a time: few are little to hold, many go through the triangles
-/// less often.
+/// Samples that are drawn at a time, at most: few are little to hold, many go through the
+/// triangles less often.
 const BAND: u32 = 1 << 18;
 
 /// All pixels, row by row from the top.
@@ -14,9 +14,10 @@ pub(super) fn pixels(mesh: &Mesh, view: &View, size: [u32; 2], samples: u32) -> 
     let corners: Vec<Corner> =
         mesh.vertices.par_iter().map(|&vertex| view.corner(vertex)).collect();
     let most = (BAND / (size[0] * samples * samples).max(1)).max(1);
-    let bands = (0..size[1].div_ceil(most)).into_par_iter().map(|band| {
-        let rows = (size[1] - band * most).min(most);
-        let mut samples = Samples::new(size[0], band * most, rows, samples);
+    let bands = size[1].div_ceil(most);
+    let bands = (0..bands).into_par_iter().map(|band| {
+        let [top, end] = [band, band + 1].map(|band| size[1] * band / bands);
+        let mut samples = Samples::new(size[0], top, end - top, samples);
         for triangle in &mesh.triangles {
             samples.triangle(mesh, &corners, *triangle);
         }
@@ -67,10 +68,13 @@ impl Samples {
             let [from, to] = face.within(centre(row), [left, right]);
             let from = first_sample(from).max(0);
             let to = last_sample(to).min(self.width as i32 - 1);
+            if from > to {
+                continue;
+            }
             let start = (row - self.rows[0]) as usize * self.width;
-            for column in from..=to {
-                let seen = &mut self.seen[start + column as usize];
-                *seen = (*seen).max(face.seen([centre(column), centre(row)]));
+            let samples = &mut self.seen[start + from as usize..=start + to as usize];
+            for (seen, value) in samples.iter_mut().zip(face.seen(from, row)) {
+                *seen = (*seen).max(value);
             }
         }
     }
@@ -173,11 +177,14 @@ impl Face {
         [from.min(high + 1) as i32, to.max(low - 1) as i32]
     }
 
-    /// What a sample holds where this face is nearest.
-    fn seen(&self, at: [i32; 2]) -> u32 {
-        let away = |axis: usize| f64::from(at[axis] - self.at[0][axis]) * self.slope[axis];
-        let near = (self.near + away(0) + away(1)).clamp(self.range[0], self.range[1]);
-        (near as u32) << 8 | self.tone
+    /// What the samples of a row hold, from one `column` on, where this face is nearest.
+    fn seen(&self, column: i32, row: i32) -> impl Iterator<Item = u32> {
+        let away = |sample: i32, axis: usize| f64::from(centre(sample) - self.at[0][axis]);
+        let first = self.near + away(row, 1) * self.slope[1];
+        (column..).map(move |column| {
+            let near = first + away(column, 0) * self.slope[0];
+            (near.max(self.range[0]).min(self.range[1]) as u32) << 8 | self.tone
+        })
     }
 }
 

@@ -22,9 +22,8 @@ pub(super) fn tint(pixels: &[Pixel], size: [u32; 2], samples: u32, ground: Groun
     let full = samples * samples;
     let colour = |(pixel, around): (&Pixel, &f64)| {
         let alpha = (255 * pixel.covered + full / 2) / full;
-        let rgb = shade(darkened(pixel, *around));
+        let rgb = if alpha == 0 { [0; 3] } else { shade(darkened(pixel, *around)) };
         match ground {
-            Ground::Transparent if alpha == 0 => [0; 4],
             Ground::Transparent => [rgb[0] as u8, rgb[1] as u8, rgb[2] as u8, alpha as u8],
             Ground::White => {
                 let mixed = rgb.map(|c| ((c * alpha + 255 * (255 - alpha) + 127) / 255) as u8);
@@ -54,36 +53,56 @@ fn shade(tone: u32) -> [u32; 3] {
 
 /// The mean nearness around each pixel, of the pixels that show a model.
 fn surroundings(pixels: &[Pixel], size: [u32; 2]) -> Vec<f64> {
-    let [width, height] = size.map(|pixels| pixels as usize);
+    let width = size[0].max(1) as usize;
     let reach = (size[0].max(size[1]) / REACH).max(1) as usize;
     let mut sums: Vec<[u64; 2]> = pixels
         .iter()
         .map(|pixel| [u64::from(pixel.covered), u64::from(pixel.covered) * u64::from(pixel.near)])
         .collect();
     for _ in 0..2 {
-        for y in 0..height {
-            blur(&mut sums, reach, |x| y * width + x, width);
-        }
-        for x in 0..width {
-            blur(&mut sums, reach, |y| y * width + x, height);
-        }
+        sums = blur_columns(&sums, reach, width);
+        sums.chunks_mut(width).for_each(|row| blur_row(row, reach));
     }
     sums.into_iter().map(|[count, near]| near as f64 / count.max(1) as f64).collect()
 }
 
-/// Each of a row's or column's `count` sums becomes that of the ones within `reach` of it.
-fn blur(sums: &mut [[u64; 2]], reach: usize, at: impl Fn(usize) -> usize, count: usize) {
-    let line: Vec<[u64; 2]> = (0..count).map(|k| sums[at(k)]).collect();
+/// Each of a row's sums becomes that of the ones within `reach` of it.
+fn blur_row(row: &mut [[u64; 2]], reach: usize) {
+    let before = row.to_vec();
     let mut sum = [0; 2];
-    for k in 0..count + reach {
-        for part in 0..2 {
-            sum[part] += line.get(k).map_or(0, |one| one[part]);
-            if k > 2 * reach {
-                sum[part] -= line[k - 2 * reach - 1][part];
+    for k in 0..row.len() + reach {
+        if let Some(next) = before.get(k) {
+            (0..2).for_each(|part| sum[part] += next[part]);
+        }
+        if let Some(last) = k.checked_sub(2 * reach + 1) {
+            (0..2).for_each(|part| sum[part] -= before[last][part]);
+        }
+        if let Some(here) = k.checked_sub(reach) {
+            row[here] = sum;
+        }
+    }
+}
+
+/// Each of the columns' sums becomes that of the ones within `reach` of it: all columns at a
+/// time, as memory lies by rows.
+fn blur_columns(sums: &[[u64; 2]], reach: usize, width: usize) -> Vec<[u64; 2]> {
+    let rows: Vec<&[[u64; 2]]> = sums.chunks(width).collect();
+    let mut out = Vec::with_capacity(sums.len());
+    let mut window = vec![[0; 2]; width];
+    for k in 0..rows.len() + reach {
+        if let Some(&next) = rows.get(k) {
+            for (sum, one) in window.iter_mut().zip(next) {
+                (0..2).for_each(|part| sum[part] += one[part]);
+            }
+        }
+        if let Some(last) = k.checked_sub(2 * reach + 1) {
+            for (sum, one) in window.iter_mut().zip(rows[last]) {
+                (0..2).for_each(|part| sum[part] -= one[part]);
             }
         }
         if k >= reach {
-            sums[at(k - reach)] = sum;
+            out.extend_from_slice(&window);
         }
     }
+    out
 }
