@@ -3,7 +3,7 @@
 use super::RawMesh;
 use super::coordinate::{complaint, usable};
 use super::limit::{CHUNK, Limit, unreadable};
-use super::weld::Welder;
+use super::weld::{Facet, Welder};
 use std::io::Read;
 
 /// The words that have a place inside a facet only.
@@ -136,7 +136,7 @@ impl Parser {
                 if self.welder.count() >= limit.triangles {
                     return Err(limit.exceeded(&format!("has more than {}", limit.triangles)));
                 }
-                self.welder.add(self.normal, self.corners);
+                self.welder.add(&Facet::new(self.normal, self.corners));
                 State::Between
             }
             State::End => self.other(word, "endfacet")?,

@@ -3,8 +3,9 @@
 use super::RawMesh;
 use super::coordinate::{complaint, usable};
 use super::limit::{Limit, unreadable};
-use super::weld::Welder;
+use super::weld::{Facet, Welder};
 use std::io::Read;
+use std::ops::Range;
 
 /// Bytes before the first triangle of a binary file: a header of 80 and the count.
 pub(crate) const HEADER: usize = 84;
@@ -33,7 +34,7 @@ pub(crate) fn count(head: &[u8]) -> Option<[u8; 4]> {
 /// # Errors
 /// The triangle, the cause and what to do, as text without the file's name.
 pub(crate) fn read(
-    from: &mut dyn Read,
+    from: &mut (dyn Read + Send),
     count: [u8; 4],
     length: Option<u64>,
     limit: Limit,
@@ -102,33 +103,51 @@ fn cut_off(announced: u64, length: u64) -> String {
     )
 }
 
-/// Reads so many records.
-fn records(from: &mut dyn Read, announced: u64) -> Result<RawMesh> {
+/// Reads so many records: the next ones are read while those before are welded.
+fn records(from: &mut (dyn Read + Send), announced: u64) -> Result<RawMesh> {
     let mut welder = Welder::with_capacity(usize::try_from(announced).unwrap_or(usize::MAX));
     let mut bytes = Vec::new();
-    let mut number = 0;
-    while number < announced {
-        let wanted = (announced - number).min(AT_ONCE) * RECORD as u64;
-        bytes.clear();
-        let read = from.take(wanted).read_to_end(&mut bytes).map_err(|error| unreadable(&error))?;
-        for record in bytes.chunks_exact(RECORD) {
-            number += 1;
-            let [normal, corners @ ..] = vectors(record);
-            if let Some(wrong) = corners.as_flattened().iter().find(|number| !usable(**number)) {
-                let complaint = complaint(*wrong);
-                return Err(format!(
-                    "triangle {number}: {complaint}; mend or export the model again"
-                ));
-            }
-            welder.add(normal, corners);
+    let (mut facets, mut next) = (Vec::new(), Vec::new());
+    let mut first = 0;
+    while first < announced {
+        let count = (announced - first).min(AT_ONCE);
+        let (read, ()) = rayon::join(
+            || read_facets(from, &mut bytes, first..first + count, &mut next),
+            || facets.iter().for_each(|facet| welder.add(facet)),
+        );
+        let read = read?;
+        if read < count * RECORD as u64 {
+            return Err(cut_off(announced, length_of(first) + read));
         }
-        if (read as u64) < wanted {
-            return Err(cut_off(announced, length_of(number) + (read % RECORD) as u64));
-        }
+        std::mem::swap(&mut facets, &mut next);
+        first += count;
     }
+    facets.iter().for_each(|facet| welder.add(facet));
     let mut mesh = welder.finish();
     mesh.report.format = "binary";
     Ok(mesh)
+}
+
+/// Reads the records with these numbers, counted from 0. Returns how many bytes there were.
+fn read_facets(
+    from: &mut dyn Read,
+    bytes: &mut Vec<u8>,
+    numbers: Range<u64>,
+    facets: &mut Vec<Facet>,
+) -> Result<u64> {
+    bytes.clear();
+    facets.clear();
+    let wanted = (numbers.end - numbers.start) * RECORD as u64;
+    let read = from.take(wanted).read_to_end(bytes).map_err(|error| unreadable(&error))?;
+    for (number, record) in numbers.zip(bytes.chunks_exact(RECORD)) {
+        let [normal, corners @ ..] = vectors(record);
+        if let Some(wrong) = corners.as_flattened().iter().find(|number| !usable(**number)) {
+            let (number, complaint) = (number + 1, complaint(*wrong));
+            return Err(format!("triangle {number}: {complaint}; mend or export the model again"));
+        }
+        facets.push(Facet::new(normal, corners));
+    }
+    Ok(read as u64)
 }
 
 /// Normal and corners of a record of [`RECORD`] bytes.

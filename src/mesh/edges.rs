@@ -32,11 +32,9 @@ pub fn parts(half_edge: u32) -> (usize, usize) {
     ((half_edge >> 2) as usize, (half_edge & 3) as usize)
 }
 
-/// Pairs the half-edges of fewer than 2³⁰ `triangles` over `vertices`.
+/// Pairs the half-edges of fewer than 2³⁰ `triangles` over `vertices`, in linear time.
 ///
-/// Half-edges are bucketed by their lower vertex (a counting sort), then
-/// sorted by the other one within the few of a bucket: linear time. Where an
-/// edge has more than two half-edges, they are taken in the order of their
+/// Where an edge has more than two half-edges, they are taken in the order of their
 /// triangles around the edge, and those that bound the same wedge of solid are
 /// paired; the order of the triangles does not matter. An edge from a vertex to
 /// itself has no neighbour.
@@ -45,6 +43,9 @@ pub fn parts(half_edge: u32) -> (usize, usize) {
 /// If a triangle names a vertex that is not there.
 #[must_use]
 pub fn adjacency(vertices: &[[i32; 3]], triangles: &[[u32; 3]]) -> Adjacency {
+    if let Some(neighbour) = of_sound(vertices.len(), triangles) {
+        return Adjacency { neighbour, unpaired: 0, non_manifold: 0 };
+    }
     let mut result =
         Adjacency { neighbour: vec![[NONE; 3]; triangles.len()], unpaired: 0, non_manifold: 0 };
     each_edge(vertices.len(), triangles, |(low, high), sides| {
@@ -55,6 +56,57 @@ pub fn adjacency(vertices: &[[i32; 3]], triangles: &[[u32; 3]]) -> Adjacency {
         }
     });
     result
+}
+
+/// A half-edge whose other one was not met yet, in a list of those with the same lower vertex.
+struct Waiting {
+    high: u32,
+    /// [`NONE`] once it is paired.
+    half: u32,
+    /// The one before it in the list, or [`NONE`].
+    next: u32,
+}
+
+/// The neighbours in a mesh each edge of which has two half-edges in opposite directions; none
+/// if it has others, or if so many edges meet at one vertex that lists are no way to find them.
+fn of_sound(vertices: usize, triangles: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> {
+    /// Half-edges that may be looked at to find one, on average.
+    const MOST_STEPS: usize = 16;
+    let mut neighbour = vec![[NONE; 3]; triangles.len()];
+    let mut last = vec![NONE; vertices];
+    let mut waiting: Vec<Waiting> = Vec::with_capacity(triangles.len() / 2 * 3);
+    let mut steps = 3 * MOST_STEPS * triangles.len();
+    for (triangle, corners) in triangles.iter().enumerate() {
+        for edge in 0..3 {
+            let (low, high) = ends_of(corners, edge);
+            let here = half_edge(triangle, edge);
+            let mut at = last[low as usize];
+            while at != NONE && waiting[at as usize].high != high {
+                at = waiting[at as usize].next;
+                steps = steps.checked_sub(1)?;
+            }
+            if at == NONE {
+                let next = std::mem::replace(&mut last[low as usize], index(waiting.len()));
+                waiting.push(Waiting { high, half: here, next });
+                continue;
+            }
+            let other = std::mem::replace(&mut waiting[at as usize].half, NONE);
+            if other == NONE || starts_at(low, other, triangles) == (corners[edge] == low) {
+                return None;
+            }
+            let (t, e) = parts(other);
+            (neighbour[triangle][edge], neighbour[t][e]) = (other, here);
+        }
+    }
+    // All are paired if so many were left waiting at first, and no edge has one vertex only.
+    let is_sound = 2 * waiting.len() == 3 * triangles.len();
+    is_sound.then_some(neighbour)
+}
+
+/// A place in a list of fewer than 3 · 2³⁰ half-edges.
+#[expect(clippy::cast_possible_truncation, reason = "fewer than 2^30 triangles, see adjacency")]
+fn index(place: usize) -> u32 {
+    place as u32
 }
 
 /// Calls `visit` with every edge of `triangles`, its lower and its higher vertex, and the

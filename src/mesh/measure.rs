@@ -3,6 +3,7 @@
 use super::Mesh;
 use super::vector::{Corner, cross, dot, minus, normal};
 use crate::units::UNITS_PER_MM;
+use rayon::prelude::*;
 
 /// Whether any triangle has area.
 pub(crate) fn has_area(mesh: &Mesh) -> bool {
@@ -17,7 +18,9 @@ pub(crate) fn corners_of(vertices: &[Corner], triangle: [u32; 3]) -> [Corner; 3]
 /// The signed volume: a sixth of the sum of the triangles' determinants, in
 /// integers, so that no order of the triangles changes it.
 pub(crate) fn volume_mm3(mesh: &Mesh) -> f64 {
-    let sum = mesh.triangles.iter().map(|&t| determinant(corners_of(&mesh.vertices, t))).sum();
+    let determinants =
+        mesh.triangles.par_iter().map(|&t| determinant(corners_of(&mesh.vertices, t)));
+    let sum = determinants.sum();
     of_determinants(sum)
 }
 

@@ -9,6 +9,7 @@ use super::{Bed, Mesh, Placement, Policy, RawMesh, Unit, inspect};
 use crate::error::{Error, Result};
 use crate::units::{sin_cos, sum_mm, to_units};
 use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
 
 /// One model on the grid, its bounding box's middle at x = y = 0.
 #[derive(Debug, Clone)]
@@ -75,7 +76,7 @@ fn points(model: &RawMesh, placement: &Placement) -> Vec<Vector3<f64>> {
     };
     let (turn, factor) = (rotation(placement.rotate), unit * placement.scale);
     let point = |corner: &[f32; 3]| turn * (Vector3::from(corner.map(f64::from)) * factor);
-    model.vertices.iter().map(point).collect()
+    model.vertices.par_iter().map(point).collect()
 }
 
 /// The turns about x, then y, then z by `degrees`, as one matrix.
@@ -90,7 +91,9 @@ fn rotation(degrees: [f64; 3]) -> Matrix3<f64> {
 /// The lowest and the highest coordinates.
 fn bounds(points: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
     let first = points.first().copied().unwrap_or_default();
-    points.iter().fold([first; 2], |[low, high], point| [low.inf(point), high.sup(point)])
+    let both =
+        |[low, high]: [Vector3<f64>; 2], [l, h]: [Vector3<f64>; 2]| [low.inf(&l), high.sup(&h)];
+    points.par_iter().map(|point| [*point; 2]).reduce(|| [first; 2], both)
 }
 
 /// The points as they stand on the bed, and the size of the whole, grid units.
@@ -101,7 +104,7 @@ fn on_grid(points: &[Vector3<f64>]) -> (Vec<[i32; 3]>, [i64; 3]) {
     let rounded = |point: &Vector3<f64>| <[f64; 3]>::from(point - zero).map(to_units);
     // The middle of the box is at 0, so that both sides round alike.
     let half = rounded(&high).map(i64::from);
-    (points.iter().map(rounded).collect(), [2 * half[0], 2 * half[1], half[2]])
+    (points.par_iter().map(rounded).collect(), [2 * half[0], 2 * half[1], half[2]])
 }
 
 /// Refuses a model that encloses nothing.

@@ -26,7 +26,7 @@ const HEAD: u64 = 1 << 16;
 /// [`Error::Input`] if it cannot be read or is no usable STL; see [`parse`].
 pub fn load(path: &str, max_triangles: usize) -> Result<RawMesh> {
     if path == "-" {
-        return read("<stdin>", &mut std::io::stdin().lock(), None, max_triangles);
+        return read("<stdin>", &mut std::io::stdin(), None, max_triangles);
     }
     let mut file = File::open(path).map_err(|error| match error.kind() {
         _ if path.is_empty() => Error::input("''", "is no file name; name a model"),
@@ -66,7 +66,7 @@ pub fn parse(name: &str, mut bytes: &[u8], max_triangles: usize) -> Result<RawMe
 /// As [`parse`], of a source whose length may not be known.
 fn read(
     name: &str,
-    from: &mut dyn Read,
+    from: &mut (dyn Read + Send),
     length: Option<u64>,
     max_triangles: usize,
 ) -> Result<RawMesh> {
@@ -87,7 +87,7 @@ fn read(
 
 /// Tells by its head what a file is, and reads it.
 fn read_any(
-    from: &mut dyn Read,
+    from: &mut (dyn Read + Send),
     length: Option<u64>,
     limit: Limit,
 ) -> std::result::Result<RawMesh, String> {

@@ -11,6 +11,22 @@ pub(crate) const MAX_TRIANGLES: usize = (1 << 30) - 1;
 /// Room for so many triangles at most is taken before they are read.
 const MOST_AHEAD: usize = 1 << 20;
 
+/// A triangle as a file has it, made ready to be welded.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Facet {
+    corners: [[f32; 3]; 3],
+    /// Its stored normal is one, and points to where the corners say inside is.
+    is_against: bool,
+}
+
+impl Facet {
+    pub(crate) fn new(normal: [f32; 3], corners: [[f32; 3]; 3]) -> Self {
+        // Adding zero turns -0 into 0 and leaves every other number as it is.
+        let corners = corners.map(|corner| corner.map(|number| number + 0.0));
+        Self { corners, is_against: is_against(normal, corners) }
+    }
+}
+
 /// Collects triangles into a [`RawMesh`]. The table is only looked up, never
 /// walked, so that a vertex's index is the order of its first use. It is keyed
 /// at random: no file can be made whose corners all meet in one place of it.
@@ -19,6 +35,9 @@ pub(crate) struct Welder {
     /// Indices of vertices by the bits of their numbers.
     index: HashTable<u32>,
     keys: DefaultHashBuilder,
+    /// The corners of the triangle before, and their vertices: most files go on from there, and
+    /// comparing is quicker than looking up.
+    before: Option<([[f32; 3]; 3], [u32; 3])>,
     mesh: RawMesh,
 }
 
@@ -34,24 +53,29 @@ impl Welder {
         welder
     }
 
-    /// Adds one triangle, unless two of its corners are equal. Its stored `normal` is counted
-    /// if it is one and points to where the corners say inside is.
-    pub(crate) fn add(&mut self, normal: [f32; 3], corners: [[f32; 3]; 3]) {
-        // Adding zero turns -0 into 0 and leaves every other number as it is.
-        let corners = corners.map(|corner| corner.map(|number| number + 0.0));
-        let [a, b, c] = corners.map(|corner| corner.map(f32::to_bits));
+    /// Adds one triangle, unless two of its corners are equal.
+    pub(crate) fn add(&mut self, facet: &Facet) {
+        let corners = facet.corners;
+        let [a, b, c] = corners;
         if a == b || b == c || c == a {
             self.mesh.degenerate += 1;
             return;
         }
-        self.mesh.wrong_normals += usize::from(is_against(normal, corners));
-        let triangle = corners.map(|corner| self.vertex(corner));
+        self.mesh.wrong_normals += usize::from(facet.is_against);
+        let before = self.before;
+        let triangle = corners.map(|corner| {
+            let known = before.and_then(|(corners, vertices)| {
+                corners.iter().position(|&other| other == corner).map(|k| vertices[k])
+            });
+            known.unwrap_or_else(|| self.vertex(corner))
+        });
+        self.before = Some((corners, triangle));
         self.mesh.triangles.push(triangle);
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "3 * MAX_TRIANGLES fits u32")]
     fn vertex(&mut self, corner: [f32; 3]) -> u32 {
-        let Self { index, keys, mesh: RawMesh { vertices, .. } } = self;
+        let Self { index, keys, mesh: RawMesh { vertices, .. }, .. } = self;
         let hash = |&[x, y, z]: &[f32; 3]| {
             keys.hash_one((u64::from(x.to_bits()) << 32 | u64::from(y.to_bits()), z.to_bits()))
         };
@@ -102,8 +126,8 @@ mod tests {
     #[test]
     fn equal_corners_share_a_vertex_in_the_order_of_first_use() {
         let mut welder = Welder::default();
-        welder.add(NONE, [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
-        welder.add(NONE, [[0.0, 1.0, -0.0], [-0.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
+        welder.add(&Facet::new(NONE, [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]));
+        welder.add(&Facet::new(NONE, [[0.0, 1.0, -0.0], [-0.0, 0.0, 0.0], [0.0, 0.0, 1.0]]));
         let mesh = welder.finish();
         assert_eq!(mesh.triangles, [[0, 1, 2], [2, 1, 3]]);
         assert_eq!(mesh.vertices[3], [0.0, 0.0, 1.0]);
@@ -113,9 +137,9 @@ mod tests {
     #[test]
     fn only_triangles_with_equal_corners_are_dropped() {
         let mut welder = Welder::default();
-        welder.add(NONE, [[9.0, 9.0, 9.0], [9.0, 9.0, 9.0], [5.0, 5.0, 5.0]]);
-        welder.add(NONE, [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [-0.0, 0.0, -0.0]]);
-        welder.add(NONE, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
+        welder.add(&Facet::new(NONE, [[9.0, 9.0, 9.0], [9.0, 9.0, 9.0], [5.0, 5.0, 5.0]]));
+        welder.add(&Facet::new(NONE, [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [-0.0, 0.0, -0.0]]));
+        welder.add(&Facet::new(NONE, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]));
         let mesh = welder.finish();
         assert_eq!((mesh.degenerate, mesh.triangles.len()), (2, 1));
         assert_eq!(mesh.vertices.len(), 3, "a dropped triangle leaves no vertex behind");
@@ -137,7 +161,7 @@ mod tests {
             ([0.0, 0.0, -1e-30], 1),
         ] {
             let mut welder = Welder::default();
-            welder.add(normal, corners);
+            welder.add(&Facet::new(normal, corners));
             assert_eq!(welder.finish().wrong_normals, wrong, "{normal:?}");
         }
     }

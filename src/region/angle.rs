@@ -9,6 +9,7 @@
 
 use crate::mesh::Mesh;
 use crate::units::sin_cos;
+use rayon::prelude::*;
 
 /// Directions differ by less than a right angle: one bin for each degree.
 const BINS: usize = 90;
@@ -44,18 +45,27 @@ pub fn least_turns(mesh: &Mesh) -> f64 {
 /// The faces' normals, seen from above and turned into the first quarter, summed by
 /// their direction. Sums are of whole numbers, so that the order of faces does not matter.
 fn bins(mesh: &Mesh) -> Vec<[f64; 2]> {
-    let mut bins = vec![[0_i128; 2]; BINS];
-    for triangle in &mesh.triangles {
+    let directions: Vec<(f64, f64)> = (1..BINS).map(|degrees| sin_cos(degrees as f64)).collect();
+    let none = || vec![[0_i128; 2]; BINS];
+    let add = |mut bins: Vec<[i128; 2]>, triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|k| mesh.vertices[k as usize].map(i64::from));
         let (p, q) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
         let [mut x, mut y] = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2]];
         while x < 0 || y < 0 || x == 0 && y != 0 {
             (x, y) = (y, -x);
         }
-        let bin = libm::atan2(y as f64, x as f64).to_degrees() as usize;
-        let sum = &mut bins[bin.min(BINS - 1)];
+        let bin = directions.partition_point(|(sin, cos)| y as f64 * cos >= x as f64 * sin);
+        let sum = &mut bins[if x == 0 { 0 } else { bin }];
         *sum = [sum[0] + i128::from(x), sum[1] + i128::from(y)];
-    }
+        bins
+    };
+    let both = |mut bins: Vec<[i128; 2]>, others: Vec<[i128; 2]>| {
+        for (sum, other) in bins.iter_mut().zip(others) {
+            *sum = [sum[0] + other[0], sum[1] + other[1]];
+        }
+        bins
+    };
+    let bins = mesh.triangles.par_iter().fold(none, add).reduce(none, both);
     bins.into_iter().map(|sum| sum.map(|s| s as f64)).collect()
 }
 
