@@ -36,9 +36,9 @@ pub struct Picture {
 #[derive(Debug, Clone, Copy, Default)]
 struct Pixel {
     /// Its samples that show a model.
-    covered: u32,
+    covered: u8,
     /// Mean brightness of these, 0 to 255.
-    tone: u32,
+    tone: u8,
     /// Mean nearness of these; see [`view::Corner::near`].
     near: u32,
 }

@@ -4,30 +4,87 @@ use super::view::{Corner, GRAIN, View};
 use super::{Pixel, light};
 use crate::mesh::Mesh;
 use rayon::prelude::*;
+use std::ops::RangeInclusive;
 
-/// Samples that are drawn at a time, at most: few are little to hold, many go through the
-/// triangles less often.
-const BAND: u32 = 1 << 18;
+/// Samples that are drawn at a time, at most: few enough to stay in a processor's cache.
+const BAND: u32 = 1 << 15;
+
+/// Triangles that are looked through at a time for those that hold a sample.
+const AT_ONCE: usize = 1 << 14;
 
 /// All pixels, row by row from the top.
 pub(super) fn pixels(mesh: &Mesh, view: &View, size: [u32; 2], samples: u32) -> Vec<Pixel> {
     let corners: Vec<Corner> =
         mesh.vertices.par_iter().map(|&vertex| view.corner(vertex)).collect();
-    let most = (BAND / (size[0] * samples * samples).max(1)).max(1);
-    let bands = size[1].div_ceil(most);
-    let bands = (0..bands).into_par_iter().map(|band| {
-        let [top, end] = [band, band + 1].map(|band| size[1] * band / bands);
-        let mut samples = Samples::new(size[0], top, end - top, samples);
-        for triangle in &mesh.triangles {
-            samples.triangle(mesh, &corners, *triangle);
+    let grid = Grid::new(size, samples);
+    let bins = bins(mesh, &corners, &grid);
+    let mut pixels = vec![Pixel::default(); grid.width * size[1] as usize];
+    let bands = pixels.par_chunks_mut((grid.width * grid.band).max(1)).enumerate();
+    bands.for_each_init(Vec::new, |seen, (band, pixels)| {
+        let mut samples = Samples::new(&grid, band, pixels.len(), seen);
+        for triangle in bins.iter().flat_map(|bins| &bins[band]) {
+            samples.triangle(mesh, &corners, mesh.triangles[*triangle as usize]);
         }
-        samples.pixels()
+        samples.resolve(pixels);
     });
-    bands.flatten_iter().collect()
+    pixels
+}
+
+/// The triangles that hold a sample, by the bands that they reach into; several lists for each
+/// band, one after the other.
+fn bins(mesh: &Mesh, corners: &[Corner], grid: &Grid) -> Vec<Vec<Vec<u32>>> {
+    let chunks = mesh.triangles.par_chunks(AT_ONCE).enumerate();
+    let bins = chunks.map(|(chunk, triangles)| {
+        let mut bins = vec![Vec::new(); grid.bands];
+        for (number, triangle) in (chunk * AT_ONCE..).zip(triangles) {
+            let [columns, rows] = held(triangle.map(|corner| corners[corner as usize].at));
+            // Most triangles of fine meshes lie between the samples.
+            if !columns.is_empty() && !rows.is_empty() {
+                let bands = grid.band_of(*rows.start())..=grid.band_of(*rows.end());
+                bins[bands].iter_mut().for_each(|bin| bin.push(number as u32));
+            }
+        }
+        bins
+    });
+    bins.collect()
+}
+
+/// The columns and rows of samples whose middles a triangle's box has.
+fn held(corners: [[i32; 2]; 3]) -> [RangeInclusive<i32>; 2] {
+    [0, 1].map(|axis| {
+        let [a, b, c] = corners.map(|corner| corner[axis]);
+        first_sample(a.min(b).min(c))..=last_sample(a.max(b).max(c))
+    })
+}
+
+/// How a picture is divided.
+struct Grid {
+    /// Samples along each side of a pixel.
+    samples: usize,
+    /// Pixels in a row.
+    width: usize,
+    /// Rows of pixels in each band but the last.
+    band: usize,
+    /// The number of bands.
+    bands: usize,
+}
+
+impl Grid {
+    fn new(size: [u32; 2], samples: u32) -> Self {
+        let band = (BAND / (size[0] * samples * samples).max(1)).max(1);
+        let bands = size[1].div_ceil(band) as usize;
+        Self { samples: samples as usize, width: size[0] as usize, band: band as usize, bands }
+    }
+
+    /// The band of a row of samples, or the nearest one.
+    fn band_of(&self, row: i32) -> usize {
+        let row = usize::try_from(row).unwrap_or(0);
+        (row / (self.band * self.samples)).min(self.bands.saturating_sub(1))
+    }
 }
 
 /// The samples of a band.
-struct Samples {
+struct Samples<'a> {
     /// Along each side of a pixel.
     per_pixel: usize,
     width: usize,
@@ -35,37 +92,31 @@ struct Samples {
     rows: [i32; 2],
     /// Nearness in the upper 24 bits and tone below: the larger one is what is seen, so
     /// that the order of the triangles has no say. 0 where nothing is.
-    seen: Vec<u32>,
+    seen: &'a mut Vec<u32>,
 }
 
-impl Samples {
-    #[expect(
-        clippy::slow_vector_initialization,
-        reason = "memory that comes zeroed is mapped twice: when it is read, and when it is written"
-    )]
-    fn new(width: u32, top: u32, rows: u32, samples: u32) -> Self {
-        let (width, per_pixel) = ((width * samples) as usize, samples as usize);
-        let first = (top * samples) as i32;
-        let count = (rows * samples) as usize;
-        let mut seen = Vec::with_capacity(width * count);
-        seen.resize(width * count, 0);
-        Self { per_pixel, width, rows: [first, first + count as i32], seen }
+impl<'a> Samples<'a> {
+    /// Those of a band with so many `pixels`, in memory that was `seen` before.
+    fn new(grid: &Grid, band: usize, pixels: usize, seen: &'a mut Vec<u32>) -> Self {
+        let per_pixel = grid.samples;
+        let width = grid.width * per_pixel;
+        let first = (band * grid.band * per_pixel) as i32;
+        let count = pixels * per_pixel * per_pixel;
+        seen.clear();
+        seen.resize(count, 0);
+        Self { per_pixel, width, rows: [first, first + (count / width.max(1)) as i32], seen }
     }
 
     fn triangle(&mut self, mesh: &Mesh, corners: &[Corner], triangle: [u32; 3]) {
-        let at = |k: usize, axis: usize| corners[triangle[k] as usize].at[axis];
-        let least = |axis: usize| at(0, axis).min(at(1, axis)).min(at(2, axis));
-        let most = |axis: usize| at(0, axis).max(at(1, axis)).max(at(2, axis));
-        let first = first_sample(least(1)).max(self.rows[0]);
-        let last = last_sample(most(1)).min(self.rows[1] - 1);
-        let (left, right) = (least(0), most(0));
-        // Most triangles of fine meshes lie between the samples.
-        if first > last || first_sample(left) > last_sample(right) {
-            return;
-        }
+        let at = triangle.map(|corner| corners[corner as usize].at);
+        let [_, rows] = held(at);
+        let first = (*rows.start()).max(self.rows[0]);
+        let last = (*rows.end()).min(self.rows[1] - 1);
+        let [a, b, c] = at.map(|corner| corner[0]);
+        let range = [a.min(b).min(c), a.max(b).max(c)];
         let Some(face) = Face::new(mesh, corners, triangle) else { return };
         for row in first..=last {
-            let [from, to] = face.within(centre(row), [left, right]);
+            let [from, to] = face.within(centre(row), range);
             let from = first_sample(from).max(0);
             let to = last_sample(to).min(self.width as i32 - 1);
             if from > to {
@@ -79,34 +130,27 @@ impl Samples {
         }
     }
 
-    /// The samples of each pixel together.
-    fn pixels(&self) -> Vec<Pixel> {
+    /// Puts the samples of each pixel together.
+    fn resolve(&self, pixels: &mut [Pixel]) {
         let side = self.per_pixel;
-        if self.width == 0 {
-            return Vec::new();
-        }
-        let row = |rows: &[u32]| -> Vec<Pixel> {
-            let mut pixels = vec![Pixel::default(); self.width / side];
-            let mut near = vec![0_u64; pixels.len()];
-            for samples in rows.chunks(self.width) {
-                for ((pixel, near), samples) in
-                    pixels.iter_mut().zip(&mut near).zip(samples.chunks(side))
-                {
-                    for &seen in samples.iter().filter(|&&seen| seen > 0) {
-                        pixel.covered += 1;
-                        pixel.tone += seen & 0xff;
-                        *near += u64::from(seen >> 8);
-                    }
+        for (k, pixel) in pixels.iter_mut().enumerate() {
+            let (row, column) = (k * side / self.width, k * side % self.width);
+            let first = row * side * self.width + column;
+            let (mut covered, mut tone, mut near) = (0, 0, 0);
+            for row in 0..side {
+                for &seen in &self.seen[first + row * self.width..][..side] {
+                    covered += u32::from(seen > 0);
+                    tone += seen & 0xff;
+                    near += u64::from(seen >> 8);
                 }
             }
-            for (pixel, near) in pixels.iter_mut().zip(near) {
-                let count = pixel.covered.max(1);
-                pixel.tone = (pixel.tone + count / 2) / count;
-                pixel.near = (near / u64::from(count)) as u32;
-            }
-            pixels
-        };
-        self.seen.chunks(self.width * side).flat_map(row).collect()
+            let count = covered.max(1);
+            *pixel = Pixel {
+                covered: covered as u8,
+                tone: ((tone + count / 2) / count) as u8,
+                near: (near / u64::from(count)) as u32,
+            };
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Pixels -> colours: hollows and edges darker than their surroundings, then tones as one colour's shades.
 
 use super::{Ground, Pixel};
+use std::collections::VecDeque;
 
 /// Shades from dark to bright, with the tones that they stand for. Saturated in the
 /// middle, so that no face is lost on a light or on a dark page.
@@ -18,20 +19,23 @@ const DARKEST: f64 = 70.0;
 
 /// Red, green, blue and alpha of each pixel.
 pub(super) fn tint(pixels: &[Pixel], size: [u32; 2], samples: u32, ground: Ground) -> Vec<u8> {
-    let around = surroundings(pixels, size);
     let full = samples * samples;
-    let colour = |(pixel, around): (&Pixel, &f64)| {
-        let alpha = (255 * pixel.covered + full / 2) / full;
-        let rgb = if alpha == 0 { [0; 3] } else { shade(darkened(pixel, *around)) };
-        match ground {
-            Ground::Transparent => [rgb[0] as u8, rgb[1] as u8, rgb[2] as u8, alpha as u8],
-            Ground::White => {
-                let mixed = rgb.map(|c| ((c * alpha + 255 * (255 - alpha) + 127) / 255) as u8);
-                [mixed[0], mixed[1], mixed[2], 255]
-            }
+    let mut rgba = Vec::with_capacity(4 * pixels.len());
+    for (row, around) in pixels.chunks(size[0].max(1) as usize).zip(surroundings(pixels, size)) {
+        for (pixel, [count, near]) in row.iter().zip(around) {
+            let alpha = (255 * u32::from(pixel.covered) + full / 2) / full;
+            let around = near as f64 / count.max(1) as f64;
+            let rgb = if alpha == 0 { [0; 3] } else { shade(darkened(pixel, around)) };
+            rgba.extend_from_slice(&match ground {
+                Ground::Transparent => [rgb[0] as u8, rgb[1] as u8, rgb[2] as u8, alpha as u8],
+                Ground::White => {
+                    let mixed = rgb.map(|c| ((c * alpha + 255 * (255 - alpha) + 127) / 255) as u8);
+                    [mixed[0], mixed[1], mixed[2], 255]
+                }
+            });
         }
-    };
-    pixels.iter().zip(&around).flat_map(colour).collect()
+    }
+    rgba
 }
 
 /// The tone of a pixel after it is compared with its surroundings: unsharp masking of the
@@ -51,58 +55,81 @@ fn shade(tone: u32) -> [u32; 3] {
     })
 }
 
-/// The mean nearness around each pixel, of the pixels that show a model.
-fn surroundings(pixels: &[Pixel], size: [u32; 2]) -> Vec<f64> {
+/// How many samples show a model, and the sum of their nearness.
+type Sum = [u64; 2];
+
+/// The sums around each pixel, row by row.
+fn surroundings(pixels: &[Pixel], size: [u32; 2]) -> impl Iterator<Item = Vec<Sum>> {
     let width = size[0].max(1) as usize;
     let reach = (size[0].max(size[1]) / REACH).max(1) as usize;
-    let mut sums: Vec<[u64; 2]> = pixels
-        .iter()
-        .map(|pixel| [u64::from(pixel.covered), u64::from(pixel.covered) * u64::from(pixel.near)])
-        .collect();
-    for _ in 0..2 {
-        sums = blur_columns(&sums, reach, width);
-        sums.chunks_mut(width).for_each(|row| blur_row(row, reach));
-    }
-    sums.into_iter().map(|[count, near]| near as f64 / count.max(1) as f64).collect()
+    let sum = |pixel: &Pixel| {
+        let covered = u64::from(pixel.covered);
+        [covered, covered * u64::from(pixel.near)]
+    };
+    let rows = pixels.chunks(width).map(move |row| row.iter().map(sum).collect());
+    let across = move |row: Vec<Sum>| blurred_row(&row, reach);
+    Columns::new(Columns::new(rows, reach).map(across), reach).map(across)
 }
 
 /// Each of a row's sums becomes that of the ones within `reach` of it.
-fn blur_row(row: &mut [[u64; 2]], reach: usize) {
-    let before = row.to_vec();
+fn blurred_row(row: &[Sum], reach: usize) -> Vec<Sum> {
+    let mut out = Vec::with_capacity(row.len());
     let mut sum = [0; 2];
     for k in 0..row.len() + reach {
-        if let Some(next) = before.get(k) {
+        if let Some(next) = row.get(k) {
             (0..2).for_each(|part| sum[part] += next[part]);
         }
         if let Some(last) = k.checked_sub(2 * reach + 1) {
-            (0..2).for_each(|part| sum[part] -= before[last][part]);
-        }
-        if let Some(here) = k.checked_sub(reach) {
-            row[here] = sum;
-        }
-    }
-}
-
-/// Each of the columns' sums becomes that of the ones within `reach` of it: all columns at a
-/// time, as memory lies by rows.
-fn blur_columns(sums: &[[u64; 2]], reach: usize, width: usize) -> Vec<[u64; 2]> {
-    let rows: Vec<&[[u64; 2]]> = sums.chunks(width).collect();
-    let mut out = Vec::with_capacity(sums.len());
-    let mut window = vec![[0; 2]; width];
-    for k in 0..rows.len() + reach {
-        if let Some(&next) = rows.get(k) {
-            for (sum, one) in window.iter_mut().zip(next) {
-                (0..2).for_each(|part| sum[part] += one[part]);
-            }
-        }
-        if let Some(last) = k.checked_sub(2 * reach + 1) {
-            for (sum, one) in window.iter_mut().zip(rows[last]) {
-                (0..2).for_each(|part| sum[part] -= one[part]);
-            }
+            (0..2).for_each(|part| sum[part] -= row[last][part]);
         }
         if k >= reach {
-            out.extend_from_slice(&window);
+            out.push(sum);
         }
     }
     out
+}
+
+/// Rows whose sums become those of the rows within `reach` of them. No others are held.
+struct Columns<I> {
+    rows: I,
+    reach: usize,
+    /// The rows within reach of the next one to give, from the top.
+    held: VecDeque<Vec<Sum>>,
+    /// How many of these are above it.
+    above: usize,
+    /// Their sums, column by column.
+    window: Vec<Sum>,
+}
+
+impl<I> Columns<I> {
+    fn new(rows: I, reach: usize) -> Self {
+        Self { rows, reach, held: VecDeque::new(), above: 0, window: Vec::new() }
+    }
+}
+
+impl<I: Iterator<Item = Vec<Sum>>> Iterator for Columns<I> {
+    type Item = Vec<Sum>;
+
+    fn next(&mut self) -> Option<Vec<Sum>> {
+        while self.held.len() <= self.above + self.reach {
+            let Some(row) = self.rows.next() else { break };
+            self.window.resize(row.len(), [0; 2]);
+            for (sum, one) in self.window.iter_mut().zip(&row) {
+                (0..2).for_each(|part| sum[part] += one[part]);
+            }
+            self.held.push_back(row);
+        }
+        if self.held.len() <= self.above {
+            return None;
+        }
+        let sums = self.window.clone();
+        if self.above < self.reach {
+            self.above += 1;
+            return Some(sums);
+        }
+        for (sum, one) in self.window.iter_mut().zip(self.held.pop_front().iter().flatten()) {
+            (0..2).for_each(|part| sum[part] -= one[part]);
+        }
+        Some(sums)
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::mesh::Mesh;
 use crate::units::nearest;
+use rayon::prelude::*;
 
 /// Places between two samples, so that corners are whole numbers and edges exact.
 pub(super) const GRAIN: i32 = 256;
@@ -47,13 +48,12 @@ pub(super) struct View {
 impl View {
     /// A view of all of `mesh` in a picture of `size` pixels, `samples` along each side of one.
     pub(super) fn new(mesh: &Mesh, size: [u32; 2], samples: u32) -> Self {
-        let [right, up, eye] = [RIGHT, UP, TO_EYE].map(|axis| span(mesh, axis));
+        let [right, up, eye] = spans(mesh);
         let grains = f64::from(samples) * f64::from(GRAIN);
         let margin = (MARGIN * f64::from(size[0].min(size[1]))).max(1.0);
         let room = size.map(|pixels| (f64::from(pixels) - 2.0 * margin).max(1.0) * grains);
-        let [wide, high] = seen(mesh);
         Self {
-            scale: (room[0] / wide).min(room[1] / high),
+            scale: (room[0] / extent(right)).min(room[1] / extent(up)),
             middle: [right, up].map(|[low, high]| low + high),
             centre: size.map(|pixels| f64::from(pixels) * grains / 2.0),
             far: eye[0],
@@ -78,20 +78,26 @@ impl View {
 
 /// How wide and high `mesh` is as seen, in no unit.
 pub(super) fn seen(mesh: &Mesh) -> [f64; 2] {
-    [RIGHT, UP].map(|axis| span(mesh, axis)).map(|[low, high]| (high - low).max(1) as f64)
+    let [right, up, _] = spans(mesh);
+    [extent(right), extent(up)]
+}
+
+fn extent([low, high]: [i64; 2]) -> f64 {
+    (high - low).max(1) as f64
 }
 
 fn along(vertex: [i32; 3], axis: [i64; 3]) -> i64 {
     (0..3).map(|k| i64::from(vertex[k]) * axis[k]).sum()
 }
 
-/// Lowest and highest along `axis`.
-fn span(mesh: &Mesh, axis: [i64; 3]) -> [i64; 2] {
-    let first = mesh.vertices.first().map_or(0, |&vertex| along(vertex, axis));
-    mesh.vertices.iter().fold([first; 2], |[low, high], &vertex| {
-        let here = along(vertex, axis);
-        [low.min(here), high.max(here)]
-    })
+/// Lowest and highest along the three axes.
+fn spans(mesh: &Mesh) -> [[i64; 2]; 3] {
+    let here = |vertex: &[i32; 3]| [RIGHT, UP, TO_EYE].map(|axis| [along(*vertex, axis); 2]);
+    let both = |a: [[i64; 2]; 3], b: [[i64; 2]; 3]| {
+        std::array::from_fn(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])])
+    };
+    let all = mesh.vertices.par_iter().map(here);
+    all.reduce_with(both).unwrap_or_default()
 }
 
 #[cfg(test)]
