@@ -118,7 +118,8 @@ pub fn slice_placed(
 
     let grouping = region::groups::Grouping::new(&settings.dual, settings.dual_ratio());
     let window = region::window::Window::new(&slicer, &params, &grouping, supports);
-    let mut planner = Planner { window, plan, at: None, tally: report::Tally::default() };
+    let orderer = Orderer { plan, at: None, tally: report::Tally::default() };
+    let mut planner = Planner { window, regions: None, orderer };
     // The pictures stand in the file's head: they are drawn while the first layers are planned.
     let (pictures, mut planned) = rayon::join(
         || thumbnails(settings, &placed.mesh),
@@ -139,7 +140,7 @@ pub fn slice_placed(
         progress.add(toolpaths.len());
         planned.extend(next);
     }
-    let Planner { mut window, tally, .. } = planner;
+    let Planner { mut window, orderer: Orderer { tally, .. }, .. } = planner;
     let audits = window.audits();
     let sums = writer.finish()?;
     report::report(job, placed, heights, &sums, &audits, &tally)
@@ -148,17 +149,34 @@ pub fn slice_placed(
 /// Plans the layers, some at a time.
 struct Planner<'a> {
     window: region::window::Window<'a>,
-    plan: plan::PlanParams,
-    /// Where the nozzle is after the layers so far.
-    at: Option<Point>,
-    tally: report::Tally,
+    /// The regions of the next layers.
+    regions: Option<Vec<region::Region>>,
+    orderer: Orderer,
 }
 
 impl Iterator for Planner<'_> {
     type Item = Vec<plan::Toolpath>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let regions = self.window.next()?;
+        let regions = self.regions.take().or_else(|| self.window.next())?;
+        // Where one of the two waits for its last layer the other goes on.
+        let (toolpaths, next) =
+            rayon::join(|| self.orderer.toolpaths(&regions), || self.window.next());
+        self.regions = next;
+        Some(toolpaths)
+    }
+}
+
+/// Regions -> toolpaths, layer after layer.
+struct Orderer {
+    plan: plan::PlanParams,
+    /// Where the nozzle is after the layers so far.
+    at: Option<Point>,
+    tally: report::Tally,
+}
+
+impl Orderer {
+    fn toolpaths(&mut self, regions: &[region::Region]) -> Vec<plan::Toolpath> {
         let plan = &self.plan;
         let pieces: Vec<plan::Pieces> = regions.par_iter().map(|r| plan::pieces(r, plan)).collect();
         // Where a layer ends decides how the next is best begun: one after the other.
@@ -171,7 +189,7 @@ impl Iterator for Planner<'_> {
             self.tally.layer(region);
         }
         let toolpaths = ordered.into_par_iter();
-        Some(toolpaths.map(|(r, from, paths)| plan::toolpath(r, paths, from, plan)).collect())
+        toolpaths.map(|(r, from, paths)| plan::toolpath(r, paths, from, plan)).collect()
     }
 }
 
