@@ -93,19 +93,15 @@ pub fn slice_placed(
     progress: &progress::Progress,
 ) -> Result<report::Report> {
     let bed = bed(&job.settings.machine);
-    let settings = &settle(&job.settings, &placed.mesh);
-    let heights = heights(settings, &placed.mesh);
+    let heights = heights(&job.settings, placed)?;
     let facts = print_facts(placed, heights);
-    if heights.count == 0 {
-        let height = placed.size_mm[2];
-        return Err(Error::Unprintable(format!(
-            "nothing to print: {height:.3} mm is less than half a layer high; \
-             use thinner layers, --scale or --unit"
-        )));
-    }
     progress.set_total(heights.count);
-    let tolerance = to_units(settings.tolerance);
-    let slicer = slice::Slicer::new(&placed.mesh, &placed.adjacency, heights, tolerance);
+    let tolerance = to_units(job.settings.tolerance);
+    let (settings, slicer) = rayon::join(
+        || settle(&job.settings, &placed.mesh),
+        || slice::Slicer::new(&placed.mesh, &placed.adjacency, heights, tolerance),
+    );
+    let settings = &settings;
 
     let params = region::Params::new(settings);
     let support = region::support::SupportParams::new(settings);
@@ -260,10 +256,22 @@ pub fn solid_mm3(mesh: &mesh::Mesh, adjacency: &mesh::edges::Adjacency) -> f64 {
     volume * f64::from(top) / f64::from(height) / slicer.heights().count.max(1) as f64
 }
 
-/// The layers that a mesh is cut into.
-fn heights(settings: &profile::Settings, mesh: &mesh::Mesh) -> slice::Heights {
-    let top = top(mesh);
-    slice::Heights::new(to_units(settings.first_layer_height), to_units(settings.layer_height), top)
+/// The layers that the models are cut into, at least one.
+fn heights(
+    settings: &profile::Settings,
+    placed: &mesh::transform::Placed,
+) -> Result<slice::Heights> {
+    let top = top(&placed.mesh);
+    let (first, other) = (to_units(settings.first_layer_height), to_units(settings.layer_height));
+    let heights = slice::Heights::new(first, other, top);
+    if heights.count > 0 {
+        return Ok(heights);
+    }
+    let height = placed.size_mm[2];
+    Err(Error::Unprintable(format!(
+        "nothing to print: {height:.3} mm is less than half a layer high; \
+         use thinner layers, --scale or --unit"
+    )))
 }
 
 /// The highest corner of a mesh, grid units.

@@ -1,6 +1,9 @@
 //! Triangles -> Adjacency: finds the triangle on the other side of every edge.
 
 use super::vector::minus;
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// No half-edge: what [`Adjacency::neighbour`] says at an open edge.
 pub const NONE: u32 = u32::MAX;
@@ -70,23 +73,49 @@ struct Waiting {
 /// The neighbours in a mesh each edge of which has two half-edges in opposite directions; none
 /// if it has others, or if so many edges meet at one vertex that lists are no way to find them.
 fn of_sound(vertices: usize, triangles: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> {
+    let blank = |_: &[u32; 3]| [NONE; 3].map(AtomicU32::new);
+    let neighbour: Vec<[AtomicU32; 3]> = triangles.iter().map(blank).collect();
+    // All half-edges of an edge have the same lower vertex: each thread takes some vertices.
+    let share = vertices.div_ceil(rayon::current_num_threads()).max(1);
+    let shares = (0..vertices.div_ceil(share)).into_par_iter();
+    let edges = shares
+        .map(|k| pair_lists(k * share..vertices.min((k + 1) * share), triangles, &neighbour))
+        .sum::<Option<usize>>()?;
+    // All are paired if so many were left waiting at first, and no edge has one vertex only.
+    let is_sound = 2 * edges == 3 * triangles.len();
+    let known = |sides: [AtomicU32; 3]| sides.map(AtomicU32::into_inner);
+    is_sound.then(|| neighbour.into_iter().map(known).collect())
+}
+
+/// Pairs the half-edges whose lower vertex is one of `vertices`. Returns how many edges they
+/// are on, or none as [`of_sound`] does.
+#[expect(clippy::cast_possible_truncation, reason = "vertices have numbers of 32 bits")]
+fn pair_lists(
+    vertices: Range<usize>,
+    triangles: &[[u32; 3]],
+    neighbour: &[[AtomicU32; 3]],
+) -> Option<usize> {
     /// Half-edges that may be looked at to find one, on average.
     const MOST_STEPS: usize = 16;
-    let mut neighbour = vec![[NONE; 3]; triangles.len()];
-    let mut last = vec![NONE; vertices];
-    let mut waiting: Vec<Waiting> = Vec::with_capacity(triangles.len() / 2 * 3);
+    let mut last = vec![NONE; vertices.len()];
+    // A closed mesh has three edges for each vertex, and for two triangles.
+    let room = (3 * vertices.len()).min(triangles.len() / 2 * 3);
+    let mut waiting: Vec<Waiting> = Vec::with_capacity(room);
     let mut steps = 3 * MOST_STEPS * triangles.len();
     for (triangle, corners) in triangles.iter().enumerate() {
         for edge in 0..3 {
             let (low, high) = ends_of(corners, edge);
+            let Some(last) = last.get_mut(low.wrapping_sub(vertices.start as u32) as usize) else {
+                continue;
+            };
             let here = half_edge(triangle, edge);
-            let mut at = last[low as usize];
+            let mut at = *last;
             while at != NONE && waiting[at as usize].high != high {
                 at = waiting[at as usize].next;
                 steps = steps.checked_sub(1)?;
             }
             if at == NONE {
-                let next = std::mem::replace(&mut last[low as usize], index(waiting.len()));
+                let next = std::mem::replace(last, index(waiting.len()));
                 waiting.push(Waiting { high, half: here, next });
                 continue;
             }
@@ -95,12 +124,11 @@ fn of_sound(vertices: usize, triangles: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> {
                 return None;
             }
             let (t, e) = parts(other);
-            (neighbour[triangle][edge], neighbour[t][e]) = (other, here);
+            neighbour[triangle][edge].store(other, Ordering::Relaxed);
+            neighbour[t][e].store(here, Ordering::Relaxed);
         }
     }
-    // All are paired if so many were left waiting at first, and no edge has one vertex only.
-    let is_sound = 2 * waiting.len() == 3 * triangles.len();
-    is_sound.then_some(neighbour)
+    Some(waiting.len())
 }
 
 /// A place in a list of fewer than 3 · 2³⁰ half-edges.

@@ -2,20 +2,29 @@
 
 /// Disjoint sets of the numbers below some count.
 #[derive(Debug, Clone)]
-pub(crate) struct Links(Vec<u32>);
+pub(crate) struct Links {
+    /// A number of the same set for each, itself for the least.
+    to: Vec<u32>,
+    sets: usize,
+}
 
 impl Links {
     /// Every number by itself.
     pub(crate) fn new(count: usize) -> Self {
-        Self((0..u32::try_from(count).unwrap_or(u32::MAX)).collect())
+        Self { to: (0..u32::try_from(count).unwrap_or(u32::MAX)).collect(), sets: count }
+    }
+
+    /// The number of sets.
+    pub(crate) fn sets(&self) -> usize {
+        self.sets
     }
 
     /// The least number of the set that `k` is in.
     pub(crate) fn root(&mut self, mut k: u32) -> u32 {
-        while self.0[k as usize] != k {
+        while self.to[k as usize] != k {
             // Shortens the way for the next.
-            self.0[k as usize] = self.0[self.0[k as usize] as usize];
-            k = self.0[k as usize];
+            self.to[k as usize] = self.to[self.to[k as usize] as usize];
+            k = self.to[k as usize];
         }
         k
     }
@@ -23,14 +32,15 @@ impl Links {
     /// Makes one set of those of `a` and `b`.
     pub(crate) fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
+        self.to[a.max(b) as usize] = a.min(b);
+        self.sets -= usize::from(a != b);
     }
 
     /// The sets, by their least numbers; each in increasing order.
     pub(crate) fn groups(&mut self) -> Vec<Vec<u32>> {
-        let mut place = vec![usize::MAX; self.0.len()];
+        let mut place = vec![usize::MAX; self.to.len()];
         let mut groups: Vec<Vec<u32>> = Vec::new();
-        for k in 0..u32::try_from(self.0.len()).unwrap_or(u32::MAX) {
+        for k in 0..u32::try_from(self.to.len()).unwrap_or(u32::MAX) {
             let root = self.root(k) as usize;
             if place[root] == usize::MAX {
                 place[root] = groups.len();

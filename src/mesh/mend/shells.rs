@@ -9,6 +9,7 @@ use crate::mesh::faults::{Fault, Mending};
 use crate::mesh::measure::{corners_of, determinant};
 use crate::mesh::tree::Tree;
 use crate::mesh::vector::Corner;
+use rayon::prelude::*;
 
 /// The shells of a mesh.
 struct Shells {
@@ -82,8 +83,7 @@ pub(in crate::mesh) fn nested(mesh: &Mesh, adjacency: &Adjacency, tree: &Tree) -
 
 /// The number of surfaces that hang together.
 pub(super) fn count(adjacency: &Adjacency) -> usize {
-    let mut links = links(adjacency);
-    (0_u32..).zip(&adjacency.neighbour).filter(|(t, _)| links.root(*t) == *t).count()
+    links(adjacency).sets()
 }
 
 /// The triangles, joined across their sides.
@@ -103,6 +103,11 @@ pub(super) fn links(adjacency: &Adjacency) -> Links {
 
 fn shells(vertices: &[Corner], triangles: &[[u32; 3]], adjacency: &Adjacency) -> Shells {
     let mut links = links(adjacency);
+    if links.sets() == 1 {
+        let volumes = triangles.par_iter().map(|&t| determinant(corners_of(vertices, t)));
+        let shell = Shell { first: 0, is_closed: adjacency.unpaired == 0, volume: volumes.sum() };
+        return Shells { of: vec![0; triangles.len()], each: vec![shell] };
+    }
     let mut shells = Shells { of: Vec::with_capacity(triangles.len()), each: Vec::new() };
     for (t, sides) in (0_u32..).zip(&adjacency.neighbour) {
         let root = links.root(t);
