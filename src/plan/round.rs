@@ -8,7 +8,7 @@
 
 use super::PathPoint;
 use crate::geom::Point;
-use crate::units::{Coord, nearest, sin_cos};
+use crate::units::{Coord, nearest};
 
 /// Corners of arcs turn by at most this much, degrees. Where a machine allows a change of
 /// velocity by 15 mm/s at once, it passes them at 48 mm/s.
@@ -148,17 +148,24 @@ impl Arc {
     /// The arc that takes `t` of both lines: with flat corners, but no more than make
     /// segments long enough; none if two are too many.
     fn new(a: Line, b: Line, t: f64) -> Option<Self> {
-        let whole = libm::acos(a.cos(b).clamp(-1.0, 1.0)).to_degrees();
-        // By the law of sines between the chord and each segment.
-        let chord = 2.0 * t * sin_cos(whole / 2.0).1;
+        let cos = a.cos(b).clamp(-1.0, 1.0);
+        let whole = libm::acos(cos);
+        // Of half the turn, from here to the chord.
+        let (sin_half, cos_half) = (((1.0 - cos) / 2.0).sqrt(), ((1.0 + cos) / 2.0).sqrt());
+        let chord = 2.0 * t * cos_half;
+        let left = a.x * b.y - a.y * b.x >= 0.0;
         let with = |corners: u32| {
-            let half = whole / f64::from(2 * corners);
-            let length = chord * sin_cos(half).0 / sin_cos(f64::from(corners - 1) * half).0;
-            let (sin, cos) = sin_cos(2.0 * half);
-            let left = a.x * b.y - a.y * b.x >= 0.0;
-            Self { corners, length, turn: (cos, if left { sin } else { -sin }) }
+            // Of half of a corner's turn: h of n corners is 1/2n of the whole.
+            let (sin, cos) = libm::sincos(whole / f64::from(2 * corners));
+            // By the law of sines between the chord and each segment: (n - 1) h is half the turn less h.
+            let length = chord * sin / (sin_half * cos - cos_half * sin);
+            let across = 2.0 * sin * cos;
+            let turn = (1.0 - 2.0 * sin * sin, if left { across } else { -across });
+            Self { corners, length, turn }
         };
-        let most = (whole / FLAT).ceil() as u32;
+        // All segments together are no longer than what they take the place of.
+        let most =
+            ((2.0 * t / LEAST_SEGMENT) as u32 + 1).min((whole.to_degrees() / FLAT).ceil() as u32);
         (2..=most).rev().map(with).find(|arc| arc.length >= LEAST_SEGMENT)
     }
 }
