@@ -93,6 +93,12 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// [`Error::Output`] if writing fails.
     pub fn layers(&mut self, layers: &[Toolpath]) -> Result<()> {
+        // Moves and text take more memory than the layers themselves.
+        let at_once = rayon::current_num_threads().max(4);
+        layers.chunks(at_once).try_for_each(|layers| self.some(layers))
+    }
+
+    fn some(&mut self, layers: &[Toolpath]) -> Result<()> {
         let (params, moves, timer) = (&self.params, &self.moves, &mut self.timer);
         let walk = |layer| {
             let moves = moves.moves(layer);

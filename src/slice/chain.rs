@@ -18,9 +18,9 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Mutex;
 
-/// Layers cut together. A block's triangles are looked up at once; the memory
-/// in use grows with a block, not with the print.
-const BLOCK: usize = 16;
+/// Layers cut together for each thread. A block's triangles are looked up at once, and the
+/// memory in use grows with a block, not with the print: more would save little time.
+const LAYERS: usize = 8;
 
 /// A mesh made ready to be cut into blocks of layers, in any order.
 #[derive(Debug)]
@@ -29,6 +29,8 @@ pub struct Slicer<'a> {
     adjacency: &'a Adjacency,
     heights: Heights,
     tolerance: Coord,
+    /// Layers in each block but the last.
+    block: usize,
     /// Where each block's triangles begin in `triangles`; one more than there are blocks.
     starts: Vec<usize>,
     /// Triangles by the blocks they reach into.
@@ -66,7 +68,8 @@ impl<'a> Slicer<'a> {
         heights: Heights,
         tolerance: Coord,
     ) -> Self {
-        let blocks = heights.count.div_ceil(BLOCK);
+        let block = LAYERS * rayon::current_num_threads().max(2);
+        let blocks = heights.count.div_ceil(block);
         let below = |v: &[Coord; 3]| u32::try_from(heights.planes_up_to(v[2])).unwrap_or(u32::MAX);
         let below: Vec<u32> = mesh.vertices.par_iter().map(below).collect();
         let reach = |t: &[u32; 3]| -> Range<usize> {
@@ -74,7 +77,7 @@ impl<'a> Slicer<'a> {
             if layers.is_empty() {
                 0..0
             } else {
-                layers.start / BLOCK..(layers.end - 1) / BLOCK + 1
+                layers.start / block..(layers.end - 1) / block + 1
             }
         };
         let mut starts = vec![0; blocks + 1];
@@ -95,7 +98,7 @@ impl<'a> Slicer<'a> {
             }
         }
         let free = Mutex::default();
-        Self { mesh, adjacency, heights, tolerance, starts, triangles, below, free }
+        Self { mesh, adjacency, heights, tolerance, block, starts, triangles, below, free }
     }
 
     /// The heights that the mesh is cut at.
@@ -113,7 +116,7 @@ impl<'a> Slicer<'a> {
     /// The layers of block `b`, from the lowest to the highest.
     #[must_use]
     pub fn block(&self, b: usize) -> Vec<Layer> {
-        let layers = b * BLOCK..((b + 1) * BLOCK).min(self.heights.count);
+        let layers = b * self.block..((b + 1) * self.block).min(self.heights.count);
         let mut buckets = vec![Vec::new(); layers.len()];
         for &t in &self.triangles[self.starts[b]..self.starts[b + 1]] {
             let crossed = crossed(&self.below, &self.mesh.triangles[t as usize]);
