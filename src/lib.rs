@@ -53,7 +53,7 @@ pub use job::{Job, NAME};
 
 /// Batches of layers that are planned before the first is written: about as many as take as
 /// long as the pictures do.
-const AHEAD: usize = 4;
+const AHEAD: usize = 2;
 
 /// Slices `job` and writes the G-code to `out`, which is empty yet.
 ///
