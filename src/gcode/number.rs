@@ -2,96 +2,88 @@
 
 use crate::units::nearest;
 
-/// The most characters of a number: 20 digits, a sign and a point.
-const LONGEST: usize = 22;
+/// Room for the longest number: a sign, 20 digits, a point, 6 decimals, and what writing four
+/// bytes at a time needs.
+const ROOM: usize = 32;
 
-/// The numbers 0 to 99 in two digits: half as many divisions as digit by digit.
-const PAIRS: [[u8; 2]; 100] = {
-    let mut pairs = [[b'0'; 2]; 100];
+/// The numbers 0 to 999 in three digits: a third of the divisions that single digits need.
+static TRIPLES: [[u8; 4]; 1000] = {
+    let mut triples = [[0; 4]; 1000];
     let mut k = 0;
-    while k < pairs.len() {
-        pairs[k] = [b'0' + (k / 10) as u8, b'0' + (k % 10) as u8];
+    while k < triples.len() {
+        triples[k] = [b'0' + (k / 100) as u8, b'0' + (k / 10 % 10) as u8, b'0' + (k % 10) as u8, 0];
         k += 1;
     }
-    pairs
+    triples
 };
 
-/// Appends `value · 10^-decimals` to `out` without trailing zeros: `1050` with
-/// three decimals is `1.05`. At most 19 decimals.
-pub fn push_fixed(out: &mut Vec<u8>, value: i64, decimals: u32) {
-    let mut text = Digits::new();
-    let (mut rest, mut places) = (value.unsigned_abs(), decimals);
-    while places > 0 && rest % 10 == 0 {
-        rest /= 10;
-        places -= 1;
-    }
-    if places > 0 {
-        for _ in 0..places / 2 {
-            rest = text.pair(rest);
-        }
-        if places % 2 == 1 {
-            rest = text.digit(rest);
-        }
-        text.put(b'.');
-    }
-    text.integer(rest);
+/// Appends `value · 10^-DECIMALS` to `out` without trailing zeros: `1050` with
+/// three decimals is `1.05`. At most 6 decimals.
+pub fn push_fixed<const DECIMALS: u32>(out: &mut Vec<u8>, value: i64) {
+    const { assert!(DECIMALS <= 6) };
+    let power = 10_u64.pow(DECIMALS);
+    let (whole, part) = (value.unsigned_abs() / power, value.unsigned_abs() % power);
+    let mut text = Digits { text: [0; ROOM], end: 0 };
     if value < 0 {
         text.put(b'-');
     }
-    out.extend_from_slice(text.written());
+    text.integer(whole);
+    if part > 0 {
+        text.put(b'.');
+        let places = 3 * DECIMALS.div_ceil(3);
+        text.triples(part * 10_u64.pow(places - DECIMALS), places / 3);
+        text.trim();
+    }
+    // Always the same number of bytes: no call for so few.
+    let end = out.len() + text.end;
+    out.extend_from_slice(&text.text);
+    out.truncate(end);
 }
 
-/// Appends `value` in decimal digits.
-pub fn push_integer(out: &mut Vec<u8>, value: u64) {
-    let mut text = Digits::new();
-    text.integer(value);
-    out.extend_from_slice(text.written());
-}
-
-/// A number in the making, from its last character to the first: where it ends is known,
-/// how long it gets is not.
+/// A number in the making, from its first character to the last.
 struct Digits {
-    text: [u8; LONGEST],
-    at: usize,
+    text: [u8; ROOM],
+    end: usize,
 }
 
 impl Digits {
-    fn new() -> Self {
-        Self { text: [0; LONGEST], at: LONGEST }
-    }
-
-    fn written(&self) -> &[u8] {
-        &self.text[self.at..]
-    }
-
     fn put(&mut self, character: u8) {
-        self.at -= 1;
-        self.text[self.at] = character;
+        self.text[self.end] = character;
+        self.end += 1;
     }
 
-    /// The last digit of `value`; gives what is left of it.
-    fn digit(&mut self, value: u64) -> u64 {
-        self.put(b'0' + (value % 10) as u8);
-        value / 10
+    /// The last `count` digits of a number below 1000.
+    fn part(&mut self, value: u64, count: usize) {
+        let triple = u32::from_le_bytes(TRIPLES[value as usize]) >> (8 * (3 - count));
+        self.text[self.end..self.end + 4].copy_from_slice(&triple.to_le_bytes());
+        self.end += count;
     }
 
-    /// The last two digits of `value`; gives what is left of it.
-    fn pair(&mut self, value: u64) -> u64 {
-        let [tens, ones] = PAIRS[(value % 100) as usize];
-        self.put(ones);
-        self.put(tens);
-        value / 100
+    /// The last `count` groups of three digits.
+    fn triples(&mut self, value: u64, count: u32) {
+        if count > 1 {
+            self.triples(value / 1000, count - 1);
+        }
+        self.part(value % 1000, 3);
     }
 
     /// All digits of `value`.
-    fn integer(&mut self, mut value: u64) {
-        while value >= 100 {
-            value = self.pair(value);
+    fn integer(&mut self, value: u64) {
+        match value {
+            0..10 => self.part(value, 1),
+            10..100 => self.part(value, 2),
+            100..1000 => self.part(value, 3),
+            _ => {
+                self.integer(value / 1000);
+                self.part(value % 1000, 3);
+            }
         }
-        if value >= 10 {
-            self.pair(value);
-        } else {
-            self.digit(value);
+    }
+
+    /// Takes zeros from the end; another digit comes before.
+    fn trim(&mut self) {
+        while self.text[self.end - 1] == b'0' {
+            self.end -= 1;
         }
     }
 }
@@ -107,27 +99,35 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn text(value: i64, decimals: u32) -> String {
-        let mut out = Vec::new();
-        push_fixed(&mut out, value, decimals);
-        String::from_utf8(out).unwrap()
+    fn text<const DECIMALS: u32>(value: i64) -> String {
+        let mut out = b"X".to_vec();
+        push_fixed::<DECIMALS>(&mut out, value);
+        String::from_utf8(out).unwrap().split_off(1)
     }
 
     #[test]
     fn numbers_are_plain() {
-        assert_eq!(text(0, 3), "0");
-        assert_eq!(text(1050, 3), "1.05");
-        assert_eq!(text(-5, 3), "-0.005");
-        assert_eq!(text(12_000, 3), "12");
-        assert_eq!(text(i64::MIN, 0), "-9223372036854775808");
+        assert_eq!(text::<3>(0), "0");
+        assert_eq!(text::<3>(1050), "1.05");
+        assert_eq!(text::<3>(-5), "-0.005");
+        assert_eq!(text::<3>(12_000), "12");
+        assert_eq!(text::<5>(1_234_500_010), "12345.0001");
+        assert_eq!(text::<0>(i64::MIN), "-9223372036854775808");
+        assert_eq!(text::<6>(i64::MIN), "-9223372036854.775808");
     }
 
     proptest! {
         #[test]
-        fn numbers_read_back(value in -1_000_000_000_000i64..1_000_000_000_000, decimals in 0u32..6) {
-            let read: f64 = text(value, decimals).parse().unwrap();
-            let back = (read * 10f64.powi(decimals as i32)).round() as i64;
-            prop_assert_eq!(back, value);
+        fn numbers_read_back(value in -1_000_000_000_000i64..1_000_000_000_000, nines in 0u32..12) {
+            let value = value % 10_i64.pow(nines + 1);
+            let texts = [text::<0>, text::<1>, text::<2>, text::<3>, text::<4>, text::<5>, text::<6>];
+            for (decimals, text) in texts.iter().map(|text| text(value)).enumerate() {
+                let read: f64 = text.parse().unwrap();
+                let back = (read * 10f64.powi(decimals as i32)).round() as i64;
+                prop_assert_eq!(back, value);
+                let is_plain = |end| !(text.contains('.') && text.ends_with(end));
+                prop_assert!(is_plain('0') && is_plain('.'), "{}", text);
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::dialect::Dialect;
 use super::moves::{Bead, Kind, Move, MoveParams, Moves};
-use super::number::{push_fixed, push_integer, thousandths};
+use super::number::{push_fixed, thousandths};
 use crate::plan::Role;
 use crate::profile::Settings;
 use crate::units::{Coord, nearest, to_mm};
@@ -159,7 +159,7 @@ impl<'a> Text<'a> {
             }
             Kind::Z => {
                 self.out.extend_from_slice(b"G1 Z");
-                push_fixed(&mut self.out, thousandths(to_mm(step.z)), 3);
+                push_fixed::<3>(&mut self.out, thousandths(to_mm(step.z)));
                 self.end_move(step.feed);
             }
             Kind::Retract | Kind::Restore => self.pull(step.filament, step.feed),
@@ -209,7 +209,7 @@ impl<'a> Text<'a> {
         for (axis, word) in [b" X", b" Y"].into_iter().enumerate() {
             if before.is_none_or(|before| before[axis] != to[axis]) {
                 self.out.extend_from_slice(word);
-                push_fixed(&mut self.out, i64::from(to[axis]), 3);
+                push_fixed::<3>(&mut self.out, i64::from(to[axis]));
             }
         }
         true
@@ -222,7 +222,7 @@ impl<'a> Text<'a> {
         let value = if self.params.relative_e { now - self.written_e } else { now };
         self.written_e = now;
         self.out.extend_from_slice(b" E");
-        push_fixed(&mut self.out, value, 5);
+        push_fixed::<5>(&mut self.out, value);
     }
 
     /// Ends a move with its feed (mm/min), if that changes.
@@ -230,14 +230,14 @@ impl<'a> Text<'a> {
         if self.feed != feed {
             self.feed = feed;
             self.out.extend_from_slice(b" F");
-            push_integer(&mut self.out, u64::from(feed));
+            push_fixed::<0>(&mut self.out, i64::from(feed));
         }
         self.out.push(b'\n');
     }
 
     fn annotate(&mut self, tag: &str, units: Coord) {
         self.out.extend_from_slice(tag.as_bytes());
-        push_fixed(&mut self.out, thousandths(to_mm(units)), 3);
+        push_fixed::<3>(&mut self.out, thousandths(to_mm(units)));
         self.out.push(b'\n');
     }
 
