@@ -1,6 +1,7 @@
 //! Bead + feed asked for -> feed: no more filament than the hot end can melt.
 
 use crate::profile::Settings;
+use crate::units::nearest;
 
 /// Part of the limit that is no more than rounding.
 const SLACK: f64 = 1e-9;
@@ -41,7 +42,7 @@ impl FlowLimit {
 
 /// A feed as it is written, mm/min.
 pub(super) fn whole_feed(feed: f64) -> u32 {
-    feed.round().max(1.0) as u32
+    nearest(feed).max(1) as u32
 }
 
 /// The feeds of a role that were lowered by more than a little.

@@ -2,7 +2,7 @@
 
 use super::Params;
 use crate::geom::spans::Span;
-use crate::units::Coord;
+use crate::units::{Coord, nearest};
 
 /// A line gets at most this many line widths wide (what a nozzle's flat still irons).
 pub(super) const WIDEST: f64 = 1.75;
@@ -83,14 +83,16 @@ impl Joined {
 #[must_use]
 pub fn points(line: &Line, joined: Joined, params: &Params) -> Vec<LinePoint> {
     let w = params.line_width;
-    let above = profile(&line.above, line.span, joined.above, w);
-    let below = profile(&line.below, line.span, joined.below, w);
-    let samples = samples(&above, &below);
-    let mut kept = vec![0];
-    keep_bends(&samples, 0, samples.len() - 1, &mut kept);
-    kept.push(samples.len() - 1);
+    let samples = if line.above.is_empty() && line.below.is_empty() {
+        // Most lines lie between two others.
+        [line.span.start, line.span.end].map(|u| Sample { u, above: 0.0, below: 0.0 }).to_vec()
+    } else {
+        let above = profile(&line.above, line.span, joined.above, w);
+        let below = profile(&line.below, line.span, joined.below, w);
+        bends(&samples(&above, &below))
+    };
     let mut points: Vec<LinePoint> =
-        kept.into_iter().map(|k| filled(line.row, samples[k], w)).collect();
+        samples.into_iter().map(|sample| filled(line.row, sample, w)).collect();
     let tip = ((f64::from(w) * TIP) as Coord).min(params.overlap);
     if let [first, .., last] = points.as_mut_slice() {
         first.u -= if joined.above.left || joined.below.left { 0 } else { tip };
@@ -178,9 +180,17 @@ fn filled(row: i32, sample: Sample, line_width: Coord) -> LinePoint {
     let share = if above + below > spare { spare / (above + below) } else { 1.0 };
     LinePoint {
         u,
-        v: (f64::from(row) * w + share * (above - below) / 2.0).round() as Coord,
-        width: (w + share * (above + below)).round() as Coord,
+        v: nearest(f64::from(row) * w + share * (above - below) / 2.0) as Coord,
+        width: nearest(w + share * (above + below)) as Coord,
     }
+}
+
+/// The samples without those between which everything changes evenly.
+fn bends(samples: &[Sample]) -> Vec<Sample> {
+    let mut kept = vec![0];
+    keep_bends(samples, 0, samples.len() - 1, &mut kept);
+    kept.push(samples.len() - 1);
+    kept.into_iter().map(|k| samples[k]).collect()
 }
 
 /// Between samples `a` and `b`, keeps those that a straight change from `a` to `b`

@@ -41,7 +41,7 @@ pub(super) struct Near {
     side: f64,
     /// Columns and rows of cells.
     size: [usize; 2],
-    /// Where each cell begins in `items`; one more than there are cells.
+    /// Where each cell begins in `items`, and where the last one ends.
     starts: Vec<u32>,
     /// Edges whose boxes meet the cell.
     items: Vec<Edge>,
@@ -56,30 +56,32 @@ impl Near {
         let extent = [0, 1].map(|k| (area.high[k] - area.low[k]).max(0.0));
         let side = side.max(extent[0].max(extent[1]) / MOST_CELLS);
         let size = extent.map(|x| (x / side) as usize + 1);
-        let starts = vec![0; size[0] * size[1] + 1];
-        let mut near = Self { low: area.low, side, size, starts, items: Vec::new() };
+        let mut near = Self { low: area.low, side, size, starts: Vec::new(), items: Vec::new() };
         near.sort(&edges);
         near
     }
 
     /// Sorts `edges` into the cells by counting.
     fn sort(&mut self, edges: &[Edge]) {
-        let mut next = vec![0_u32; self.starts.len()];
+        // Where a cell begins stands one place further on, until its edges have moved it to
+        // where the next one begins.
+        let mut starts = vec![0_u32; self.size[0] * self.size[1] + 2];
         for edge in edges {
-            self.cells(*edge).flatten().for_each(|cell| next[cell + 1] += 1);
+            self.cells(*edge).flatten().for_each(|cell| starts[cell + 2] += 1);
         }
-        for k in 1..next.len() {
-            next[k] += next[k - 1];
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
         }
-        self.starts.clone_from(&next);
-        let mut items = vec![[[0.0; 2]; 2]; next.last().map_or(0, |&n| n as usize)];
+        let mut items = vec![[[0.0; 2]; 2]; sum as usize];
         for edge in edges {
             for cell in self.cells(*edge).flatten() {
-                items[next[cell] as usize] = *edge;
-                next[cell] += 1;
+                items[starts[cell + 1] as usize] = *edge;
+                starts[cell + 1] += 1;
             }
         }
-        self.items = items;
+        (self.starts, self.items) = (starts, items);
     }
 
     /// The cells that meet the box with corners `p` and `q`, row by row of cells.

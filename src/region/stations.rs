@@ -5,7 +5,7 @@ use super::close::Crossed;
 use super::near::{Area, Near};
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, Point, edges};
-use crate::units::{Coord, between};
+use crate::units::{Coord, between, nearest};
 
 /// At most this many beads beside each other along one wall.
 pub(super) const MOST_BEADS: usize = 3;
@@ -197,7 +197,7 @@ impl Edge {
         let inset = f64::from(params.wall_to_fill());
         let rise = f64::from(q.y) - f64::from(p.y);
         let run = f64::from(q.x) - f64::from(p.x);
-        let by = |part: f64| (inset * part / self.length.max(1.0)).round() as Coord;
+        let by = |part: f64| nearest(inset * part / self.length.max(1.0)) as Coord;
         let moved = |p: Point| Point { x: p.x - by(rise), y: p.y + by(run) };
         let (a, b) = (moved(p), moved(q));
         let up = a.y < b.y;
