@@ -50,12 +50,15 @@ fn bins(mesh: &Mesh) -> Vec<[f64; 2]> {
     let add = |mut bins: Vec<[i128; 2]>, triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|k| mesh.vertices[k as usize].map(i64::from));
         let (p, q) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-        let [mut x, mut y] = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2]];
-        while x < 0 || y < 0 || x == 0 && y != 0 {
-            (x, y) = (y, -x);
-        }
-        let bin = directions.partition_point(|(sin, cos)| y as f64 * cos >= x as f64 * sin);
-        let sum = &mut bins[if x == 0 { 0 } else { bin }];
+        let [x, y] = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2]];
+        let [x, y] = match (x, y) {
+            (0, 0) => return bins,
+            (1.., 0..) => [x, y],
+            (..=0, 1..) => [y, -x],
+            (..0, ..=0) => [-x, -y],
+            _ => [-y, x],
+        };
+        let sum = &mut bins[degrees([x as f64, y as f64], &directions)];
         *sum = [sum[0] + i128::from(x), sum[1] + i128::from(y)];
         bins
     };
@@ -67,6 +70,27 @@ fn bins(mesh: &Mesh) -> Vec<[f64; 2]> {
     };
     let bins = mesh.triangles.par_iter().fold(none, add).reduce(none, both);
     bins.into_iter().map(|sum| sum.map(|s| s as f64)).collect()
+}
+
+/// The whole degrees from the x axis to `[x, y]` in the first quarter; `directions` are those
+/// of whole degrees from 1 on.
+fn degrees([x, y]: [f64; 2], directions: &[(f64, f64)]) -> usize {
+    let is_from = |k: usize| {
+        let (sin, cos) = directions[k - 1];
+        y * cos >= x * sin
+    };
+    // Right to a fifth of a degree: quicker than an arc tangent, which would not be exact either.
+    let slope = x.min(y) / x.max(y);
+    let about = slope * (45.0 + 15.64 * (1.0 - slope));
+    let about = if y > x { 90.0 - about } else { about };
+    let mut degrees = (about as usize).min(directions.len());
+    while degrees < directions.len() && is_from(degrees + 1) {
+        degrees += 1;
+    }
+    while degrees > 0 && !is_from(degrees) {
+        degrees -= 1;
+    }
+    degrees
 }
 
 #[cfg(test)]

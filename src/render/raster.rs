@@ -114,14 +114,23 @@ impl<'a> Samples<'a> {
         let last = (*rows.end()).min(self.rows[1] - 1);
         let [a, b, c] = at.map(|corner| corner[0]);
         let range = [a.min(b).min(c), a.max(b).max(c)];
-        let Some(face) = Face::new(mesh, corners, triangle) else { return };
+        let Some(outline) = Outline::new(mesh, corners, triangle) else { return };
+        let mut face = None;
         for row in first..=last {
-            let [from, to] = face.within(centre(row), range);
+            let [from, to] = outline.within(centre(row), range);
             let from = first_sample(from).max(0);
             let to = last_sample(to).min(self.width as i32 - 1);
             if from > to {
                 continue;
             }
+            // Many a small triangle has a sample in its box but none in itself.
+            let face = match &mut face {
+                Some(face) => face,
+                None => match Face::new(mesh, corners, &outline) {
+                    Some(new) => face.insert(new),
+                    None => return,
+                },
+            };
             let start = (row - self.rows[0]) as usize * self.width;
             let samples = &mut self.seen[start + from as usize..=start + to as usize];
             for (seen, value) in samples.iter_mut().zip(face.seen(from, row)) {
@@ -154,51 +163,30 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// A triangle that is to be drawn.
-struct Face {
-    /// Its corners, so that its inside is to the left of each side.
+/// A triangle as seen.
+struct Outline {
+    /// Its corners, beginning with the one that has the least vertex, so that its inside is to the
+    /// left of each side.
+    corners: [u32; 3],
     at: [[i32; 2]; 3],
-    tone: u32,
-    /// Nearness at the first corner, and how it grows to the right and downwards.
-    near: f64,
-    slope: [f64; 2],
-    /// Nearness of the farthest and the nearest corner.
-    range: [f64; 2],
+    /// Twice its area, more than 0.
+    twice: i64,
 }
 
-impl Face {
-    /// `None` for a triangle that is seen from its edge or has no area.
+impl Outline {
+    /// `None` for a triangle that is seen from its edge.
     fn new(mesh: &Mesh, corners: &[Corner], [a, b, c]: [u32; 3]) -> Option<Self> {
         let vertex = |corner: u32| mesh.vertices[corner as usize];
-        let tone = light::tone(vertex(a), vertex(b), vertex(c))?;
         // One beginning, whichever corner the file names first.
-        let [a, mut b, mut c] = match (vertex(a), vertex(b), vertex(c)) {
+        let [a, b, c] = match (vertex(a), vertex(b), vertex(c)) {
             (one, two, three) if one <= two && one <= three => [a, b, c],
             (_, two, three) if two <= three => [b, c, a],
             _ => [c, a, b],
         };
-        if doubled(corners, a, b, c) < 0 {
-            std::mem::swap(&mut b, &mut c);
-        }
         let twice = doubled(corners, a, b, c);
-        if twice == 0 {
-            return None;
-        }
-        let [a, b, c] = [corners[a as usize], corners[b as usize], corners[c as usize]];
-        let near = f64::from(a.near);
-        let (of_b, of_c) = (f64::from(b.near) - near, f64::from(c.near) - near);
-        let side = |p: Corner, axis: usize| f64::from(p.at[axis] - a.at[axis]);
-        let twice = twice as f64;
-        Some(Self {
-            at: [a.at, b.at, c.at],
-            tone: u32::from(tone),
-            near,
-            slope: [
-                (of_b * side(c, 1) - of_c * side(b, 1)) / twice,
-                (of_c * side(b, 0) - of_b * side(c, 0)) / twice,
-            ],
-            range: [near + of_b.min(of_c).min(0.0), near + of_b.max(of_c).max(0.0)],
-        })
+        let corners_of = if twice < 0 { [a, c, b] } else { [a, b, c] };
+        let at = corners_of.map(|corner| corners[corner as usize].at);
+        (twice != 0).then_some(Self { corners: corners_of, at, twice: twice.abs() })
     }
 
     /// From where to where it lies on the row at `y`, both included, at most all of `range`.
@@ -220,10 +208,45 @@ impl Face {
         // An empty row may lie anywhere; beyond its range nothing is lost.
         [from.min(high + 1) as i32, to.max(low - 1) as i32]
     }
+}
+
+/// The surface of a triangle that is to be drawn.
+struct Face {
+    /// Its first corner.
+    at: [i32; 2],
+    tone: u32,
+    /// Nearness at the first corner, and how it grows to the right and downwards.
+    near: f64,
+    slope: [f64; 2],
+    /// Nearness of the farthest and the nearest corner.
+    range: [f64; 2],
+}
+
+impl Face {
+    /// `None` for a triangle without area.
+    fn new(mesh: &Mesh, corners: &[Corner], outline: &Outline) -> Option<Self> {
+        let [a, b, c] = outline.corners.map(|corner| mesh.vertices[corner as usize]);
+        let tone = u32::from(light::tone(a, b, c)?);
+        let [a, b, c] = outline.corners.map(|corner| corners[corner as usize]);
+        let near = f64::from(a.near);
+        let (of_b, of_c) = (f64::from(b.near) - near, f64::from(c.near) - near);
+        let side = |p: Corner, axis: usize| f64::from(p.at[axis] - a.at[axis]);
+        let twice = outline.twice as f64;
+        Some(Self {
+            at: a.at,
+            tone,
+            near,
+            slope: [
+                (of_b * side(c, 1) - of_c * side(b, 1)) / twice,
+                (of_c * side(b, 0) - of_b * side(c, 0)) / twice,
+            ],
+            range: [near + of_b.min(of_c).min(0.0), near + of_b.max(of_c).max(0.0)],
+        })
+    }
 
     /// What the samples of a row hold, from one `column` on, where this face is nearest.
     fn seen(&self, column: i32, row: i32) -> impl Iterator<Item = u32> {
-        let away = |sample: i32, axis: usize| f64::from(centre(sample) - self.at[0][axis]);
+        let away = |sample: i32, axis: usize| f64::from(centre(sample) - self.at[axis]);
         let first = self.near + away(row, 1) * self.slope[1];
         (column..).map(move |column| {
             let near = first + away(column, 0) * self.slope[0];
