@@ -100,8 +100,8 @@ pub fn total(row: &[Span]) -> i64 {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rows {
     first: i32,
-    /// `ends[k]` is where row `first + k` ends in `spans`.
-    ends: Vec<u32>,
+    /// Where each row begins in `spans`, and where the last one ends.
+    starts: Vec<u32>,
     spans: Vec<Span>,
 }
 
@@ -115,44 +115,45 @@ impl Rows {
     /// No rows yet; the first one pushed will have index `first`.
     #[must_use]
     pub fn starting_at(first: i32) -> Self {
-        Self { first, ends: Vec::new(), spans: Vec::new() }
+        Self { first, starts: vec![0], spans: Vec::new() }
     }
 
     /// No rows yet, with room for as much as `other` has; the first one pushed will have index `first`.
     #[must_use]
     pub fn with_room_of(other: &Self, first: i32) -> Self {
-        let (rows, spans) = (other.ends.len(), other.spans.len());
-        Self { first, ends: Vec::with_capacity(rows), spans: Vec::with_capacity(spans) }
+        let mut starts = Vec::with_capacity(other.starts.len());
+        starts.push(0);
+        Self { first, starts, spans: Vec::with_capacity(other.spans.len()) }
     }
 
     /// Appends the next row: `fill` appends its spans, sorted and disjoint.
     pub fn push_row(&mut self, fill: impl FnOnce(&mut Vec<Span>)) {
         fill(&mut self.spans);
         let end = u32::try_from(self.spans.len()).unwrap_or(u32::MAX);
-        self.ends.push(end);
+        self.starts.push(end);
     }
 
     /// The indices of the stored rows.
     #[must_use]
     pub fn range(&self) -> std::ops::Range<i32> {
-        let count = i32::try_from(self.ends.len()).unwrap_or(i32::MAX);
+        let count = i32::try_from(self.starts.len() - 1).unwrap_or(i32::MAX);
         self.first..self.first.saturating_add(count)
     }
 
     /// The spans of row `j`.
     #[must_use]
     pub fn row(&self, j: i32) -> &[Span] {
-        let Some(k) = j.checked_sub(self.first).and_then(|k| usize::try_from(k).ok()) else {
-            return &[];
-        };
-        let Some(&end) = self.ends.get(k) else { return &[] };
-        let start = if k == 0 { 0 } else { self.ends[k - 1] };
-        &self.spans[start as usize..end as usize]
+        let k = j.wrapping_sub(self.first) as u32 as usize;
+        match self.starts.get(k..k + 2) {
+            Some(&[start, end]) => &self.spans[start as usize..end as usize],
+            _ => &[],
+        }
     }
 
     /// All spans with the index of their row.
     pub fn iter(&self) -> impl Iterator<Item = (i32, &[Span])> {
-        self.range().map(|j| (j, self.row(j)))
+        let row = |ends: &[u32]| &self.spans[ends[0] as usize..ends[1] as usize];
+        self.range().zip(self.starts.windows(2).map(row))
     }
 
     /// Whether there is no span at all.
@@ -192,10 +193,10 @@ impl Rows {
     /// What these rows or those of `other` have.
     #[must_use]
     pub fn or(&self, other: &Self) -> Self {
-        if self.ends.is_empty() {
+        if self.range().is_empty() {
             return other.clone();
         }
-        if other.ends.is_empty() {
+        if other.range().is_empty() {
             return self.clone();
         }
         let (a, b) = (self.range(), other.range());
