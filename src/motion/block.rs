@@ -56,7 +56,7 @@ impl Course {
 
 /// A move in the planner. Speeds are squared, mm²/s²: at constant acceleration
 /// the square changes evenly along the path, so that planning needs no roots.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Block<T> {
     /// Length of the path, mm.
     pub(super) distance: f64,

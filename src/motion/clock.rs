@@ -3,8 +3,8 @@
 use super::block::{Block, Course, Reach};
 use super::limits::Rates;
 use super::plan::{self, Top};
+use super::queue::Queue;
 use super::{Junction, Limits, Move, junction};
-use std::collections::VecDeque;
 use std::vec::Drain;
 
 /// Blocks that are planned at once where the whole file is looked at: enough
@@ -49,18 +49,18 @@ pub struct Clock<T> {
     rates: Rates,
     /// The last move that has a length, if the printer has not stood still since.
     before: Option<Course>,
-    pending: VecDeque<Block<T>>,
+    pending: Queue<Block<T>>,
     /// How many pending blocks make planning worth while.
     batch: usize,
     done: Vec<Timed<T>>,
 }
 
-impl<T> Clock<T> {
+impl<T: Copy> Clock<T> {
     /// A clock for a machine that stands still.
     #[must_use]
     pub fn new(limits: Limits) -> Self {
         let rates = Rates::new(limits);
-        Self { rates, before: None, pending: VecDeque::new(), batch: BATCH, done: Vec::new() }
+        Self { rates, before: None, pending: Queue::default(), batch: BATCH, done: Vec::new() }
     }
 
     /// The limits in force.
@@ -83,7 +83,7 @@ impl<T> Clock<T> {
         let before = self.reach().unwrap_or(Reach { full: corner, smooth: corner });
         let block = Block::new(&course, corner, before, self.rates.sprint, given.tag);
         self.before = Some(course);
-        self.pending.push_back(block);
+        self.pending.push(block);
         self.plan();
     }
 
@@ -121,14 +121,14 @@ impl<T> Clock<T> {
     fn push_empty(&mut self, tag: T) {
         match self.reach() {
             // It waits for the moves before it, so that the order is kept.
-            Some(reach) => self.pending.push_back(Block::empty(reach, tag)),
+            Some(reach) => self.pending.push(Block::empty(reach, tag)),
             None => self.done.push(Timed { seconds: 0.0, peak: 0.0, tag }),
         }
     }
 
     /// How fast the pending moves may end; `None` if there are none.
     fn reach(&self) -> Option<Reach> {
-        self.pending.back().map(Block::reach)
+        self.pending.last().map(Block::reach)
     }
 
     /// How fast the corner before `course` may be taken, squared.
@@ -187,11 +187,11 @@ impl<T> Clock<T> {
 
     /// The first `count` blocks are done, as planned.
     fn settle(&mut self, count: usize) {
-        let mut entry_speed = self.pending.front().map_or(0.0, |first| first.entry.sqrt());
+        let mut entry_speed = self.pending.first().map_or(0.0, |first| first.entry.sqrt());
         for _ in 0..count {
-            let Some(block) = self.pending.pop_front() else { return };
+            let Some(block) = self.pending.take_first() else { return };
             let most = (block.entry + block.change).min(block.cruise);
-            let exit = self.pending.front().map_or(block.rest, |next| next.entry).min(most);
+            let exit = self.pending.first().map_or(block.rest, |next| next.entry).min(most);
             let cruise = block.cruise.min(0.5 * (block.entry + exit + block.change));
             let exit_speed = exit.sqrt();
             let top = Top { entry: block.entry, cruise, exit };
@@ -204,7 +204,8 @@ impl<T> Clock<T> {
     fn settle_smoothly(&mut self, count: usize) {
         let ends = self.pending.get(count).map_or((0.0, 0.0), |next| (next.entry, next.smooth));
         let tops = plan::tops(&self.pending, count, ends);
-        for (block, top) in self.pending.drain(..count).zip(tops) {
+        for top in tops {
+            let Some(block) = self.pending.take_first() else { return };
             self.done.push(timed(block, top, [top.entry.sqrt(), top.exit.sqrt()]));
         }
     }

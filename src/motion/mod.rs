@@ -14,6 +14,7 @@ mod clock;
 mod junction;
 mod limits;
 mod plan;
+mod queue;
 
 pub use clock::{Clock, Timed};
 pub use limits::{Junction, Limits};

@@ -6,11 +6,10 @@
 //! it ever may is decided for good, whatever follows, and all before it with it.
 
 use super::block::Block;
-use std::collections::VecDeque;
 
 /// Plans all blocks so that the last ends at rest. Returns how many are decided for good.
-pub(super) fn back<T>(blocks: &mut VecDeque<Block<T>>) -> usize {
-    let mut next = blocks.back().map_or(0.0, |last| last.rest);
+pub(super) fn back<T>(blocks: &mut [Block<T>]) -> usize {
+    let mut next = blocks.last().map_or(0.0, |last| last.rest);
     let mut decided = None;
     for (index, block) in blocks.iter_mut().enumerate().rev() {
         let reachable = next + block.change;
@@ -25,8 +24,8 @@ pub(super) fn back<T>(blocks: &mut VecDeque<Block<T>>) -> usize {
 
 /// Plans anew after a block was added, as far back as anything changes. It may have to
 /// end at `least`, squared: the corner after it is not known yet.
-pub(super) fn back_from_last<T>(blocks: &mut VecDeque<Block<T>>, least: f64) {
-    let mut next = blocks.back().map_or(0.0, |last| last.rest.min(least));
+pub(super) fn back_from_last<T>(blocks: &mut [Block<T>], least: f64) {
+    let mut next = blocks.last().map_or(0.0, |last| last.rest.min(least));
     for block in blocks.iter_mut().rev() {
         let entry = block.most_entry.min(next + block.change);
         if entry == block.entry {
@@ -38,7 +37,7 @@ pub(super) fn back_from_last<T>(blocks: &mut VecDeque<Block<T>>, least: f64) {
 }
 
 /// The first block begins as planned, whatever follows: what can be reached from there on.
-pub(super) fn settle_first<T>(blocks: &mut VecDeque<Block<T>>) {
+pub(super) fn settle_first<T>(blocks: &mut [Block<T>]) {
     let mut blocks = blocks.iter_mut();
     let Some(first) = blocks.next() else { return };
     first.most_entry = first.entry;
@@ -54,7 +53,7 @@ pub(super) fn settle_first<T>(blocks: &mut VecDeque<Block<T>>) {
 
 /// Klipper's plan: both passes back, with the whole acceleration and with the part for
 /// sprints. Returns how many blocks are decided for good.
-pub(super) fn back_smoothly<T>(blocks: &mut VecDeque<Block<T>>) -> usize {
+pub(super) fn back_smoothly<T>(blocks: &mut [Block<T>]) -> usize {
     let (mut next, mut next_smooth) = (0.0, 0.0);
     let mut after_decided = false;
     let mut decided = None;
@@ -76,7 +75,7 @@ pub(super) fn back_smoothly<T>(blocks: &mut VecDeque<Block<T>>) -> usize {
 /// Klipper's top speeds of the first `count` blocks, from the last of them back: a climb
 /// and the descent after it share the top speed at which the slow pass would turn.
 /// `ends` are the squared speeds of both passes after the last of them.
-pub(super) fn tops<T>(blocks: &VecDeque<Block<T>>, count: usize, ends: (f64, f64)) -> Vec<Top> {
+pub(super) fn tops<T>(blocks: &[Block<T>], count: usize, ends: (f64, f64)) -> Vec<Top> {
     let mut tops = vec![Top::default(); count];
     let (mut next, mut next_smooth) = ends;
     let mut peak = 0.0;
