@@ -7,6 +7,7 @@
 
 use super::{Path, Role};
 use crate::geom::Point;
+use std::cell::LazyCell;
 use std::ops::Range;
 
 /// Stretches longer than this many paths are not turned, and paths moved no further:
@@ -132,18 +133,18 @@ impl<C: Cost> Tour<'_, C> {
     ///
     /// Nearly all changes are refused by the first line: one of the new travels alone takes longer.
     #[inline]
-    fn pays(&self, old: f64, new: [Leg; 2], third: Option<Leg>) -> bool {
+    fn pays(&self, old: f64, new: [Leg; 2], third: impl Fn() -> f64) -> bool {
         let reach = self.cost.reach(old);
         let is_far = |(a, b): Leg| a.distance2(b) as f64 >= reach * reach;
         !is_far(new[0]) && !is_far(new[1]) && self.saves(old, new, third)
     }
 
-    fn saves(&self, old: f64, new: [Leg; 2], third: Option<Leg>) -> bool {
-        let least = |leg: Leg| self.cost.least(leg.0, leg.1);
-        let whole = |leg: Leg| self.cost.whole(leg.0, leg.1);
-        old - new.map(least).iter().sum::<f64>() > LEAST_GAIN
-            && old + third.map_or(0.0, |leg| least(leg) - whole(leg))
-                - new.map(whole).iter().sum::<f64>()
+    fn saves(&self, old: f64, new: [Leg; 2], third: impl Fn() -> f64) -> bool {
+        let least = new.map(|leg| self.cost.least(leg.0, leg.1)).iter().sum::<f64>();
+        // From what is quickly said to what is not.
+        old - least > LEAST_GAIN
+            && old - third() - least > LEAST_GAIN
+            && old - third() - new.map(|leg| self.cost.whole(leg.0, leg.1)).iter().sum::<f64>()
                 > LEAST_GAIN
     }
 
@@ -177,7 +178,7 @@ impl<C: Cost> Tour<'_, C> {
     fn turn(&mut self, a: usize, b: usize) -> bool {
         let old = self.legs[a] + self.legs[b + 1];
         let new = [(self.from(a), self.stops[b].end), (self.stops[a].start, self.to(b + 1))];
-        if !self.pays(old, new, None) {
+        if !self.pays(old, new, || 0.0) {
             return false;
         }
         self.stops[a..=b].reverse();
@@ -195,11 +196,12 @@ impl<C: Cost> Tour<'_, C> {
         if out <= LEAST_GAIN {
             return false;
         }
+        let third = LazyCell::new(|| self.cost.whole(gap.0, gap.1) - self.cost.least(gap.0, gap.1));
         let near = a.saturating_sub(REACH)..(b + REACH).min(self.stops.len()) + 1;
         for k in near.filter(|k| !(a..=b).contains(k)) {
             let old = out + self.legs[k];
             let (from, to) = (self.from(k), self.to(k));
-            let pays = |first, last| self.pays(old, [(from, first), (last, to)], Some(gap));
+            let pays = |first, last| self.pays(old, [(from, first), (last, to)], || *third);
             let is_better = pays(first, last);
             if is_better || pays(last, first) {
                 self.lift(a..b, k, !is_better);
