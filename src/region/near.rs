@@ -38,7 +38,8 @@ impl Area {
 #[derive(Debug)]
 pub(super) struct Near {
     low: [f64; 2],
-    side: f64,
+    /// Cells for each grid unit.
+    scale: f64,
     /// Columns and rows of cells.
     size: [usize; 2],
     /// Where each cell begins in `items`, and where the last one ends.
@@ -56,7 +57,8 @@ impl Near {
         let extent = [0, 1].map(|k| (area.high[k] - area.low[k]).max(0.0));
         let side = side.max(extent[0].max(extent[1]) / MOST_CELLS);
         let size = extent.map(|x| (x / side) as usize + 1);
-        let mut near = Self { low: area.low, side, size, starts: Vec::new(), items: Vec::new() };
+        let mut near =
+            Self { low: area.low, scale: 1.0 / side, size, starts: Vec::new(), items: Vec::new() };
         near.sort(&edges);
         near
     }
@@ -88,7 +90,7 @@ impl Near {
     fn cells(&self, [p, q]: [[f64; 2]; 2]) -> impl Iterator<Item = Range<usize>> + use<> {
         // Casts to unsigned numbers hold below zero; what is beyond the area counts to its edge.
         let at =
-            |x: f64, k: usize| (((x - self.low[k]) / self.side) as usize).min(self.size[k] - 1);
+            |x: f64, k: usize| (((x - self.low[k]) * self.scale) as usize).min(self.size[k] - 1);
         let [columns, rows] = [0, 1].map(|k| (at(p[k].min(q[k]), k), at(p[k].max(q[k]), k)));
         let width = self.size[0];
         (rows.0..=rows.1).map(move |row| row * width + columns.0..row * width + columns.1 + 1)
