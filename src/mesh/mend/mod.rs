@@ -11,6 +11,7 @@
 
 mod bridge;
 mod cells;
+mod columns;
 mod duplicates;
 mod fill;
 mod holes;

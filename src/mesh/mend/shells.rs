@@ -1,9 +1,11 @@
 //! Surfaces that hang together -> shells wound outward: drops those that enclose nothing, turns those that are inside out.
 
+use super::columns::Columns;
 use super::patches::Links;
 use super::probes::{MOST_INSIDE, Probes};
 use super::{Notes, Work};
 use crate::mesh::Mesh;
+use crate::mesh::bounds::Bounds;
 use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::mesh::faults::{Fault, Mending};
 use crate::mesh::measure::{corners_of, determinant};
@@ -68,10 +70,10 @@ pub(in crate::mesh) fn nested(mesh: &Mesh, adjacency: &Adjacency, tree: &Tree) -
         return notes;
     }
     let flat = vec![false; shells.each.len()];
-    let probes = shells.probes(&mesh.vertices, &mesh.triangles);
     let is_body = |k: &usize| shells.each[*k].is_closed && shells.each[*k].volume > 0;
-    for k in (0..shells.each.len()).filter(is_body) {
-        let outer = around(tree, &shells, &flat, (k, &probes[k]));
+    let bodies: Vec<usize> = (0..shells.each.len()).filter(is_body).collect();
+    for (k, probes) in shells.probes(&bodies, &mesh.vertices, &mesh.triangles) {
+        let outer = around(tree, &shells.of, &flat, (k, &probes));
         let within = outer.iter().filter(|&&o| shells.each[o as usize].volume > 0).count();
         // As many cavities as bodies around it: it stands free in a cavity.
         if 2 * within > outer.len() {
@@ -125,13 +127,22 @@ fn shells(vertices: &[Corner], triangles: &[[u32; 3]], adjacency: &Adjacency) ->
 }
 
 impl Shells {
-    /// The places by which is told what each shell lies in.
-    fn probes(&self, vertices: &[Corner], triangles: &[[u32; 3]]) -> Vec<Probes> {
-        let mut probes = vec![Probes::default(); self.each.len()];
+    /// The places by which is told what each of `some` shells lies in.
+    fn probes(
+        &self,
+        some: &[usize],
+        vertices: &[Corner],
+        triangles: &[[u32; 3]],
+    ) -> Vec<(usize, Probes)> {
+        let mut probes: Vec<Option<Probes>> = vec![None; self.each.len()];
+        some.iter().for_each(|&k| probes[k] = Some(Probes::default()));
         for (&shell, &triangle) in self.of.iter().zip(triangles) {
-            probes[shell as usize].add(corners_of(vertices, triangle));
+            if let Some(probes) = &mut probes[shell as usize] {
+                probes.add(corners_of(vertices, triangle));
+            }
         }
-        probes
+        let known = probes.into_iter().enumerate();
+        known.filter_map(|(k, probes)| probes.map(|probes| (k, probes))).collect()
     }
 }
 
@@ -164,30 +175,51 @@ fn inverted(work: &Work, shells: &Shells, flat: &[bool]) -> Vec<bool> {
     if let [_] = &shells.each[..] {
         return vec![true];
     }
-    let tree = Tree::new(work.vertices, &work.triangles);
-    let probes = shells.probes(work.vertices, &work.triangles);
-    let around = |k: usize| around(&tree, shells, flat, (k, &probes[k]));
-    for k in (0..shells.each.len()).filter(|&k| is_inward(k)) {
-        is_inverted[k] = around(k).is_empty();
+    let all = 0..shells.each.len();
+    for (k, outer) in surroundings(work, shells, flat, all.clone().filter(|&k| is_inward(k))) {
+        is_inverted[k] = outer.is_empty();
     }
     if !is_inverted.contains(&true) {
         return is_inverted;
     }
     let roots = is_inverted.clone();
-    for k in (0..shells.each.len()).filter(|&k| !roots[k] && !flat[k]) {
-        is_inverted[k] = around(k).iter().any(|&outer| roots[outer as usize]);
+    let others = all.filter(|&k| !roots[k] && !flat[k]);
+    for (k, outer) in surroundings(work, shells, flat, others) {
+        is_inverted[k] = outer.iter().any(|&outer| roots[outer as usize]);
     }
     is_inverted
 }
 
-/// The shells that shell `k` lies in, going by its `probes`; flat ones are none.
-fn around(tree: &Tree, shells: &Shells, flat: &[bool], (k, probes): (usize, &Probes)) -> Vec<u32> {
+/// The shells that each of some lies in.
+fn surroundings(
+    work: &Work,
+    shells: &Shells,
+    flat: &[bool],
+    some: impl Iterator<Item = usize>,
+) -> Vec<(usize, Vec<u32>)> {
+    let some: Vec<usize> = some.collect();
+    let probes = shells.probes(&some, work.vertices, &work.triangles);
+    let places: Vec<Corner> = probes.iter().flat_map(|(_, probes)| probes.places()).collect();
+    // A tree over all triangles would take longer to grow than to be asked.
+    let columns = Columns::of(&places);
+    let bounds = |t: &[u32; 3]| Bounds::of(corners_of(work.vertices, *t));
+    let all = work.triangles.par_iter().zip(&shells.of).map(|(t, shell)| (*t, *shell));
+    let near = all.filter(|(t, _)| columns.meet(bounds(t)));
+    let (triangles, of): (Vec<[u32; 3]>, Vec<u32>) = near.unzip();
+    let tree = Tree::new(work.vertices, &triangles);
+    let around = |(k, probes): &(usize, Probes)| (*k, around(&tree, &of, flat, (*k, probes)));
+    probes.par_iter().map(around).collect()
+}
+
+/// The shells that shell `k` lies in, going by its `probes`; flat ones are none. `of` says which
+/// shell each triangle of the tree belongs to.
+fn around(tree: &Tree, of: &[u32], flat: &[bool], (k, probes): (usize, &Probes)) -> Vec<u32> {
     // Each shell that winds around one of the places, once for each.
     let mut outer: Vec<u32> = Vec::new();
     for place in probes.places() {
         let mut windings: Vec<(u32, i32)> = Vec::new();
         tree.above(place, |t, sign| {
-            let shell = shells.of[t as usize];
+            let shell = of[t as usize];
             if shell as usize == k || flat[shell as usize] {
                 return;
             }

@@ -1,0 +1,86 @@
+//! Places -> Columns: which triangles may lie above or below one of them, quickly told.
+
+use crate::mesh::bounds::Bounds;
+use crate::mesh::vector::Corner;
+
+/// Cells along the longer side of the places, at most.
+const MOST: u32 = 512;
+
+/// Square cells of the plane, some with places in them.
+pub(super) struct Columns {
+    low: [i64; 2],
+    /// The side of a cell is 2 to this power, grid units.
+    shift: u32,
+    /// Columns and rows of cells.
+    size: [usize; 2],
+    /// Whether there is a place in each cell, row by row.
+    has: Vec<bool>,
+}
+
+impl Columns {
+    /// Those of `places`.
+    pub(super) fn of(places: &[Corner]) -> Self {
+        let all = |axis: usize| places.iter().map(move |place| i64::from(place[axis]));
+        let low = [0, 1].map(|axis| all(axis).min().unwrap_or(0));
+        let extent = [0, 1].map(|axis| all(axis).max().unwrap_or(0) - low[axis]);
+        let longer = extent[0].max(extent[1]).unsigned_abs();
+        let shift = (u64::BITS - longer.leading_zeros()).saturating_sub(MOST.ilog2());
+        let size = extent.map(|side| (side >> shift) as usize + 1);
+        let mut columns = Self { low, shift, size, has: vec![false; size[0] * size[1]] };
+        for &[x, y, _] in places {
+            let [column, row] = columns.cell([x, y]);
+            columns.has[row * size[0] + column] = true;
+        }
+        columns
+    }
+
+    /// Whether there is a place in a cell that the box around some triangle covers.
+    pub(super) fn meet(&self, bounds: Bounds) -> bool {
+        let Bounds { low: [left, front, _], high: [right, back, _] } = bounds;
+        let beyond = |axis: usize, from: i32, to: i32| {
+            let end = self.low[axis] + ((self.size[axis] as i64) << self.shift);
+            i64::from(to) < self.low[axis] || i64::from(from) >= end
+        };
+        if beyond(0, left, right) || beyond(1, front, back) {
+            return false;
+        }
+        let ([from, first], [to, last]) = (self.cell([left, front]), self.cell([right, back]));
+        (first..=last).any(|row| self.has[row * self.size[0]..][from..=to].contains(&true))
+    }
+
+    /// Column and row of the cell of a point, or of the nearest one.
+    fn cell(&self, point: [i32; 2]) -> [usize; 2] {
+        [0, 1].map(|axis| {
+            let cell = (i64::from(point[axis]) - self.low[axis]).max(0) >> self.shift;
+            (cell as usize).min(self.size[axis] - 1)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_over_a_place_meet_it_and_most_others_do_not() {
+        let places: Vec<Corner> =
+            (0..40).map(|k| [k * k * 997 - 300_000, k * 7_919 % 40 * 10_000, k]).collect();
+        let columns = Columns::of(&places);
+        let (mut met, mut over) = (0, 0);
+        for k in 0..4000 {
+            let low = [k * 331 % 2_000_000 - 500_000, k * 977 % 600_000 - 100_000, 0];
+            let bounds = Bounds { low, high: low.map(|side| side + 40_000) };
+            let holds = |place: &Corner| {
+                let within =
+                    |axis: usize| (bounds.low[axis]..=bounds.high[axis]).contains(&place[axis]);
+                within(0) && within(1)
+            };
+            assert!(columns.meet(bounds) || !places.iter().any(holds));
+            met += usize::from(columns.meet(bounds));
+            over += usize::from(places.iter().any(holds));
+        }
+        assert!(over > 50 && met < over + over / 4, "{met} for {over}");
+        let one = Columns::of(&places[..1]);
+        assert!(one.meet(Bounds { low: places[0], high: places[0] }));
+    }
+}
