@@ -2,7 +2,7 @@
 //!
 //! The only place that knows the library, so that it can be exchanged.
 
-use super::parallel::parallel;
+use super::parallel::{parallel, parallel_and_lost};
 use super::simple::windings;
 use super::{Contour, Point, double_area, side};
 use crate::units::Coord;
@@ -44,6 +44,18 @@ pub fn inset(contours: &[Contour], distance: Coord) -> Vec<Contour> {
 #[must_use]
 pub fn outset(contours: &[Contour], distance: Coord) -> Vec<Contour> {
     offset(contours, f64::from(distance))
+}
+
+/// Whether `contours` (as from [`union`]) keep their shape when they are shrunk by `distance`: none
+/// comes apart, meets another or vanishes, and none loses sides of more than `most` (grid units) in all.
+#[must_use]
+pub fn keep_shape(contours: &[Contour], distance: Coord, most: f64) -> bool {
+    let distance = -f64::from(distance);
+    let moved = contours.iter().map(|c| parallel_and_lost(c, distance, MITER_LIMIT));
+    let kept = moved.map(|moved| moved.filter(|(_, lost)| *lost <= most).map(|(curve, _)| curve));
+    let curves = kept.collect::<Option<Vec<Contour>>>();
+    let left = curves.and_then(|curves| disjoint(&curves, |winding| winding > 0, distance));
+    left.is_some_and(|left| left.len() == contours.len())
 }
 
 /// What of `contours` is outside of `others` (both as from [`union`]), simplified to
@@ -241,6 +253,30 @@ mod tests {
         let moved = parallel(&cut, -7_071.067_8, MITER_LIMIT).unwrap();
         assert_eq!(moved.len(), 4, "{moved:?}");
         assert!(moved.iter().any(|at| at.distance2(p(0, 90_000)) <= 2), "{moved:?}");
+    }
+
+    #[test]
+    fn shapes_are_kept_unless_something_is_too_thin() {
+        let p = |x, y| Point { x, y };
+        let square =
+            |low: Coord, high: Coord| vec![p(low, low), p(high, low), p(high, high), p(low, high)];
+        let block = square(0, 100_000);
+        let hole = |low, high| square(low, high).into_iter().rev().collect::<Contour>();
+        assert!(keep_shape(std::slice::from_ref(&block), 1_000, 0.0));
+        assert!(keep_shape(&[block.clone(), hole(2_100, 50_000)], 1_000, 0.0));
+        assert!(!keep_shape(&[block.clone(), hole(1_900, 50_000)], 1_000, 0.0), "a thin rim");
+        assert!(!keep_shape(&[square(0, 1_900)], 1_000, 0.0), "nothing is left");
+        // A cape on a side, whose sides vanish one after the other from its tip.
+        let mut cape = vec![p(0, 0), p(100_000, 0), p(100_000, 100_000)];
+        cape.extend((0..=20).map(|k| p(51_000 - 50 * k, 100_000 + 1_000 * k)));
+        cape.extend((0..20).rev().map(|k| p(49_000 + 50 * k, 100_000 + 1_000 * k)));
+        cape.push(p(0, 100_000));
+        assert!(!keep_shape(&[cape], 1_100, 20_000.0));
+        // A corner that is cut off a little.
+        let blunt =
+            vec![p(0, 0), p(100_000, 0), p(100_000, 99_900), p(99_900, 100_000), p(0, 100_000)];
+        let keeps = |most| keep_shape(std::slice::from_ref(&blunt), 1_000, most);
+        assert!(keeps(200.0) && !keeps(100.0));
     }
 
     #[test]

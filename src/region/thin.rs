@@ -87,10 +87,14 @@ pub fn apart(rows: &Rows, others: &Rows) -> Rows {
 #[must_use]
 pub fn open(loops: Vec<Contour>, params: &Params) -> Vec<Contour> {
     let half = (params.least_apart() / 2).max(1);
+    let short = SHORT * f64::from(params.line_width);
+    // Both passes of a thin place would meet, or vanish.
+    if polygon::keep_shape(&loops, half, short) {
+        return loops;
+    }
     let opened = polygon::outset(&polygon::inset(&loops, half), half + ROUNDING);
     let mut thin = polygon::difference(&loops, &opened, ROUNDING);
-    let least = 2.0 * SHORT * f64::from(params.line_width);
-    thin.retain(|c| edges(c).map(|(p, q)| p.distance(q)).sum::<f64>() >= least);
+    thin.retain(|c| edges(c).map(|(p, q)| p.distance(q)).sum::<f64>() >= 2.0 * short);
     if thin.is_empty() {
         return loops;
     }
