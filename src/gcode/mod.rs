@@ -95,10 +95,11 @@ impl<'a> Writer<'a> {
     pub fn layers(&mut self, layers: &[Toolpath]) -> Result<()> {
         // Moves and text take more memory than the layers themselves.
         let at_once = rayon::current_num_threads().max(4);
-        layers.chunks(at_once).try_for_each(|layers| self.some(layers))
+        layers.chunks(at_once).try_for_each(|layers| self.together(layers))
     }
 
-    fn some(&mut self, layers: &[Toolpath]) -> Result<()> {
+    /// Writes layers whose moves and text are all held at a time.
+    fn together(&mut self, layers: &[Toolpath]) -> Result<()> {
         let (params, moves, timer) = (&self.params, &self.moves, &mut self.timer);
         let walk = |layer| {
             let moves = moves.moves(layer);

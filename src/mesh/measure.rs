@@ -18,10 +18,12 @@ pub(crate) fn corners_of(vertices: &[Corner], triangle: [u32; 3]) -> [Corner; 3]
 /// The signed volume: a sixth of the sum of the triangles' determinants, in
 /// integers, so that no order of the triangles changes it.
 pub(crate) fn volume_mm3(mesh: &Mesh) -> f64 {
-    let determinants =
-        mesh.triangles.par_iter().map(|&t| determinant(corners_of(&mesh.vertices, t)));
-    let sum = determinants.sum();
-    of_determinants(sum)
+    of_determinants(determinants(&mesh.vertices, &mesh.triangles))
+}
+
+/// The sum of the triangles' [`determinant`]s.
+pub(crate) fn determinants(vertices: &[Corner], triangles: &[[u32; 3]]) -> i128 {
+    triangles.par_iter().map(|&t| determinant(corners_of(vertices, t))).sum()
 }
 
 /// Six times the signed volume of the tetrahedron from the origin to a triangle; exact.

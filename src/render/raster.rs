@@ -65,21 +65,21 @@ struct Grid {
     width: usize,
     /// Rows of pixels in each band but the last.
     band: usize,
-    /// The number of bands.
+    /// The number of bands, at least one.
     bands: usize,
 }
 
 impl Grid {
     fn new(size: [u32; 2], samples: u32) -> Self {
         let band = (BAND / (size[0] * samples * samples).max(1)).max(1);
-        let bands = size[1].div_ceil(band) as usize;
+        let bands = size[1].div_ceil(band).max(1) as usize;
         Self { samples: samples as usize, width: size[0] as usize, band: band as usize, bands }
     }
 
     /// The band of a row of samples, or the nearest one.
     fn band_of(&self, row: i32) -> usize {
         let row = usize::try_from(row).unwrap_or(0);
-        (row / (self.band * self.samples)).min(self.bands.saturating_sub(1))
+        (row / (self.band * self.samples)).min(self.bands - 1)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 use crate::mesh::bounds::Bounds;
 use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::mesh::faults::{Fault, Mending};
-use crate::mesh::measure::{corners_of, determinant};
+use crate::mesh::measure::{corners_of, determinant, determinants};
 use crate::mesh::tree::Tree;
 use crate::mesh::vector::Corner;
 use rayon::prelude::*;
@@ -106,8 +106,8 @@ pub(super) fn links(adjacency: &Adjacency) -> Links {
 fn shells(vertices: &[Corner], triangles: &[[u32; 3]], adjacency: &Adjacency) -> Shells {
     let mut links = links(adjacency);
     if links.sets() == 1 {
-        let volumes = triangles.par_iter().map(|&t| determinant(corners_of(vertices, t)));
-        let shell = Shell { first: 0, is_closed: adjacency.unpaired == 0, volume: volumes.sum() };
+        let volume = determinants(vertices, triangles);
+        let shell = Shell { first: 0, is_closed: adjacency.unpaired == 0, volume };
         return Shells { of: vec![0; triangles.len()], each: vec![shell] };
     }
     let mut shells = Shells { of: Vec::with_capacity(triangles.len()), each: Vec::new() };
