@@ -26,22 +26,12 @@ const STRAIGHT: f64 = 0.999;
 /// its mitre reaches further than `limit` distances, or folds back.
 #[must_use]
 pub fn parallel(contour: &[Point], distance: f64, limit: f64) -> Option<Contour> {
-    let (corners, sides) = moved(contour, distance, limit)?;
-    Some(sides.curve(&corners))
+    parallel_and_lost(contour, distance, limit).map(|(curve, _)| curve)
 }
 
 /// As [`parallel`], and how long the sides of `contour` are that vanished in all, grid units.
 #[must_use]
 pub fn parallel_and_lost(contour: &[Point], distance: f64, limit: f64) -> Option<(Contour, f64)> {
-    let (corners, sides) = moved(contour, distance, limit)?;
-    let is_lost = |k: &usize| sides.after[*k] == *k;
-    let length = |k: usize| contour[k].distance(contour[(k + 1) % contour.len()]);
-    let lost = (0..contour.len()).filter(is_lost).map(length).sum();
-    Some((sides.curve(&corners), lost))
-}
-
-/// The corners of `contour` moved, and its sides cut off each other.
-fn moved(contour: &[Point], distance: f64, limit: f64) -> Option<(Vec<Corner>, Sides)> {
     let n = contour.len();
     let normals: Vec<[f64; 2]> =
         (0..n).map(|k| normal(contour[k], contour[(k + 1) % n])).collect::<Option<_>>()?;
@@ -52,7 +42,10 @@ fn moved(contour: &[Point], distance: f64, limit: f64) -> Option<(Vec<Corner>, S
     let corners: Vec<Corner> = (0..n).map(corner).collect::<Option<_>>()?;
     let mut sides = Sides::new(&corners);
     sides.cut_all(&corners);
-    Some((corners, sides))
+    let is_lost = |k: &usize| sides.after[*k] == *k;
+    let length = |k: usize| contour[k].distance(contour[(k + 1) % n]);
+    let lost = (0..n).filter(is_lost).map(length).sum();
+    Some((sides.curve(&corners), lost))
 }
 
 /// The sides of a curve in a ring, without those that vanished.

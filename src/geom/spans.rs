@@ -143,6 +143,7 @@ impl Rows {
     /// The spans of row `j`.
     #[must_use]
     pub fn row(&self, j: i32) -> &[Span] {
+        // Rows before the first become ones far behind the last.
         let k = j.wrapping_sub(self.first) as u32 as usize;
         match self.starts.get(k..k + 2) {
             Some(&[start, end]) => &self.spans[start as usize..end as usize],

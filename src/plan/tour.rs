@@ -129,7 +129,8 @@ impl<C: Cost> Tour<'_, C> {
     }
 
     /// Whether two new travels take less than `old` s, and less than that with what may
-    /// come on top of them and of a third, whose least is in `old` already.
+    /// come on top of them and of a third, whose least is in `old` already: `third` says what
+    /// comes on top of that.
     ///
     /// Nearly all changes are refused by the first line: one of the new travels alone takes longer.
     #[inline]

@@ -4,6 +4,7 @@ use super::view::{Corner, GRAIN, View};
 use super::{Pixel, light};
 use crate::mesh::Mesh;
 use rayon::prelude::*;
+use std::cell::LazyCell;
 use std::ops::RangeInclusive;
 
 /// Samples that are drawn at a time, at most: few enough to stay in a processor's cache.
@@ -52,9 +53,15 @@ fn bins(mesh: &Mesh, corners: &[Corner], grid: &Grid) -> Vec<Vec<Vec<u32>>> {
 /// The columns and rows of samples whose middles a triangle's box has.
 fn held(corners: [[i32; 2]; 3]) -> [RangeInclusive<i32>; 2] {
     [0, 1].map(|axis| {
-        let [a, b, c] = corners.map(|corner| corner[axis]);
-        first_sample(a.min(b).min(c))..=last_sample(a.max(b).max(c))
+        let [least, most] = extent(corners, axis);
+        first_sample(least)..=last_sample(most)
     })
+}
+
+/// From where to where a triangle's box reaches.
+fn extent(corners: [[i32; 2]; 3], axis: usize) -> [i32; 2] {
+    let [a, b, c] = corners.map(|corner| corner[axis]);
+    [a.min(b).min(c), a.max(b).max(c)]
 }
 
 /// How a picture is divided.
@@ -112,10 +119,10 @@ impl<'a> Samples<'a> {
         let [_, rows] = held(at);
         let first = (*rows.start()).max(self.rows[0]);
         let last = (*rows.end()).min(self.rows[1] - 1);
-        let [a, b, c] = at.map(|corner| corner[0]);
-        let range = [a.min(b).min(c), a.max(b).max(c)];
+        let range = extent(at, 0);
         let Some(outline) = Outline::new(mesh, corners, triangle) else { return };
-        let mut face = None;
+        // Many a small triangle has a sample in its box but none in itself.
+        let face = LazyCell::new(|| Face::new(mesh, corners, &outline));
         for row in first..=last {
             let [from, to] = outline.within(centre(row), range);
             let from = first_sample(from).max(0);
@@ -123,14 +130,7 @@ impl<'a> Samples<'a> {
             if from > to {
                 continue;
             }
-            // Many a small triangle has a sample in its box but none in itself.
-            let face = match &mut face {
-                Some(face) => face,
-                None => match Face::new(mesh, corners, &outline) {
-                    Some(new) => face.insert(new),
-                    None => return,
-                },
-            };
+            let Some(face) = &*face else { return };
             let start = (row - self.rows[0]) as usize * self.width;
             let samples = &mut self.seen[start + from as usize..=start + to as usize];
             for (seen, value) in samples.iter_mut().zip(face.seen(from, row)) {
