@@ -32,6 +32,7 @@ Exit codes:
     2  wrong arguments, profile or setting
     3  a model or G-code file cannot be read; a model does not fit, or leaves nothing to print
     4  an output cannot be written
+  101  a fault of the slicer itself
   130  interrupted
 Only the product goes to standard output, everything else to standard error.
 A run that fails leaves no file behind.";

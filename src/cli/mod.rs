@@ -55,6 +55,7 @@ impl From<String> for Outcome {
 /// Runs the program with these arguments, the program's name first, and
 /// returns the process's exit code.
 pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
+    interrupt::watch_faults();
     let words: Vec<OsString> = words.collect();
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
