@@ -38,6 +38,29 @@ pub fn nearest(value: f64) -> i64 {
     (value + 0.5_f64.copysign(value)) as i64
 }
 
+/// Bounds for numbers that are never NaN: an instruction each. [`f64::min`] and [`f64::max`]
+/// take five, for what they promise of NaN.
+pub trait Bounded {
+    /// This number, or `most` if that is smaller.
+    #[must_use]
+    fn at_most(self, most: Self) -> Self;
+    /// This number, or `least` if that is larger.
+    #[must_use]
+    fn at_least(self, least: Self) -> Self;
+}
+
+impl Bounded for f64 {
+    #[inline]
+    fn at_most(self, most: Self) -> Self {
+        if most < self { most } else { self }
+    }
+
+    #[inline]
+    fn at_least(self, least: Self) -> Self {
+        if least > self { least } else { self }
+    }
+}
+
 /// The value at `v`, `low_v <= v <= high_v`, of what goes evenly from `low` at `low_v` to `high` at `high_v`; rounded to the nearest unit, halves upwards.
 #[must_use]
 #[inline]

@@ -22,7 +22,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("gcode", &["geom", "plan", "motion", "profile", "error", "units", "job"]),
     ("job", &["mesh", "profile"]),
     ("profile", &["error"]),
-    ("motion", &["profile"]),
+    ("motion", &["profile", "units"]),
     // A witness of its own: it shares nothing with the code that writes.
     ("reader", &[]),
     ("estimate", &["reader", "motion", "error"]),

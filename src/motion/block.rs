@@ -3,6 +3,7 @@
 use super::junction;
 use super::limits::{Rates, moves_nozzle};
 use super::{Junction, Move};
+use crate::units::Bounded as _;
 
 /// What a corner's rule needs of the move before and the move after it.
 #[derive(Debug, Clone, Copy)]
@@ -46,7 +47,7 @@ impl Course {
             distance,
             cruise,
             acceleration,
-            rest: rest.max(rates.limits.minimum_speed).min(cruise),
+            rest: rest.at_least(rates.limits.minimum_speed).at_most(cruise),
             moves_nozzle,
             slowed: 1.0,
             deviation: rates.deviation,
@@ -87,16 +88,16 @@ impl<T> Block<T> {
     /// corner that allows `corner` (squared). `sprint` is the acceleration for short sprints, mm/s².
     pub(super) fn new(course: &Course, corner: f64, before: Reach, sprint: f64, tag: T) -> Self {
         let change = 2.0 * course.acceleration * course.distance;
-        let most_entry = corner.min(before.full);
+        let most_entry = corner.at_most(before.full);
         Self {
             distance: course.distance,
             acceleration: course.acceleration,
             change,
-            smooth_change: change.min(2.0 * sprint * course.distance),
+            smooth_change: change.at_most(2.0 * sprint * course.distance),
             cruise: course.cruise * course.cruise,
             rest: course.rest * course.rest,
             most_entry,
-            most_smooth: most_entry.min(before.smooth),
+            most_smooth: most_entry.at_most(before.smooth),
             entry: 0.0,
             smooth: 0.0,
             tag,
@@ -123,7 +124,7 @@ impl<T> Block<T> {
     /// How fast it may end, squared.
     pub(super) fn reach(&self) -> Reach {
         Reach {
-            full: self.cruise.min(self.most_entry + self.change),
+            full: self.cruise.at_most(self.most_entry + self.change),
             smooth: self.most_smooth + self.smooth_change,
         }
     }

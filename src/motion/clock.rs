@@ -5,6 +5,7 @@ use super::limits::Rates;
 use super::plan::{self, Top};
 use super::queue::Queue;
 use super::{Junction, Limits, Move, junction};
+use crate::units::Bounded as _;
 use std::vec::Drain;
 
 /// Blocks that are planned at once where the whole file is looked at: enough
@@ -154,9 +155,9 @@ impl<T: Copy> Clock<T> {
                 junction::square_corner(before, course, *extruder_corner_velocity)
             }
         };
-        let cruise = before.cruise.min(course.cruise);
+        let cruise = before.cruise.at_most(course.cruise);
         let least = limits.minimum_speed;
-        corner.max(least * least).min(cruise * cruise)
+        corner.at_least(least * least).at_most(cruise * cruise)
     }
 
     /// Plans the pending blocks and lets go of those that are decided.
@@ -190,9 +191,9 @@ impl<T: Copy> Clock<T> {
         let mut entry_speed = self.pending.first().map_or(0.0, |first| first.entry.sqrt());
         for _ in 0..count {
             let Some(block) = self.pending.take_first() else { return };
-            let most = (block.entry + block.change).min(block.cruise);
-            let exit = self.pending.first().map_or(block.rest, |next| next.entry).min(most);
-            let cruise = block.cruise.min(0.5 * (block.entry + exit + block.change));
+            let most = (block.entry + block.change).at_most(block.cruise);
+            let exit = self.pending.first().map_or(block.rest, |next| next.entry).at_most(most);
+            let cruise = block.cruise.at_most(0.5 * (block.entry + exit + block.change));
             let exit_speed = exit.sqrt();
             let top = Top { entry: block.entry, cruise, exit };
             self.done.push(timed(block, top, [entry_speed, exit_speed]));
@@ -218,7 +219,7 @@ fn timed<T>(block: Block<T>, top: Top, [entry, exit]: [f64; 2]) -> Timed<T> {
     }
     let peak = top.cruise.sqrt();
     let ramps = (2.0 * top.cruise - top.entry - top.exit) / (2.0 * block.acceleration);
-    let cruising = (block.distance - ramps).max(0.0);
+    let cruising = (block.distance - ramps).at_least(0.0);
     let seconds = (2.0 * peak - entry - exit) / block.acceleration + cruising / peak;
     Timed { seconds, peak, tag: block.tag }
 }

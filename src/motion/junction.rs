@@ -1,6 +1,7 @@
 //! Two successive moves -> the highest speed between them, by each firmware's rule.
 
 use super::block::Course;
+use crate::units::Bounded as _;
 
 /// Where two moves are in line or turn back, as far as rounding can tell: cosine of the angle between them.
 const STRAIGHT: f64 = 0.999_999;
@@ -18,15 +19,15 @@ const ARC: f64 = -std::f64::consts::FRAC_1_SQRT_2;
 pub(super) fn from_rest(direction: &[f64; 4], cruise: f64, inverse: &[f64; 4]) -> f64 {
     let mut worst = 0.0_f64;
     for (direction, inverse) in direction.iter().zip(inverse) {
-        worst = worst.max(direction.abs() * inverse);
+        worst = worst.at_least(direction.abs() * inverse);
     }
-    cruise.min(1.0 / worst)
+    cruise.at_most(1.0 / worst)
 }
 
 /// Marlin's classic jerk, mm/s: the speed at which no axis changes its own by more than
 /// its jerk. `inverse` is 1 / jerk.
 pub(super) fn jerk(before: &Course, after: &Course, inverse: &[f64; 4]) -> f64 {
-    let shared = before.cruise.min(after.cruise);
+    let shared = before.cruise.at_most(after.cruise);
     let mut worst = 1.0_f64;
     for (axis, inverse) in inverse.iter().enumerate() {
         // As the firmware has it: only the move before is slowed down to what both can do.
@@ -34,15 +35,15 @@ pub(super) fn jerk(before: &Course, after: &Course, inverse: &[f64; 4]) -> f64 {
         let entering = after.direction[axis] * after.cruise;
         let apart = (leaving - entering).abs();
         // Turning back, or one of them stands still: it may come in and leave at its jerk.
-        let turning = leaving.abs().max(entering.abs());
+        let turning = leaving.abs().at_least(entering.abs());
         let change = if leaving * entering > 0.0 { apart } else { turning };
-        worst = worst.max(change * inverse);
+        worst = worst.at_least(change * inverse);
     }
     let speed = shared / worst;
     let threshold = speed * WORTH_COASTING;
     if before.rest > threshold && after.rest > threshold {
         // No gain in coasting through: stop and start again.
-        return after.rest.min(before.cruise);
+        return after.rest.at_most(before.cruise);
     }
     speed
 }
@@ -50,16 +51,16 @@ pub(super) fn jerk(before: &Course, after: &Course, inverse: &[f64; 4]) -> f64 {
 /// Jerk as a vector, mm/s: the highest speed that both moves can have at which the change in
 /// x and y together, and in z, is within the jerk. `inverse` is 1 / jerk.
 pub(super) fn vector_jerk(before: &Course, after: &Course, inverse: &[f64; 4]) -> f64 {
-    let shared = before.cruise.min(after.cruise);
+    let shared = before.cruise.at_most(after.cruise);
     // In jerks, per mm/s of the shared speed.
     let [x, y, z, e]: [f64; 4] = std::array::from_fn(|axis| {
         (after.direction[axis] - before.direction[axis]) * inverse[axis]
     });
-    let mut change = (x * x + y * y).sqrt().max(z.abs());
+    let mut change = (x * x + y * y).sqrt().at_least(z.abs());
     if !(before.moves_nozzle && after.moves_nozzle) {
-        change = change.max(e.abs());
+        change = change.at_least(e.abs());
     }
-    shared / (shared * change).max(1.0)
+    shared / (shared * change).at_least(1.0)
 }
 
 /// Sailfish's "maximum speed change": the share of its speed at which the move after begins,
@@ -79,10 +80,10 @@ pub(super) fn speed_change(before: &Course, after: &Course, most: &[f64; 4]) -> 
                 return 0.0;
             }
             let bound = if will > was { was + most } else { was - most };
-            share = share.min(bound / will);
+            share = share.at_most(bound / will);
         }
     }
-    share.max(0.0)
+    share.at_least(0.0)
 }
 
 /// Marlin's junction deviation, squared speed: the corner as an arc that passes the
@@ -109,7 +110,7 @@ pub(super) fn deviation(before: &Course, after: &Course, acceleration: &[f64; 4]
     if after.distance < SHORT && cosine < ARC {
         let turn = small_turn(cosine);
         if turn > 0.0 {
-            squared = squared.min(after.distance * most / turn);
+            squared = squared.at_most(after.distance * most / turn);
         }
     }
     squared
@@ -131,13 +132,13 @@ pub(super) fn square_corner(before: &Course, after: &Course, extruder_velocity: 
         + before.direction[1] * after.direction[1]
         + before.direction[2] * after.direction[2]);
     let sine = half_sine(cosine);
-    let half_cosine = (0.5 * (1.0 + cosine)).max(0.0).sqrt();
+    let half_cosine = (0.5 * (1.0 + cosine)).at_least(0.0).sqrt();
     if sine < 1.0 && half_cosine > 0.0 {
         let arc = sine / (1.0 - sine);
         let tangent = 0.5 * sine / half_cosine;
         for course in [before, after] {
-            squared = squared.min(arc * course.deviation * course.acceleration);
-            squared = squared.min(course.distance * course.acceleration * tangent);
+            squared = squared.at_most(arc * course.deviation * course.acceleration);
+            squared = squared.at_most(course.distance * course.acceleration * tangent);
         }
     }
     squared
@@ -145,13 +146,13 @@ pub(super) fn square_corner(before: &Course, after: &Course, extruder_velocity: 
 
 /// Sine of half the angle whose cosine this is.
 fn half_sine(cosine: f64) -> f64 {
-    (0.5 * (1.0 - cosine)).max(0.0).sqrt()
+    (0.5 * (1.0 - cosine)).at_least(0.0).sqrt()
 }
 
 /// The angle in radians by which the path turns, if by no more than 45°. `cosine` is that of
 /// the angle between the two moves. The first terms of the arc sine are right to 10⁻⁵.
 fn small_turn(cosine: f64) -> f64 {
-    let half = (0.5 * (1.0 + cosine)).max(0.0).sqrt();
+    let half = (0.5 * (1.0 + cosine)).at_least(0.0).sqrt();
     let square = half * half;
     let series = 1.0 + square * (1.0 / 6.0 + square * (3.0 / 40.0 + square * (15.0 / 336.0)));
     2.0 * half * series

@@ -1,6 +1,7 @@
 //! Settings -> Limits: what a machine's planner holds itself to.
 
 use crate::profile::{JunctionRule, Settings};
+use crate::units::Bounded as _;
 
 /// Feeds are in mm/min where people set them.
 const SECONDS_PER_MINUTE: f64 = 60.0;
@@ -122,18 +123,19 @@ impl Limits {
 
 impl Rates {
     pub(super) fn new(limits: Limits) -> Self {
-        let inverse = |values: [f64; 4]| values.map(|value| 1.0 / value.max(LEAST));
+        let inverse = |values: [f64; 4]| values.map(|value| 1.0 / value.at_least(LEAST));
         let deviation = match limits.junction {
             Junction::Jerk(_) | Junction::VectorJerk(_) | Junction::SpeedChange(_) => 0.0,
-            Junction::Deviation(deviation) => deviation.max(0.0),
+            Junction::Deviation(deviation) => deviation.at_least(0.0),
             Junction::SquareCorner { velocity, .. } => {
                 let root_of_two = std::f64::consts::SQRT_2;
-                velocity * velocity * (root_of_two - 1.0) / limits.print_acceleration.max(LEAST)
+                velocity * velocity * (root_of_two - 1.0)
+                    / limits.print_acceleration.at_least(LEAST)
             }
         };
         let sprint = match limits.junction {
             Junction::SquareCorner { minimum_cruise_ratio, .. } => {
-                limits.print_acceleration.max(LEAST) * (1.0 - minimum_cruise_ratio)
+                limits.print_acceleration.at_least(LEAST) * (1.0 - minimum_cruise_ratio)
             }
             _ => f64::INFINITY,
         };
@@ -141,7 +143,7 @@ impl Rates {
             sprint,
             jerk_inverse: match limits.junction {
                 Junction::Jerk(jerk) | Junction::VectorJerk(jerk) => {
-                    jerk.map(|jerk| 1.0 / jerk.max(LEAST_JERK))
+                    jerk.map(|jerk| 1.0 / jerk.at_least(LEAST_JERK))
                 }
                 _ => [0.0; 4],
             },
@@ -168,12 +170,12 @@ impl Rates {
         let (mut slowest, mut laziest) = (0.0_f64, 0.0_f64);
         for (axis, length) in delta.iter().enumerate().take(axes) {
             let length = length.abs();
-            slowest = slowest.max(length * self.feed_inverse[axis]);
-            laziest = laziest.max(length * self.acceleration_inverse[axis]);
+            slowest = slowest.at_least(length * self.feed_inverse[axis]);
+            laziest = laziest.at_least(length * self.acceleration_inverse[axis]);
         }
         // `max` drops a feed that is not a number.
-        let speed = feed.max(LEAST).min(distance / slowest);
-        (speed, wanted.max(LEAST).min(distance / laziest))
+        let speed = feed.at_least(LEAST).at_most(distance / slowest);
+        (speed, wanted.at_least(LEAST).at_most(distance / laziest))
     }
 }
 

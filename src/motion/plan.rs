@@ -6,6 +6,7 @@
 //! it ever may is decided for good, whatever follows, and all before it with it.
 
 use super::block::Block;
+use crate::units::Bounded as _;
 
 /// Plans all blocks so that the last ends at rest. Returns how many are decided for good.
 pub(super) fn back<T>(blocks: &mut [Block<T>]) -> usize {
@@ -13,7 +14,7 @@ pub(super) fn back<T>(blocks: &mut [Block<T>]) -> usize {
     let mut decided = None;
     for (index, block) in blocks.iter_mut().enumerate().rev() {
         let reachable = next + block.change;
-        block.entry = block.most_entry.min(reachable);
+        block.entry = block.most_entry.at_most(reachable);
         if decided.is_none() && block.most_entry <= reachable {
             decided = Some(index);
         }
@@ -25,9 +26,9 @@ pub(super) fn back<T>(blocks: &mut [Block<T>]) -> usize {
 /// Plans anew after a block was added, as far back as anything changes. It may have to
 /// end at `least`, squared: the corner after it is not known yet.
 pub(super) fn back_from_last<T>(blocks: &mut [Block<T>], least: f64) {
-    let mut next = blocks.last().map_or(0.0, |last| last.rest.min(least));
+    let mut next = blocks.last().map_or(0.0, |last| last.rest.at_most(least));
     for block in blocks.iter_mut().rev() {
-        let entry = block.most_entry.min(next + block.change);
+        let entry = block.most_entry.at_most(next + block.change);
         if entry == block.entry {
             return;
         }
@@ -59,8 +60,8 @@ pub(super) fn back_smoothly<T>(blocks: &mut [Block<T>]) -> usize {
     let mut decided = None;
     for (index, block) in blocks.iter_mut().enumerate().rev() {
         let (reachable, smooth) = (next + block.change, next_smooth + block.smooth_change);
-        block.entry = block.most_entry.min(reachable);
-        block.smooth = block.most_smooth.min(smooth);
+        block.entry = block.most_entry.at_most(reachable);
+        block.smooth = block.most_smooth.at_most(smooth);
         // The top speed of a climb is known only where it ends: no cut within a climb.
         let climbs = block.smooth + block.smooth_change <= next_smooth;
         if decided.is_none() && after_decided && !climbs {
@@ -87,17 +88,18 @@ pub(super) fn tops<T>(blocks: &[Block<T>], count: usize, ends: (f64, f64)) -> Ve
         if block.smooth < smooth {
             let turns = block.smooth + block.smooth_change > next_smooth;
             if turns || !descent.is_empty() {
-                peak = block.cruise.min(0.5 * (block.smooth + smooth));
+                peak = block.cruise.at_most(0.5 * (block.smooth + smooth));
                 let mut most: f64 = peak;
                 for index in descent {
                     let top = &mut tops[index];
-                    most = most.min(top.entry);
-                    *top = Top { entry: most, cruise: most, exit: top.exit.min(most) };
+                    most = most.at_most(top.entry);
+                    *top = Top { entry: most, cruise: most, exit: top.exit.at_most(most) };
                 }
             }
-            let cruise = block.cruise.min(0.5 * (block.entry + next + block.change)).min(peak);
-            let entry = block.entry.min(cruise);
-            tops[index] = Top { entry, cruise, exit: next.min(cruise) };
+            let cruise =
+                block.cruise.at_most(0.5 * (block.entry + next + block.change)).at_most(peak);
+            let entry = block.entry.at_most(cruise);
+            tops[index] = Top { entry, cruise, exit: next.at_most(cruise) };
             descent = index..index;
         } else {
             tops[index] = Top { entry: block.entry, cruise: block.cruise, exit: next };

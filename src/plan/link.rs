@@ -8,7 +8,7 @@ use crate::geom::spans::{Rows, Span};
 use crate::geom::{Point, side};
 use crate::region::bend::{self, Joined, Line, LinePoint};
 use crate::region::{Hatch, Params};
-use crate::units::Coord;
+use crate::units::{Bounded as _, Coord};
 
 /// Lines joined end to end, in the frame of their raster.
 pub type Chain = Vec<LinePoint>;
@@ -228,7 +228,7 @@ fn keep_bends(
     kept: &mut Vec<LinePoint>,
 ) {
     let at = |p: LinePoint| Point { x: p.u, y: p.v };
-    let length = at(a).distance(at(b)).max(1.0);
+    let length = at(a).distance(at(b)).at_least(1.0);
     let miss = |p: LinePoint| side(at(a), at(b), at(p)).abs() as f64 / length;
     let worst = (0..points.len())
         .max_by(|&k, &l| miss(points[k]).total_cmp(&miss(points[l])).then(l.cmp(&k)));

@@ -8,7 +8,7 @@
 
 use super::PathPoint;
 use crate::geom::Point;
-use crate::units::{Coord, nearest};
+use crate::units::{Bounded as _, Coord, nearest};
 
 /// Corners of arcs turn by at most this much, degrees. Where a machine allows a change of
 /// velocity by 15 mm/s at once, it passes them at 48 mm/s.
@@ -62,7 +62,7 @@ impl Rounding {
         let at = |k: Option<usize>| k.and_then(|k| wanted.get(k)).copied().unwrap_or(0.0);
         let share = |k: usize| {
             let asked = at(k.checked_sub(1)) + at(Some(k));
-            (MOST_TAKEN * lines[k].length / asked.max(1.0)).min(1.0)
+            (MOST_TAKEN * lines[k].length / asked.at_least(1.0)).at_most(1.0)
         };
         let mut out = Vec::with_capacity(4 * points.len());
         out.extend(points.first());
@@ -70,8 +70,8 @@ impl Rounding {
         for (k, corner) in points.windows(3).enumerate() {
             let first = out.len();
             // A line's end without a corner keeps half of it for itself.
-            let half = lines[k].length.min(lines[k + 1].length) / 2.0;
-            let t = (wanted[k] * share(k).min(share(k + 1))).min(half);
+            let half = lines[k].length.at_most(lines[k + 1].length) / 2.0;
+            let t = (wanted[k] * share(k).at_most(share(k + 1))).at_most(half);
             round_off(corner, (lines[k], lines[k + 1]), t, &mut out);
             if k > 0 && lines[k].length <= LONGEST_LEVELLED * f64::from(self.radius) {
                 level(&mut out[last..]);
@@ -93,14 +93,14 @@ impl Rounding {
             return 0.0;
         }
         // tan(θ/2) of the turn θ.
-        f64::from(self.radius) * ((1.0 - cos) / (1.0 + cos)).sqrt().min(MOST_TANGENT)
+        f64::from(self.radius) * ((1.0 - cos) / (1.0 + cos)).sqrt().at_most(MOST_TANGENT)
     }
 }
 
 /// Lays two arcs and the join between them with one width: the flow need not change within.
 fn level(turn: &mut [PathPoint]) {
     let length: f64 = turn.windows(2).map(|w| w[0].at.distance(w[1].at)).sum();
-    let width = nearest(volume(turn) / length.max(1.0)) as Coord;
+    let width = nearest(volume(turn) / length.at_least(1.0)) as Coord;
     turn.iter_mut().skip(1).for_each(|p| p.width = width);
 }
 
@@ -179,7 +179,7 @@ fn round_off(corner: &[PathPoint], (a, b): (Line, Line), t: f64, out: &mut Vec<P
     };
     let (in_width, out_width) = (f64::from(middle.width), f64::from(next.width));
     let all = (in_width + out_width) * t / (f64::from(arc.corners - 1) * arc.length);
-    let width = nearest(all.min(in_width.max(out_width))) as Coord;
+    let width = nearest(all.at_most(in_width.at_least(out_width))) as Coord;
     let (mut u, mut v) = (a.x, a.y);
     let (mut x, mut y) = (f64::from(middle.at.x) - t * u, f64::from(middle.at.y) - t * v);
     let point = |x: f64, y: f64| Point { x: nearest(x) as Coord, y: nearest(y) as Coord };

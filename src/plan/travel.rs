@@ -7,7 +7,7 @@
 use super::tour::{self, Cost};
 use super::{Path, PlanParams, Step};
 use crate::geom::{Contour, Point, edges, encloses, side};
-use crate::units::Coord;
+use crate::units::{Bounded as _, Coord};
 
 /// Bands that the edges of a layer are sorted into, at most.
 const MOST_BANDS: usize = 256;
@@ -36,7 +36,7 @@ impl Times {
 
     /// How far a travel of `time` s leads at most, grid units.
     fn reach(&self, time: f64) -> f64 {
-        (self.acceleration * time * time / 4.0).min(self.feed * time)
+        (self.acceleration * time * time / 4.0).at_most(self.feed * time)
     }
 }
 

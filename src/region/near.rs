@@ -1,6 +1,7 @@
 //! Walls -> Near: whether a place keeps its distance from all of them.
 
 use crate::geom::{Contour, Point, edges};
+use crate::units::Bounded as _;
 use std::ops::Range;
 
 /// Cells along each side of an area, at most.
@@ -21,8 +22,8 @@ impl Area {
     pub(super) fn around(places: impl Iterator<Item = [f64; 2]>, margin: f64) -> Self {
         let none = Self { low: [f64::MAX; 2], high: [f64::MIN; 2] };
         let mut out = places.fold(none, |area, p| Self {
-            low: [0, 1].map(|k| area.low[k].min(p[k])),
-            high: [0, 1].map(|k| area.high[k].max(p[k])),
+            low: [0, 1].map(|k| area.low[k].at_most(p[k])),
+            high: [0, 1].map(|k| area.high[k].at_least(p[k])),
         });
         out.low = out.low.map(|x| x - margin);
         out.high = out.high.map(|x| x + margin);
@@ -30,7 +31,7 @@ impl Area {
     }
 
     fn meets(&self, [p, q]: &Edge) -> bool {
-        (0..2).all(|k| p[k].min(q[k]) <= self.high[k] && p[k].max(q[k]) >= self.low[k])
+        (0..2).all(|k| p[k].at_most(q[k]) <= self.high[k] && p[k].at_least(q[k]) >= self.low[k])
     }
 }
 
@@ -91,7 +92,8 @@ impl Near {
         // Casts to unsigned numbers hold below zero; what is beyond the area counts to its edge.
         let at =
             |x: f64, k: usize| (((x - self.low[k]) * self.scale) as usize).min(self.size[k] - 1);
-        let [columns, rows] = [0, 1].map(|k| (at(p[k].min(q[k]), k), at(p[k].max(q[k]), k)));
+        let [columns, rows] =
+            [0, 1].map(|k| (at(p[k].at_most(q[k]), k), at(p[k].at_least(q[k]), k)));
         let width = self.size[0];
         (rows.0..=rows.1).map(move |row| row * width + columns.0..row * width + columns.1 + 1)
     }
@@ -148,7 +150,7 @@ fn is_nearer(p: [f64; 2], [a, b]: &Edge, square: f64) -> bool {
 fn distance2(p: [f64; 2], [a, b]: &Edge) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let from = [p[0] - a[0], p[1] - a[1]];
-    let square = (along[0] * along[0] + along[1] * along[1]).max(1.0);
+    let square = (along[0] * along[0] + along[1] * along[1]).at_least(1.0);
     let t = ((from[0] * along[0] + from[1] * along[1]) / square).clamp(0.0, 1.0);
     let off = [from[0] - t * along[0], from[1] - t * along[1]];
     off[0] * off[0] + off[1] * off[1]

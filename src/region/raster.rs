@@ -13,7 +13,7 @@
 use crate::geom::frame::Frame;
 use crate::geom::spans::{Rows, Span, merge, subtract};
 use crate::geom::{Contour, Point, edges};
-use crate::units::{Coord, between, nearest};
+use crate::units::{Bounded as _, Coord, between, nearest};
 use std::iter;
 
 /// A set of raster lines: row `j` runs at `v = j · pitch` in `frame`.
@@ -318,9 +318,10 @@ impl Capsule {
         let (low_u, high_u) = (side * f64::from(self.low.x), side * f64::from(self.high.x));
         let (low_v, high_v) = (f64::from(self.low.y), f64::from(self.high.y));
         let v = f64::from(v);
-        let circle = |u: f64, at: f64| u + (self.r * self.r - (v - at) * (v - at)).max(0.0).sqrt();
+        let circle =
+            |u: f64, at: f64| u + (self.r * self.r - (v - at) * (v - at)).at_least(0.0).sqrt();
         if low_v == high_v {
-            return circle(low_u.max(high_u), low_v);
+            return circle(low_u.at_least(high_u), low_v);
         }
         let drop = side * self.lift;
         if v < low_v - drop {

@@ -16,7 +16,7 @@ use super::stations::{MOST_BEADS, NARROWEST, SHORT, Station, stations};
 use crate::geom::frame::Frame;
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
-use crate::units::{Coord, nearest};
+use crate::units::{Bounded as _, Coord, nearest};
 
 /// A bead that follows a wall, in the frame of the skin's raster.
 pub type Bead = Vec<LinePoint>;
@@ -174,11 +174,11 @@ fn keep_bends(arc: &[Place], a: usize, b: usize, kept: &mut Vec<usize>) {
     let square = chord[0] * chord[0] + chord[1] * chord[1];
     let miss = |k: usize| {
         let from = [0, 1].map(|i| arc[k].at[i] - first.at[i]);
-        let t = (from[0] * chord[0] + from[1] * chord[1]) / square.max(1.0);
+        let t = (from[0] * chord[0] + from[1] * chord[1]) / square.at_least(1.0);
         let t = t.clamp(0.0, 1.0);
         let foot = [0, 1].map(|i| first.at[i] + t * chord[i]);
         let width = first.width + t * (last.width - first.width);
-        distance(foot, arc[k].at).max((width - arc[k].width).abs() / WIDTH_TO_PLACE)
+        distance(foot, arc[k].at).at_least((width - arc[k].width).abs() / WIDTH_TO_PLACE)
     };
     let worst = (a + 1..b)
         .map(|k| (miss(k), k))

@@ -5,7 +5,7 @@ use super::close::Crossed;
 use super::near::{Area, Near};
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, Point, edges};
-use crate::units::{Coord, between, nearest};
+use crate::units::{Bounded as _, Coord, between, nearest};
 
 /// At most this many beads beside each other along one wall.
 pub(super) const MOST_BEADS: usize = 3;
@@ -137,7 +137,7 @@ impl Station {
 /// from the other side, but for its sign: of two walls that lean either way one leads.
 fn leads(normal: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
     let [x, y] = [to[0] - from[0], to[1] - from[1]];
-    let length = (x * x + y * y).sqrt().max(1.0);
+    let length = (x * x + y * y).sqrt().at_least(1.0);
     let [x, y] = [normal[0] + y / length, normal[1] - x / length];
     x > 0.0 || (x == 0.0 && y > 0.0)
 }
@@ -178,7 +178,7 @@ impl Edge {
         let length = p.distance(q);
         let [x, y] = [f64::from(q.x) - f64::from(p.x), f64::from(q.y) - f64::from(p.y)];
         let from = [f64::from(p.x), f64::from(p.y)];
-        Self { from, along: [x / length.max(1.0), y / length.max(1.0)], length, way }
+        Self { from, along: [x / length.at_least(1.0), y / length.at_least(1.0)], length, way }
     }
 
     fn normal(&self) -> [f64; 2] {
@@ -197,13 +197,13 @@ impl Edge {
         let inset = f64::from(params.wall_to_fill());
         let rise = f64::from(q.y) - f64::from(p.y);
         let run = f64::from(q.x) - f64::from(p.x);
-        let by = |part: f64| nearest(inset * part / self.length.max(1.0)) as Coord;
+        let by = |part: f64| nearest(inset * part / self.length.at_least(1.0)) as Coord;
         let moved = |p: Point| Point { x: p.x - by(rise), y: p.y + by(run) };
         let (a, b) = (moved(p), moved(q));
         let up = a.y < b.y;
         let (low, high) = if up { (a, b) } else { (b, a) };
         let pitch = params.line_width;
-        let sine = rise.abs() / self.length.max(1.0);
+        let sine = rise.abs() / self.length.at_least(1.0);
         let first = out.len();
         for j in low.y.div_euclid(pitch) + 1..high.y.div_euclid(pitch) + 1 {
             let v = j * pitch;
@@ -381,7 +381,7 @@ fn with_corners(wall: &Contour, found: &[Station], round: f64, params: &Params) 
         let near = |k: usize| {
             let station = found[k % found.len()];
             let away = (station.way - way).abs();
-            (away.min(round - away), station)
+            (away.at_most(round - away), station)
         };
         let (a, b) = (near(next + found.len() - 1), near(next));
         let nearest = if a.0 <= b.0 { a } else { b };
@@ -418,7 +418,7 @@ fn add_corner(before: &Edge, after: &Edge, corner: Station, out: &mut Vec<Statio
         return;
     }
     // Between the edges, or straight on where the wall turns back.
-    let length = (2.0 + 2.0 * cosine).max(0.0).sqrt();
+    let length = (2.0 + 2.0 * cosine).at_least(0.0).sqrt();
     let middle = [0, 1].map(|k| {
         let ahead = if length > 0.1 { (a[k] + b[k]) / length } else { before.along[k] };
         ahead * ROUND
