@@ -118,7 +118,7 @@ pub fn slice_placed(
     let mut planner = Planner { window, regions: None, orderer };
     // The pictures stand in the file's head: they are drawn while the first layers are planned.
     let (pictures, mut planned) = rayon::join(
-        || thumbnails(settings, &placed.mesh),
+        || thumbnails(settings, placed),
         || planner.by_ref().take(AHEAD).collect::<VecDeque<_>>(),
     );
     let pictures = pictures.map_err(|source| {
@@ -201,10 +201,12 @@ fn settle(settings: &profile::Settings, mesh: &mesh::Mesh) -> profile::Settings 
 /// Pictures of the models, of the sizes that the host wants.
 fn thumbnails(
     settings: &profile::Settings,
-    mesh: &mesh::Mesh,
+    placed: &mesh::transform::Placed,
 ) -> std::io::Result<Vec<gcode::hosts::Thumbnail>> {
     let draw = |&profile::PictureSize { width, height }| {
-        let png = render::draw(mesh, [width, height], render::Ground::Transparent).png()?;
+        let size = [width, height];
+        let (faces, ground) = (render::Faces::of(placed.is_sound), render::Ground::Transparent);
+        let png = render::draw(&placed.mesh, faces, size, ground).png()?;
         Ok(gcode::hosts::Thumbnail { width, height, png })
     };
     settings.machine.thumbnails.par_iter().map(draw).collect()

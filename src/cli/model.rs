@@ -2,7 +2,7 @@
 
 use slicer::error::{Error, Result};
 use slicer::mesh::{Bed, Placement, stl};
-use slicer::render::{self, Ground};
+use slicer::render::{self, Faces, Ground};
 use slicer::warning::Warning;
 use std::fs::File;
 use std::io::Read as _;
@@ -49,7 +49,8 @@ pub(super) fn draw(file: &str, size: u32, max_triangles: usize) -> Result<Drawn>
     }
     let placement = Placement { max_triangles, ..Placement::default() };
     let placed = slicer::place(&[file.to_owned()], &placement, &Bed::ANY)?;
-    let picture = render::draw(&placed.mesh, render::fitting(&placed.mesh, size), Ground::White);
+    let (faces, size) = (Faces::of(placed.is_sound), render::fitting(&placed.mesh, size));
+    let picture = render::draw(&placed.mesh, faces, size, Ground::White);
     let png = picture.png().map_err(|error| Error::input(file, error.to_string()))?;
     let [x, y, z] = placed.size_mm;
     let count = placed.mesh.triangles.len();

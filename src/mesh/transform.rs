@@ -6,7 +6,7 @@ use super::fit::{check_placement, offset, sides};
 use super::layout::{Layout, shelves};
 use super::part::{Part, part};
 use super::weld::MAX_TRIANGLES;
-use super::{Bed, Mesh, MeshReport, Placement, RawMesh};
+use super::{Bed, Mesh, MeshReport, Placement, Policy, RawMesh};
 use crate::error::{Error, Result};
 use crate::units::{MAX_COORDINATE_MM, sum_mm, to_units};
 use crate::warning::Warning;
@@ -31,6 +31,9 @@ pub struct Placed {
     pub size_mm: [f64; 3],
     /// Findings.
     pub warnings: Vec<Warning>,
+    /// Whether every file has closed surfaces only, wound outwards. With [`Policy::Warn`] the
+    /// way that shells are wound is not looked at.
+    pub is_sound: bool,
 }
 
 /// Lays `models` on the `bed`.
@@ -56,6 +59,8 @@ pub fn place(models: Vec<RawMesh>, placement: &Placement, bed: &Bed) -> Result<P
         placed.reports.push(model.report);
         parts.push(part);
     }
+    let is_sound = |report: &MeshReport| report.found.is_empty() && report.left.is_empty();
+    placed.is_sound = placement.policy != Policy::Warn && placed.reports.iter().all(is_sound);
     let layout = lay_out(&parts, placement, bed)?;
     let height = parts.iter().map(|part| part.size[2]).max().unwrap_or(0);
     placed.size_mm = [layout.size[0], layout.size[1], height].map(sum_mm);
@@ -146,7 +151,7 @@ fn join(parts: Vec<Part>, layout: &Layout, copies: usize, placed: &mut Placed) {
 mod tests {
     use super::*;
     use crate::mesh::faults::{Fault, Mending};
-    use crate::mesh::{Policy, Unit};
+    use crate::mesh::Unit;
 
     const BED: Bed = Bed { min: [-100.0, -50.0], max: [100.0, 50.0], height: 80.0 };
     const PLAIN: Placement = Placement {

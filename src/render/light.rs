@@ -15,7 +15,7 @@ const OF_FILL: f64 = 0.2;
 
 /// Brightness of a face, 0 to 255, by Lambert's law; `None` if it has no area. It is seen
 /// from the side that looks at the eye, whichever way it is wound.
-pub(super) fn tone(a: [i32; 3], b: [i32; 3], c: [i32; 3]) -> Option<u8> {
+pub(super) fn tone([a, b, c]: [[i32; 3]; 3]) -> Option<u8> {
     let u = |axis: usize| i64::from(b[axis]) - i64::from(a[axis]);
     let v = |axis: usize| i64::from(c[axis]) - i64::from(a[axis]);
     let across = |one: usize, other: usize| (u(one) * v(other) - u(other) * v(one)) as f64;

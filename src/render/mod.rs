@@ -20,6 +20,24 @@ pub enum Ground {
     White,
 }
 
+/// Which faces there are to see.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Faces {
+    /// Those wound counter-clockwise as seen from the eye. In a closed mesh that is wound
+    /// outwards they hide all others: the picture is the same in less time.
+    Outer,
+    /// All of them, whichever way they are wound.
+    Both,
+}
+
+impl Faces {
+    /// Those of a mesh that is closed and wound outwards, or may not be.
+    #[must_use]
+    pub fn of(is_sound: bool) -> Self {
+        if is_sound { Self::Outer } else { Self::Both }
+    }
+}
+
 /// A picture of 8 bits a channel.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Picture {
@@ -45,10 +63,10 @@ struct Pixel {
 
 /// Draws all of `mesh` as large as `[width, height]` pixels allow, with a narrow margin.
 #[must_use]
-pub fn draw(mesh: &Mesh, size: [u32; 2], ground: Ground) -> Picture {
+pub fn draw(mesh: &Mesh, faces: Faces, size: [u32; 2], ground: Ground) -> Picture {
     let samples = samples(size);
     let view = view::View::new(mesh, size, samples);
-    let pixels = raster::pixels(mesh, &view, size, samples);
+    let pixels = raster::pixels(mesh, faces, &view, size, samples);
     let rgba = tint::tint(&pixels, size, samples, ground);
     Picture { width: size[0], height: size[1], rgba }
 }
@@ -112,7 +130,7 @@ mod tests {
 
     #[test]
     fn a_cube_shows_its_front_right_and_top_in_three_tones() {
-        let picture = draw(&block([200_000; 3]), [100, 100], Ground::Transparent);
+        let picture = draw(&block([200_000; 3]), Faces::Both, [100, 100], Ground::Transparent);
         let (front, right, top) =
             (at(&picture, 35, 62), at(&picture, 78, 62), at(&picture, 50, 18));
         let light = |rgba: [u8; 4]| rgba[..3].iter().map(|&c| u32::from(c)).sum::<u32>();
@@ -126,7 +144,7 @@ mod tests {
     fn the_picture_is_filled_up_to_its_margin() {
         for size in [[32, 32], [300, 300], [220, 124], [64, 200]] {
             for sides in [[200_000; 3], [2_000_000, 10_000, 500], [5_000, 5_000, 900_000]] {
-                let picture = draw(&block(sides), size, Ground::Transparent);
+                let picture = draw(&block(sides), Faces::Both, size, Ground::Transparent);
                 let shown = |x, y| at(&picture, x, y)[3] > 0;
                 let columns = (0..size[0]).filter(|&x| (0..size[1]).any(|y| shown(x, y))).count();
                 let rows = (0..size[1]).filter(|&y| (0..size[0]).any(|x| shown(x, y))).count();
@@ -152,14 +170,34 @@ mod tests {
     #[test]
     fn neither_order_of_triangles_nor_of_corners_nor_winding_matters() {
         let mesh = block([300_000, 100_000, 200_000]);
-        let picture = draw(&mesh, [90, 60], Ground::White);
+        let picture = draw(&mesh, Faces::Both, [90, 60], Ground::White);
         let mut other = mesh.clone();
         other.triangles.reverse();
         other.triangles.iter_mut().for_each(|corners| corners.rotate_left(1));
-        assert!(picture == draw(&other, [90, 60], Ground::White));
+        assert!(picture == draw(&other, Faces::Both, [90, 60], Ground::White));
         other.triangles.iter_mut().for_each(|corners| corners.reverse());
-        assert!(picture == draw(&other, [90, 60], Ground::White));
+        assert!(picture == draw(&other, Faces::Both, [90, 60], Ground::White));
         assert!(picture.rgba.chunks(4).all(|rgba| rgba[3] == 255));
+    }
+
+    #[test]
+    fn outer_faces_hide_the_others_of_a_closed_mesh() {
+        // Two blocks that overlap, the second with a cavity.
+        let solid = block([200_000, 150_000, 300_000]);
+        let mut mesh = block([260_000, 40_000, 90_000]);
+        let mut add = |other: &Mesh, by: i32, inwards: bool| {
+            let first = mesh.vertices.len() as u32;
+            mesh.vertices.extend(other.vertices.iter().map(|at| at.map(|c| c + by)));
+            let added = other.triangles.iter().map(|corners| corners.map(|k| first + k));
+            mesh.triangles
+                .extend(added.map(|[a, b, c]| if inwards { [a, c, b] } else { [a, b, c] }));
+        };
+        add(&solid, 10_000, false);
+        add(&block([90_000; 3]), 30_000, true);
+        for size in [[32, 32], [300, 300], [220, 124]] {
+            let drawn = |faces| draw(&mesh, faces, size, Ground::Transparent);
+            assert!(drawn(Faces::Outer) == drawn(Faces::Both), "{size:?}");
+        }
     }
 
     #[test]
@@ -171,7 +209,8 @@ mod tests {
         let mut vertices: Vec<[i32; 3]> = (0..count).map(rim).collect();
         vertices.push([1_234, 777, 0]);
         let triangles = (0..count).map(|k| [count, k, (k + 1) % count]).collect();
-        let picture = draw(&Mesh { vertices, triangles }, [200, 200], Ground::Transparent);
+        let picture =
+            draw(&Mesh { vertices, triangles }, Faces::Both, [200, 200], Ground::Transparent);
         for y in 0..200 {
             let shown: Vec<u32> = (0..200).filter(|&x| at(&picture, x, y)[3] == 255).collect();
             if let (Some(first), Some(last)) = (shown.first(), shown.last()) {
@@ -184,15 +223,15 @@ mod tests {
     fn nothing_to_see_gives_an_empty_picture() {
         let line = Mesh { vertices: vec![[0; 3], [5; 3], [9; 3]], triangles: vec![[0, 1, 2]] };
         for mesh in [Mesh::default(), line] {
-            let picture = draw(&mesh, [20, 10], Ground::Transparent);
+            let picture = draw(&mesh, Faces::Both, [20, 10], Ground::Transparent);
             assert!(picture.rgba.iter().all(|&byte| byte == 0));
         }
-        assert!(draw(&Mesh::default(), [0, 10], Ground::White).png().is_err());
+        assert!(draw(&Mesh::default(), Faces::Both, [0, 10], Ground::White).png().is_err());
     }
 
     #[test]
     fn png_gives_the_pixels_back() {
-        let picture = draw(&block([200_000; 3]), [40, 30], Ground::Transparent);
+        let picture = draw(&block([200_000; 3]), Faces::Both, [40, 30], Ground::Transparent);
         let bytes = picture.png().unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
         let mut rgba = vec![0; reader.output_buffer_size().unwrap()];

@@ -1,8 +1,9 @@
 //! Triangles -> pixels: which face is nearest at each sample, in bands of rows side by side.
 
 use super::view::{Corner, GRAIN, View};
-use super::{Pixel, light};
+use super::{Faces, Pixel, light};
 use crate::mesh::Mesh;
+use crate::units::Bounded as _;
 use rayon::prelude::*;
 use std::cell::LazyCell;
 use std::ops::RangeInclusive;
@@ -14,11 +15,17 @@ const BAND: u32 = 1 << 15;
 const AT_ONCE: usize = 1 << 14;
 
 /// All pixels, row by row from the top.
-pub(super) fn pixels(mesh: &Mesh, view: &View, size: [u32; 2], samples: u32) -> Vec<Pixel> {
+pub(super) fn pixels(
+    mesh: &Mesh,
+    faces: Faces,
+    view: &View,
+    size: [u32; 2],
+    samples: u32,
+) -> Vec<Pixel> {
     let corners: Vec<Corner> =
         mesh.vertices.par_iter().map(|&vertex| view.corner(vertex)).collect();
     let grid = Grid::new(size, samples);
-    let bins = bins(mesh, &corners, &grid);
+    let bins = bins(mesh, faces, &corners, &grid);
     let mut pixels = vec![Pixel::default(); grid.width * size[1] as usize];
     let bands = pixels.par_chunks_mut((grid.width * grid.band).max(1)).enumerate();
     bands.for_each_init(Vec::new, |seen, (band, pixels)| {
@@ -31,16 +38,18 @@ pub(super) fn pixels(mesh: &Mesh, view: &View, size: [u32; 2], samples: u32) -> 
     pixels
 }
 
-/// The triangles that hold a sample, by the bands that they reach into; several lists for each
+/// The triangles to draw that hold a sample, by the bands that they reach into; several lists for each
 /// band, one after the other.
-fn bins(mesh: &Mesh, corners: &[Corner], grid: &Grid) -> Vec<Vec<Vec<u32>>> {
+fn bins(mesh: &Mesh, faces: Faces, corners: &[Corner], grid: &Grid) -> Vec<Vec<Vec<u32>>> {
+    let looks_away = |at| faces == Faces::Outer && doubled(at) >= 0;
     let chunks = mesh.triangles.par_chunks(AT_ONCE).enumerate();
     let bins = chunks.map(|(chunk, triangles)| {
         let mut bins = vec![Vec::new(); grid.bands];
         for (number, triangle) in (chunk * AT_ONCE..).zip(triangles) {
-            let [columns, rows] = held(triangle.map(|corner| corners[corner as usize].at));
+            let at = triangle.map(|corner| corners[corner as usize].at);
+            let [columns, rows] = held(at);
             // Most triangles of fine meshes lie between the samples.
-            if !columns.is_empty() && !rows.is_empty() {
+            if !columns.is_empty() && !rows.is_empty() && !looks_away(at) {
                 let bands = grid.band_of(*rows.start())..=grid.band_of(*rows.end());
                 bins[bands].iter_mut().for_each(|bin| bin.push(number as u32));
             }
@@ -120,9 +129,9 @@ impl<'a> Samples<'a> {
         let first = (*rows.start()).max(self.rows[0]);
         let last = (*rows.end()).min(self.rows[1] - 1);
         let range = extent(at, 0);
-        let Some(outline) = Outline::new(mesh, corners, triangle) else { return };
+        let Some(outline) = Outline::new(at) else { return };
         // Many a small triangle has a sample in its box but none in itself.
-        let face = LazyCell::new(|| Face::new(mesh, corners, &outline));
+        let face = LazyCell::new(|| Face::new(mesh, corners, triangle));
         for row in first..=last {
             let [from, to] = outline.within(centre(row), range);
             let from = first_sample(from).max(0);
@@ -142,51 +151,46 @@ impl<'a> Samples<'a> {
     /// Puts the samples of each pixel together.
     fn resolve(&self, pixels: &mut [Pixel]) {
         let side = self.per_pixel;
-        for (k, pixel) in pixels.iter_mut().enumerate() {
-            let (row, column) = (k * side / self.width, k * side % self.width);
-            let first = row * side * self.width + column;
-            let (mut covered, mut tone, mut near) = (0, 0, 0);
-            for row in 0..side {
-                for &seen in &self.seen[first + row * self.width..][..side] {
-                    covered += u32::from(seen > 0);
-                    tone += seen & 0xff;
-                    near += u64::from(seen >> 8);
-                }
+        let rows = self.seen.chunks(self.width * side);
+        for (samples, pixels) in rows.zip(pixels.chunks_mut(self.width / side)) {
+            for (k, pixel) in pixels.iter_mut().enumerate() {
+                let rows = samples.chunks_exact(self.width);
+                *pixel = resolved(rows.flat_map(|row| &row[k * side..][..side]));
             }
-            let count = covered.max(1);
-            *pixel = Pixel {
-                covered: covered as u8,
-                tone: ((tone + count / 2) / count) as u8,
-                near: (near / u64::from(count)) as u32,
-            };
         }
     }
 }
 
-/// A triangle as seen.
-struct Outline {
-    /// Its corners, beginning with the one that has the least vertex, so that its inside is to the
-    /// left of each side.
-    corners: [u32; 3],
-    at: [[i32; 2]; 3],
-    /// Twice its area, more than 0.
-    twice: i64,
+/// What a pixel has of its samples.
+fn resolved<'a>(samples: impl Iterator<Item = &'a u32>) -> Pixel {
+    // 64 samples of a nearness below 2²⁴ at most.
+    let (mut covered, mut tone, mut near) = (0, 0, 0);
+    for &seen in samples {
+        covered += u32::from(seen > 0);
+        tone += seen & 0xff;
+        near += seen >> 8;
+    }
+    if covered == 0 {
+        return Pixel::default();
+    }
+    Pixel {
+        covered: covered as u8,
+        tone: ((tone + covered / 2) / covered) as u8,
+        near: near / covered,
+    }
 }
+
+/// A triangle as seen: its corners, so that its inside is to the left of each side.
+struct Outline([[i32; 2]; 3]);
 
 impl Outline {
     /// `None` for a triangle that is seen from its edge.
-    fn new(mesh: &Mesh, corners: &[Corner], [a, b, c]: [u32; 3]) -> Option<Self> {
-        let vertex = |corner: u32| mesh.vertices[corner as usize];
-        // One beginning, whichever corner the file names first.
-        let [a, b, c] = match (vertex(a), vertex(b), vertex(c)) {
-            (one, two, three) if one <= two && one <= three => [a, b, c],
-            (_, two, three) if two <= three => [b, c, a],
-            _ => [c, a, b],
-        };
-        let twice = doubled(corners, a, b, c);
-        let corners_of = if twice < 0 { [a, c, b] } else { [a, b, c] };
-        let at = corners_of.map(|corner| corners[corner as usize].at);
-        (twice != 0).then_some(Self { corners: corners_of, at, twice: twice.abs() })
+    fn new([a, b, c]: [[i32; 2]; 3]) -> Option<Self> {
+        match doubled([a, b, c]) {
+            0 => None,
+            1.. => Some(Self([a, b, c])),
+            _ => Some(Self([a, c, b])),
+        }
     }
 
     /// From where to where it lies on the row at `y`, both included, at most all of `range`.
@@ -194,7 +198,7 @@ impl Outline {
         let (low, high) = (i64::from(range[0]), i64::from(range[1]));
         let (mut from, mut to) = (low, high);
         for k in 0..3 {
-            let at = |corner: usize, axis: usize| i64::from(self.at[corner % 3][axis]);
+            let at = |corner: usize, axis: usize| i64::from(self.0[corner % 3][axis]);
             // To the left of the side, or on it: rise * x <= limit.
             let rise = at(k + 1, 1) - at(k, 1);
             let run = at(k + 1, 0) - at(k, 0);
@@ -212,10 +216,10 @@ impl Outline {
 
 /// The surface of a triangle that is to be drawn.
 struct Face {
-    /// Its first corner.
+    /// One of its corners.
     at: [i32; 2],
     tone: u32,
-    /// Nearness at the first corner, and how it grows to the right and downwards.
+    /// Nearness at this corner, and how it grows to the right and downwards.
     near: f64,
     slope: [f64; 2],
     /// Nearness of the farthest and the nearest corner.
@@ -223,24 +227,30 @@ struct Face {
 }
 
 impl Face {
-    /// `None` for a triangle without area.
-    fn new(mesh: &Mesh, corners: &[Corner], outline: &Outline) -> Option<Self> {
-        let [a, b, c] = outline.corners.map(|corner| mesh.vertices[corner as usize]);
-        let tone = u32::from(light::tone(a, b, c)?);
-        let [a, b, c] = outline.corners.map(|corner| corners[corner as usize]);
-        let near = f64::from(a.near);
-        let (of_b, of_c) = (f64::from(b.near) - near, f64::from(c.near) - near);
+    /// `None` for a triangle without area. Which corner is the file's first, and which way
+    /// round they go, has no say: until they are divided all products and sums are exact.
+    fn new(mesh: &Mesh, corners: &[Corner], triangle: [u32; 3]) -> Option<Self> {
+        let vertices = triangle.map(|corner| mesh.vertices[corner as usize]);
+        let tone = u32::from(light::tone(vertices)?);
+        let first = (0..3).min_by_key(|&k| place(vertices[k])).unwrap_or_default();
+        let seen = triangle.map(|corner| corners[corner as usize]);
+        let [a, b, c] = seen;
+        let twice = doubled(seen.map(|corner| corner.at)) as f64;
+        let near = |corner: Corner| f64::from(corner.near);
+        let (of_b, of_c) = (near(b) - near(a), near(c) - near(a));
         let side = |p: Corner, axis: usize| f64::from(p.at[axis] - a.at[axis]);
-        let twice = outline.twice as f64;
         Some(Self {
-            at: a.at,
+            at: seen[first].at,
             tone,
-            near,
+            near: near(seen[first]),
             slope: [
                 (of_b * side(c, 1) - of_c * side(b, 1)) / twice,
                 (of_c * side(b, 0) - of_b * side(c, 0)) / twice,
             ],
-            range: [near + of_b.min(of_c).min(0.0), near + of_b.max(of_c).max(0.0)],
+            range: [
+                near(a).at_most(near(b)).at_most(near(c)),
+                near(a).at_least(near(b)).at_least(near(c)),
+            ],
         })
     }
 
@@ -250,17 +260,22 @@ impl Face {
         let first = self.near + away(row, 1) * self.slope[1];
         (column..).map(move |column| {
             let near = first + away(column, 0) * self.slope[0];
-            (near.max(self.range[0]).min(self.range[1]) as u32) << 8 | self.tone
+            (near.at_least(self.range[0]).at_most(self.range[1]) as u32) << 8 | self.tone
         })
     }
 }
 
 /// Twice the area of a triangle as seen; more than 0 if its inside is to the left of its
-/// sides, as y grows downwards.
-fn doubled(corners: &[Corner], a: u32, b: u32, c: u32) -> i64 {
-    let at = |corner: u32, axis: usize| i64::from(corners[corner as usize].at[axis]);
-    let side = |corner: u32, axis: usize| at(corner, axis) - at(a, axis);
+/// sides, as y grows downwards: if it is seen from behind.
+fn doubled([a, b, c]: [[i32; 2]; 3]) -> i64 {
+    let side = |corner: [i32; 2], axis: usize| i64::from(corner[axis]) - i64::from(a[axis]);
     side(b, 0) * side(c, 1) - side(b, 1) * side(c, 0)
+}
+
+/// What vertices are ordered by: as one number they are compared without a branch.
+fn place(vertex: [i32; 3]) -> u128 {
+    let ordered = |c: i32| u128::from(c as u32 ^ 1 << 31);
+    vertex.into_iter().fold(0, |place, c| place << 32 | ordered(c))
 }
 
 /// The middle of a sample.

@@ -20,12 +20,12 @@ const DARKEST: f64 = 70.0;
 /// Red, green, blue and alpha of each pixel.
 pub(super) fn tint(pixels: &[Pixel], size: [u32; 2], samples: u32, ground: Ground) -> Vec<u8> {
     let full = samples * samples;
+    let shades: Vec<[u32; 3]> = (0..=255).map(shade).collect();
     let mut rgba = Vec::with_capacity(4 * pixels.len());
     for (row, around) in pixels.chunks(size[0].max(1) as usize).zip(surroundings(pixels, size)) {
-        for (pixel, [count, near]) in row.iter().zip(around) {
+        for (pixel, around) in row.iter().zip(around) {
             let alpha = (255 * u32::from(pixel.covered) + full / 2) / full;
-            let around = near as f64 / count.max(1) as f64;
-            let rgb = if alpha == 0 { [0; 3] } else { shade(darkened(pixel, around)) };
+            let rgb = if alpha == 0 { [0; 3] } else { shades[darkened(pixel, around) as usize] };
             rgba.extend_from_slice(&match ground {
                 Ground::Transparent => [rgb[0] as u8, rgb[1] as u8, rgb[2] as u8, alpha as u8],
                 Ground::White => {
@@ -40,10 +40,11 @@ pub(super) fn tint(pixels: &[Pixel], size: [u32; 2], samples: u32, ground: Groun
 
 /// The tone of a pixel after it is compared with its surroundings: unsharp masking of the
 /// depth, after Luft, Colditz and Deussen 2006.
-fn darkened(pixel: &Pixel, around: f64) -> u32 {
+fn darkened(pixel: &Pixel, around: Sum) -> u8 {
+    let around = around.near as f64 / around.count.max(1) as f64;
     let behind = (around - f64::from(pixel.near)) / 16_777_216.0;
     let lost = (HOLLOW * behind).clamp(0.0, DARKEST);
-    (f64::from(pixel.tone) - lost).max(0.0) as u32
+    (f64::from(pixel.tone) - lost) as u8
 }
 
 /// The colour of a tone.
@@ -55,16 +56,34 @@ fn shade(tone: u32) -> [u32; 3] {
     })
 }
 
-/// How many samples show a model, and the sum of their nearness.
-type Sum = [u64; 2];
+/// What some pixels have together.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
+    /// Samples that show a model.
+    count: u64,
+    /// The nearness of all of these.
+    near: u64,
+}
+
+impl Sum {
+    fn add(&mut self, other: Self) {
+        self.count += other.count;
+        self.near += other.near;
+    }
+
+    fn take(&mut self, other: Self) {
+        self.count -= other.count;
+        self.near -= other.near;
+    }
+}
 
 /// The sums around each pixel, row by row.
 fn surroundings(pixels: &[Pixel], size: [u32; 2]) -> impl Iterator<Item = Vec<Sum>> {
     let width = size[0].max(1) as usize;
     let reach = (size[0].max(size[1]) / REACH).max(1) as usize;
     let sum = |pixel: &Pixel| {
-        let covered = u64::from(pixel.covered);
-        [covered, covered * u64::from(pixel.near)]
+        let count = u64::from(pixel.covered);
+        Sum { count, near: count * u64::from(pixel.near) }
     };
     let rows = pixels.chunks(width).map(move |row| row.iter().map(sum).collect());
     let across = move |row: Vec<Sum>| blurred_row(&row, reach);
@@ -73,20 +92,19 @@ fn surroundings(pixels: &[Pixel], size: [u32; 2]) -> impl Iterator<Item = Vec<Su
 
 /// Each of a row's sums becomes that of the ones within `reach` of it.
 fn blurred_row(row: &[Sum], reach: usize) -> Vec<Sum> {
-    let mut out = Vec::with_capacity(row.len());
-    let mut sum = [0; 2];
-    for k in 0..row.len() + reach {
-        if let Some(next) = row.get(k) {
-            (0..2).for_each(|part| sum[part] += next[part]);
+    let mut sum = Sum::default();
+    row.iter().take(reach).for_each(|&one| sum.add(one));
+    let blurred = (0..row.len()).map(|k| {
+        if let Some(&next) = row.get(k + reach) {
+            sum.add(next);
         }
-        if let Some(last) = k.checked_sub(2 * reach + 1) {
-            (0..2).for_each(|part| sum[part] -= row[last][part]);
+        let around = sum;
+        if let Some(last) = k.checked_sub(reach) {
+            sum.take(row[last]);
         }
-        if k >= reach {
-            out.push(sum);
-        }
-    }
-    out
+        around
+    });
+    blurred.collect()
 }
 
 /// Rows whose sums become those of the rows within `reach` of them. No others are held.
@@ -113,10 +131,8 @@ impl<I: Iterator<Item = Vec<Sum>>> Iterator for Columns<I> {
     fn next(&mut self) -> Option<Vec<Sum>> {
         while self.held.len() <= self.above + self.reach {
             let Some(row) = self.rows.next() else { break };
-            self.window.resize(row.len(), [0; 2]);
-            for (sum, one) in self.window.iter_mut().zip(&row) {
-                (0..2).for_each(|part| sum[part] += one[part]);
-            }
+            self.window.resize(row.len(), Sum::default());
+            self.window.iter_mut().zip(&row).for_each(|(sum, &one)| sum.add(one));
             self.held.push_back(row);
         }
         if self.held.len() <= self.above {
@@ -127,9 +143,8 @@ impl<I: Iterator<Item = Vec<Sum>>> Iterator for Columns<I> {
             self.above += 1;
             return Some(sums);
         }
-        for (sum, one) in self.window.iter_mut().zip(self.held.pop_front().iter().flatten()) {
-            (0..2).for_each(|part| sum[part] -= one[part]);
-        }
+        let last = self.held.pop_front();
+        self.window.iter_mut().zip(last.iter().flatten()).for_each(|(sum, &one)| sum.take(one));
         Some(sums)
     }
 }
