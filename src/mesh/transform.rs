@@ -31,7 +31,7 @@ pub struct Placed {
     pub size_mm: [f64; 3],
     /// Findings.
     pub warnings: Vec<Warning>,
-    /// Whether every file has closed surfaces only, wound outwards. With [`Policy::Warn`] the
+    /// Whether all surfaces are known to be closed and wound outwards. With [`Policy::Warn`] the
     /// way that shells are wound is not looked at.
     pub is_sound: bool,
 }
@@ -59,8 +59,8 @@ pub fn place(models: Vec<RawMesh>, placement: &Placement, bed: &Bed) -> Result<P
         placed.reports.push(model.report);
         parts.push(part);
     }
-    let is_sound = |report: &MeshReport| report.found.is_empty() && report.left.is_empty();
-    placed.is_sound = placement.policy != Policy::Warn && placed.reports.iter().all(is_sound);
+    let left = placed.reports.iter().flat_map(|report| &report.left).count();
+    placed.is_sound = placement.policy != Policy::Warn && left == 0;
     let layout = lay_out(&parts, placement, bed)?;
     let height = parts.iter().map(|part| part.size[2]).max().unwrap_or(0);
     placed.size_mm = [layout.size[0], layout.size[1], height].map(sum_mm);
@@ -150,8 +150,8 @@ fn join(parts: Vec<Part>, layout: &Layout, copies: usize, placed: &mut Placed) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::faults::{Fault, Mending};
     use crate::mesh::Unit;
+    use crate::mesh::faults::{Fault, Mending};
 
     const BED: Bed = Bed { min: [-100.0, -50.0], max: [100.0, 50.0], height: 80.0 };
     const PLAIN: Placement = Placement {
