@@ -98,39 +98,61 @@ pub fn steps(
 /// A layer's edges in bands of y, to find those that a travel may cross.
 struct Crossings {
     low: Coord,
-    band: Coord,
-    bands: Vec<Vec<(Point, Point)>>,
+    /// Each band is 2 to the power of `shift` high.
+    shift: u32,
+    /// Where each band begins in `edges`, and where the last one ends.
+    starts: Vec<u32>,
+    /// An edge is in each band that it reaches into.
+    edges: Vec<(Point, Point)>,
 }
 
 impl Crossings {
     fn new(contours: &[Contour]) -> Self {
         let edges = || contours.iter().flat_map(|c| edges(c));
-        let low = edges().map(|(a, _)| a.y).min().unwrap_or(0);
-        let high = edges().map(|(a, _)| a.y).max().unwrap_or(0);
-        let count = edges().count().div_ceil(4).clamp(1, MOST_BANDS);
-        let band = (high - low) / count as Coord + 1;
-        let mut bands = vec![Vec::new(); count];
+        let points = || contours.iter().flatten();
+        let low = points().map(|p| p.y).min().unwrap_or(0);
+        let high = points().map(|p| p.y).max().unwrap_or(0);
+        let wished = points().count().div_ceil(4).clamp(1, MOST_BANDS);
+        let shift = (0..Coord::BITS).find(|&shift| ((high - low) >> shift) < wished as Coord);
+        let shift = shift.unwrap_or_default();
+        let band = |y: Coord| ((y - low) >> shift) as usize;
+        let bands = |a: Point, b: Point| band(a.y.min(b.y))..=band(a.y.max(b.y));
+        // Sorted by counting. Where a band begins stands one place further on, until its edges
+        // have moved it to where the next one begins.
+        let mut starts = vec![0; band(high) + 3];
+        edges().for_each(|(a, b)| bands(a, b).for_each(|k| starts[k + 2] += 1));
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut sorted = vec![(Point::default(), Point::default()); sum as usize];
         for (a, b) in edges() {
-            for k in (a.y.min(b.y) - low) / band..=(a.y.max(b.y) - low) / band {
-                bands[k as usize].push((a, b));
+            for k in bands(a, b) {
+                sorted[starts[k + 1] as usize] = (a, b);
+                starts[k + 1] += 1;
             }
         }
-        Self { low, band, bands }
+        Self { low, shift, starts, edges: sorted }
     }
 
     /// Whether the way from `a` to `b` crosses an edge or lies outside.
     fn leaves(&self, a: Point, b: Point) -> bool {
-        let last = self.bands.len() as Coord - 1;
-        let band = |y: Coord| ((y - self.low).max(0) / self.band).min(last) as usize;
-        let touched = &self.bands[band(a.y.min(b.y))..=band(a.y.max(b.y))];
-        touched.iter().flatten().any(|&(p, q)| meet(a, b, p, q)) || !self.holds(a)
+        let last = self.starts.len() - 3;
+        let band = |y: Coord| ((y - self.low).max(0) >> self.shift) as usize;
+        let [first, last] = [a.y.min(b.y), a.y.max(b.y)].map(|y| band(y).min(last));
+        self.bands(first, last).iter().any(|&(p, q)| meet(a, b, p, q)) || !self.holds(a)
     }
 
     /// Whether `p` is inside the contours, which do not overlap.
     fn holds(&self, p: Point) -> bool {
-        let Ok(k) = usize::try_from((p.y - self.low).div_euclid(self.band)) else { return false };
-        let Some(edges) = self.bands.get(k) else { return false };
-        encloses(edges.iter().copied(), p)
+        let Ok(k) = usize::try_from((p.y - self.low) >> self.shift) else { return false };
+        k + 2 < self.starts.len() && encloses(self.bands(k, k).iter().copied(), p)
+    }
+
+    /// The edges of the bands from `first` to `last`.
+    fn bands(&self, first: usize, last: usize) -> &[(Point, Point)] {
+        &self.edges[self.starts[first] as usize..self.starts[last + 1] as usize]
     }
 }
 
