@@ -12,7 +12,7 @@
 //! sides so nearly parallel that rounding leaves them no crossing the corner is at its mitre, where
 //! the library has several points around it.
 
-use super::{Contour, Point};
+use super::{Contour, Point, edges};
 use crate::units::{Coord, nearest};
 
 /// Cosine of turns that count as folding back (177°); their corners are none of ours.
@@ -33,13 +33,16 @@ pub fn parallel(contour: &[Point], distance: f64, limit: f64) -> Option<Contour>
 #[must_use]
 pub fn parallel_and_lost(contour: &[Point], distance: f64, limit: f64) -> Option<(Contour, f64)> {
     let n = contour.len();
-    let normals: Vec<[f64; 2]> =
-        (0..n).map(|k| normal(contour[k], contour[(k + 1) % n])).collect::<Option<_>>()?;
-    let corner = |k: usize| {
-        let (before, after) = (normals[(k + n - 1) % n], normals[k]);
-        Corner::new(contour[k], before, after, distance, limit)
-    };
-    let corners: Vec<Corner> = (0..n).map(corner).collect::<Option<_>>()?;
+    let mut normals = Vec::with_capacity(n);
+    for (a, b) in edges(contour) {
+        normals.push(normal(a, b)?);
+    }
+    let mut corners = Vec::with_capacity(n);
+    let mut before = *normals.last()?;
+    for (&p, &after) in contour.iter().zip(&normals) {
+        corners.push(Corner::new(p, before, after, distance, limit)?);
+        before = after;
+    }
     let mut sides = Sides::new(&corners);
     sides.cut_all(&corners);
     let is_lost = |k: &usize| sides.after[*k] == *k;

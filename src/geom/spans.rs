@@ -121,9 +121,16 @@ impl Rows {
     /// No rows yet, with room for as much as `other` has; the first one pushed will have index `first`.
     #[must_use]
     pub fn with_room_of(other: &Self, first: i32) -> Self {
-        let mut starts = Vec::with_capacity(other.starts.len());
+        Self::with_room(first, other.starts.len() - 1, other.spans.len())
+    }
+
+    /// No rows yet, with room for as many `rows` and `spans`; the first one pushed will have index
+    /// `first`.
+    #[must_use]
+    pub fn with_room(first: i32, rows: usize, spans: usize) -> Self {
+        let mut starts = Vec::with_capacity(rows + 1);
         starts.push(0);
-        Self { first, starts, spans: Vec::with_capacity(other.spans.len()) }
+        Self { first, starts, spans: Vec::with_capacity(spans) }
     }
 
     /// Appends the next row: `fill` appends its spans, sorted and disjoint.

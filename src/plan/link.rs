@@ -85,7 +85,7 @@ pub fn skin(lines: &[Line], params: &Params, radius: Coord) -> Vec<Chain> {
     let pitch = params.line_width;
     let rows: Vec<&[Line]> = lines.chunk_by(|a, b| a.row == b.row).collect();
     let solid = |line: &Line| Some(line.span).filter(|s| s.len() >= LEAST_SOLID);
-    let spans = rows.iter().map(|row| (row[0].row, row.iter().map(solid).collect()));
+    let spans = rows.iter().map(|row| (row[0].row, row.iter().map(solid)));
     let join = |from: (Coord, i32), to: (Coord, i32), _: Side| {
         ((from.0 - to.0).abs() <= LONGEST_SOLID_JOIN * pitch).then(Vec::new)
     };
@@ -94,7 +94,7 @@ pub fn skin(lines: &[Line], params: &Params, radius: Coord) -> Vec<Chain> {
     link(spans, 1, pitch, join)
         .into_iter()
         .map(|zigzag| {
-            let mut chain = Vec::new();
+            let mut chain = Vec::with_capacity(2 * zigzag.len());
             for (k, link) in zigzag.iter().enumerate() {
                 let mut joined = Joined::default();
                 if k > 0 {
@@ -147,7 +147,7 @@ pub fn hatch(hatch: &Hatch, pitch: Coord, line_width: Coord) -> Vec<Chain> {
     let (stride, width) = (comb.stride, *width);
     let printed = region.iter().filter(|(j, _)| comb.prints(*j));
     let long = |s: &Span| Some(*s).filter(|s| s.len() >= i64::from(line_width));
-    let rows = printed.map(|(j, row)| (j, row.iter().map(long).collect()));
+    let rows = printed.map(|(j, row)| (j, row.iter().map(long)));
     let edges = Edges { region, pitch, width };
     let short = |from: (Coord, i32), to: (Coord, i32)| {
         let (du, dv) = (i64::from(to.0 - from.0), i64::from((to.1 - from.1) * pitch));
@@ -161,7 +161,7 @@ pub fn hatch(hatch: &Hatch, pitch: Coord, line_width: Coord) -> Vec<Chain> {
     link(rows, stride, stride * pitch, join)
         .into_iter()
         .map(|zigzag| {
-            let mut chain = Vec::new();
+            let mut chain = Vec::with_capacity(2 * zigzag.len());
             for link in zigzag {
                 chain.extend(link.join);
                 let v = link.row * pitch;
@@ -243,30 +243,31 @@ fn keep_bends(
 /// apart along the lines; what is none is left out. `join` gives the points between two ends, given as
 /// `(u, row)`, or none if they cannot be joined.
 fn link(
-    rows: impl Iterator<Item = (i32, Vec<Option<Span>>)>,
+    rows: impl Iterator<Item = (i32, impl Iterator<Item = Option<Span>>)>,
     stride: i32,
     slack: Coord,
     join: impl Fn((Coord, i32), (Coord, i32), Side) -> Option<Vec<LinePoint>>,
 ) -> Vec<Vec<Link>> {
     let mut done: Vec<Vec<Link>> = Vec::new();
     let mut open: Vec<Vec<Link>> = Vec::new();
-    for (row, mut free) in rows {
+    let (mut free, mut growing) = (Vec::new(), Vec::new());
+    for (row, spans) in rows {
+        free.extend(spans);
         if open.first().and_then(|c| c.last()).is_some_and(|l| l.row + stride != row) {
             done.append(&mut open);
         }
-        let mut growing = Vec::with_capacity(free.len());
         for mut chain in open.drain(..) {
             match extend(&mut chain, row, &mut free, slack, &join) {
                 Some(index) => growing.push((index, chain)),
                 None => done.push(chain),
             }
         }
-        for (index, span) in free.into_iter().enumerate() {
+        for (index, span) in free.drain(..).enumerate() {
             let link = |span| Link { join: Vec::new(), row, index, span, from: Side::Left };
             growing.extend(span.map(|span| (index, vec![link(span)])));
         }
         growing.sort_by_key(|(index, _)| *index);
-        open.extend(growing.into_iter().map(|(_, chain)| chain));
+        open.extend(growing.drain(..).map(|(_, chain)| chain));
     }
     done.append(&mut open);
     done
@@ -284,8 +285,9 @@ fn extend(
     let alone = chain.len() == 1;
     let last = chain.last_mut()?;
     let near = Span { start: last.span.start - slack, end: last.span.end + slack };
-    let sides = if alone { vec![Side::Right, Side::Left] } else { vec![last.from.other()] };
-    let (index, side, span, points) = sides.into_iter().find_map(|side| {
+    let (both, onward) = ([Side::Right, Side::Left], [last.from.other()]);
+    let sides: &[Side] = if alone { &both } else { &onward };
+    let (index, side, span, points) = sides.iter().find_map(|&side| {
         let mut beside = free
             .iter()
             .enumerate()

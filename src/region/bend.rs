@@ -83,16 +83,16 @@ impl Joined {
 #[must_use]
 pub fn points(line: &Line, joined: Joined, params: &Params) -> Vec<LinePoint> {
     let w = params.line_width;
-    let samples = if line.above.is_empty() && line.below.is_empty() {
+    let point = |sample| filled(line.row, sample, w);
+    let mut points = if line.above.is_empty() && line.below.is_empty() {
         // Most lines lie between two others.
-        [line.span.start, line.span.end].map(|u| Sample { u, above: 0.0, below: 0.0 }).to_vec()
+        let ends = [line.span.start, line.span.end];
+        ends.map(|u| point(Sample { u, above: 0.0, below: 0.0 })).to_vec()
     } else {
         let above = profile(&line.above, line.span, joined.above, w);
         let below = profile(&line.below, line.span, joined.below, w);
-        bends(&samples(&above, &below))
+        bends(&samples(&above, &below)).iter().copied().map(point).collect()
     };
-    let mut points: Vec<LinePoint> =
-        samples.into_iter().map(|sample| filled(line.row, sample, w)).collect();
     let tip = ((f64::from(w) * TIP) as Coord).min(params.overlap);
     if let [first, .., last] = points.as_mut_slice() {
         first.u -= if joined.above.left || joined.below.left { 0 } else { tip };
@@ -106,11 +106,13 @@ pub fn points(line: &Line, joined: Joined, params: &Params) -> Vec<LinePoint> {
 fn profile(known: &[Strip], span: Span, joined: Ends, pitch: Coord) -> Vec<Strip> {
     let from = span.start + if joined.left { SHORT_STRIP * pitch } else { 0 };
     let to = span.end - if joined.right { SHORT_STRIP * pitch } else { 0 };
-    let known: Vec<Strip> = known.iter().copied().filter(|s| from <= s.u && s.u <= to).collect();
+    let first = known.partition_point(|s| s.u < from);
+    let known = known.get(first..known.partition_point(|s| s.u <= to)).unwrap_or_default();
     let none = |u| Strip { u, open: 0.0 };
-    let (Some(&first), Some(&last)) = (known.first(), known.last()) else {
+    let ([first, ..], [.., last]) = (known, known) else {
         return vec![none(span.start), none(span.end)];
     };
+    let (first, last) = (*first, *last);
     let mut out = Vec::with_capacity(known.len() + 4);
     if first.u - pitch > span.start {
         out.extend([none(span.start), none(first.u - pitch)]);
@@ -187,7 +189,8 @@ fn filled(row: i32, sample: Sample, line_width: Coord) -> LinePoint {
 
 /// The samples without those between which everything changes evenly.
 fn bends(samples: &[Sample]) -> Vec<Sample> {
-    let mut kept = vec![0];
+    let mut kept = Vec::with_capacity(samples.len());
+    kept.push(0);
     keep_bends(samples, 0, samples.len() - 1, &mut kept);
     kept.push(samples.len() - 1);
     kept.into_iter().map(|k| samples[k]).collect()

@@ -192,6 +192,8 @@ fn add_end(
     let back = edge - (run.signum() as Coord) * pitch / 4;
     let open = f64::from(pitch - params.overlap);
     let ends = [(back, 0.0), (edge, open), (taper, 0.0)];
+    // Room for both ends of the line at once.
+    strips.reserve(2 * ends.len());
     strips.extend(ends.into_iter().filter(|e| inside(e.0)).map(|(u, open)| Strip { u, open }));
 }
 

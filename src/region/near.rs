@@ -54,7 +54,8 @@ impl Near {
     pub(super) fn new(walls: &[Contour], area: Area, side: f64) -> Self {
         let point = |p: Point| [f64::from(p.x), f64::from(p.y)];
         let all = walls.iter().flat_map(|w| edges(w)).map(|(p, q)| [point(p), point(q)]);
-        let edges: Vec<Edge> = all.filter(|edge| area.meets(edge)).collect();
+        let mut edges = Vec::with_capacity(walls.iter().map(Vec::len).sum());
+        edges.extend(all.filter(|edge| area.meets(edge)));
         let extent = [0, 1].map(|k| (area.high[k] - area.low[k]).max(0.0));
         let side = side.max(extent[0].max(extent[1]) / MOST_CELLS);
         let size = extent.map(|x| (x / side) as usize + 1);

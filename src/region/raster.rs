@@ -223,7 +223,7 @@ fn inside(contours: &[Contour], raster: Raster) -> Rows {
             crossings.push(j, Crossing { u, winding });
         }
     }
-    let mut rows = Rows::starting_at(range.start);
+    let mut rows = Rows::with_room(range.start, range.len(), crossings.items.len() / 2);
     for j in range {
         let row = crossings.row(j);
         row.sort_unstable();

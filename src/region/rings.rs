@@ -148,7 +148,8 @@ fn length(arc: &[Place]) -> f64 {
 
 /// The points of a bead, only those where it bends or changes its width.
 fn bead(arc: &[Place]) -> Bead {
-    let mut kept = vec![0];
+    let mut kept = Vec::with_capacity(arc.len());
+    kept.push(0);
     keep_bends(arc, 0, arc.len() - 1, &mut kept);
     kept.push(arc.len() - 1);
     let mut before = arc[0].width;
