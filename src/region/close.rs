@@ -22,6 +22,9 @@ const LEAST_STRIP: Coord = 200;
 /// Beads along thin strips that fewer columns in a row tell of are left out.
 const LEAST_COLUMNS: usize = 2;
 
+/// Strips that are added at the ends of a line, at most.
+const AT_ENDS: usize = 6;
+
 /// A layer's skin on its own raster and on the one across.
 #[derive(Debug, Clone, Copy)]
 pub struct Crossed<'a> {
@@ -117,7 +120,13 @@ impl Strips {
             let strips = self.index(row).map_or(&[] as &[Strip], |k| &rows[k]);
             let from = strips.partition_point(|s| s.u <= span.start);
             let to = strips.partition_point(|s| s.u < span.end);
-            strips.get(from..to).unwrap_or_default().to_vec()
+            let found = strips.get(from..to).unwrap_or_default();
+            let mut out = Vec::new();
+            if !found.is_empty() {
+                out.reserve_exact(found.len() + AT_ENDS);
+                out.extend_from_slice(found);
+            }
+            out
         };
         (of(&self.above), of(&self.below))
     }
@@ -192,8 +201,7 @@ fn add_end(
     let back = edge - (run.signum() as Coord) * pitch / 4;
     let open = f64::from(pitch - params.overlap);
     let ends = [(back, 0.0), (edge, open), (taper, 0.0)];
-    // Room for both ends of the line at once.
-    strips.reserve(2 * ends.len());
+    strips.reserve(AT_ENDS);
     strips.extend(ends.into_iter().filter(|e| inside(e.0)).map(|(u, open)| Strip { u, open }));
 }
 

@@ -105,7 +105,12 @@ fn arcs(lap: &[Station], index: usize, near: &Near, params: &Params) -> Vec<Vec<
         let last = arcs.last_mut().filter(|_| open);
         match last.filter(|a| a.last().is_some_and(|l| joins(l, &place, near, params))) {
             Some(arc) => arc.push(place),
-            None => arcs.push(vec![place]),
+            None => {
+                // Few are shorter; a list that grows from one place is moved four times.
+                let mut arc = Vec::with_capacity(16);
+                arc.push(place);
+                arcs.push(arc);
+            }
         }
         open = true;
     }
