@@ -12,13 +12,13 @@ use i_overlay::mesh::float::style::{LineJoin, OutlineStyle};
 use proptest::prelude::*;
 use slicer::geom::frame::Frame;
 use slicer::geom::spans::{Rows, Span, total};
-use slicer::geom::{Contour, Point, double_area, polygon};
+use slicer::geom::{Contour, Point, double_area, edges, polygon};
 use slicer::mesh::{Bed, stl, transform};
 use slicer::region::Params;
 use slicer::region::bend::LinePoint;
 use slicer::region::classify::Areas;
 use slicer::region::divide::divide;
-use slicer::region::raster::{Raster, Scan};
+use slicer::region::raster::{Raster, Scan, around};
 use slicer::region::rings::Bead;
 use slicer::slice::{Heights, Layer, Slicer};
 use slicer::units::{Coord, UNITS_PER_MM, to_units};
@@ -114,6 +114,15 @@ proptest! {
     }
 
     #[test]
+    fn an_inset_is_the_inside_without_what_is_around_any_edge(
+        outlines in prop::collection::vec(stars(), 1..4), r in 50..15_000_i32, degrees in 0.0..360.0_f64,
+    ) {
+        let contours = polygon::union(&contours(&outlines));
+        let raster = Raster { frame: Frame::new(degrees), pitch: 1777 };
+        prop_assert_eq!(spans(&Scan::new(&contours, raster).inset(r)), spans(&cleared(&contours, raster, r)));
+    }
+
+    #[test]
     fn inset_and_outset_are_those_of_a_polygon_offset(
         outlines in prop::collection::vec(stars(), 1..3), r in 0.1..1.5_f64,
     ) {
@@ -130,6 +139,29 @@ proptest! {
                 prop_assert!((low..=high).contains(&length), "{} row {}: {} not in {}..{}", by, j, length, low, high);
             }
         }
+    }
+}
+
+/// The inside of `contours` without what is within `r` of any edge, each of them asked on all rows.
+fn cleared(contours: &[Contour], raster: Raster, r: Coord) -> Rows {
+    let enter = |(p, q)| (raster.frame.enter(p), raster.frame.enter(q), r);
+    let all: Vec<_> = contours.iter().flat_map(|c| edges(c)).map(enter).collect();
+    Scan::new(contours, raster).inside().minus(&around(&all, raster))
+}
+
+#[test]
+fn insets_that_end_on_a_row_are_those_of_all_edges() {
+    let raster = Raster { frame: Frame::new(0.0), pitch: 100 };
+    let ring = |points: &[(Coord, Coord)]| -> Contour {
+        points.iter().map(|&(x, y)| Point { x: 100 * x, y: 100 * y }).collect()
+    };
+    // A block with a square hole and a step, all of it on rows.
+    let outside = ring(&[(0, 0), (40, 0), (40, 20), (50, 20), (50, 40), (0, 40)]);
+    let hole = ring(&[(10, 10), (10, 30), (30, 30), (30, 10)]);
+    for r in (50..1_200).step_by(50) {
+        let contours = [outside.clone(), hole.clone()];
+        let inset = Scan::new(&contours, raster).inset(r);
+        assert_eq!(spans(&inset), spans(&cleared(&contours, raster, r)), "{r}");
     }
 }
 

@@ -12,9 +12,12 @@
 
 use crate::geom::frame::Frame;
 use crate::geom::spans::{Rows, Span, merge, subtract};
-use crate::geom::{Contour, Point, edges};
+use crate::geom::{Contour, Point, edges, side};
 use crate::units::{Bounded as _, Coord, between, nearest};
-use std::iter;
+
+/// Rows so much further up and down than an edge reaches are asked as well (2 µm): what rounding
+/// can have made of the contours.
+const MARGIN: Coord = 20;
 
 /// A set of raster lines: row `j` runs at `v = j · pitch` in `frame`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,7 +74,15 @@ impl Scan {
         if distance <= 0 {
             return self.inside.clone();
         }
-        let mut chords = chords(&self.contours, self.raster, distance);
+        let mut stretches = Vec::with_capacity(self.contours.iter().map(Vec::len).sum());
+        for contour in &self.contours {
+            let [.., mut p, mut q] = contour[..] else { continue };
+            for &next in contour {
+                stretches.push(Stretch::inner([p, q, next], distance, self.raster));
+                (p, q) = (q, next);
+            }
+        }
+        let mut chords = chords(&stretches, self.raster);
         let mut covered = Vec::new();
         let mut out = Rows::with_room_of(&self.inside, self.inside.range().start);
         for (j, row) in self.inside.iter() {
@@ -88,7 +99,9 @@ impl Scan {
         if distance <= 0 {
             return self.inside.clone();
         }
-        let mut chords = chords(&self.contours, self.raster, distance);
+        let whole = |(p, q)| Stretch::whole(p, q, distance, self.raster);
+        let all = self.contours.iter().flat_map(|c| edges(c));
+        let mut chords = chords(&all.map(whole).collect::<Vec<_>>(), self.raster);
         let mut both = Vec::new();
         let mut out = Rows::starting_at(chords.first);
         for j in chords.range() {
@@ -105,13 +118,9 @@ impl Scan {
 /// these are in the raster's frame.
 #[must_use]
 pub fn around(edges: &[(Point, Point, Coord)], raster: Raster) -> Rows {
-    let all = || edges.iter().copied();
-    let rows = || all().map(|edge| reached(edge, raster)).filter(|rows| !rows.is_empty());
-    let first = rows().map(|rows| rows.start).min();
-    let end = rows().map(|rows| rows.end).max();
-    let Some((first, end)) = first.zip(end) else { return Rows::default() };
-    let mut chords = cut(first..end, all, raster);
-    let mut out = Rows::starting_at(first);
+    let all = edges.iter().map(|&(p, q, r)| Stretch::whole(p, q, r, raster));
+    let mut chords = chords(&all.collect::<Vec<_>>(), raster);
+    let mut out = Rows::starting_at(chords.first);
     for j in chords.range() {
         out.push_row(|spans| merge(chords.row(j), spans));
     }
@@ -251,33 +260,50 @@ fn wound(crossings: &[Crossing], out: &mut Vec<Span>) {
     }
 }
 
-/// The chords that the rows cut from the capsules of radius `r` around all edges.
-fn chords(contours: &[Contour], raster: Raster, r: Coord) -> Buckets<Span> {
-    let Some((low, high)) = extent(contours) else { return Buckets::new(0..0, iter::empty()) };
-    let all = || contours.iter().flat_map(|c| edges(c)).map(|(p, q)| (p, q, r));
-    cut(raster.rows(low - r, high + r), all, raster)
+/// The points within a radius of an edge, and the rows on which they matter.
+struct Stretch {
+    capsule: Capsule,
+    rows: std::ops::Range<i32>,
 }
 
-/// The chords that rows `range` cut from the capsules around edges, each with its radius.
-fn cut<E>(range: std::ops::Range<i32>, edges: impl Fn() -> E, raster: Raster) -> Buckets<Span>
-where
-    E: Iterator<Item = (Point, Point, Coord)>,
-{
-    let mut chords = Buckets::new(range, edges().map(|edge| reached(edge, raster)));
-    for edge @ (p, q, r) in edges() {
+impl Stretch {
+    /// With all rows that reach the capsule.
+    fn whole(p: Point, q: Point, r: Coord, raster: Raster) -> Self {
+        let rows = raster.rows(p.y.min(q.y) - r, p.y.max(q.y) + r);
+        Self { capsule: Capsule::new(p, q, r), rows }
+    }
+
+    /// With the rows on which the edge from `p` to `q`, which has the solid on its left and is
+    /// followed by one to `next`, may be the nearest to a place inside. Beside the edge these are
+    /// the rows on its left. Beyond its end they are those around a corner that the solid lies
+    /// around; only one that is the highest or lowest place there has rows that neither of
+    /// its two edges has beside it.
+    fn inner([p, q, next]: [Point; 3], r: Coord, raster: Raster) -> Self {
         let capsule = Capsule::new(p, q, r);
-        for j in reached(edge, raster) {
+        let lift = if p.y <= q.y { capsule.lift } else { -capsule.lift } as Coord;
+        let (low, high) = (p.y.min(q.y), p.y.max(q.y));
+        let (mut down, mut up) = ((MARGIN - lift.min(0)).min(r), (MARGIN + lift.max(0)).min(r));
+        if (p.y < q.y) != (q.y < next.y) && side(p, q, next) <= 0 {
+            (down, up) = (r, r);
+        }
+        Self { capsule, rows: raster.rows(low - down, high + up) }
+    }
+}
+
+/// The chords that rows cut from capsules.
+fn chords(stretches: &[Stretch], raster: Raster) -> Buckets<Span> {
+    let rows = || stretches.iter().map(|s| s.rows.clone()).filter(|rows| !rows.is_empty());
+    let first = rows().map(|rows| rows.start).min().unwrap_or_default();
+    let end = rows().map(|rows| rows.end).max().unwrap_or_default();
+    let mut chords = Buckets::new(first..end, rows());
+    for Stretch { capsule, rows } in stretches {
+        for j in rows.clone() {
             if let Some(chord) = capsule.chord(j * raster.pitch) {
                 chords.join(j, chord);
             }
         }
     }
     chords
-}
-
-/// The rows that reach the capsule around an edge.
-fn reached((p, q, r): (Point, Point, Coord), raster: Raster) -> std::ops::Range<i32> {
-    raster.rows(p.y.min(q.y) - r, p.y.max(q.y) + r)
 }
 
 /// All points within `r` of the edge from `low` to `high` (`low.y <= high.y`).
