@@ -306,56 +306,54 @@ fn chords(stretches: &[Stretch], raster: Raster) -> Buckets<Span> {
     chords
 }
 
-/// All points within `r` of the edge from `low` to `high` (`low.y <= high.y`).
+/// All points within a distance of an edge.
 struct Capsule {
-    low: Point,
-    high: Point,
-    r: f64,
+    /// The edge's ends, `u` and `v`; `low` has the lesser `v`.
+    low: [f64; 2],
+    high: [f64; 2],
+    /// The distance, squared.
+    square: f64,
     /// Run per rise; 0 for a level edge.
     slope: f64,
-    /// Distance along u from the edge's line to its parallel at distance `r`.
+    /// Distance along u from the edge's line to its parallel at the distance.
     shift: f64,
-    /// How much lower the left flank ends than the edge (the right flank: higher).
+    /// How much lower the right flank ends than the edge (the left flank: higher).
     lift: f64,
 }
 
 impl Capsule {
     fn new(p: Point, q: Point, r: Coord) -> Self {
         let (low, high) = if p.y <= q.y { (p, q) } else { (q, p) };
-        let run = f64::from(high.x) - f64::from(low.x);
-        let rise = f64::from(high.y) - f64::from(low.y);
+        let [low, high] = [low, high].map(|p| [f64::from(p.x), f64::from(p.y)]);
+        let (run, rise) = (high[0] - low[0], high[1] - low[1]);
         let length = (run * run + rise * rise).sqrt();
         let r = f64::from(r);
         let (slope, shift) = if rise > 0.0 { (run / rise, r * length / rise) } else { (0.0, 0.0) };
         let lift = if length > 0.0 { r * run / length } else { 0.0 };
-        Self { low, high, r, slope, shift, lift }
+        Self { low, high, square: r * r, slope, shift, lift }
     }
 
-    /// The chord at `v`, none where rounding leaves nothing of it.
+    /// The chord at `v`, none where rounding leaves nothing of it. A flank is a straight line
+    /// between the feet of the two end circles' tangents, and a circle beyond.
     fn chord(&self, v: Coord) -> Option<Span> {
-        let (start, end) = (-self.flank(v, -1.0), self.flank(v, 1.0));
-        Span::new(nearest(start) as Coord, nearest(end) as Coord)
-    }
-
-    /// How far the capsule reaches at `v` towards `side` (+1 right, −1 left),
-    /// measured in that direction. The flank is a straight line between the
-    /// feet of the two end circles' tangents and a circle beyond.
-    fn flank(&self, v: Coord, side: f64) -> f64 {
-        let (low_u, high_u) = (side * f64::from(self.low.x), side * f64::from(self.high.x));
-        let (low_v, high_v) = (f64::from(self.low.y), f64::from(self.high.y));
         let v = f64::from(v);
-        let circle =
-            |u: f64, at: f64| u + (self.r * self.r - (v - at) * (v - at)).at_least(0.0).sqrt();
-        if low_v == high_v {
-            return circle(low_u.at_least(high_u), low_v);
-        }
-        let drop = side * self.lift;
-        if v < low_v - drop {
-            circle(low_u, low_v)
-        } else if v > high_v - drop {
-            circle(high_u, high_v)
+        let Self { low: [low_u, low_v], high: [high_u, high_v], lift, .. } = *self;
+        let circle = |at: f64| (self.square - (v - at) * (v - at)).at_least(0.0).sqrt();
+        let (start, end) = if low_v == high_v {
+            (low_u.at_most(high_u) - circle(low_v), low_u.at_least(high_u) + circle(low_v))
         } else {
-            low_u + side * (v - low_v) * self.slope + self.shift
-        }
+            let middle = low_u + (v - low_v) * self.slope;
+            let flank = |lift: f64, side: f64| {
+                if v < low_v - lift {
+                    low_u + side * circle(low_v)
+                } else if v > high_v - lift {
+                    high_u + side * circle(high_v)
+                } else {
+                    middle + side * self.shift
+                }
+            };
+            (flank(-lift, -1.0), flank(lift, 1.0))
+        };
+        Span::new(nearest(start) as Coord, nearest(end) as Coord)
     }
 }
