@@ -54,6 +54,10 @@ const CORNER: f64 = 11.0;
 /// station that has beads.
 const MARGIN: f64 = CORNER + 8.0;
 
+/// Side of the cells that edges are sorted into, in line widths: larger than what is asked for
+/// around most places, so that few are looked up.
+const CELL: f64 = 4.0;
+
 /// A place of a wall, and the skin behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Station {
@@ -88,7 +92,7 @@ pub(super) fn stations(
     }
     let with_beads = laps.iter().flatten().filter(|s| s.beads > 0).map(|s| s.at);
     let w = f64::from(params.line_width);
-    let near = Near::new(walls, Area::around(with_beads, MARGIN * w), 2.0 * w);
+    let near = Near::new(walls, Area::around(with_beads, MARGIN * w), CELL * w);
     for (lap, wall) in laps.iter_mut().zip(walls) {
         lap.iter_mut().filter(|s| s.shared).for_each(|s| s.confirm(&near, params));
         if params.only_strips {
