@@ -2,6 +2,7 @@
 
 use crate::geom::{Contour, Point, edges};
 use crate::units::Bounded as _;
+use std::cmp::Ordering;
 use std::ops::Range;
 
 /// Cells along each side of an area, at most.
@@ -99,12 +100,15 @@ impl Near {
         (rows.0..=rows.1).map(move |row| row * width + columns.0..row * width + columns.1 + 1)
     }
 
-    /// The edge nearest to `p`, within the area, among those nearer than `distance`.
+    /// The edge nearest to `p`, within the area, among those nearer than `distance`; of two that
+    /// are equally near the one that begins, or ends, further left or lower.
     pub(super) fn nearest(&self, p: [f64; 2], distance: f64) -> Option<Edge> {
         let square = distance * distance;
         let near = self.around(&[p], distance).flatten().filter(|edge| is_nearer(p, edge, square));
         let nearest = near.map(|edge| (distance2(p, edge), edge));
-        nearest.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, edge)| *edge)
+        let order =
+            |a: &(f64, &Edge), b: &(f64, &Edge)| a.partial_cmp(b).unwrap_or(Ordering::Equal);
+        nearest.min_by(order).map(|(_, edge)| *edge)
     }
 
     /// Whether no wall is nearer to any of `places`, within the area, than `distance`.
