@@ -74,7 +74,7 @@ struct Waiting {
 /// if it has others, or if so many edges meet at one vertex that lists are no way to find them.
 fn of_sound(vertices: usize, triangles: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> {
     let blank = |_: &[u32; 3]| [NONE; 3].map(AtomicU32::new);
-    let neighbour: Vec<[AtomicU32; 3]> = triangles.iter().map(blank).collect();
+    let neighbour: Vec<[AtomicU32; 3]> = triangles.par_iter().map(blank).collect();
     // All half-edges of an edge have the same lower vertex: each thread takes some vertices.
     let share = vertices.div_ceil(rayon::current_num_threads()).max(1);
     let shares = (0..vertices.div_ceil(share)).into_par_iter();

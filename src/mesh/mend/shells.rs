@@ -90,17 +90,11 @@ pub(super) fn count(adjacency: &Adjacency) -> usize {
 
 /// The triangles, joined across their sides.
 pub(super) fn links(adjacency: &Adjacency) -> Links {
-    let mut links = Links::new(adjacency.neighbour.len());
-    for (t, sides) in (0_u32..).zip(&adjacency.neighbour) {
-        for &side in sides.iter().filter(|side| **side != NONE) {
-            let other = parts(side).0 as u32;
-            // From one of the two is enough.
-            if other < t {
-                links.join(t, other);
-            }
-        }
-    }
-    links
+    // From one of the two is enough.
+    Links::of(adjacency.neighbour.len(), |t| {
+        let sides = adjacency.neighbour[t as usize].into_iter().filter(|side| *side != NONE);
+        sides.map(|side| parts(side).0 as u32).filter(move |other| *other < t)
+    })
 }
 
 fn shells(vertices: &[Corner], triangles: &[[u32; 3]], adjacency: &Adjacency) -> Shells {
