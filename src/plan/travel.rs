@@ -133,12 +133,13 @@ impl Crossings {
                 starts[k + 1] += 1;
             }
         }
+        starts.pop();
         Self { low, shift, starts, edges: sorted }
     }
 
     /// Whether the way from `a` to `b` crosses an edge or lies outside.
     fn leaves(&self, a: Point, b: Point) -> bool {
-        let last = self.starts.len() - 3;
+        let last = self.starts.len() - 2;
         let band = |y: Coord| ((y - self.low).max(0) >> self.shift) as usize;
         let [first, last] = [a.y.min(b.y), a.y.max(b.y)].map(|y| band(y).min(last));
         self.bands(first, last).iter().any(|&(p, q)| meet(a, b, p, q)) || !self.holds(a)
@@ -147,7 +148,7 @@ impl Crossings {
     /// Whether `p` is inside the contours, which do not overlap.
     fn holds(&self, p: Point) -> bool {
         let Ok(k) = usize::try_from((p.y - self.low) >> self.shift) else { return false };
-        k + 2 < self.starts.len() && encloses(self.bands(k, k).iter().copied(), p)
+        k + 1 < self.starts.len() && encloses(self.bands(k, k).iter().copied(), p)
     }
 
     /// The edges of the bands from `first` to `last`.

@@ -16,8 +16,8 @@ impl Links {
         Self { to: (0..u32::try_from(count).unwrap_or(u32::MAX)).collect(), sets: count }
     }
 
-    /// The sets of the numbers below `count`, each joined with the `lower` ones. Every thread joins
-    /// those of a range; what reaches from one range into another comes last.
+    /// The sets of the numbers below `count`, each joined with the lower ones that `lower` gives for
+    /// it. Every thread joins those of a range; what reaches from one range into another comes last.
     pub(crate) fn of<L: Iterator<Item = u32>>(
         count: usize,
         lower: impl Fn(u32) -> L + Sync,
