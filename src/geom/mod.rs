@@ -1,5 +1,6 @@
 //! Plane geometry on the integer grid: points, contours, spans, frames and polygon offsets.
 
+pub mod cells;
 pub mod follow;
 pub mod frame;
 pub mod parallel;

@@ -6,6 +6,7 @@
 
 use super::tour::{self, Cost};
 use super::{Path, PlanParams, Step};
+use crate::geom::cells::Cells;
 use crate::geom::{Contour, Point, edges, encloses, side};
 use crate::units::{Bounded as _, Coord};
 
@@ -100,15 +101,11 @@ struct Crossings {
     low: Coord,
     /// Each band is 2 to the power of `shift` high.
     shift: u32,
-    /// Where each band begins in `edges`, and where the last one ends.
-    starts: Vec<u32>,
-    /// An edge is in each band that it reaches into.
-    edges: Vec<(Point, Point)>,
+    bands: Cells<(Point, Point)>,
 }
 
 impl Crossings {
     fn new(contours: &[Contour]) -> Self {
-        let edges = || contours.iter().flat_map(|c| edges(c));
         let points = || contours.iter().flatten();
         let low = points().map(|p| p.y).min().unwrap_or(0);
         let high = points().map(|p| p.y).max().unwrap_or(0);
@@ -116,44 +113,23 @@ impl Crossings {
         let shift = (0..Coord::BITS).find(|&shift| ((high - low) >> shift) < wished as Coord);
         let shift = shift.unwrap_or_default();
         let band = |y: Coord| ((y - low) >> shift) as usize;
-        let bands = |a: Point, b: Point| band(a.y.min(b.y))..=band(a.y.max(b.y));
-        // Sorted by counting. Where a band begins stands one place further on, until its edges
-        // have moved it to where the next one begins.
-        let mut starts = vec![0; band(high) + 3];
-        edges().for_each(|(a, b)| bands(a, b).for_each(|k| starts[k + 2] += 1));
-        let mut sum = 0;
-        for start in &mut starts {
-            sum += *start;
-            *start = sum;
-        }
-        let mut sorted = vec![(Point::default(), Point::default()); sum as usize];
-        for (a, b) in edges() {
-            for k in bands(a, b) {
-                sorted[starts[k + 1] as usize] = (a, b);
-                starts[k + 1] += 1;
-            }
-        }
-        starts.pop();
-        Self { low, shift, starts, edges: sorted }
+        let edges = || contours.iter().flat_map(|c| edges(c));
+        let reach = |(a, b): (Point, Point)| band(a.y.min(b.y))..band(a.y.max(b.y)) + 1;
+        Self { low, shift, bands: Cells::new(band(high) + 1, edges, reach) }
     }
 
     /// Whether the way from `a` to `b` crosses an edge or lies outside.
     fn leaves(&self, a: Point, b: Point) -> bool {
-        let last = self.starts.len() - 2;
-        let band = |y: Coord| ((y - self.low).max(0) >> self.shift) as usize;
-        let [first, last] = [a.y.min(b.y), a.y.max(b.y)].map(|y| band(y).min(last));
-        self.bands(first, last).iter().any(|&(p, q)| meet(a, b, p, q)) || !self.holds(a)
+        let last = self.bands.count() - 1;
+        let band = |y: Coord| (((y - self.low).max(0) >> self.shift) as usize).min(last);
+        let touched = self.bands.of(band(a.y.min(b.y))..band(a.y.max(b.y)) + 1);
+        touched.iter().any(|&(p, q)| meet(a, b, p, q)) || !self.holds(a)
     }
 
     /// Whether `p` is inside the contours, which do not overlap.
     fn holds(&self, p: Point) -> bool {
         let Ok(k) = usize::try_from((p.y - self.low) >> self.shift) else { return false };
-        k + 1 < self.starts.len() && encloses(self.bands(k, k).iter().copied(), p)
-    }
-
-    /// The edges of the bands from `first` to `last`.
-    fn bands(&self, first: usize, last: usize) -> &[(Point, Point)] {
-        &self.edges[self.starts[first] as usize..self.starts[last + 1] as usize]
+        k < self.bands.count() && encloses(self.bands.of(k..k + 1).iter().copied(), p)
     }
 }
 

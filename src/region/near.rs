@@ -1,5 +1,6 @@
 //! Walls -> Near: whether a place keeps its distance from all of them.
 
+use crate::geom::cells::Cells;
 use crate::geom::{Contour, Point, edges};
 use crate::units::Bounded as _;
 use std::cmp::Ordering;
@@ -39,15 +40,32 @@ impl Area {
 /// The edges of closed walls that meet an area, sorted into square cells.
 #[derive(Debug)]
 pub(super) struct Near {
+    grid: Grid,
+    /// Edges whose boxes meet a cell, row by row of cells.
+    cells: Cells<Edge>,
+}
+
+/// How an area is divided into cells.
+#[derive(Debug)]
+struct Grid {
     low: [f64; 2],
     /// Cells for each grid unit.
     scale: f64,
     /// Columns and rows of cells.
     size: [usize; 2],
-    /// Where each cell begins in `items`, and where the last one ends.
-    starts: Vec<u32>,
-    /// Edges whose boxes meet the cell.
-    items: Vec<Edge>,
+}
+
+impl Grid {
+    /// The cells that meet the box with corners `p` and `q`, row by row of cells.
+    fn cells(&self, [p, q]: [[f64; 2]; 2]) -> impl Iterator<Item = Range<usize>> + use<> {
+        // Casts to unsigned numbers hold below zero; what is beyond the area counts to its edge.
+        let at =
+            |x: f64, k: usize| (((x - self.low[k]) * self.scale) as usize).min(self.size[k] - 1);
+        let [columns, rows] =
+            [0, 1].map(|k| (at(p[k].at_most(q[k]), k), at(p[k].at_least(q[k]), k)));
+        let width = self.size[0];
+        (rows.0..=rows.1).map(move |row| row * width + columns.0..row * width + columns.1 + 1)
+    }
 }
 
 impl Near {
@@ -60,44 +78,10 @@ impl Near {
         let extent = [0, 1].map(|k| (area.high[k] - area.low[k]).max(0.0));
         let side = side.max(extent[0].max(extent[1]) / MOST_CELLS);
         let size = extent.map(|x| (x / side) as usize + 1);
-        let mut near =
-            Self { low: area.low, scale: 1.0 / side, size, starts: Vec::new(), items: Vec::new() };
-        near.sort(&edges);
-        near
-    }
-
-    /// Sorts `edges` into the cells by counting.
-    fn sort(&mut self, edges: &[Edge]) {
-        // Where a cell begins stands one place further on, until its edges have moved it to
-        // where the next one begins.
-        let mut starts = vec![0_u32; self.size[0] * self.size[1] + 2];
-        for edge in edges {
-            self.cells(*edge).flatten().for_each(|cell| starts[cell + 2] += 1);
-        }
-        let mut sum = 0;
-        for start in &mut starts {
-            sum += *start;
-            *start = sum;
-        }
-        let mut items = vec![[[0.0; 2]; 2]; sum as usize];
-        for edge in edges {
-            for cell in self.cells(*edge).flatten() {
-                items[starts[cell + 1] as usize] = *edge;
-                starts[cell + 1] += 1;
-            }
-        }
-        (self.starts, self.items) = (starts, items);
-    }
-
-    /// The cells that meet the box with corners `p` and `q`, row by row of cells.
-    fn cells(&self, [p, q]: [[f64; 2]; 2]) -> impl Iterator<Item = Range<usize>> + use<> {
-        // Casts to unsigned numbers hold below zero; what is beyond the area counts to its edge.
-        let at =
-            |x: f64, k: usize| (((x - self.low[k]) * self.scale) as usize).min(self.size[k] - 1);
-        let [columns, rows] =
-            [0, 1].map(|k| (at(p[k].at_most(q[k]), k), at(p[k].at_least(q[k]), k)));
-        let width = self.size[0];
-        (rows.0..=rows.1).map(move |row| row * width + columns.0..row * width + columns.1 + 1)
+        let grid = Grid { low: area.low, scale: 1.0 / side, size };
+        let reach = |edge: Edge| grid.cells(edge).flatten();
+        let cells = Cells::new(size[0] * size[1], || edges.iter().copied(), reach);
+        Self { grid, cells }
     }
 
     /// The edge nearest to `p`, within the area, among those nearer than `distance`; of two that
@@ -127,9 +111,7 @@ impl Near {
     ) -> impl Iterator<Item = &[Edge]> + use<'_> {
         let area = Area::around(places.iter().copied(), distance);
         // The edges of cells beside each other stand one after the other.
-        self.cells([area.low, area.high]).map(|cells| {
-            &self.items[self.starts[cells.start] as usize..self.starts[cells.end] as usize]
-        })
+        self.grid.cells([area.low, area.high]).map(|cells| self.cells.of(cells))
     }
 }
 
