@@ -244,6 +244,22 @@ fn a_move_of_no_length_takes_no_time_and_stops_nobody() {
     }
 }
 
+#[test]
+fn a_feed_or_limit_that_is_no_number_is_the_least() {
+    for junction in [limits().junction, Junction::Deviation(0.01)] {
+        let limits = Limits { junction, ..limits() };
+        near(total(&limits, &[(x(0.01), f64::NAN)]), total(&limits, &[(x(0.01), 0.0)]));
+        let with = |acceleration| Limits {
+            travel_acceleration: acceleration,
+            print_acceleration: acceleration,
+            acceleration: [acceleration, 1000.0, 1000.0, 1000.0],
+            feed: [acceleration, 300.0, 300.0, 300.0],
+            ..limits
+        };
+        near(total(&with(f64::NAN), &[(x(0.01), 1.0)]), total(&with(0.0), &[(x(0.01), 1.0)]));
+    }
+}
+
 /// A rule for corners.
 fn junction() -> impl Strategy<Value = Junction> {
     prop_oneof![

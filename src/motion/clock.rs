@@ -157,7 +157,8 @@ impl<T: Copy> Clock<T> {
         };
         let cruise = before.cruise.at_most(course.cruise);
         let least = limits.minimum_speed;
-        corner.at_least(least * least).at_most(cruise * cruise)
+        // `max` drops what limits that are no numbers make of it.
+        corner.max(least * least).at_most(cruise * cruise)
     }
 
     /// Plans the pending blocks and lets go of those that are decided.

@@ -110,7 +110,7 @@ pub(super) fn deviation(before: &Course, after: &Course, acceleration: &[f64; 4]
     if after.distance < SHORT && cosine < ARC {
         let turn = small_turn(cosine);
         if turn > 0.0 {
-            squared = squared.at_most(after.distance * most / turn);
+            squared = squared.min(after.distance * most / turn);
         }
     }
     squared
@@ -137,8 +137,8 @@ pub(super) fn square_corner(before: &Course, after: &Course, extruder_velocity: 
         let arc = sine / (1.0 - sine);
         let tangent = 0.5 * sine / half_cosine;
         for course in [before, after] {
-            squared = squared.at_most(arc * course.deviation * course.acceleration);
-            squared = squared.at_most(course.distance * course.acceleration * tangent);
+            squared = squared.min(arc * course.deviation * course.acceleration);
+            squared = squared.min(course.distance * course.acceleration * tangent);
         }
     }
     squared

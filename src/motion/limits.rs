@@ -123,19 +123,18 @@ impl Limits {
 
 impl Rates {
     pub(super) fn new(limits: Limits) -> Self {
-        let inverse = |values: [f64; 4]| values.map(|value| 1.0 / value.at_least(LEAST));
+        let inverse = |values: [f64; 4]| values.map(|value| 1.0 / value.max(LEAST));
         let deviation = match limits.junction {
             Junction::Jerk(_) | Junction::VectorJerk(_) | Junction::SpeedChange(_) => 0.0,
-            Junction::Deviation(deviation) => deviation.at_least(0.0),
+            Junction::Deviation(deviation) => deviation.max(0.0),
             Junction::SquareCorner { velocity, .. } => {
                 let root_of_two = std::f64::consts::SQRT_2;
-                velocity * velocity * (root_of_two - 1.0)
-                    / limits.print_acceleration.at_least(LEAST)
+                velocity * velocity * (root_of_two - 1.0) / limits.print_acceleration.max(LEAST)
             }
         };
         let sprint = match limits.junction {
             Junction::SquareCorner { minimum_cruise_ratio, .. } => {
-                limits.print_acceleration.at_least(LEAST) * (1.0 - minimum_cruise_ratio)
+                limits.print_acceleration.max(LEAST) * (1.0 - minimum_cruise_ratio)
             }
             _ => f64::INFINITY,
         };
@@ -143,7 +142,7 @@ impl Rates {
             sprint,
             jerk_inverse: match limits.junction {
                 Junction::Jerk(jerk) | Junction::VectorJerk(jerk) => {
-                    jerk.map(|jerk| 1.0 / jerk.at_least(LEAST_JERK))
+                    jerk.map(|jerk| 1.0 / jerk.max(LEAST_JERK))
                 }
                 _ => [0.0; 4],
             },
@@ -173,9 +172,9 @@ impl Rates {
             slowest = slowest.at_least(length * self.feed_inverse[axis]);
             laziest = laziest.at_least(length * self.acceleration_inverse[axis]);
         }
-        // `max` drops a feed that is not a number.
-        let speed = feed.at_least(LEAST).at_most(distance / slowest);
-        (speed, wanted.at_least(LEAST).at_most(distance / laziest))
+        // Where numbers come in, `max` drops what is none: behind it there are only numbers.
+        let speed = feed.max(LEAST).at_most(distance / slowest);
+        (speed, wanted.max(LEAST).at_most(distance / laziest))
     }
 }
 
