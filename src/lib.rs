@@ -76,10 +76,10 @@ pub fn place(
     models: &[String],
     placement: &mesh::Placement,
     bed: &mesh::Bed,
-) -> Result<mesh::transform::Placed> {
-    let load = |file: &String| mesh::stl::load(file, placement.max_triangles);
+) -> Result<mesh::place::Placed> {
+    let load = |file: &String| mesh::read::load(file, placement.max_triangles);
     let models = models.iter().map(load).collect::<Result<_>>()?;
-    mesh::transform::place(models, placement, bed)
+    mesh::place::place(models, placement, bed)
 }
 
 /// As [`slice()`], of the models as [`place`] gave them.
@@ -88,7 +88,7 @@ pub fn place(
 /// As [`slice()`].
 pub fn slice_placed(
     job: &Job,
-    placed: &mesh::transform::Placed,
+    placed: &mesh::place::Placed,
     out: &mut dyn gcode::Output,
     progress: &progress::Progress,
 ) -> Result<report::Report> {
@@ -201,7 +201,7 @@ fn settle(settings: &profile::Settings, mesh: &mesh::Mesh) -> profile::Settings 
 /// Pictures of the models, of the sizes that the host wants.
 fn thumbnails(
     settings: &profile::Settings,
-    placed: &mesh::transform::Placed,
+    placed: &mesh::place::Placed,
 ) -> std::io::Result<Vec<gcode::hosts::Thumbnail>> {
     let draw = |&profile::PictureSize { width, height }| {
         let size = [width, height];
@@ -213,7 +213,7 @@ fn thumbnails(
 }
 
 /// What the start and end blocks may want to know.
-fn print_facts(placed: &mesh::transform::Placed, heights: slice::Heights) -> PrintFacts {
+fn print_facts(placed: &mesh::place::Placed, heights: slice::Heights) -> PrintFacts {
     let half = [placed.size_mm[0] / 2.0, placed.size_mm[1] / 2.0];
     let [x, y] = placed.offset;
     PrintFacts {
@@ -259,10 +259,7 @@ pub fn solid_mm3(mesh: &mesh::Mesh, adjacency: &mesh::edges::Adjacency) -> f64 {
 }
 
 /// The layers that the models are cut into, at least one.
-fn heights(
-    settings: &profile::Settings,
-    placed: &mesh::transform::Placed,
-) -> Result<slice::Heights> {
+fn heights(settings: &profile::Settings, placed: &mesh::place::Placed) -> Result<slice::Heights> {
     let top = top(&placed.mesh);
     let (first, other) = (to_units(settings.first_layer_height), to_units(settings.layer_height));
     let heights = slice::Heights::new(first, other, top);

@@ -7,7 +7,7 @@ use crate::gcode::flow::Flows;
 use crate::gcode::times::{LayerTime, Times};
 use crate::gcode::usage::Material;
 use crate::job::{self, Job};
-use crate::mesh::transform::Placed;
+use crate::mesh::place::Placed;
 use crate::mesh::{MeshReport, Policy};
 use crate::plan::Role;
 use crate::profile::{DualMode, DualPart, Settings};

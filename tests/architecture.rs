@@ -275,7 +275,7 @@ fn only_the_command_line_prints() {
 fn the_text_of_literals_and_comments_is_no_code() {
     let text = "a \"x { \\\" // \" b // { \n '{' c '\\'' '\\n' &'a d \"\n\" e";
     assert_eq!(bare(text), "a  b \n  c   &a d \n e");
-    let code = "use crate::{geom::Point, units::{a, b}}; my_crate::x; crate::mesh::stl";
+    let code = "use crate::{geom::Point, units::{a, b}}; my_crate::x; crate::mesh::read";
     let expected = ["geom", "mesh", "units"].map(str::to_owned);
     assert_eq!(uses(code, "crate::"), expected.into_iter().collect());
     let code = "impl A {\n fn one() -> [u8; 2] {\n {}\n }\n fn no();\n}\nfn two() {}\n";

@@ -3,7 +3,7 @@
 //! `UPDATE_FIXTURES=1 cargo test --test fixtures` rewrites them, and fails, so
 //! that nobody leaves the variable set.
 
-use slicer::mesh::{Bed, Placement, stl, transform};
+use slicer::mesh::{Bed, Placement, place, read};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -31,8 +31,8 @@ fn fixtures_are_closed_and_have_their_volume() {
     let placement = Placement::default();
     for (name, bytes) in fixtures() {
         assert!(bytes.len() < 500_000, "{name} is too large for a fixture");
-        let mesh = stl::parse(name, &bytes, stl::DEFAULT_MAX_TRIANGLES).unwrap();
-        let placed = transform::place(vec![mesh], &placement, &bed).unwrap();
+        let mesh = read::parse(name, &bytes, read::DEFAULT_MAX_TRIANGLES).unwrap();
+        let placed = place::place(vec![mesh], &placement, &bed).unwrap();
         assert_eq!(placed.warnings, [], "{name}");
         let report = &placed.reports[0];
         assert_eq!((&report.found[..], &report.left[..]), (&[][..], &[][..]), "{name}");

@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use slicer::geom::frame::Frame;
 use slicer::geom::spans::{Rows, Span, total};
 use slicer::geom::{Contour, Point, double_area, edges, polygon};
-use slicer::mesh::{Bed, stl, transform};
+use slicer::mesh::{Bed, place, read};
 use slicer::region::Params;
 use slicer::region::bend::LinePoint;
 use slicer::region::classify::Areas;
@@ -395,9 +395,9 @@ fn the_report_counts_what_the_file_holds() {
 
 /// The layers of `solid`, 0.1 mm high, simplified within `tolerance` mm.
 fn layers(solid: &Solid, tolerance: f64) -> Vec<Layer> {
-    let mesh = stl::parse("test", &solid.stl(), stl::DEFAULT_MAX_TRIANGLES).unwrap();
+    let mesh = read::parse("test", &solid.stl(), read::DEFAULT_MAX_TRIANGLES).unwrap();
     let bed = Bed { min: [-100.0; 2], max: [100.0; 2], height: 100.0 };
-    let placed = transform::place(vec![mesh], &as_it_is(), &bed).unwrap();
+    let placed = place::place(vec![mesh], &as_it_is(), &bed).unwrap();
     assert!(placed.reports[0].left.is_empty());
     let top = placed.mesh.vertices.iter().map(|v| v[2]).max().unwrap();
     let heights = Heights::new(1000, 1000, top);

@@ -4,7 +4,7 @@ use super::preview::PreviewArgs;
 use super::words::{factor, numbers, parts, words};
 use clap::builder::{PossibleValuesParser, RangedU64ValueParser};
 use clap::{Args, Parser, Subcommand};
-use slicer::mesh::stl::DEFAULT_MAX_TRIANGLES;
+use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
 use slicer::mesh::{Placement, Policy, Unit};
 use slicer::profile::{DEFAULT, Override, ValueOrigin};
 use std::path::PathBuf;

@@ -6,8 +6,8 @@ use clap::Args;
 use serde::Serialize;
 use slicer::error::Result;
 use slicer::mesh::faults::{self, Counted, Fault};
-use slicer::mesh::part::part;
-use slicer::mesh::{Bed, MeshReport, Placement, inspect, stl, write};
+use slicer::mesh::place::part::part;
+use slicer::mesh::{Bed, MeshReport, Placement, inspect, read, write};
 use slicer::warning::plural;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -37,7 +37,7 @@ pub(crate) struct MeshArgs {
     #[arg(long, default_value = "mm", value_parser = super::args::UNITS)]
     unit: String,
     /// Refuse a model with more triangles
-    #[arg(long, value_name = "N", default_value_t = stl::DEFAULT_MAX_TRIANGLES, value_parser = super::args::triangles())]
+    #[arg(long, value_name = "N", default_value_t = read::DEFAULT_MAX_TRIANGLES, value_parser = super::args::triangles())]
     max_triangles: usize,
 }
 
@@ -76,7 +76,7 @@ pub(super) fn run(args: &MeshArgs) -> Result<Outcome> {
         max_triangles: args.max_triangles,
         ..Placement::default()
     };
-    let mut model = stl::load(&args.file, args.max_triangles)?;
+    let mut model = read::load(&args.file, args.max_triangles)?;
     let part = part(&mut model, &placement, &Bed::ANY)?;
     let seen = inspect::seen(&part, &model);
     let told = Told {

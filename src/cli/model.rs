@@ -1,7 +1,7 @@
 //! STL file -> PNG: the model itself, for `slicer preview`.
 
 use slicer::error::{Error, Result};
-use slicer::mesh::{Bed, Placement, stl};
+use slicer::mesh::{Bed, Placement, read};
 use slicer::render::{self, Faces, Ground};
 use slicer::warning::Warning;
 use std::fs::File;
@@ -34,7 +34,8 @@ pub(super) fn is_model(file: &str) -> bool {
     let length = source.metadata().ok().filter(std::fs::Metadata::is_file).map(|data| data.len());
     let mut head = Vec::new();
     length.is_some_and(|length| {
-        source.take(stl::HEADER as u64).read_to_end(&mut head).is_ok() && stl::seems(&head, length)
+        source.take(read::HEADER as u64).read_to_end(&mut head).is_ok()
+            && read::seems(&head, length)
     })
 }
 

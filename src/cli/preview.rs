@@ -5,7 +5,7 @@ use super::{args, input, interrupt, model, say, usage, viewer, words};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use slicer::error::{Error, Result};
-use slicer::mesh::stl::DEFAULT_MAX_TRIANGLES;
+use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
 use slicer::preview::cut::{Axis, Cut, Plane};
 use slicer::preview::drawing::{Drawing, Frame};
 use slicer::preview::{layer, png, svg};

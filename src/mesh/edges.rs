@@ -1,6 +1,6 @@
 //! Triangles -> Adjacency: finds the triangle on the other side of every edge.
 
-use super::vector::minus;
+use super::geometry::vector::minus;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};

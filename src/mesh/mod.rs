@@ -1,28 +1,15 @@
 //! Bytes -> Mesh: what a model is once it is read and placed.
 
-pub mod crossings;
 pub mod edges;
 pub mod faults;
+pub mod geometry;
 pub mod inspect;
 pub mod mend;
-pub mod part;
-pub mod spikes;
-pub mod stl;
-pub mod transform;
-pub mod tree;
+pub mod place;
+pub mod read;
 pub mod write;
 
-mod ascii;
-mod binary;
-mod bounds;
-mod coordinate;
-mod fit;
-mod layout;
-mod limit;
-mod measure;
-mod sniff;
-mod vector;
-mod weld;
+mod notes;
 
 use crate::units::MAX_COORDINATE_MM;
 use faults::{Counted, Fault, Mending};
@@ -127,7 +114,7 @@ impl Default for Placement {
             rotate: [0.0; 3],
             at: None,
             copies: 1,
-            max_triangles: stl::DEFAULT_MAX_TRIANGLES,
+            max_triangles: read::DEFAULT_MAX_TRIANGLES,
             policy: Policy::Repair,
         }
     }

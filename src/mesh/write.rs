@@ -49,7 +49,7 @@ fn normal([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::stl;
+    use crate::mesh::read;
 
     #[test]
     fn what_is_written_is_read_again() {
@@ -57,7 +57,7 @@ mod tests {
         let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         let mut bytes = Vec::new();
         write(&mut bytes, &vertices, &triangles).unwrap();
-        let read = stl::parse("x", &bytes, 9).unwrap();
+        let read = read::parse("x", &bytes, 9).unwrap();
         assert_eq!((read.triangles.len(), read.wrong_normals), (4, 0));
         let corner = |t: usize, k: usize| read.vertices[read.triangles[t][k] as usize];
         for (t, triangle) in triangles.iter().enumerate() {

@@ -14,8 +14,8 @@ use slicer::gcode::moves::{MoveParams, Moves};
 use slicer::gcode::times::Timer;
 use slicer::gcode::write::WriteParams;
 use slicer::geom::Point;
-use slicer::mesh::transform::{Placed, place};
-use slicer::mesh::{Bed, Placement, stl};
+use slicer::mesh::place::{Placed, place};
+use slicer::mesh::{Bed, Placement, read};
 use slicer::motion::Limits;
 use slicer::profile::{self, Override, Settings, ValueOrigin};
 use slicer::region::groups::Grouping;
@@ -67,8 +67,8 @@ impl Model {
             max: [machine.bed_width, machine.bed_depth],
             height: machine.bed_height,
         };
-        let raw =
-            stl::parse(self.name, &self.bytes, stl::DEFAULT_MAX_TRIANGLES).expect("a sound model");
+        let raw = read::parse(self.name, &self.bytes, read::DEFAULT_MAX_TRIANGLES)
+            .expect("a sound model");
         place(vec![raw], &placement(), &bed).expect("it fits")
     }
 
@@ -142,7 +142,7 @@ fn mesh_and_slice(c: &mut Criterion, model: &Model) {
         b.iter(|| weld_and_sum(black_box(&model.bytes)));
     });
     group.bench_function(BenchmarkId::new("parse and weld", model.name), |b| {
-        b.iter(|| stl::parse(model.name, black_box(&model.bytes), stl::DEFAULT_MAX_TRIANGLES));
+        b.iter(|| read::parse(model.name, black_box(&model.bytes), read::DEFAULT_MAX_TRIANGLES));
     });
     group.bench_function(BenchmarkId::new("parse and place", model.name), |b| {
         b.iter(|| black_box(model).place());

@@ -8,7 +8,7 @@ use slicer::diff::{Side, Tolerances, diff};
 use slicer::error::Error;
 use slicer::estimate::{self, estimate};
 use slicer::geom::{Contour, double_area, polygon};
-use slicer::mesh::{Mesh, Placement, edges, stl as reading, transform};
+use slicer::mesh::{Mesh, Placement, edges, place, read};
 use slicer::motion::Limits;
 use slicer::preview::{layer, svg};
 use slicer::profile::{self, Override, Settings, ValueOrigin};
@@ -42,7 +42,7 @@ fn settings(set: &[(&str, &str)]) -> Settings {
 
 /// Bytes of a model are refused, or sliced into G-code that this program's own reader knows.
 pub(crate) fn stl(bytes: &[u8]) {
-    let model = match reading::parse("x.stl", bytes, MOST_TRIANGLES) {
+    let model = match read::parse("x.stl", bytes, MOST_TRIANGLES) {
         Ok(model) => model,
         Err(error) => return is_good_refusal(&error, 3, "x.stl: "),
     };
@@ -50,7 +50,7 @@ pub(crate) fn stl(bytes: &[u8]) {
         settings(&[("layer_height", "0.2"), ("support.enabled", "true"), ("dual.mode", "pair")]);
     let placement = Placement { max_triangles: MOST_TRIANGLES, ..Placement::default() };
     let bed = slicer::bed(&settings.machine);
-    let placed = match transform::place(vec![model], &placement, &bed) {
+    let placed = match place::place(vec![model], &placement, &bed) {
         Ok(placed) => placed,
         Err(error) => return is_good_refusal(&error, 3, ""),
     };

@@ -5,8 +5,8 @@
 
 use super::fill::newell;
 use super::holes::Rim;
-use crate::mesh::bounds::Bounds;
-use crate::mesh::vector::{Corner, distance2};
+use crate::mesh::geometry::bounds::Bounds;
+use crate::mesh::geometry::vector::{Corner, distance2};
 
 /// Rims are joined if no corner of one is further from the other than this share of the
 /// smaller one's extent.
@@ -172,9 +172,9 @@ fn closest(vertices: &[Corner], one: &[u32], other: &[u32]) -> [usize; 2] {
 mod tests {
     use crate::mesh::Mesh;
     use crate::mesh::faults::Mending;
-    use crate::mesh::measure::{corners_of, determinant};
+    use crate::mesh::geometry::measure::{corners_of, determinant};
+    use crate::mesh::geometry::vector::Corner;
     use crate::mesh::mend::mend;
-    use crate::mesh::vector::Corner;
 
     const MM: i32 = 10_000;
 

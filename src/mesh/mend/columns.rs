@@ -1,7 +1,7 @@
 //! Places -> Columns: which triangles may lie above or below one of them, quickly told.
 
-use crate::mesh::bounds::Bounds;
-use crate::mesh::vector::Corner;
+use crate::mesh::geometry::bounds::Bounds;
+use crate::mesh::geometry::vector::Corner;
 
 /// Cells along the longer side of the places, at most.
 const MOST: u32 = 512;

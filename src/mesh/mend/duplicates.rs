@@ -1,7 +1,7 @@
 //! Copies of triangles -> one or none: keeps one of each where it closes the surface, none where it is an inner wall or a sheet.
 
 use super::Work;
-use super::patches::Links;
+use super::links::Links;
 use crate::mesh::edges::{each_edge, parts};
 use crate::mesh::faults::{Fault, Mending};
 use rayon::prelude::*;

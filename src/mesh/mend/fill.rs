@@ -6,7 +6,7 @@
 //! corners are used and each side of the rim once, so that the filled mesh is closed even
 //! where corners lie on one line or a rim touches itself.
 
-use crate::mesh::vector::{Corner, cross, distance2, minus};
+use crate::mesh::geometry::vector::{Corner, cross, distance2, minus};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -174,7 +174,7 @@ fn turn(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::vector::length;
+    use crate::mesh::geometry::vector::length;
 
     fn filled(corners: &[Corner]) -> Filled {
         let rim: Vec<u32> = (0..u32::try_from(corners.len()).unwrap()).collect();
@@ -184,7 +184,8 @@ mod tests {
     }
 
     fn area(corners: &[Corner], filled: &Filled) -> f64 {
-        let of = |t: &[u32; 3]| crate::mesh::vector::normal(t.map(|k| corners[k as usize]));
+        let of =
+            |t: &[u32; 3]| crate::mesh::geometry::vector::normal(t.map(|k| corners[k as usize]));
         filled.triangles.iter().map(|t| length(of(t)) / 2.0).sum()
     }
 

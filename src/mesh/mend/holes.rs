@@ -2,13 +2,13 @@
 
 use super::bridge::{band, pairs};
 use super::fill::{Filled, fill};
-use super::patches::Links;
+use super::links::Links;
 use super::{Work, shells};
-use crate::mesh::bounds::Bounds;
-use crate::mesh::crossings::{crossings, depth};
 use crate::mesh::edges::{Adjacency, NONE, adjacency, parts};
 use crate::mesh::faults::{Fault, Mending};
-use crate::mesh::tree::Tree;
+use crate::mesh::geometry::bounds::Bounds;
+use crate::mesh::geometry::crossings::{crossings, depth};
+use crate::mesh::geometry::tree::Tree;
 use crate::units::UNITS_PER_MM;
 use hashbrown::HashMap;
 

@@ -1,10 +1,10 @@
 //! Corners on edges -> split triangles: gives an open edge the corners that its neighbours have along it.
 
 use super::Work;
-use super::cells::Cells;
+use super::cubes::Cells;
 use super::near::open_edges;
 use crate::mesh::faults::{Fault, Mending};
-use crate::mesh::vector::{Corner, distance2, dot, length, minus};
+use crate::mesh::geometry::vector::{Corner, distance2, dot, length, minus};
 use hashbrown::HashMap;
 
 /// A corner further from an edge than this share of its length is none of it, even within the

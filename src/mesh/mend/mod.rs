@@ -10,16 +10,15 @@
 //! are cut into layers.
 
 mod bridge;
-mod cells;
 mod columns;
+mod cubes;
 mod duplicates;
 mod fill;
 mod holes;
 mod junctions;
+mod links;
 mod near;
-mod notes;
 mod orient;
-mod patches;
 mod probes;
 mod shells;
 
@@ -29,10 +28,10 @@ pub use near::TOLERANCES_MM;
 use super::Mesh;
 use super::edges::{self, Adjacency};
 use super::faults::{Counted, Fault, Mending};
-use super::measure::{corners_of, determinant};
-use super::vector::{Corner, distance2, length, normal};
+use super::geometry::measure::{corners_of, determinant};
+use super::geometry::vector::{Corner, distance2, length, normal};
+use super::notes::{Note, Notes, told_mm};
 use near::TOLERANCES;
-pub(super) use notes::{Note, Notes, told_mm};
 pub(super) use shells::nested;
 
 /// Triangles no higher than this are lines, grid units: their corners were rounded.

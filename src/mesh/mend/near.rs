@@ -1,11 +1,11 @@
 //! Open corners -> welded: gives corners of open edges that nearly meet one vertex.
 
 use super::Work;
-use super::cells::Cells;
-use super::patches::Links;
+use super::cubes::Cells;
+use super::links::Links;
 use crate::mesh::edges::{each_edge, parts};
 use crate::mesh::faults::Mending;
-use crate::mesh::vector::{distance2, length, minus};
+use crate::mesh::geometry::vector::{distance2, length, minus};
 use crate::units::UNITS_PER_MM;
 
 /// Corners of open edges no further apart than this are one, mm: the first is far below what a

@@ -4,9 +4,9 @@ use super::Work;
 use super::probes::{MOST_INSIDE, Probes};
 use crate::mesh::edges::{NONE, each_edge, parts, starts_at};
 use crate::mesh::faults::{Fault, Mending};
-use crate::mesh::measure::corners_of;
-use crate::mesh::tree::Tree;
-use crate::mesh::vector::Corner;
+use crate::mesh::geometry::measure::corners_of;
+use crate::mesh::geometry::tree::Tree;
+use crate::mesh::geometry::vector::Corner;
 
 /// A patch may have so many of its triangles turned before its winding counts as unknown:
 /// then what it lies in tells whether it is a body or a cavity.

@@ -1,6 +1,6 @@
 //! Surface -> places on it: six points of a surface by which is told what it lies in.
 
-use crate::mesh::vector::Corner;
+use crate::mesh::geometry::vector::Corner;
 
 /// The middles of the triangles of a surface that are furthest to each side. They do not depend
 /// on the order of the triangles. Corners would not do: where surfaces touch, they lie on both.

@@ -1,16 +1,17 @@
 //! Surfaces that hang together -> shells wound outward: drops those that enclose nothing, turns those that are inside out.
 
+use super::Work;
 use super::columns::Columns;
-use super::patches::Links;
+use super::links::Links;
 use super::probes::{MOST_INSIDE, Probes};
-use super::{Notes, Work};
 use crate::mesh::Mesh;
-use crate::mesh::bounds::Bounds;
 use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::mesh::faults::{Fault, Mending};
-use crate::mesh::measure::{corners_of, determinant, determinants};
-use crate::mesh::tree::Tree;
-use crate::mesh::vector::Corner;
+use crate::mesh::geometry::bounds::Bounds;
+use crate::mesh::geometry::measure::{corners_of, determinant, determinants};
+use crate::mesh::geometry::tree::Tree;
+use crate::mesh::geometry::vector::Corner;
+use crate::mesh::notes::Notes;
 use rayon::prelude::*;
 
 /// The shells of a mesh.

@@ -1,19 +1,22 @@
 //! Mesh -> Faults that its edges do not tell: surfaces that pass through each other, bodies within others, spikes.
 
-use super::crossings::{crossings, depth};
+pub mod spikes;
+
 use super::edges::Adjacency;
 use super::faults::{Counted, Fault};
-use super::mend::{self, Notes, told};
-use super::part::Part;
-use super::spikes::spikes;
-use super::tree::Tree;
+use super::geometry::crossings::{crossings, depth};
+use super::geometry::tree::Tree;
+use super::mend::{self, told};
+use super::notes::Notes;
+use super::place::part::Part;
 use super::{Mesh, RawMesh};
 use crate::units::UNITS_PER_MM;
+use spikes::spikes;
 
 /// Triangles that pass through each other by less are rounding of the file's numbers, mm.
 pub const LEAST_DEPTH_MM: f64 = 0.01;
 
-/// As [`part()`](super::part::part) with [`Policy::Strict`](super::Policy::Strict) tells of a
+/// As [`part()`](super::place::part::part) with [`Policy::Strict`](super::Policy::Strict) tells of a
 /// part and the model it was made of.
 #[must_use]
 pub fn seen(part: &Part, model: &RawMesh) -> Vec<Counted<Fault>> {

@@ -1,12 +1,13 @@
 //! RawMesh -> Part: scales and turns one model, mends it, sets it down and rounds it to the integer grid.
 
-use super::edges::Adjacency;
-use super::faults::{self, Fault};
 use super::fit::{check_size, sides};
-use super::measure::{has_area, volume_mm3};
-use super::mend::{self, Mended, Notes, told};
-use super::{Bed, Mesh, Placement, Policy, RawMesh, Unit, inspect};
 use crate::error::{Error, Result};
+use crate::mesh::edges::Adjacency;
+use crate::mesh::faults::{self, Fault};
+use crate::mesh::geometry::measure::{has_area, volume_mm3};
+use crate::mesh::mend::{self, Mended, told};
+use crate::mesh::notes::Notes;
+use crate::mesh::{Bed, Mesh, Placement, Policy, RawMesh, Unit, inspect};
 use crate::units::{sin_cos, sum_mm, to_units};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;

@@ -1,9 +1,9 @@
 //! Text -> RawMesh: reads ASCII STL word by word, so that its lines do not matter.
 
-use super::RawMesh;
-use super::coordinate::{complaint, usable};
 use super::limit::{CHUNK, Limit, unreadable};
+use super::number::{complaint, usable};
 use super::weld::{Facet, Welder};
+use crate::mesh::RawMesh;
 use std::io::Read;
 
 /// The words that have a place inside a facet only.

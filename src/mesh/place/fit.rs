@@ -1,7 +1,7 @@
 //! Sizes -> Result: says whether models and layout fit the print volume, and what to do if not.
 
-use super::{Bed, Placement};
 use crate::error::{Error, Result};
+use crate::mesh::{Bed, Placement};
 use crate::units::MAX_COORDINATE_MM;
 
 /// Half a grid unit: differences below it are rounding, mm.

@@ -1,9 +1,9 @@
 //! Records -> RawMesh: reads the triangles of a binary STL, and no more than there are.
 
-use super::RawMesh;
-use super::coordinate::{complaint, usable};
 use super::limit::{Limit, unreadable};
+use super::number::{complaint, usable};
 use super::weld::{Facet, Welder};
+use crate::mesh::RawMesh;
 use std::io::Read;
 use std::ops::Range;
 

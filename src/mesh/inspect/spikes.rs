@@ -1,6 +1,6 @@
 //! Triangles -> spikes: finds vertices that are thrown far out of their surroundings.
 
-use super::vector::minus;
+use crate::mesh::geometry::vector::minus;
 use crate::units::UNITS_PER_MM;
 
 /// A spike is thinner than this: the full angle of the cone that all its edges lie in, degrees.

@@ -4,30 +4,30 @@ use super::vector::{Corner, length, minus};
 
 /// A box along the axes, grid units; both corners belong to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Bounds {
+pub(crate) struct Bounds {
     /// The lowest x, y and z.
-    pub(super) low: [i32; 3],
+    pub(crate) low: [i32; 3],
     /// The highest.
-    pub(super) high: [i32; 3],
+    pub(crate) high: [i32; 3],
 }
 
 impl Bounds {
     /// The box that no box is smaller than; [`Bounds::join`] leaves the other as it is.
-    pub(super) const NONE: Self = Self { low: [i32::MAX; 3], high: [i32::MIN; 3] };
+    pub(crate) const NONE: Self = Self { low: [i32::MAX; 3], high: [i32::MIN; 3] };
 
     /// The box around some corners.
-    pub(super) fn of(corners: impl IntoIterator<Item = Corner>) -> Self {
+    pub(crate) fn of(corners: impl IntoIterator<Item = Corner>) -> Self {
         let point = |corner| Self { low: corner, high: corner };
         corners.into_iter().fold(Self::NONE, |all, corner| all.join(point(corner)))
     }
 
     /// The length of its diagonal, grid units.
-    pub(super) fn diagonal(&self) -> f64 {
+    pub(crate) fn diagonal(&self) -> f64 {
         length(minus(self.high, self.low))
     }
 
     /// The box around both.
-    pub(super) fn join(self, other: Self) -> Self {
+    pub(crate) fn join(self, other: Self) -> Self {
         Self {
             low: std::array::from_fn(|axis| self.low[axis].min(other.low[axis])),
             high: std::array::from_fn(|axis| self.high[axis].max(other.high[axis])),
@@ -35,7 +35,7 @@ impl Bounds {
     }
 
     /// What both have in common, if they touch.
-    pub(super) fn common(self, other: Self) -> Self {
+    pub(crate) fn common(self, other: Self) -> Self {
         Self {
             low: std::array::from_fn(|axis| self.low[axis].max(other.low[axis])),
             high: std::array::from_fn(|axis| self.high[axis].min(other.high[axis])),
@@ -43,12 +43,12 @@ impl Bounds {
     }
 
     /// Whether both have a point in common.
-    pub(super) fn touches(&self, other: &Self) -> bool {
+    pub(crate) fn touches(&self, other: &Self) -> bool {
         (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
     }
 
     /// Whether the ray up from the point, moved as [`super::tree::Tree::above`] says, can meet what is inside.
-    pub(super) fn is_over(&self, point: [i32; 3]) -> bool {
+    pub(crate) fn is_over(&self, point: [i32; 3]) -> bool {
         let beside = |axis: usize| point[axis] < self.low[axis] || self.high[axis] <= point[axis];
         !beside(0) && !beside(1) && point[2] < self.high[2]
     }

@@ -1,6 +1,6 @@
 //! Corners -> RawMesh: gives bit-equal corners one vertex, drops triangles with two equal corners, judges stored normals.
 
-use super::RawMesh;
+use crate::mesh::RawMesh;
 use hashbrown::hash_table::Entry;
 use hashbrown::{DefaultHashBuilder, HashTable};
 use std::hash::BuildHasher as _;

@@ -91,7 +91,7 @@ impl<'a> Tree<'a> {
     }
 
     /// The box of a triangle.
-    pub(super) fn bounds(&self, triangle: u32) -> Bounds {
+    pub(crate) fn bounds(&self, triangle: u32) -> Bounds {
         Bounds::of(self.corners(triangle))
     }
 
@@ -291,7 +291,7 @@ fn side(from: [i64; 3], to: [i64; 3], point: [i64; 3]) -> Ordering {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::vector::cross;
+    use crate::mesh::geometry::vector::cross;
     use proptest::prelude::*;
     use std::collections::BTreeSet;
 

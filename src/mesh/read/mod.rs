@@ -1,16 +1,23 @@
 //! Bytes -> RawMesh: reads binary and ASCII STL and says what is wrong with the rest.
 
-use super::limit::{Limit, unreadable};
-use super::weld::MAX_TRIANGLES;
-use super::{RawMesh, ascii, binary, sniff};
+mod limit;
+mod number;
+mod sniff;
+mod stl_ascii;
+mod stl_binary;
+mod weld;
+
 use crate::error::{Error, Result};
+use crate::mesh::RawMesh;
+use limit::{Limit, unreadable};
 use std::fs::File;
 use std::io::Read;
 
-pub use super::coordinate::MAX_NUMBER;
+pub use number::MAX_NUMBER;
+pub(crate) use weld::MAX_TRIANGLES;
 
 /// Bytes before the first triangle of a binary file: a header of 80 and the count.
-pub const HEADER: usize = binary::HEADER;
+pub const HEADER: usize = stl_binary::HEADER;
 
 /// Most triangles of a file and of a layout unless `--max-triangles` says another number: slicing
 /// them takes some 2 GB.
@@ -99,7 +106,7 @@ fn read_any(
     if head.is_empty() {
         return Err("is empty; export the model again".to_owned());
     }
-    let count = binary::count(&head);
+    let count = stl_binary::count(&head);
     let is_binary = is_binary(&head, length);
     if let Some(what) = sniff::foreign(&head).filter(|_| !is_binary) {
         return Err(format!("is no STL but seems to be {what}"));
@@ -114,9 +121,9 @@ fn read_any(
     let start = sniff::ascii_start(&head).filter(|_| !is_binary);
     let mut from = head.as_slice().chain(from);
     match (start, count) {
-        (Some(start), _) => ascii::read(&mut from, start, limit),
+        (Some(start), _) => stl_ascii::read(&mut from, start, limit),
         (None, _) if !is_binary && sniff::is_text(&head) => Err(other_text(&head)),
-        (None, Some(count)) => binary::read(&mut from, count, length, limit),
+        (None, Some(count)) => stl_binary::read(&mut from, count, length, limit),
         (None, None) => Err(format!(
             "has only {} bytes, too few for an STL; export or download it again",
             head.len()
@@ -126,14 +133,14 @@ fn read_any(
 
 /// Whether a file is as long as the count in its `head` says.
 fn is_binary(head: &[u8], length: Option<u64>) -> bool {
-    let announced = binary::count(head).map(|count| u64::from(u32::from_le_bytes(count)));
-    length.is_some() && announced.map(binary::length_of) == length
+    let announced = stl_binary::count(head).map(|count| u64::from(u32::from_le_bytes(count)));
+    length.is_some() && announced.map(stl_binary::length_of) == length
 }
 
 /// Says what a text that is no STL begins with.
 fn other_text(head: &[u8]) -> String {
     let line = head.trim_ascii_start().split(|&byte| byte == b'\n' || byte == b'\r').next();
-    let quote = ascii::quote(line.unwrap_or_default());
+    let quote = stl_ascii::quote(line.unwrap_or_default());
     format!("is no STL but text that begins with {quote}; export it as STL")
 }
 

@@ -1,6 +1,6 @@
 //! Points -> cells: a hash of cubes, to find the points near a place.
 
-use crate::mesh::vector::Corner;
+use crate::mesh::geometry::vector::Corner;
 use hashbrown::HashMap;
 
 /// Points by the cube they lie in. Looked up only, never walked.

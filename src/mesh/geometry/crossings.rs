@@ -159,7 +159,7 @@ fn side([a, b, c]: [[i64; 3]; 3], point: [i64; 3]) -> Ordering {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::vector::cross;
+    use crate::mesh::geometry::vector::cross;
     use proptest::prelude::*;
 
     type Triangle = [[i32; 3]; 3];

@@ -1,7 +1,7 @@
 //! Mesh -> volume: measures a placed mesh in integers, so that the order of triangles does not matter.
 
-use super::Mesh;
 use super::vector::{Corner, cross, dot, minus, normal};
+use crate::mesh::Mesh;
 use crate::units::UNITS_PER_MM;
 use rayon::prelude::*;
 

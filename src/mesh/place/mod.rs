@@ -1,17 +1,22 @@
 //! RawMesh -> Mesh: lays the mended models out on the bed, in one mesh.
 
-use super::edges::{self, Adjacency};
-use super::faults;
-use super::fit::{check_placement, offset, sides};
-use super::layout::{Layout, shelves};
-use super::part::{Part, part};
-use super::weld::MAX_TRIANGLES;
-use super::{Bed, Mesh, MeshReport, Placement, Policy, RawMesh};
+pub mod part;
+
+mod fit;
+mod shelves;
+
 use crate::error::{Error, Result};
+use crate::mesh::edges::{self, Adjacency};
+use crate::mesh::faults;
+use crate::mesh::read::MAX_TRIANGLES;
+use crate::mesh::{Bed, Mesh, MeshReport, Placement, Policy, RawMesh};
 use crate::units::{MAX_COORDINATE_MM, sum_mm, to_units};
 use crate::warning::Warning;
+use fit::{check_placement, offset, sides};
+use part::{Part, part};
+use shelves::{Layout, shelves};
 
-pub use super::layout::GAP_MM;
+pub use shelves::GAP_MM;
 
 /// Models whose largest side is below this are suspected of another unit, mm.
 pub const TINY_MM: f64 = 3.0;
