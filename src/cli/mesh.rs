@@ -8,6 +8,7 @@ use slicer::error::Result;
 use slicer::mesh::faults::{self, Counted, Fault};
 use slicer::mesh::place::part::part;
 use slicer::mesh::{Bed, MeshReport, Placement, inspect, read, write};
+use slicer::slice::volume::solid_mm3;
 use slicer::warning::plural;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -83,7 +84,7 @@ pub(super) fn run(args: &MeshArgs) -> Result<Outcome> {
         schema: SCHEMA,
         slicer: slicer::NAME,
         report: &model.report,
-        solid_mm3: slicer::solid_mm3(&part.mesh, &part.adjacency),
+        solid_mm3: solid_mm3(&part.mesh, &part.adjacency),
         seen: &seen,
     };
     let text = if args.json { output::json(&told, Path::new("-"))? } else { lines(&told) };

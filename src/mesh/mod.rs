@@ -11,7 +11,7 @@ pub mod write;
 
 mod notes;
 
-use crate::units::MAX_COORDINATE_MM;
+use crate::units::{Coord, MAX_COORDINATE_MM};
 use faults::{Counted, Fault, Mending};
 use serde::Serialize;
 
@@ -45,6 +45,14 @@ pub struct Mesh {
     pub vertices: Vec<[i32; 3]>,
     /// Triangles as indices into `vertices`, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// Height of the highest vertex above the bed, grid units; 0 without vertices.
+    #[must_use]
+    pub fn top(&self) -> Coord {
+        self.vertices.iter().map(|vertex| vertex[2]).max().unwrap_or(0)
+    }
 }
 
 /// What a model file held and what was found in it.

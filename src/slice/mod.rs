@@ -8,6 +8,7 @@
 
 mod chain;
 mod simplify;
+pub mod volume;
 
 pub use chain::Slicer;
 

@@ -1,0 +1,138 @@
+//! Slicer -> toolpaths -> Writer: plans the layers in batches, the next while one is written.
+//!
+//! All code that names the numbers of `region` and `plan` stands here and in no other file of
+//! the pipeline.
+
+use crate::error::Result;
+use crate::gcode::Writer;
+use crate::geom::Point;
+use crate::plan::{self, Path, Pieces, PlanParams, Toolpath};
+use crate::profile::Settings;
+use crate::progress::Progress;
+use crate::region::audit::Audit;
+use crate::region::groups::Grouping;
+use crate::region::support::{SupportParams, supports};
+use crate::region::window::{self, Window};
+use crate::region::{Params, Region};
+use crate::report::Tally;
+use crate::slice::Slicer;
+use rayon::prelude::*;
+use std::collections::VecDeque;
+
+/// Batches that are planned before the first is written. Planning this many takes about as long
+/// as drawing the thumbnails, which runs at the same time. More would only take more memory.
+const AHEAD: usize = 2;
+
+/// What the settings mean for `region` and `plan`.
+pub struct Setup {
+    params: Params,
+    support: Option<SupportParams>,
+    grouping: Grouping,
+    plan: PlanParams,
+}
+
+impl Setup {
+    /// The numbers that `settings` mean.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        let params = Params::new(settings);
+        let support = SupportParams::new(settings);
+        let plan = PlanParams::new(settings, &params, support);
+        let grouping = Grouping::new(&settings.dual, settings.dual_ratio());
+        Self { params, support, grouping, plan }
+    }
+
+    /// Ready to plan the layers of `slicer`; support stands within these corners of the bed.
+    #[must_use]
+    pub fn planner<'a>(&'a self, slicer: &'a Slicer<'a>, bed: (Point, Point)) -> Planner<'a> {
+        let supports = self
+            .support
+            .map(|s| window::Support { comb: s.comb(), rows: supports(slicer, &s, bed) });
+        let window = Window::new(slicer, &self.params, &self.grouping, supports);
+        let orderer = Orderer { plan: &self.plan, at: None, tally: Tally::default() };
+        Planner { window, regions: None, orderer }
+    }
+}
+
+/// Plans the layers, a batch at a time.
+pub struct Planner<'a> {
+    window: Window<'a>,
+    /// The regions of the next batch.
+    regions: Option<Vec<Region>>,
+    orderer: Orderer<'a>,
+}
+
+impl Planner<'_> {
+    /// Plans the first batches.
+    pub fn ahead(&mut self) -> VecDeque<Vec<Toolpath>> {
+        self.by_ref().take(AHEAD).collect()
+    }
+
+    /// What dual injection did, and what the layers add up to.
+    #[must_use]
+    pub fn finish(self) -> (Vec<Audit>, Tally) {
+        let Self { mut window, orderer, .. } = self;
+        (window.audits(), orderer.tally)
+    }
+}
+
+impl Iterator for Planner<'_> {
+    type Item = Vec<Toolpath>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let regions = self.regions.take().or_else(|| self.window.next())?;
+        // While one of the two waits for its last layer, the other keeps the threads busy.
+        let (toolpaths, next) =
+            rayon::join(|| self.orderer.toolpaths(&regions), || self.window.next());
+        self.regions = next;
+        Some(toolpaths)
+    }
+}
+
+/// Orders the paths of layer after layer.
+struct Orderer<'a> {
+    plan: &'a PlanParams,
+    /// Where the nozzle is after the layers so far.
+    at: Option<Point>,
+    tally: Tally,
+}
+
+impl Orderer<'_> {
+    fn toolpaths(&mut self, regions: &[Region]) -> Vec<Toolpath> {
+        let plan = self.plan;
+        let pieces: Vec<Pieces> = regions.par_iter().map(|r| plan::pieces(r, plan)).collect();
+        // The end of a layer decides where the next begins, so that they are ordered in sequence.
+        let mut ordered = Vec::with_capacity(regions.len());
+        for (region, pieces) in regions.iter().zip(pieces) {
+            let (height, from) = (region.layer.height, self.at.unwrap_or_default());
+            let paths = plan::order::order(pieces, height, from, plan);
+            let end = paths.last().map(Path::end).or(self.at);
+            ordered.push((region, std::mem::replace(&mut self.at, end), paths));
+            self.tally.layer(region);
+        }
+        let toolpaths = ordered.into_par_iter();
+        toolpaths.map(|(r, from, paths)| plan::toolpath(r, paths, from, plan)).collect()
+    }
+}
+
+/// Writes the batches that are planned, and the rest while it is planned.
+///
+/// # Errors
+/// Those of writing.
+pub fn write(
+    writer: &mut Writer<'_>,
+    mut planned: VecDeque<Vec<Toolpath>>,
+    planner: &mut Planner<'_>,
+    progress: &Progress,
+) -> Result<()> {
+    while let Some(toolpaths) = planned.pop_front() {
+        // No more batches are planned than are needed to go on.
+        let is_last = planned.is_empty();
+        let (written, next) =
+            rayon::join(|| writer.layers(&toolpaths), || is_last.then(|| planner.next()).flatten());
+        written?;
+        progress.add(toolpaths.len());
+        planned.extend(next);
+    }
+    Ok(())
+}

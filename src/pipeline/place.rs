@@ -1,0 +1,53 @@
+//! Model files -> Placed: reads the models and lays them on the machine's bed.
+
+use crate::error::Result;
+use crate::geom::Point;
+use crate::mesh::{self, Bed, Placement, place::Placed};
+use crate::profile::template::PrintFacts;
+use crate::profile::{Machine, Origin};
+use crate::slice::Heights;
+use crate::units::{to_mm, to_units};
+
+/// Reads models, `-` being standard input, and lays them on a bed.
+///
+/// # Errors
+/// Those of reading and placing: [`Error::Input`](crate::error::Error::Input),
+/// [`Error::Usage`](crate::error::Error::Usage), [`Error::Unprintable`](crate::error::Error::Unprintable).
+pub fn place(models: &[String], placement: &Placement, bed: &Bed) -> Result<Placed> {
+    let load = |file: &String| mesh::read::load(file, placement.max_triangles);
+    let models = models.iter().map(load).collect::<Result<_>>()?;
+    mesh::place::place(models, placement, bed)
+}
+
+/// The machine's print volume.
+#[must_use]
+pub fn bed(machine: &Machine) -> Bed {
+    let size = [machine.bed_width, machine.bed_depth];
+    let min = match machine.origin {
+        Origin::Centre => size.map(|side| -side / 2.0),
+        Origin::FrontLeft => [0.0, 0.0],
+    };
+    let max = [min[0] + size[0], min[1] + size[1]];
+    Bed { min, max, height: machine.bed_height }
+}
+
+/// The bed's corners relative to the middle of the layout, grid units.
+#[must_use]
+pub fn bed_corners(bed: &Bed, offset: [f64; 2]) -> (Point, Point) {
+    let corner =
+        |at: [f64; 2]| Point { x: to_units(at[0] - offset[0]), y: to_units(at[1] - offset[1]) };
+    (corner(bed.min), corner(bed.max))
+}
+
+/// What the start and end blocks may name.
+#[must_use]
+pub fn print_facts(placed: &Placed, heights: Heights) -> PrintFacts {
+    let half = [placed.size_mm[0] / 2.0, placed.size_mm[1] / 2.0];
+    let [x, y] = placed.offset;
+    PrintFacts {
+        layers: heights.count,
+        min: [x - half[0], y - half[1]],
+        max: [x + half[0], y + half[1]],
+        height: to_mm(heights.top(heights.count.saturating_sub(1))),
+    }
+}
