@@ -2,11 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
+use crate::common::solid::{Solid, rectangle};
+use crate::common::{fixtures, slice};
 use assert_cmd::Command;
-use common::solid::{Solid, rectangle};
-use common::{fixtures, slice};
 use slicer::check::finding::Code;
 use std::fmt::Write as _;
 use std::fs;
@@ -14,7 +12,7 @@ use std::sync::LazyLock;
 use tempfile::TempDir;
 
 static CUBE: LazyLock<String> =
-    LazyLock::new(|| slice(&common::fixture("cube_20.stl"), "generic-marlin", &[]).text);
+    LazyLock::new(|| slice(&crate::common::fixture("cube_20.stl"), "generic-marlin", &[]).text);
 
 /// The cube with a line of its top missing and a command that Marlin does not know.
 fn faulty() -> String {

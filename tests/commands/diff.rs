@@ -2,10 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
+use crate::common::{fixture, settings, slice};
 use assert_cmd::Command;
-use common::{fixture, settings, slice};
 use proptest::prelude::*;
 use slicer::diff::{Both, Difference, File, Finding, Quantity, Side, Tolerances, diff};
 use slicer::estimate::{Options, estimate};

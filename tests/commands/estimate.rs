@@ -45,7 +45,7 @@ fn near(a: f64, b: f64) {
 
 #[test]
 fn times_by_role_and_by_layer_are_those_worked_out_by_hand() {
-    let found = of_text(include_str!("../fixtures/clock.gcode"), &limits(), false);
+    let found = of_text(include_str!("../../fixtures/clock.gcode"), &limits(), false);
     let z = alone(10.0, 100.0);
     let start = z + alone(10.0, 10.0);
     let first =

@@ -1,16 +1,14 @@
 //! G-code -> what hosts find in it: name, pictures, sums and settings, in the forms that they look for; pictures of models.
 //!
-//! `MOONRAKER_METADATA=…/metadata.py cargo test --test hosts` asks Moonraker's own script as
+//! `MOONRAKER_METADATA=…/metadata.py cargo test --test commands hosts` asks Moonraker's own script as
 //! well (of 2025-10 or later; it needs Python and Pillow).
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![allow(clippy::print_stdout, reason = "a test that is skipped says so")]
 
-mod common;
-
+use crate::common::{Run, as_it_is, fixture, slice_placed};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use common::{Run, as_it_is, fixture, slice_placed};
 use serde_json::Value;
 use slicer::mesh::Placement;
 use slicer::profile::recorded;

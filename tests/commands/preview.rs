@@ -2,10 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
+use crate::common::{Kind, fixture, fixtures, slice};
 use assert_cmd::Command;
-use common::{Kind, fixture, fixtures, slice};
 use predicates::prelude::*;
 use slicer::preview::colours::Colour;
 use slicer::preview::cut::{Axis, Cut, Plane};
@@ -107,7 +105,7 @@ fn colour(kind: Kind, thick: bool) -> String {
 #[test]
 fn every_line_of_a_layer_is_in_the_picture_where_it_is_printed_in_its_colour() {
     let text = bracket();
-    let moves = common::Print::read(&text).unwrap().moves;
+    let moves = crate::common::Print::read(&text).unwrap().moves;
     let wanted: Vec<_> =
         moves.iter().filter(|m| m.is_bead() && m.layer == Some(LAYER - 1)).collect();
     let found = beads(&svg::write(&drawn(&print(&text), LAYER, 1200)));
@@ -194,7 +192,7 @@ fn the_ink_of_a_png_covers_what_the_beads_cover() {
     // On a grid of its own, by the distance to each line.
     let pixel = 0.05;
     let mut grid = std::collections::BTreeSet::new();
-    let moves = common::Print::read(&text).unwrap().moves;
+    let moves = crate::common::Print::read(&text).unwrap().moves;
     for bead in moves.iter().filter(|m| m.is_bead() && m.layer == Some(LAYER - 1)) {
         let (a, b, half) = (bead.a(), bead.b(), bead.width / 2.0);
         let range = |k: usize| {
@@ -203,7 +201,7 @@ fn the_ink_of_a_png_covers_what_the_beads_cover() {
         };
         for (x, y) in range(0).flat_map(|x| range(1).map(move |y| (x, y))) {
             let at = [f64::from(x) * pixel, f64::from(y) * pixel];
-            if common::section::distance(at, a, b) <= half {
+            if crate::common::section::distance(at, a, b) <= half {
                 grid.insert((x, y));
             }
         }
@@ -335,7 +333,7 @@ fn files_of_nonsense_are_drawn_or_refused() {
 
 /// The pictures of the README, by its own commands.
 ///
-/// `UPDATE_GOLDEN=1` rewrites them, as in golden.rs.
+/// `UPDATE_GOLDEN=1 cargo test --test commands preview` rewrites them, as in prints/golden.rs.
 #[test]
 fn the_pictures_of_the_readme_are_as_kept() {
     let folder = tempfile::tempdir().unwrap();

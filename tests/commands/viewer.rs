@@ -170,7 +170,7 @@ fn same_move(found: &Move, step: &Step, thick: bool) {
 #[test]
 fn packed_moves_are_those_of_the_file() {
     let sliced = slice("fixtures/bracket.stl", &["--dual"]);
-    for gcode in [&sliced[..], ODD.as_bytes(), include_bytes!("../fixtures/clock.gcode")] {
+    for gcode in [&sliced[..], ODD.as_bytes(), include_bytes!("../../fixtures/clock.gcode")] {
         let (print, page) = (print(gcode), page(gcode, "a.gcode"));
         let blocks = unpack(&page);
         assert_eq!(blocks.len(), print.layers.len() + 1);

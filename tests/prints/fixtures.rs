@@ -1,6 +1,6 @@
 //! Code -> STL fixtures: makes the small models of `fixtures/`, all dedicated to the public domain (CC0).
 //!
-//! `UPDATE_FIXTURES=1 cargo test --test fixtures` rewrites them, and fails, so
+//! `UPDATE_FIXTURES=1 cargo test --test prints fixtures` rewrites them, and fails, so
 //! that nobody leaves the variable set.
 
 use slicer::mesh::{Bed, Placement, place, read};

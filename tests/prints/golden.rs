@@ -1,14 +1,12 @@
 //! Fixtures -> G-code, byte for byte what a person has looked at and kept in `fixtures/golden/`.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --test golden` rewrites the files, and fails, so
+//! `UPDATE_GOLDEN=1 cargo test --test prints golden` rewrites the files, and fails, so
 //! that nobody leaves the variable set. Look at the difference before it is kept.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::checks::sound;
-use common::{fixture, fixtures, slice};
+use crate::common::checks::sound;
+use crate::common::{fixture, fixtures, slice};
 use std::fs;
 
 /// Differing lines shown, at most.

@@ -3,8 +3,6 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![allow(clippy::print_stdout, reason = "a test that is skipped says so")]
 
-mod common;
-
 use slicer::profile::template::{PrintFacts, render, values};
 use slicer::profile::{DialectName, builtin_names, load};
 use std::fs;
@@ -57,7 +55,7 @@ fn whole_prints_convert_in_silence() {
     for profile in ["zcube-dual", "replicator", "thesis"] {
         for (name, fan) in [("bracket.stl", "0"), ("overhang.stl", "100")] {
             let set = [("dual.mode", "pair"), ("support.enabled", "true"), ("filament.fan", fan)];
-            let run = common::slice(&common::fixture(name), profile, &set);
+            let run = crate::common::slice(&crate::common::fixture(name), profile, &set);
             // A move takes 40 bytes or so.
             let moves = run.print.moves.len() as u64;
             assert!(moves > 1000, "{name}");

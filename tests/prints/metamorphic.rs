@@ -2,10 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::solid::{circle, star};
-use common::{Kind, Run, Solid, as_it_is, fixture, slice, slice_placed};
+use crate::common::solid::{circle, star};
+use crate::common::{Kind, Run, Solid, as_it_is, fixture, slice, slice_placed};
 use proptest::prelude::*;
 use slicer::mesh::Placement;
 

@@ -6,10 +6,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![allow(clippy::print_stdout, reason = "a test that is skipped says so")]
 
-mod common;
-
-use common::checks::{furthest_out, sound, stringing_travels};
-use common::{Kind, Print, Run, Solid, as_it_is, settings, slice_file};
+use crate::common::checks::{furthest_out, sound, stringing_travels};
+use crate::common::{Kind, Print, Run, Solid, as_it_is, settings, slice_file};
 use slicer::error::Error;
 use std::path::{Path, PathBuf};
 

@@ -1,13 +1,11 @@
 //! Tables of print times -> text, byte for byte what a person has looked at and kept in `fixtures/golden/`.
 //!
 //! The thesis's cube and bars on the clock that slicers are compared with, and what `slicer compare` says of
-//! the bracket. `UPDATE_GOLDEN=1` rewrites them, as in golden.rs.
+//! the bracket. `UPDATE_GOLDEN=1 cargo test --test prints tables` rewrites them, as in golden.rs.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::{Solid, as_it_is, fixtures, settings, slice_file};
+use crate::common::{Solid, as_it_is, fixtures, settings, slice_file};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;

@@ -2,10 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::solid::Outline;
-use common::{Kind, Move, Run, Solid, slice};
+use crate::common::solid::Outline;
+use crate::common::{Kind, Move, Run, Solid, slice};
 
 const WIDTH: f64 = 0.4;
 const LENGTH: f64 = 24.0;

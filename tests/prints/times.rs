@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::{Run, fixture, slice};
+use crate::common::{Run, fixture, slice};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::warning::Warning;

@@ -2,11 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::checks::{self, furthest_out, sound, stringing_travels};
-use common::raster::Bitmap;
-use common::{Kind, Move, Run, Solid, fixture, slice};
+use crate::common::checks::{self, furthest_out, sound, stringing_travels};
+use crate::common::raster::Bitmap;
+use crate::common::{Kind, Move, Run, Solid, fixture, slice};
 use std::collections::{BTreeMap, BTreeSet};
 
 const FIXTURES: [&str; 6] =

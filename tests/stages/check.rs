@@ -2,10 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::damage::{Good, judge, kinds, largest, listed, only, without_sums};
-use common::{Kind, Move, as_it_is};
+use crate::common::damage::{Good, judge, kinds, largest, listed, only, without_sums};
+use crate::common::{Kind, Move, as_it_is};
 use proptest::prelude::*;
 use slicer::check::finding::Code;
 use slicer::mesh::Placement;

@@ -2,11 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::solid::circle;
-use common::stack::{stack, stacks};
-use common::{Kind, Run, Solid, fixture, settings, slice};
+use crate::common::solid::circle;
+use crate::common::stack::{stack, stacks};
+use crate::common::{Kind, Run, Solid, fixture, settings, slice};
 use proptest::prelude::*;
 use slicer::geom::spans::{Rows, Span, total};
 use slicer::profile::Settings;
@@ -475,7 +473,7 @@ fn interlaced_layers_take_a_third_of_the_spread_of_groups() {
 
 #[test]
 fn compare_tells_every_way_and_what_it_saves() {
-    let bracket = common::fixtures().join("bracket.stl");
+    let bracket = crate::common::fixtures().join("bracket.stl");
     let run = |more: &[&str]| {
         let mut command = assert_cmd::Command::cargo_bin("slicer").unwrap();
         command.arg("compare").arg(&bracket).args(["-p", "generic-marlin"]).args(more);

@@ -2,11 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::solid::{Outline, circle, star};
-use common::stack::{contour, contours, stack, stacks, stars};
-use common::{Kind, Section, Solid, as_it_is, settings, slice};
+use crate::common::solid::{Outline, circle, star};
+use crate::common::stack::{contour, contours, stack, stacks, stars};
+use crate::common::{Kind, Section, Solid, as_it_is, settings, slice};
 use i_overlay::mesh::float::outline::offset::OutlineOffset;
 use i_overlay::mesh::float::style::{LineJoin, OutlineStyle};
 use proptest::prelude::*;
@@ -314,7 +312,7 @@ proptest! {
 }
 
 /// Filament that the beads' lengths, widths and heights ask for, by role as written, mm³.
-fn space(run: &common::Run, kind: Kind, thick: bool) -> f64 {
+fn space(run: &crate::common::Run, kind: Kind, thick: bool) -> f64 {
     let beads = run.print.of(kind).filter(|m| run.print.is_thick(m) == thick);
     beads.map(|m| m.length() * m.width * m.height).sum()
 }
@@ -327,7 +325,7 @@ fn filament_is_the_volume_of_the_beads() {
     for name in ["bracket.stl", "sphere_20.stl", "overhang.stl"] {
         let set =
             [("dual.mode", "pair"), ("support.enabled", "true"), ("extrusion.multiplier", "0.9")];
-        let run = slice(&common::fixture(name), "generic-marlin", &set);
+        let run = slice(&crate::common::fixture(name), "generic-marlin", &set);
         for kind in KINDS {
             for thick in [false, true] {
                 let laid = run.print.filament(kind, thick) * run.filament_area();
@@ -346,7 +344,7 @@ fn filament_is_the_volume_of_the_beads() {
 fn filament_is_the_factor_times_the_length_and_thick_lines_take_twice_that() {
     let set = [("dual.mode", "pair"), ("support.enabled", "true")];
     for name in ["bracket.stl", "sphere_20.stl", "overhang.stl"] {
-        let run = slice(&common::fixture(name), "zcube-dual", &set);
+        let run = slice(&crate::common::fixture(name), "zcube-dual", &set);
         for m in run.print.beads().filter(|m| m.length() > 1.0 && (m.width - 0.4).abs() < 1e-9) {
             let factor = match m.kind {
                 Kind::OuterWall | Kind::InnerWall => 0.05,
@@ -371,7 +369,7 @@ fn filament_is_the_factor_times_the_length_and_thick_lines_take_twice_that() {
 fn the_report_counts_what_the_file_holds() {
     let set = [("dual.mode", "pair"), ("support.enabled", "true")];
     for profile in ["generic-marlin", "zcube-dual"] {
-        let run = slice(&common::fixture("bracket.stl"), profile, &set);
+        let run = slice(&crate::common::fixture("bracket.stl"), profile, &set);
         for (name, kind, thick) in [
             ("outer wall", Kind::OuterWall, false),
             ("inner wall", Kind::InnerWall, false),
@@ -382,7 +380,7 @@ fn the_report_counts_what_the_file_holds() {
         ] {
             let told = run.report.roles.iter().find(|r| r.role == name).unwrap();
             let beads = || run.print.of(kind).filter(|m| run.print.is_thick(m) == thick);
-            let length: f64 = beads().map(common::Move::length).sum();
+            let length: f64 = beads().map(crate::common::Move::length).sum();
             let filament = run.print.filament(kind, thick);
             assert!((told.length_mm - length).abs() <= 2e-3 * length, "{name}: {length} mm");
             assert!(

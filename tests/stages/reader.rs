@@ -158,7 +158,7 @@ proptest! {
 
     #[test]
     fn a_damaged_file_is_read_all_the_same(places in prop::collection::vec((0.0..1.0_f64, any::<u8>()), 1..40)) {
-        let mut bytes = include_bytes!("../fixtures/clock.gcode").to_vec();
+        let mut bytes = include_bytes!("../../fixtures/clock.gcode").to_vec();
         for (place, byte) in places {
             let index = (place * bytes.len() as f64) as usize;
             bytes[index] = byte;

@@ -1,9 +1,9 @@
-//! Bytes -> the property `contours` of `tests/common/hostile.rs`.
+//! Bytes -> the property `contours` of `tests/hostile/properties.rs`.
 
 #![no_main]
 #![allow(dead_code, reason = "each target uses one property")]
 
-#[path = "../../common/hostile.rs"]
-mod hostile;
+#[path = "../../hostile/properties.rs"]
+mod properties;
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| hostile::contours(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| properties::contours(bytes));

@@ -4,8 +4,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-#[path = "common/hostile.rs"]
-mod hostile;
+mod properties;
 
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -169,9 +168,9 @@ fn low(mut binary: Vec<u8>) -> Vec<u8> {
 #[test]
 fn damaged_models_are_refused_or_sliced() {
     let models: Vec<Vec<u8>> = models().into_iter().map(low).collect();
-    models.iter().for_each(|model| hostile::stl(model));
+    models.iter().for_each(|model| properties::stl(model));
     proptest!(config(60), |(which in 0..models.len(), damages in damage())| {
-        hostile::stl(&damaged(&models[which], &damages, &models));
+        properties::stl(&damaged(&models[which], &damages, &models));
     });
 }
 
@@ -180,9 +179,9 @@ fn damaged_profiles_are_refused_or_give_settings() {
     let names = ["zcube-dual", "thesis", "generic-marlin", "generic-klipper"];
     let read = |name: &&str| std::fs::read(root().join(format!("profiles/{name}.toml"))).unwrap();
     let profiles: Vec<Vec<u8>> = names.iter().map(read).collect();
-    profiles.iter().for_each(|text| hostile::profile(text));
+    profiles.iter().for_each(|text| properties::profile(text));
     proptest!(config(100), |(which in 0..profiles.len(), damages in damage())| {
-        hostile::profile(&damaged(&profiles[which], &damages, &profiles));
+        properties::profile(&damaged(&profiles[which], &damages, &profiles));
     });
 }
 
@@ -198,9 +197,9 @@ fn damaged_gcode_is_read_timed_checked_compared_and_drawn() {
         text += "G10\nG2 X5 Y5 I2 J2 E1\nG4 P10\nM204 S500\n";
     }
     let files = [clock[..clock.len().min(20_000)].to_vec(), text.into_bytes()];
-    files.iter().for_each(|file| hostile::gcode(file));
+    files.iter().for_each(|file| properties::gcode(file));
     proptest!(config(60), |(which in 0..files.len(), damages in damage())| {
-        hostile::gcode(&damaged(&files[which], &damages, &files));
+        properties::gcode(&damaged(&files[which], &damages, &files));
     });
 }
 
@@ -210,7 +209,7 @@ fn any_triangles_are_cut_into_contours_that_do_not_overlap() {
         count in 3_u8..30,
         bytes in prop::collection::vec(any::<u8>(), 0..500),
     )| {
-        hostile::contours(&[&[count], &bytes[..]].concat());
+        properties::contours(&[&[count], &bytes[..]].concat());
     });
 }
 
@@ -221,10 +220,10 @@ type Property = fn(&[u8]);
 #[test]
 fn what_was_once_a_fault_is_none() {
     let properties: [(&str, Property); 4] = [
-        ("stl", hostile::stl),
-        ("profile", hostile::profile),
-        ("gcode", hostile::gcode),
-        ("contours", hostile::contours),
+        ("stl", properties::stl),
+        ("profile", properties::profile),
+        ("gcode", properties::gcode),
+        ("contours", properties::contours),
     ];
     for (name, property) in properties {
         let Ok(folder) = std::fs::read_dir(root().join("tests/hostile").join(name)) else {
@@ -240,7 +239,7 @@ fn what_was_once_a_fault_is_none() {
 
 /// Reads a text; the triangles that it gives, or why it gives none.
 fn read(bytes: &[u8]) -> Result<usize, String> {
-    hostile::stl(bytes);
+    properties::stl(bytes);
     let mesh = slicer::mesh::read::parse("x.stl", bytes, 1000);
     mesh.map(|mesh| mesh.triangles.len()).map_err(|error| error.to_string())
 }

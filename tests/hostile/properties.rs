@@ -1,4 +1,4 @@
-//! Any bytes -> nothing: what has to hold whatever a file holds. For `tests/hostile.rs` and `tests/fuzz/`.
+//! Any bytes -> nothing: what has to hold whatever a file holds. For `tests/hostile/main.rs` and `tests/fuzz/`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

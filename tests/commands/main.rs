@@ -1,0 +1,13 @@
+//! The built program -> exit codes, streams and files: one module for each command, as a user or a script sees it.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod arguments;
+mod check;
+mod diff;
+mod estimate;
+mod hosts;
+mod mesh;
+mod preview;
+mod viewer;

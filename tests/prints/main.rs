@@ -1,0 +1,14 @@
+//! Models -> G-code, read back: facts about whole prints, and files that are kept byte for byte.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod fixtures;
+mod golden;
+mod gpx;
+mod metamorphic;
+mod models;
+mod tables;
+mod thin;
+mod times;
+mod whole;
