@@ -12,7 +12,7 @@ use crate::mesh::{MeshReport, Policy};
 use crate::plan::Role;
 use crate::profile::{DualMode, DualPart, Settings};
 use crate::region::Region;
-use crate::region::audit::{Apart, Audit};
+use crate::region::dual::audit::{Apart, Audit};
 use crate::slice::Heights;
 use crate::units::{Coord, sum_mm, to_mm};
 use crate::warning::{Warning, plural};

@@ -6,7 +6,7 @@
 
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Point, side};
-use crate::region::bend::{self, Joined, Line, LinePoint};
+use crate::region::variable_width::{self, Joined, Line, LinePoint};
 use crate::region::{Hatch, Params};
 use crate::units::{Bounded as _, Coord};
 
@@ -103,7 +103,7 @@ pub fn skin(lines: &[Line], params: &Params, radius: Coord) -> Vec<Chain> {
                 if k + 1 < zigzag.len() {
                     joined.above(link.from == Side::Right);
                 }
-                let mut points = bend::points(line(link.row, link.index), joined, params);
+                let mut points = variable_width::points(line(link.row, link.index), joined, params);
                 if link.from == Side::Right {
                     points.reverse();
                 }

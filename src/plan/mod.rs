@@ -11,9 +11,9 @@ pub mod travel;
 
 use crate::geom::Point;
 use crate::profile::{RetractWhen, Seam, Settings, WallOrder};
-use crate::region::bend::LinePoint;
-use crate::region::raster::Raster;
+use crate::region::scan::Raster;
 use crate::region::support::SupportParams;
+use crate::region::variable_width::LinePoint;
 use crate::region::walls::Wall;
 use crate::region::{Params, Region};
 use crate::slice::Layer;

@@ -1,10 +1,10 @@
 //! Layer and its neighbours -> Areas and Beads: narrow skin along the walls, the rest skin or infill.
 
 use super::classify::{areas, areas_beside, exposed};
-use super::close::Crossed;
 use super::dual::LayerAreas;
-use super::rings::{Bead, rings, taken};
+use super::gap_closing::Crossed;
 use super::thin::{Strip, apart};
+use super::wall_beads::{Bead, rings, taken};
 use super::walls::Wall;
 use super::{Params, Prepared};
 use crate::geom::Contour;

@@ -3,26 +3,22 @@
 //! Everything but the walls comes from one pass over raster lines: each layer's
 //! contours are laid under the lines of every raster once ([`Prepared`]), and
 //! each layer then combines its own spans with its neighbours' by 1-D booleans
-//! ([`classify`]). Where skin is narrow it becomes beads along the walls ([`rings`]).
+//! ([`classify`]). Where skin is narrow it becomes beads along the walls ([`wall_beads`]).
 //! Guaranteed to the next stage: skin and sparse infill of a layer are disjoint and
 //! together its inset without these beads; rows are sorted, disjoint, never empty.
 
 pub mod angle;
-pub mod audit;
-pub mod bend;
 pub mod classify;
-pub mod close;
 pub mod divide;
 pub mod dual;
-pub mod groups;
-pub mod inner;
+pub mod gap_closing;
 mod near;
-pub mod raster;
-pub mod rings;
-pub mod runs;
-mod stations;
+pub mod scan;
 pub mod support;
 pub mod thin;
+pub mod variable_width;
+pub mod wall_beads;
+mod wall_samples;
 pub mod walls;
 pub mod window;
 
@@ -31,9 +27,9 @@ use crate::geom::spans::Rows;
 use crate::profile::{Pattern, Settings};
 use crate::slice::Layer;
 use crate::units::{Coord, to_units};
-use bend::{Line, LinePoint};
-use raster::{Raster, Scan};
+use scan::{Raster, Scan};
 use thin::Strip;
+use variable_width::{Line, LinePoint};
 use walls::Wall;
 
 /// The numbers that this stage needs, in grid units.

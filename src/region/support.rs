@@ -6,7 +6,7 @@
 //! `S(k) = (O(k+1+gap) ∪ S(k+1)) − outset(L(k))`.
 
 use super::Comb;
-use super::raster::{Raster, Scan};
+use super::scan::{Raster, Scan};
 use crate::geom::Point;
 use crate::geom::spans::{Rows, Span, subtract};
 use crate::profile::{Settings, SupportBase};

@@ -2,12 +2,12 @@
 //!
 //! An inner wall is a loop. Where the room inside the wall around it is hardly wider than a
 //! line, it would go out and back on itself: two beads in the room of one. There the loop is
-//! left out, and the room gets one bead as wide as it is, which [`super::rings`] lays like that
+//! left out, and the room gets one bead as wide as it is, which [`super::wall_beads`] lays like that
 //! in a thin strip of skin. The room inside the innermost wall is filled in the same way where
 //! it is too thin for infill. Parts with a single wall are left as they are.
 
-use super::raster::Scan;
-use super::stations::SINGLE;
+use super::scan::Scan;
+use super::wall_samples::SINGLE;
 use super::walls::Wall;
 use super::{Params, PreparedRows};
 use crate::geom::spans::{Rows, Span};

@@ -1,6 +1,6 @@
 //! Contours -> Walls: loops parallel to the contours, one line width apart.
 
-use super::groups::{Block, Grouping};
+use super::dual::groups::{Block, Grouping};
 use super::{Params, thin};
 use crate::geom::follow::follow;
 use crate::geom::{Contour, double_area, polygon};

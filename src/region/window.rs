@@ -5,14 +5,14 @@
 //! it shares skins with, is divided. A layer is forgotten once no layer above looks at
 //! it: memory holds a batch and a few layers, whatever the height of the print.
 
-use super::audit::Audit;
 use super::classify::Areas;
-use super::close::{Crossed, close};
 use super::divide::divide;
+use super::dual::audit::Audit;
+use super::dual::groups::{Block, Grouping};
+use super::dual::inner_skin::Skins;
 use super::dual::{self, LayerAreas};
-use super::groups::{Block, Grouping};
-use super::inner::Skins;
-use super::rings::Bead;
+use super::gap_closing::{Crossed, close};
+use super::wall_beads::Bead;
 use super::walls::{self, Wall};
 use super::{Comb, Hatch, Params, Prepared, Region, Skin};
 use crate::geom::spans::Rows;

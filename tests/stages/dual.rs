@@ -9,9 +9,9 @@ use proptest::prelude::*;
 use slicer::geom::spans::{Rows, Span, total};
 use slicer::profile::Settings;
 use slicer::region::divide::divide;
+use slicer::region::dual::groups::{Block, Grouping};
+use slicer::region::dual::inner_skin::Skins;
 use slicer::region::dual::{self, LayerAreas};
-use slicer::region::groups::{Block, Grouping};
-use slicer::region::inner::Skins;
 use slicer::region::{Comb, Hatch, Params, Prepared};
 use std::collections::{BTreeMap, BTreeSet};
 

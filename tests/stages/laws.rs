@@ -13,11 +13,11 @@ use slicer::geom::spans::{Rows, Span, total};
 use slicer::geom::{Contour, Point, double_area, edges, polygon};
 use slicer::mesh::{Bed, place, read};
 use slicer::region::Params;
-use slicer::region::bend::LinePoint;
 use slicer::region::classify::Areas;
 use slicer::region::divide::divide;
-use slicer::region::raster::{Raster, Scan, around};
-use slicer::region::rings::Bead;
+use slicer::region::scan::{Raster, Scan, around};
+use slicer::region::variable_width::LinePoint;
+use slicer::region::wall_beads::Bead;
 use slicer::slice::{Heights, Layer, Slicer};
 use slicer::units::{Coord, UNITS_PER_MM, to_units};
 

@@ -7,14 +7,19 @@
 //! hollow places where the layers differ and often keeps the same direction every
 //! time. Both gaps are closed unless the settings ask for the thesis's rule.
 
-use super::audit::{Audit, apart};
+pub mod audit;
+pub mod groups;
+pub mod inner_skin;
+pub mod runs;
+
 use super::classify::Areas;
-use super::groups::{Block, Grouping, Lane};
-use super::runs::{Printed, runs};
 use super::{Comb, Hatch, Params};
 use crate::geom::spans::Rows;
 use crate::profile::DualPart;
 use crate::units::Coord;
+use audit::{Audit, apart};
+use groups::{Block, Grouping, Lane};
+use runs::{Printed, runs};
 
 /// Areas of one layer on each raster it was asked on, by raster index.
 pub type LayerAreas = Vec<Option<Areas>>;

@@ -6,8 +6,8 @@
 //! shared beyond a block, so that lines of two directions never lie in the same
 //! layers and cross without being stacked twice.
 
-use super::Comb;
 use crate::profile::{Dual, DualDirection, DualMode, DualPart, DualRemainder};
+use crate::region::Comb;
 use std::ops::Range;
 
 /// Groups that an interlaced block is high. Lines that are not interlaced end at

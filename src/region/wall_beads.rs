@@ -8,11 +8,11 @@
 //! deeper stays for lines. Between two walls the beads of both sides share the width.
 
 use super::Params;
-use super::bend::LinePoint;
-use super::close::Crossed;
+use super::gap_closing::Crossed;
 use super::near::Near;
-use super::raster::{Raster, around};
-use super::stations::{MOST_BEADS, NARROWEST, SHORT, Station, stations};
+use super::scan::{Raster, around};
+use super::variable_width::LinePoint;
+use super::wall_samples::{MOST_BEADS, NARROWEST, SHORT, Station, stations};
 use crate::geom::frame::Frame;
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
@@ -205,7 +205,7 @@ mod tests {
     use super::*;
     use crate::geom::polygon;
     use crate::profile;
-    use crate::region::raster::Scan;
+    use crate::region::scan::Scan;
 
     /// The beads of a part with one wall whose skin is exposed up to `covered` from its
     /// contour; lines along x.

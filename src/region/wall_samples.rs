@@ -1,7 +1,7 @@
 //! Wall and exposed rows -> Stations: how deep the exposed skin is behind each place of a wall.
 
 use super::Params;
-use super::close::Crossed;
+use super::gap_closing::Crossed;
 use super::near::{Area, Near};
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, Point, edges};

@@ -9,11 +9,11 @@
 //! layer prints it for all.
 
 use super::runs::Printed;
-use super::{Params, Prepared};
 use crate::geom::spans::{Rows, Span};
+use crate::region::{Params, Prepared};
 use crate::units::Coord;
 
-/// As in [`super::classify`]: exposed stretches shorter than this are noise (50 µm).
+/// As in : exposed stretches shorter than this are noise (50 µm).
 const LEAST_SEEN: Coord = 500;
 
 /// Skin narrower than this, in line widths, is not shared: strips on slopes would fall

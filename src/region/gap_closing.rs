@@ -12,7 +12,7 @@
 //! infill has more skin around it than it needs.
 
 use super::Params;
-use super::bend::{Line, LinePoint, SHORT_STRIP, Strip, WIDEST};
+use super::variable_width::{Line, LinePoint, SHORT_STRIP, Strip, WIDEST};
 use crate::geom::spans::{Rows, Span};
 use crate::units::Coord;
 
@@ -238,8 +238,8 @@ mod tests {
     use super::*;
     use crate::geom::{Contour, Point};
     use crate::profile;
-    use crate::region::bend::{Joined, points};
-    use crate::region::raster::Scan;
+    use crate::region::scan::Scan;
+    use crate::region::variable_width::{Joined, points};
 
     /// Closes a skin that is all of `contour`, lines along x.
     fn closed(contour: Contour) -> (Vec<Line>, Vec<Vec<LinePoint>>, Params) {

@@ -1,8 +1,8 @@
 //! Lines of a block and what is printed of them -> Audit: what is thick, what is not and why, and whether the material is all there.
 
-use super::{Comb, Hatch};
 use crate::geom::spans::Rows;
 use crate::profile::DualPart;
+use crate::region::{Comb, Hatch};
 use crate::units::Coord;
 
 /// What became of one kind of lines of a block; lengths in grid units. Lines shorter
