@@ -10,8 +10,9 @@
 //! | [`mesh`] | bytes -> triangles: welded, mended, laid on the bed |
 //! | [`mod@slice`] | triangles -> layers of closed contours |
 //! | [`region`] | layers -> walls, and spans of skin, sparse infill and support |
-//! | [`plan`] | regions -> paths in order, with travels |
-//! | [`gcode`] | paths -> text |
+//! | [`fill`] | regions -> paths |
+//! | [`plan`] | paths -> paths in order, with travels |
+//! | [`gcode`] | paths in order -> text |
 //! | [`pipeline`] | the stages put together, batch by batch |
 //!
 //! From the G-code of any slicer:
@@ -32,6 +33,7 @@
 //! | [`job`], [`progress`] | what a run is asked for, and how far it is |
 //! | [`report`], [`warning`], [`error`] | what a run gives back |
 //! | [`mod@compare`] | one job, printed in several ways -> what each saves |
+//! | [`pattern`] | how sparse lines run |
 //! | [`geom`], [`units`] | plane geometry on the integer grid |
 //! | [`render`] | triangles -> a picture |
 //!
@@ -42,11 +44,13 @@ pub mod compare;
 pub mod diff;
 pub mod error;
 pub mod estimate;
+pub mod fill;
 pub mod gcode;
 pub mod geom;
 pub mod job;
 pub mod mesh;
 pub mod motion;
+pub mod pattern;
 pub mod pipeline;
 pub mod plan;
 pub mod preview;
@@ -94,16 +98,16 @@ pub fn slice_placed(
 ) -> Result<report::Report> {
     // Mesh -> layers; each block of them is cut when the stages after it ask for it.
     let heights = pipeline::heights(&job.settings, placed)?;
-    progress.set_total(heights.count);
+    progress.set_total(heights.count());
     let tolerance = to_units(job.settings.tolerance);
     let (settings, slicer) = rayon::join(
         || pipeline::settle(&job.settings, &placed.mesh),
-        || slice::Slicer::new(&placed.mesh, &placed.adjacency, heights, tolerance),
+        || slice::Slicer::new(&placed.mesh, &placed.adjacency, heights.clone(), tolerance),
     );
 
     // Layers -> regions -> toolpaths, in batches. The thumbnails stand in the head of the file:
     // they are drawn while the first batches are planned.
-    let setup = Setup::new(&settings);
+    let setup = Setup::new(&settings, &heights);
     let corners = bed_corners(&bed(&settings.machine), placed.offset);
     let mut planner = setup.planner(&slicer, corners);
     let (pictures, planned) = rayon::join(|| thumbnails(&settings, placed), || planner.ahead());
@@ -113,12 +117,12 @@ pub fn slice_placed(
     })?;
 
     // Toolpaths -> text, one batch while the next is planned.
-    let facts = print_facts(placed, heights);
+    let facts = print_facts(placed, &heights);
     let mut writer =
         gcode::Writer::new(out, &job.output, &settings, facts, placed.offset, &pictures)?;
     batches::write(&mut writer, planned, &mut planner, progress)?;
     let sums = writer.finish()?;
 
     let (audits, tally) = planner.finish();
-    report::report(job, placed, heights, &sums, &audits, &tally)
+    report::report(job, placed, &heights, &sums, &audits, &tally)
 }

@@ -2,6 +2,7 @@
 
 use crate::check::Verdict;
 use crate::error::{Error, Result};
+use crate::fill::Role;
 use crate::gcode::Sums;
 use crate::gcode::flow::Flows;
 use crate::gcode::times::{LayerTime, Times};
@@ -9,12 +10,11 @@ use crate::gcode::usage::Material;
 use crate::job::{self, Job};
 use crate::mesh::place::Placed;
 use crate::mesh::{MeshReport, Policy};
-use crate::plan::Role;
 use crate::profile::{DualMode, DualPart, Settings};
 use crate::region::Region;
 use crate::region::dual::audit::{Apart, Audit};
 use crate::slice::Heights;
-use crate::units::{Coord, sum_mm, to_mm};
+use crate::units::{Coord, sum_mm, to_mm, to_units};
 use crate::warning::{Warning, plural};
 use serde::Serialize;
 
@@ -272,7 +272,7 @@ impl Tally {
 pub fn report(
     job: &Job,
     placed: &Placed,
-    heights: Heights,
+    heights: &Heights,
     sums: &Sums,
     audits: &[Audit],
     tally: &Tally,
@@ -297,10 +297,10 @@ pub fn report(
         size_mm: placed.size_mm,
         solid_mm3: tally.solid_mm3,
         layers: LayersReport {
-            count: heights.count,
-            first_height_mm: to_mm(heights.first),
-            height_mm: to_mm(heights.other),
-            top_mm: to_mm(heights.top(heights.count - 1)),
+            count: heights.count(),
+            first_height_mm: to_mm(heights.height(0)),
+            height_mm: to_mm(to_units(settings.layer_height)),
+            top_mm: to_mm(heights.top(heights.count() - 1)),
         },
         roles: roles(sums, settings),
         travel: TravelReport {
@@ -328,17 +328,14 @@ pub fn report(
 fn roles(sums: &Sums, settings: &Settings) -> Vec<RoleReport> {
     let area = settings.filament_area();
     let mut roles = Vec::new();
-    for (index, role) in Role::ALL.iter().enumerate() {
-        // An outer wall is never thick.
-        let kinds: &[usize] = if *role == Role::OuterWall { &[0] } else { &[0, 1] };
-        for &kind in kinds {
-            let used = sums.usage.roles[index][kind];
+    for (role, used) in sums.usage.roles.iter() {
+        for (thick, used) in used.iter().filter(|(thick, _)| !thick || role.facts().may_be_thick) {
             roles.push(RoleReport {
-                role: role_name(*role, kind == 1),
+                role: role_name(role, thick),
                 length_mm: used.length,
                 filament_mm: used.filament,
                 volume_mm3: used.filament * area,
-                time_s: sums.times.roles[index][kind],
+                time_s: *sums.times.roles[role].of(thick),
             });
         }
     }
@@ -346,7 +343,8 @@ fn roles(sums: &Sums, settings: &Settings) -> Vec<RoleReport> {
 }
 
 fn role_name(role: Role, thick: bool) -> String {
-    if thick { format!("thick {}", role.name()) } else { role.name().to_owned() }
+    let name = role.facts().name;
+    if thick { format!("thick {name}") } else { name.to_owned() }
 }
 
 fn time(times: &Times) -> TimeReport {
@@ -367,19 +365,11 @@ fn time(times: &Times) -> TimeReport {
 /// Where the hot end cannot follow.
 fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
     let mut warnings = Vec::new();
-    for (role, kinds) in Role::ALL.iter().zip(flows.lowered) {
-        for (thick, lowered) in kinds.into_iter().enumerate() {
-            let thick = thick == 1;
-            let setting = match role {
-                Role::OuterWall | Role::InnerWall => "speed.wall",
-                Role::Skin => "speed.skin",
-                Role::Infill if thick => "speed.thick_infill",
-                Role::Infill => "speed.infill",
-                Role::Support => "speed.support",
-            };
+    for (role, lowered) in flows.lowered.iter() {
+        for (thick, lowered) in lowered.iter() {
             warnings.extend(lowered.map(|lowered| Warning::FlowLimited {
-                role: role_name(*role, thick),
-                setting: setting.to_owned(),
+                role: role_name(role, thick),
+                setting: (*role.facts().speed_keys.of(thick)).to_owned(),
                 asked_mm_min: lowered.asked,
                 lowest_mm_min: lowered.given,
                 limit_mm3_s: settings.machine.max_volumetric_flow,

@@ -16,10 +16,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("mesh", &["units", "error", "warning"]),
     ("slice", &["geom", "mesh", "units"]),
     ("render", &["mesh", "units"]),
-    ("region", &["geom", "mesh", "slice", "profile", "units"]),
-    ("plan", &["geom", "region", "slice", "profile", "units"]),
+    ("pattern", &["geom", "profile", "units"]),
+    ("region", &["geom", "mesh", "pattern", "slice", "profile", "units"]),
+    ("fill", &["geom", "pattern", "region", "slice", "profile", "units"]),
+    // Paths in, paths out: nothing of where they come from.
+    ("plan", &["fill", "geom", "slice", "profile", "units"]),
     // The program's name comes from the job.
-    ("gcode", &["geom", "plan", "motion", "profile", "error", "units", "job"]),
+    ("gcode", &["geom", "fill", "plan", "motion", "profile", "error", "units", "job"]),
     ("job", &["mesh", "profile"]),
     ("profile", &["error"]),
     ("motion", &["profile", "units"]),

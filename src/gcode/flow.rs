@@ -1,5 +1,6 @@
 //! Bead + feed asked for -> feed: no more filament than the hot end can melt.
 
+use crate::fill::{Both, Role, RoleTable};
 use crate::profile::Settings;
 use crate::units::nearest;
 
@@ -59,25 +60,26 @@ pub struct Lowered {
 pub struct Flows {
     /// The largest flow, mm³/s.
     pub largest: f64,
-    /// What was lowered to the limit, by role: lines of one layer's height, then thick ones.
-    pub lowered: [[Option<Lowered>; 2]; 5],
+    /// What was lowered to the limit.
+    pub lowered: RoleTable<Both<Option<Lowered>>>,
 }
 
 impl Flows {
     /// Notes a bead's flow, and whether it was slowed down for it.
-    pub(super) fn note(&mut self, role: usize, thick: bool, flow: f64, feeds: Lowered) {
+    pub(super) fn note(&mut self, role: Role, thick: bool, flow: f64, feeds: Lowered) {
         self.largest = self.largest.max(flow);
         if f64::from(feeds.given) < (1.0 - LEAST_TOLD) * f64::from(feeds.asked) {
-            merge(&mut self.lowered[role][usize::from(thick)], Some(feeds));
+            merge(self.lowered[role].of_mut(thick), Some(feeds));
         }
     }
 
     /// Adds another layer's flows.
     pub fn add(&mut self, other: &Self) {
         self.largest = self.largest.max(other.largest);
-        let theirs = other.lowered.as_flattened();
-        for (mine, theirs) in self.lowered.as_flattened_mut().iter_mut().zip(theirs) {
-            merge(mine, *theirs);
+        for (role, theirs) in other.lowered.iter() {
+            for (thick, theirs) in theirs.iter() {
+                merge(self.lowered[role].of_mut(thick), *theirs);
+            }
         }
     }
 }
@@ -108,14 +110,15 @@ mod tests {
     #[test]
     fn the_highest_asked_and_the_lowest_given_are_kept() {
         let mut flows = Flows::default();
-        flows.note(3, true, 5.0, Lowered { asked: 3600, given: 3000 });
-        flows.note(3, true, 4.0, Lowered { asked: 1800, given: 1800 });
-        flows.note(2, false, 4.0, Lowered { asked: 1800, given: 1750 });
+        flows.note(Role::Infill, true, 5.0, Lowered { asked: 3600, given: 3000 });
+        flows.note(Role::Infill, true, 4.0, Lowered { asked: 1800, given: 1800 });
+        flows.note(Role::Skin, false, 4.0, Lowered { asked: 1800, given: 1750 });
         let mut all = flows.clone();
-        all.note(3, true, 6.0, Lowered { asked: 4000, given: 3500 });
+        all.note(Role::Infill, true, 6.0, Lowered { asked: 4000, given: 3500 });
         flows.add(&all);
         assert_eq!(flows.largest, 6.0);
-        assert_eq!(flows.lowered[3][1], Some(Lowered { asked: 4000, given: 3000 }));
-        assert_eq!(flows.lowered.as_flattened().iter().flatten().count(), 1);
+        assert_eq!(flows.lowered[Role::Infill].thick, Some(Lowered { asked: 4000, given: 3000 }));
+        let thin = flows.lowered.iter().filter(|(_, both)| both.thin.is_some());
+        assert_eq!(thin.count(), 0);
     }
 }

@@ -4,8 +4,9 @@
 //! amount of filament are worked out once, and the clock times what is written.
 
 use super::flow::{FlowLimit, Flows, Lowered, whole_feed};
+use crate::fill::{Both, Path, PathPoint, Role, RoleTable};
 use crate::geom::Point;
-use crate::plan::{Path, Role, Toolpath};
+use crate::plan::Toolpath;
 use crate::profile::{ExtrusionModel, Settings};
 use crate::units::{Coord, UNITS_PER_MM, to_mm, to_units};
 
@@ -18,7 +19,7 @@ pub struct Move {
     pub z: Coord,
     /// mm/min, as written.
     pub feed: u32,
-    /// Length in x and y before rounding, mm.
+    /// Length before rounding, mm.
     pub length: f64,
     /// Filament pushed, or pulled if negative, mm.
     pub filament: f64,
@@ -80,9 +81,9 @@ pub struct MoveParams {
     /// Where the layout's middle goes on the machine, grid units.
     offset: [i64; 2],
     /// mm of filament for each mm of path, mm of width and mm of height, by role.
-    rates: [f64; 5],
-    /// mm/min, by role, of lines of one layer's height and of thick ones.
-    feeds: [[f64; 2]; 5],
+    rates: RoleTable<f64>,
+    /// mm/min.
+    feeds: RoleTable<Both<f64>>,
     /// Factor on the feeds of the first layer.
     first_layer: f64,
     travel_feed: f64,
@@ -103,17 +104,10 @@ impl MoveParams {
             ExtrusionModel::Area => x.multiplier / area,
             ExtrusionModel::Factor => x.multiplier * factor / (x.factor_width * x.factor_height),
         };
-        let (wall, infill) = (rate(x.wall_factor), rate(x.infill_factor));
         Self {
             offset: offset.map(|mm| i64::from(to_units(mm))),
-            rates: [wall, wall, rate(x.skin_factor), infill, rate(x.support_factor)],
-            feeds: [
-                [s.wall; 2],
-                [s.wall; 2],
-                [s.skin; 2],
-                [s.infill, s.thick_infill],
-                [s.support; 2],
-            ],
+            rates: RoleTable::new(|role| rate((role.facts().factor)(x))),
+            feeds: RoleTable::new(|role| (role.facts().speed)(s)),
             first_layer: s.first_layer / 100.0,
             travel_feed: s.travel,
             z_feed: s.z,
@@ -126,17 +120,18 @@ impl MoveParams {
 
     /// Filament for this length of a bead, mm.
     fn filament(&self, bead: &Bead, length_mm: f64) -> f64 {
-        self.rates[bead.role as usize] * length_mm * to_mm(bead.width) * to_mm(bead.height)
+        self.rates[bead.role] * length_mm * to_mm(bead.width) * to_mm(bead.height)
     }
 
     /// The moves of one layer.
     #[must_use]
     pub fn moves(&self, layer: &Toolpath) -> Moves {
         let mut walk = Walk::new(self, layer);
-        for step in &layer.steps {
+        for next in &layer.moves {
+            let Some(first) = next.path.points.first() else { continue };
             walk.out.paths.push(walk.out.moves.len());
-            walk.approach(step.path.start(), step.retract);
-            walk.path(&step.path);
+            walk.approach(first, next.retract);
+            walk.path(&next.path);
         }
         walk.out
     }
@@ -164,41 +159,46 @@ struct Walk<'a> {
     at: Option<(Point, [i32; 2])>,
     /// Height of the nozzle where this layer has set it.
     z: Option<Coord>,
+    /// The highest place printed so far: a travel passes over it.
+    highest: Coord,
 }
 
 impl<'a> Walk<'a> {
     fn new(params: &'a MoveParams, layer: &Toolpath) -> Self {
-        let at = layer.from.map(|from| (from, params.place(from)));
-        let points: usize = layer.steps.iter().map(|step| step.path.points.len()).sum();
+        let at = layer.from.at.map(|from| (from, params.place(from)));
+        let points: usize = layer.moves.iter().map(|next| next.path.points.len()).sum();
         // A path has a point more than segments; the rest is for the way to it.
-        let most = points + 3 * layer.steps.len();
+        let most = points + 3 * layer.moves.len();
         let out = Moves {
             layer: layer.layer,
             z: layer.z,
             height: layer.height,
             from: at.map(|(_, place)| place),
             moves: Vec::with_capacity(most),
-            paths: Vec::with_capacity(layer.steps.len()),
+            paths: Vec::with_capacity(layer.moves.len()),
             flows: Flows::default(),
         };
-        Self { params, out, at, z: None }
+        Self { params, out, at, z: None, highest: layer.from.highest }
     }
 
-    /// The way to the beginning of a path.
-    fn approach(&mut self, to: Point, retract: bool) {
-        let z = self.out.z;
+    /// The way to the first point of a path.
+    fn approach(&mut self, to: &PathPoint, retract: bool) {
+        let z = self.out.z + to.z;
+        // Over all that may stand in the way; on a flat layer that is the layer itself.
+        let over = z.max(self.highest);
         if retract {
             self.pull(-self.params.retract, Kind::Retract);
             if self.params.hop > 0 {
-                self.lift(z + self.params.hop);
+                self.lift(over + self.params.hop);
             }
         }
         // Up before sideways. The first way of a print goes down at its end instead:
         // the start block leaves the nozzle above its purge.
-        if self.z.is_none() && self.at.is_some() {
-            self.lift(z);
+        let goes = self.at.is_some_and(|(at, _)| at != to.at);
+        if self.at.is_some() && self.z.is_none_or(|now| now < over && goes) {
+            self.lift(over);
         }
-        self.travel(to);
+        self.travel(to.at);
         if self.z != Some(z) {
             self.lift(z);
         }
@@ -237,34 +237,47 @@ impl<'a> Walk<'a> {
     fn path(&mut self, path: &Path) {
         let thick = path.is_thick();
         let slow = if self.out.layer == 0 { self.params.first_layer } else { 1.0 };
-        let asked = self.params.feeds[path.role as usize][usize::from(thick)] * slow;
+        let asked = self.params.feeds[path.role].of(thick) * slow;
         // No bead has this width: the first one is looked at.
-        let mut bead = Bead { role: path.role, thick, height: path.height, width: -1 };
+        let mut bead = Bead { role: path.role, thick, height: 0, width: -1 };
         let mut feed = 0;
-        for (to, length, width) in path.segments() {
-            if width != bead.width {
-                bead.width = width;
+        for ends in path.points.windows(2) {
+            let (from, to) = (&ends[0], &ends[1]);
+            if (to.width, to.height) != (bead.width, bead.height) {
+                (bead.width, bead.height) = (to.width, to.height);
                 feed = self.feed(&bead, asked);
             }
-            let length = length / UNITS_PER_MM;
+            let length = length(from, to) / UNITS_PER_MM;
             self.out.moves.push(Move {
-                to: self.params.place(to),
-                z: self.out.z,
+                to: self.params.place(to.at),
+                z: self.out.z + to.z,
                 feed,
                 length,
                 filament: self.params.filament(&bead, length),
                 kind: Kind::Extrude(bead),
             });
+            self.highest = self.highest.max(self.out.z + to.z);
         }
-        let end = path.end();
-        self.at = Some((end, self.params.place(end)));
+        if let Some(end) = path.points.last() {
+            self.at = Some((end.at, self.params.place(end.at)));
+            self.z = Some(self.out.z + end.z);
+        }
     }
 
     /// How fast a bead is laid, mm/min.
     fn feed(&mut self, bead: &Bead, asked: f64) -> u32 {
         let (given, flow) = self.params.limit.feed(self.params.filament(bead, 1.0), asked);
         let feeds = Lowered { asked: whole_feed(asked), given };
-        self.out.flows.note(bead.role as usize, bead.thick, flow, feeds);
+        self.out.flows.note(bead.role, bead.thick, flow, feeds);
         given
     }
+}
+
+/// The length of a segment, grid units.
+fn length(from: &PathPoint, to: &PathPoint) -> f64 {
+    if from.z == to.z {
+        return from.at.distance(to.at);
+    }
+    let rise = i64::from(to.z) - i64::from(from.z);
+    ((from.at.distance2(to.at) + rise * rise) as f64).sqrt()
 }

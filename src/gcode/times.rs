@@ -1,6 +1,7 @@
 //! Moves of all layers, in order -> Times: how long each role, each layer and the way to each path take.
 
 use super::moves::{Kind, Move, Moves};
+use crate::fill::{Both, Role, RoleTable};
 use crate::motion::{self, Clock, Limits, Timed};
 use crate::units::{Coord, to_mm};
 use std::collections::VecDeque;
@@ -8,8 +9,8 @@ use std::collections::VecDeque;
 /// How long a print takes, without its start and end blocks.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Times {
-    /// Beads, s; by role, lines of one layer's height, then thick ones.
-    pub roles: [[f64; 2]; 5],
+    /// Beads, s.
+    pub roles: RoleTable<Both<f64>>,
     /// Travels and moves in z, s.
     pub travel: f64,
     /// Filament pulled back and pushed forward, s.
@@ -49,7 +50,7 @@ pub struct Schedule {
 /// What a move's time counts as.
 #[derive(Debug, Clone, Copy)]
 enum Part {
-    Bead(u8, bool),
+    Bead(Role, bool),
     Travel,
     Retraction,
 }
@@ -136,19 +137,17 @@ impl Timer {
                 self.at = Some(step.to);
                 ([x, y, 0.0, 0.0], Part::Travel)
             }
-            Kind::Z => {
-                let rise = self.z.replace(step.z).map_or(0.0, |z| to_mm(step.z - z));
-                ([0.0, 0.0, rise, 0.0], Part::Travel)
-            }
+            Kind::Z => ([0.0, 0.0, self.rise_to(step.z), 0.0], Part::Travel),
             Kind::Retract | Kind::Restore => ([0.0, 0.0, 0.0, step.filament], Part::Retraction),
             Kind::Extrude(bead) => {
                 self.at = Some(step.to);
                 self.held += step.filament;
-                if step.to == at {
+                let rise = self.rise_to(step.z);
+                if step.to == at && rise == 0.0 {
                     return;
                 }
                 let e = std::mem::take(&mut self.held);
-                ([x, y, 0.0, e], Part::Bead(bead.role as u8, bead.thick))
+                ([x, y, rise, e], Part::Bead(bead.role, bead.thick))
             }
         };
         if delta != [0.0; 4] {
@@ -156,9 +155,14 @@ impl Timer {
             self.clock.push(motion::Move { delta, feed: f64::from(step.feed) / 60.0, tag: part });
         }
     }
+
+    /// Moves the nozzle to `z`. Returns by how much it rises, mm; 0 where it is not known from where.
+    fn rise_to(&mut self, z: Coord) -> f64 {
+        self.z.replace(z).map_or(0.0, |from| to_mm(z - from))
+    }
 }
 
-/// What the clock has said so far.
+/// What the clock has reported so far.
 #[derive(Debug, Default)]
 struct Book {
     /// What begins with moves that are still in the clock.
@@ -181,9 +185,7 @@ impl Book {
             self.done += 1;
             self.now += timed.seconds;
             *match timed.tag {
-                Part::Bead(role, thick) => {
-                    &mut self.times.roles[usize::from(role)][usize::from(thick)]
-                }
+                Part::Bead(role, thick) => self.times.roles[role].of_mut(thick),
                 Part::Travel => &mut self.times.travel,
                 Part::Retraction => &mut self.times.retraction,
             } += timed.seconds;

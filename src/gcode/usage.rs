@@ -2,6 +2,7 @@
 
 use super::flow::Flows;
 use super::moves::{Kind, Moves};
+use crate::fill::{Both, RoleTable};
 use crate::profile::Settings;
 
 /// What was extruded in one role: path and filament, mm.
@@ -16,9 +17,8 @@ pub struct Used {
 /// What a layer, or a print, moves and uses.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Usage {
-    /// By role, in the order of [`Role::ALL`](crate::plan::Role::ALL): lines of one
-    /// layer's height, then thick ones.
-    pub roles: [[Used; 2]; 5],
+    /// What was extruded.
+    pub roles: RoleTable<Both<Used>>,
     /// Travels.
     pub travels: usize,
     /// Their length, mm.
@@ -37,7 +37,7 @@ impl Usage {
         for step in &layer.moves {
             match step.kind {
                 Kind::Extrude(bead) => {
-                    let used = &mut usage.roles[bead.role as usize][usize::from(bead.thick)];
+                    let used = usage.roles[bead.role].of_mut(bead.thick);
                     used.length += step.length;
                     used.filament += step.filament;
                 }
@@ -55,15 +55,17 @@ impl Usage {
     /// Filament in all, mm.
     #[must_use]
     pub fn filament(&self) -> f64 {
-        self.roles.as_flattened().iter().map(|r| r.filament).sum()
+        self.roles.iter().flat_map(|(_, both)| [both.thin.filament, both.thick.filament]).sum()
     }
 
     /// Adds another layer's usage.
     pub fn add(&mut self, other: &Self) {
-        let theirs = other.roles.as_flattened();
-        for (mine, theirs) in self.roles.as_flattened_mut().iter_mut().zip(theirs) {
-            mine.length += theirs.length;
-            mine.filament += theirs.filament;
+        for (role, theirs) in other.roles.iter() {
+            for (thick, theirs) in theirs.iter() {
+                let mine = self.roles[role].of_mut(thick);
+                mine.length += theirs.length;
+                mine.filament += theirs.filament;
+            }
         }
         self.travels += other.travels;
         self.travel_length += other.travel_length;

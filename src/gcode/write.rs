@@ -3,7 +3,7 @@
 use super::dialect::Dialect;
 use super::moves::{Bead, Kind, Move, MoveParams, Moves};
 use super::number::{push_fixed, thousandths};
-use crate::plan::Role;
+use crate::fill::Role;
 use crate::profile::Settings;
 use crate::units::{Coord, nearest, to_mm};
 use std::io::Write as _;
@@ -75,17 +75,6 @@ impl WriteParams {
         }
         text.out
     }
-
-    /// The annotation of a role, in the words that viewers know.
-    fn type_name(role: Role) -> &'static str {
-        match role {
-            Role::OuterWall => "External perimeter",
-            Role::InnerWall => "Perimeter",
-            Role::Skin => "Solid infill",
-            Role::Infill => "Internal infill",
-            Role::Support => "Support material",
-        }
-    }
 }
 
 /// A layer's text in the making, with the words that stay in force.
@@ -98,6 +87,8 @@ struct Text<'a> {
     written_e: i64,
     /// Where the nozzle is, thousandths of a mm.
     at: Option<[i32; 2]>,
+    /// Its height, grid units.
+    z: Option<Coord>,
     feed: u32,
     role: Option<Role>,
     width: Coord,
@@ -113,6 +104,7 @@ impl<'a> Text<'a> {
             e,
             written_e: ticks(e),
             at: None,
+            z: None,
             feed: 0,
             role: None,
             width: 0,
@@ -153,20 +145,20 @@ impl<'a> Text<'a> {
     fn step(&mut self, step: &Move) {
         match step.kind {
             Kind::Travel => {
-                if self.go(step.to) {
+                if self.go(step.to, self.z) {
                     self.end_move(step.feed);
                 }
             }
             Kind::Z => {
-                self.out.extend_from_slice(b"G1 Z");
-                push_fixed::<3>(&mut self.out, thousandths(to_mm(step.z)));
+                self.out.extend_from_slice(b"G1");
+                self.push_z(step.z);
                 self.end_move(step.feed);
             }
             Kind::Retract | Kind::Restore => self.pull(step.filament, step.feed),
             Kind::Extrude(bead) => {
                 self.announce(&bead);
                 self.e += step.filament;
-                if self.go(step.to) {
+                if self.go(step.to, Some(step.z)) {
                     self.push_e();
                     self.end_move(step.feed);
                 }
@@ -186,7 +178,7 @@ impl<'a> Text<'a> {
         if self.role != Some(bead.role) {
             self.role = Some(bead.role);
             self.out.extend_from_slice(b";TYPE:");
-            self.line(WriteParams::type_name(bead.role));
+            self.line(bead.role.facts().annotation);
             self.width = 0;
         }
         if self.height != bead.height {
@@ -199,9 +191,9 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Begins a move to `to` with the words that change; says no if none does.
-    fn go(&mut self, to: [i32; 2]) -> bool {
-        if self.at == Some(to) {
+    /// Begins a move to `to` and `z` with the words that change. Returns whether any did.
+    fn go(&mut self, to: [i32; 2], z: Option<Coord>) -> bool {
+        if self.at == Some(to) && self.z == z {
             return false;
         }
         let before = self.at.replace(to);
@@ -212,7 +204,16 @@ impl<'a> Text<'a> {
                 push_fixed::<3>(&mut self.out, i64::from(to[axis]));
             }
         }
+        if let Some(z) = z.filter(|&z| self.z != Some(z)) {
+            self.push_z(z);
+        }
         true
+    }
+
+    fn push_z(&mut self, z: Coord) {
+        self.z = Some(z);
+        self.out.extend_from_slice(b" Z");
+        push_fixed::<3>(&mut self.out, thousandths(to_mm(z)));
     }
 
     /// Writes E so that roundings never add up: what is written is always the
@@ -255,22 +256,24 @@ fn ticks(mm: f64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fill::{Path, PathPoint, Shape};
     use crate::gcode::usage::Usage;
     use crate::geom::Point;
-    use crate::plan::{Path, PathPoint, Step, Toolpath};
+    use crate::plan::{Head, PrintMove, Toolpath};
     use crate::profile;
 
     fn toolpath() -> Toolpath {
-        let path = |role, layers: u32, xs: &[Coord], y| Path {
-            role,
-            layers,
-            height: 2_000 * layers as Coord,
-            points: xs.iter().map(|&x| PathPoint { at: Point { x, y }, width: 4_000 }).collect(),
+        let path = |role, layers: u32, xs: &[Coord], y| {
+            let height = 2_000 * layers as Coord;
+            let point = |&x| PathPoint { at: Point { x, y }, z: 0, width: 4_000, height };
+            let points = xs.iter().map(point).collect();
+            Path { role, shape: Shape::Open, points, layers, tool: 0 }
         };
         let wall = path(Role::OuterWall, 1, &[0, 100_000], 0);
         let thick = path(Role::Infill, 2, &[100_000, 0], 20_000);
-        let steps = vec![Step { retract: true, path: wall }, Step { retract: false, path: thick }];
-        Toolpath { layer: 3, z: 8_000, height: 2_000, from: None, steps }
+        let moves = [(true, wall), (false, thick)];
+        let moves = moves.map(|(retract, path)| PrintMove { retract, path }).to_vec();
+        Toolpath { layer: 3, z: 8_000, height: 2_000, from: Head::default(), moves }
     }
 
     fn text(profile: &str) -> String {

@@ -1,10 +1,12 @@
-//! Plane geometry on the integer grid: points, contours, spans, frames and polygon offsets.
+//! Plane geometry on the integer grid: points, contours, spans, rasters and polygon offsets.
 
 pub mod cells;
 pub mod follow;
 pub mod frame;
 pub mod parallel;
 pub mod polygon;
+pub mod polyline;
+pub mod raster;
 pub mod simple;
 pub mod spans;
 

@@ -1,21 +1,23 @@
 //! Slicer -> toolpaths -> Writer: plans the layers in batches, the next while one is written.
 //!
-//! All code that names the numbers of `region` and `plan` stands here and in no other file of
+//! All code that names the numbers of `region`, `fill` and `plan` stands here and in no other file of
 //! the pipeline.
 
 use crate::error::Result;
+use crate::fill::{self, FillParams};
 use crate::gcode::Writer;
 use crate::geom::Point;
-use crate::plan::{self, Path, Pieces, PlanParams, Toolpath};
+use crate::plan::order::{self, Unordered};
+use crate::plan::{Head, PlanParams, Toolpath, travel};
 use crate::profile::Settings;
 use crate::progress::Progress;
-use crate::region::audit::Audit;
-use crate::region::groups::Grouping;
+use crate::region::dual::audit::Audit;
+use crate::region::dual::groups::Grouping;
 use crate::region::support::{SupportParams, supports};
 use crate::region::window::{self, Window};
-use crate::region::{Params, Region};
+use crate::region::{Region, RegionParams};
 use crate::report::Tally;
-use crate::slice::Slicer;
+use crate::slice::{Heights, Slicer};
 use rayon::prelude::*;
 use std::collections::VecDeque;
 
@@ -23,23 +25,26 @@ use std::collections::VecDeque;
 /// as drawing the thumbnails, which runs at the same time. More would only take more memory.
 const AHEAD: usize = 2;
 
-/// What the settings mean for `region` and `plan`.
+/// What the settings mean for `region`, `fill` and `plan`.
 pub struct Setup {
-    params: Params,
+    region: RegionParams,
     support: Option<SupportParams>,
     grouping: Grouping,
+    fill: FillParams,
     plan: PlanParams,
 }
 
 impl Setup {
-    /// The numbers that `settings` mean.
+    /// The numbers that `settings` mean, for layers at `heights`.
     #[must_use]
-    pub fn new(settings: &Settings) -> Self {
-        let params = Params::new(settings);
-        let support = SupportParams::new(settings);
-        let plan = PlanParams::new(settings, &params, support);
-        let grouping = Grouping::new(&settings.dual, settings.dual_ratio());
-        Self { params, support, grouping, plan }
+    pub fn new(settings: &Settings, heights: &Heights) -> Self {
+        Self {
+            region: RegionParams::new(settings),
+            support: SupportParams::new(settings),
+            grouping: Grouping::new(&settings.dual, settings.dual_ratio()),
+            fill: FillParams::new(settings, heights),
+            plan: PlanParams::new(settings),
+        }
     }
 
     /// Ready to plan the layers of `slicer`; support stands within these corners of the bed.
@@ -47,9 +52,14 @@ impl Setup {
     pub fn planner<'a>(&'a self, slicer: &'a Slicer<'a>, bed: (Point, Point)) -> Planner<'a> {
         let supports = self
             .support
-            .map(|s| window::Support { comb: s.comb(), rows: supports(slicer, &s, bed) });
-        let window = Window::new(slicer, &self.params, &self.grouping, supports);
-        let orderer = Orderer { plan: &self.plan, at: None, tally: Tally::default() };
+            .map(|s| window::Support { pattern: s.pattern(), rows: supports(slicer, &s, bed) });
+        let window = Window::new(slicer, &self.region, &self.grouping, supports);
+        let orderer = Orderer {
+            fill: &self.fill,
+            plan: &self.plan,
+            head: Head::default(),
+            tally: Tally::default(),
+        };
         Planner { window, regions: None, orderer }
     }
 }
@@ -89,29 +99,31 @@ impl Iterator for Planner<'_> {
     }
 }
 
-/// Orders the paths of layer after layer.
+/// Fills regions and orders the paths of layer after layer.
 struct Orderer<'a> {
+    fill: &'a FillParams,
     plan: &'a PlanParams,
-    /// Where the nozzle is after the layers so far.
-    at: Option<Point>,
+    /// Where the head is after the layers so far.
+    head: Head,
     tally: Tally,
 }
 
 impl Orderer<'_> {
     fn toolpaths(&mut self, regions: &[Region]) -> Vec<Toolpath> {
-        let plan = self.plan;
-        let pieces: Vec<Pieces> = regions.par_iter().map(|r| plan::pieces(r, plan)).collect();
+        let (fill, plan) = (self.fill, self.plan);
+        let unordered =
+            |region: &Region| Unordered::new(fill::paths(region, fill), &region.layer.contours);
+        let unordered: Vec<Unordered> = regions.par_iter().map(unordered).collect();
         // The end of a layer decides where the next begins, so that they are ordered in sequence.
         let mut ordered = Vec::with_capacity(regions.len());
-        for (region, pieces) in regions.iter().zip(pieces) {
-            let (height, from) = (region.layer.height, self.at.unwrap_or_default());
-            let paths = plan::order::order(pieces, height, from, plan);
-            let end = paths.last().map(Path::end).or(self.at);
-            ordered.push((region, std::mem::replace(&mut self.at, end), paths));
+        for (region, paths) in regions.iter().zip(unordered) {
+            let paths = order::order(paths, self.head.at.unwrap_or_default(), plan);
+            let next = self.head.after(&region.layer, &paths);
+            ordered.push((region, std::mem::replace(&mut self.head, next), paths));
             self.tally.layer(region);
         }
         let toolpaths = ordered.into_par_iter();
-        toolpaths.map(|(r, from, paths)| plan::toolpath(r, paths, from, plan)).collect()
+        toolpaths.map(|(r, from, paths)| travel::toolpath(&r.layer, paths, from, plan)).collect()
     }
 }
 

@@ -31,8 +31,8 @@ pub fn settle(settings: &Settings, mesh: &Mesh) -> Settings {
 /// [`Error::Unprintable`] if the models are lower than half a layer.
 pub fn heights(settings: &Settings, placed: &Placed) -> Result<Heights> {
     let (first, other) = (to_units(settings.first_layer_height), to_units(settings.layer_height));
-    let heights = Heights::new(first, other, placed.mesh.top());
-    if heights.count > 0 {
+    let heights = Heights::even(first, other, placed.mesh.top());
+    if heights.count() > 0 {
         return Ok(heights);
     }
     let height = placed.size_mm[2];

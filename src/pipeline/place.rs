@@ -41,13 +41,13 @@ pub fn bed_corners(bed: &Bed, offset: [f64; 2]) -> (Point, Point) {
 
 /// What the start and end blocks may name.
 #[must_use]
-pub fn print_facts(placed: &Placed, heights: Heights) -> PrintFacts {
+pub fn print_facts(placed: &Placed, heights: &Heights) -> PrintFacts {
     let half = [placed.size_mm[0] / 2.0, placed.size_mm[1] / 2.0];
     let [x, y] = placed.offset;
     PrintFacts {
-        layers: heights.count,
+        layers: heights.count(),
         min: [x - half[0], y - half[1]],
         max: [x + half[0], y + half[1]],
-        height: to_mm(heights.top(heights.count.saturating_sub(1))),
+        height: to_mm(heights.top(heights.count() - 1)),
     }
 }

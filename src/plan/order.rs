@@ -1,57 +1,78 @@
-//! Pieces -> ordered paths: island by island, walls first, nearest first from either end.
+//! Unordered paths -> ordered paths: island by island, walls first, nearest first from either end.
 //!
-//! An island is an outer contour with its holes and all that is printed inside
-//! it. Within an island the order is walls, skin, infill; support comes last on
-//! the layer. Each step goes to the piece whose start or end is nearest; ties
-//! go to the piece that comes first in the list, so that the order is fixed.
-//! The last chains of a layer are also tried backwards from where the next one begins.
+//! Within an island the order is walls, skin, infill; helpers such as support come last on
+//! the layer. The next path is always the one whose start or end is nearest; of equals the
+//! one that comes first in the list, so that the order is fixed.
+//! The last paths of a layer are also tried backwards from where the next one begins.
 
-use super::{Path, Pieces, PlanParams, Role, tour};
+use super::{PlanParams, tour};
+use crate::fill::{Path, PathPoint, Place, Role, Shape};
 use crate::geom::{Contour, Point, double_area, edges, encloses};
-use crate::region::walls::Wall;
-use crate::units::Coord;
 
-/// Puts the pieces of a layer in order, starting from `at`.
+/// The paths of one layer, divided but not yet in order.
+#[derive(Debug, Default)]
+pub struct Unordered {
+    /// What is printed inside each outer contour.
+    islands: Vec<Island>,
+    /// What is printed after all islands; which end comes first is still free.
+    helpers: Vec<Path>,
+}
+
+/// What is printed inside one outer contour.
+#[derive(Debug, Default)]
+struct Island {
+    /// Its walls; where they begin is still free.
+    walls: Vec<Path>,
+    /// Its skin and infill; which end comes first is still free.
+    inside: Vec<Path>,
+}
+
+impl Island {
+    /// The squared distance from `at` to the nearest vertex of its walls, else to the nearest end
+    /// of its other paths.
+    fn distance2(&self, at: Point) -> i64 {
+        let walls = self.walls.iter().flat_map(|w| &w.points).map(|p| p.at.distance2(at)).min();
+        let ends = || self.inside.iter().flat_map(|c| [c.start(), c.end()]);
+        walls.or_else(|| ends().map(|p| p.distance2(at)).min()).unwrap_or(i64::MAX)
+    }
+}
+
+/// Puts the paths of a layer in order, starting from `at`.
 #[must_use]
-pub fn order(pieces: Pieces, height: Coord, mut at: Point, params: &PlanParams) -> Vec<Path> {
-    let Pieces { mut islands, support } = pieces;
+pub fn order(paths: Unordered, mut at: Point, params: &PlanParams) -> Vec<Path> {
+    let Unordered { mut islands, helpers } = paths;
     let mut out = Vec::new();
     while let Some(k) = nearest(islands.iter().map(|i| i.distance2(at))) {
-        let island = islands.remove(k);
-        order_walls(island.walls, height, &mut at, params, &mut out);
-        let mut chains = island.chains;
-        for role in [Role::Skin, Role::Infill] {
-            order_chains(chains.extract_if(.., |c| c.role == role).collect(), &mut at, &mut out);
-        }
+        let Island { walls, inside } = islands.remove(k);
+        order_walls(walls, &mut at, params, &mut out);
+        order_by_role(inside, Place::Inside, &mut at, &mut out);
     }
-    order_chains(support, &mut at, &mut out);
+    order_by_role(helpers, Place::Helper, &mut at, &mut out);
     if params.seam_rear {
         lead_back(&mut out);
     }
     out
 }
 
-/// What is printed inside one outer contour.
-#[derive(Debug, Default)]
-pub struct Island {
-    /// Its walls; where they begin is still free.
-    pub walls: Vec<Wall>,
-    /// Its skin and infill; which end comes first is still free.
-    pub chains: Vec<Path>,
-}
-
-impl Island {
-    /// The squared distance from `at` to the nearest vertex of its walls, else of its chains.
-    fn distance2(&self, at: Point) -> i64 {
-        let walls = self.walls.iter().flat_map(|w| &w.path).map(|p| p.distance2(at)).min();
-        let ends = || self.chains.iter().flat_map(|c| [c.start(), c.end()]);
-        walls.or_else(|| ends().map(|p| p.distance2(at)).min()).unwrap_or(i64::MAX)
+/// Orders paths role after role, those of one role nearest first.
+fn order_by_role(mut paths: Vec<Path>, place: Place, at: &mut Point, out: &mut Vec<Path>) {
+    for role in Role::ALL.into_iter().filter(|role| role.facts().place == place) {
+        order_open(paths.extract_if(.., |path| path.role == role).collect(), at, out);
     }
 }
 
-/// Divides walls and chains among the outer contours of a layer.
-#[must_use]
-pub fn islands(walls: Vec<Wall>, chains: Vec<Path>, contours: &[Contour]) -> Vec<Island> {
+impl Unordered {
+    /// Divides the paths of a layer among its outer contours.
+    #[must_use]
+    pub fn new(mut paths: Vec<Path>, contours: &[Contour]) -> Self {
+        let helper = |path: &mut Path| path.role.facts().place == Place::Helper;
+        let helpers = paths.extract_if(.., helper).collect();
+        Self { islands: islands(paths, contours), helpers }
+    }
+}
+
+/// Divides paths among the outer contours of a layer.
+fn islands(paths: Vec<Path>, contours: &[Contour]) -> Vec<Island> {
     let outer: Vec<Outer<'_>> =
         contours.iter().filter(|c| double_area(c) > 0).map(Outer::new).collect();
     // The last one takes what rounding leaves outside of all.
@@ -64,14 +85,12 @@ pub fn islands(walls: Vec<Wall>, chains: Vec<Path>, contours: &[Contour]) -> Vec
         let holds = outer.iter().enumerate().filter(|(_, o)| o.contains(p));
         holds.min_by_key(|(k, o)| (o.extent(), *k)).map_or(outer.len(), |(k, _)| k)
     };
-    for wall in walls {
-        let at = wall.path.first().copied().unwrap_or_default();
-        islands[home(at)].walls.push(wall);
+    for path in paths {
+        let island = &mut islands[home(path.start())];
+        let is_wall = path.role.facts().place == Place::Walls;
+        if is_wall { &mut island.walls } else { &mut island.inside }.push(path);
     }
-    for chain in chains {
-        islands[home(chain.start())].chains.push(chain);
-    }
-    islands.retain(|i| !i.walls.is_empty() || !i.chains.is_empty());
+    islands.retain(|i| !i.walls.is_empty() || !i.inside.is_empty());
     islands
 }
 
@@ -110,64 +129,64 @@ fn nearest(distances: impl Iterator<Item = i64>) -> Option<usize> {
     distances.enumerate().min_by_key(|&(k, d)| (d, k)).map(|(k, _)| k)
 }
 
-/// Orders walls by depth as the settings say, nearest first within a depth.
-fn order_walls(
-    mut walls: Vec<Wall>,
-    height: Coord,
-    at: &mut Point,
-    params: &PlanParams,
-    out: &mut Vec<Path>,
-) {
-    while let Some(depth) = {
-        let depths = walls.iter().map(|w| w.depth);
+/// Orders walls by depth as the settings ask, nearest first within a depth.
+fn order_walls(mut walls: Vec<Path>, at: &mut Point, params: &PlanParams, out: &mut Vec<Path>) {
+    let depth = |wall: &Path| match wall.shape {
+        Shape::Loop { depth } => depth,
+        Shape::Open => 0,
+    };
+    while let Some(next) = {
+        let depths = walls.iter().map(depth);
         if params.outer_first { depths.min() } else { depths.max() }
     } {
-        let seam = |wall: &Wall| -> (i64, usize) {
-            let place = |(k, p): (usize, &Point)| {
-                (if params.seam_rear { -i64::from(p.y) } else { p.distance2(*at) }, k)
+        let seam = |wall: &Path| -> usize {
+            let place = |(k, p): (usize, &PathPoint)| {
+                (if params.seam_rear { -i64::from(p.at.y) } else { p.at.distance2(*at) }, k)
             };
-            wall.path.iter().enumerate().map(place).min().unwrap_or_default()
+            let corners = wall.points.len() - usize::from(wall.shape != Shape::Open);
+            let first = wall.points[..corners].iter().enumerate().map(place).min();
+            first.map(|(_, k)| k).unwrap_or_default()
         };
         let best = walls
             .iter()
             .enumerate()
-            .filter(|(_, w)| w.depth == depth && !w.path.is_empty())
-            .map(|(k, w)| {
-                let (_, from) = seam(w);
-                (w.path[from].distance2(*at), k, from)
+            .filter(|(_, wall)| depth(wall) == next)
+            .map(|(k, wall)| {
+                let from = seam(wall);
+                (wall.points[from].at.distance2(*at), k, from)
             })
             .min();
         let Some((_, k, from)) = best else { break };
-        let wall = walls.remove(k);
-        let role = if wall.depth == 0 { Role::OuterWall } else { Role::InnerWall };
-        *at = wall.path[from];
-        out.push(Path::closed(role, &wall, from, params.region.line_width, height));
+        let mut wall = walls.remove(k);
+        wall.begin_at(from);
+        *at = wall.end();
+        out.push(wall);
     }
 }
 
-/// Orders chains nearest first from either end.
-fn order_chains(chains: Vec<Path>, at: &mut Point, out: &mut Vec<Path>) {
+/// Orders open paths nearest first from either end.
+fn order_open(paths: Vec<Path>, at: &mut Point, out: &mut Vec<Path>) {
     let first = out.len();
-    out.extend(pick(chains, |ends| nearest_first(ends, *at)));
+    out.extend(pick(paths, |ends| nearest_first(ends, *at)));
     *at = out[first..].last().map_or(*at, Path::end);
 }
 
-/// Where a chain begins and ends.
+/// Where a path begins and ends.
 type Ends = (Point, Point);
 
-/// Which chain is next, and whether it is printed the other way round.
+/// Which path is next, and whether it is printed the other way round.
 type Pick = (usize, bool);
 
-/// The chains in the order that `order` makes of their ends.
-fn pick(chains: Vec<Path>, order: impl FnOnce(&[Ends]) -> Vec<Pick>) -> Vec<Path> {
-    let ends: Vec<Ends> = chains.iter().map(|c| (c.start(), c.end())).collect();
-    let mut chains: Vec<Option<Path>> = chains.into_iter().map(Some).collect();
+/// The paths in the order that `order` makes of their ends.
+fn pick(paths: Vec<Path>, order: impl FnOnce(&[Ends]) -> Vec<Pick>) -> Vec<Path> {
+    let ends: Vec<Ends> = paths.iter().map(|c| (c.start(), c.end())).collect();
+    let mut paths: Vec<Option<Path>> = paths.into_iter().map(Some).collect();
     let take = |(k, turned): Pick| {
-        let mut chain = chains[k].take()?;
+        let mut path = paths[k].take()?;
         if turned {
-            chain.reverse();
+            path.reverse();
         }
-        Some(chain)
+        Some(path)
     };
     order(&ends).into_iter().filter_map(take).collect()
 }
@@ -186,7 +205,7 @@ fn nearest_first(ends: &[Ends], mut at: Point) -> Vec<Pick> {
     picks
 }
 
-/// Orders the last chains of a layer nearest first backwards from where its first wall
+/// Orders the last paths of a layer nearest first backwards from where its first wall
 /// begins, if that is the shorter way: with all seams at the rear, that is near where the
 /// next layer begins.
 fn lead_back(paths: &mut Vec<Path>) {
@@ -194,7 +213,7 @@ fn lead_back(paths: &mut Vec<Path>) {
     let first = paths.iter().rposition(|p| tour::free(p) != kind).map_or(0, |k| k + 1);
     let before = first.checked_sub(1).filter(|_| kind.is_some()).map(|k| paths[k].end());
     let (Some(home), Some(before)) = (paths.first().map(Path::start), before) else { return };
-    let chains = paths.split_off(first);
+    let last = paths.split_off(first);
     let order = |ends: &[Ends]| {
         let mut back = nearest_first(ends, home);
         back.reverse();
@@ -203,10 +222,10 @@ fn lead_back(paths: &mut Vec<Path>) {
         let shorter = way(&back, ends, (before, home)) < way(&kept, ends, (before, home));
         if shorter { back } else { kept }
     };
-    paths.extend(pick(chains, order));
+    paths.extend(pick(last, order));
 }
 
-/// The length of all travels between chains, from `before` and to `home`.
+/// The length of all travels between paths, from `before` and to `home`.
 fn way(picks: &[Pick], ends: &[Ends], (before, home): Ends) -> f64 {
     let mut at = before;
     let mut sum = 0.0;
@@ -221,11 +240,16 @@ fn way(picks: &[Pick], ends: &[Ends], (before, home): Ends) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::PathPoint;
+    use crate::units::Coord;
+
+    fn place(x: Coord, y: Coord) -> PathPoint {
+        PathPoint { at: Point { x, y }, z: 0, width: 4_000, height: 2_000 }
+    }
 
     fn line(x: Coord, role: Role) -> Path {
-        let point = |y| PathPoint { at: Point { x, y }, width: 4_000 };
-        Path { role, points: vec![point(0), point(10_000)], height: 2_000, layers: 1 }
+        let point = |y| place(x, y);
+        let points = vec![point(0), point(10_000)];
+        Path { role, shape: Shape::Open, points, layers: 1, tool: 0 }
     }
 
     fn places(paths: &[Path]) -> Vec<Coord> {
@@ -234,9 +258,9 @@ mod tests {
 
     #[test]
     fn chains_come_nearest_first_each_of_them_once() {
-        let chains = [90, 20, 50, 10].map(|x| line(x * 1_000, Role::Infill)).to_vec();
+        let paths = [90, 20, 50, 10].map(|x| line(x * 1_000, Role::Infill)).to_vec();
         let (mut at, mut out) = (Point { x: 40_000, y: 10_000 }, Vec::new());
-        order_chains(chains, &mut at, &mut out);
+        order_open(paths, &mut at, &mut out);
         assert_eq!(places(&out), [50_000, 20_000, 10_000, 90_000]);
         assert_eq!(out[0].start().y, 10_000, "entered at the nearer end");
         assert_eq!(out.last().map(Path::end), Some(at));
@@ -248,7 +272,7 @@ mod tests {
         let out = |xs: [Coord; 4]| xs.map(|x| line(x, Role::Infill)).to_vec();
         let mut paths = vec![wall.clone()];
         paths.extend(out([20_000, 30_000, 80_000, 90_000]));
-        paths[0].points.push(PathPoint { at: Point { x: 85_000, y: 0 }, width: 4_000 });
+        paths[0].points.push(place(85_000, 0));
         lead_back(&mut paths);
         assert_eq!(places(&paths), [0, 90_000, 80_000, 30_000, 20_000]);
         // Walls alone are left as they are.

@@ -5,7 +5,7 @@
 //! (Or 1976) while that makes the travels quicker. Where a run comes from and where
 //! it leads stays, so that layers remain independent of each other.
 
-use super::{Path, Role};
+use crate::fill::{Path, Place};
 use crate::geom::Point;
 use std::cell::LazyCell;
 use std::ops::Range;
@@ -65,10 +65,10 @@ pub fn improve(paths: Vec<Path>, from: Option<Point>, cost: &impl Cost) -> Vec<P
 
 /// Which paths may change places with `path`: those of the same kind; none with walls.
 pub(super) fn free(path: &Path) -> Option<bool> {
-    match path.role {
-        Role::OuterWall | Role::InnerWall => None,
-        Role::Skin | Role::Infill => Some(false),
-        Role::Support => Some(true),
+    match path.role.facts().place {
+        Place::Walls => None,
+        Place::Inside => Some(false),
+        Place::Helper => Some(true),
     }
 }
 

@@ -1,45 +1,19 @@
-//! Ordered paths -> Steps: the order improved, and which travels pull the filament back.
+//! Ordered paths -> print moves: the order improved, and which travels pull the filament back.
 //!
 //! A travel inside the part may ooze unseen; one that crosses an outer wall
 //! draws a string on the outside. So travels that cross a contour of the layer,
 //! and those outside of it, retract.
 
 use super::tour::{self, Cost};
-use super::{Path, PlanParams, Step};
+use super::{Head, PlanParams, PrintMove, Toolpath};
+use crate::fill::Path;
 use crate::geom::cells::Cells;
 use crate::geom::{Contour, Point, edges, encloses, side};
-use crate::units::{Bounded as _, Coord};
+use crate::slice::Layer;
+use crate::units::Coord;
 
 /// Bands that the edges of a layer are sorted into, at most.
 const MOST_BANDS: usize = 256;
-
-/// How long travels take.
-#[derive(Debug, Clone, Copy)]
-pub struct Times {
-    /// Feed, grid units per s.
-    pub feed: f64,
-    /// Acceleration, grid units per s².
-    pub acceleration: f64,
-    /// Pulling the filament back and pushing it again, s.
-    pub retraction: f64,
-}
-
-impl Times {
-    /// Time of a travel over `distance` grid units from stop to stop, s.
-    fn travel(&self, distance: f64) -> f64 {
-        let Self { feed, acceleration, .. } = *self;
-        if distance * acceleration < feed * feed {
-            2.0 * (distance / acceleration).sqrt()
-        } else {
-            distance / feed + feed / acceleration
-        }
-    }
-
-    /// How far a travel of `time` s leads at most, grid units.
-    fn reach(&self, time: f64) -> f64 {
-        (self.acceleration * time * time / 4.0).at_most(self.feed * time)
-    }
-}
 
 /// The travels of one layer.
 struct Travels<'a> {
@@ -73,14 +47,21 @@ impl Cost for Travels<'_> {
     }
 }
 
-/// Puts the paths in an order that takes less time, and adds to each whether the travel to it retracts, starting from `at`.
+/// The toolpath of a layer whose paths are in order; the head comes from `from`.
 #[must_use]
-pub fn steps(
+pub fn toolpath(layer: &Layer, paths: Vec<Path>, from: Head, params: &PlanParams) -> Toolpath {
+    let moves = moves(paths, &layer.contours, from.at, params);
+    Toolpath { layer: layer.index, z: layer.z, height: layer.height, from, moves }
+}
+
+/// Puts the paths in an order that takes less time, starting from `at`, and decides for each
+/// whether the travel to it retracts.
+fn moves(
     paths: Vec<Path>,
     contours: &[Contour],
     mut at: Option<Point>,
     params: &PlanParams,
-) -> Vec<Step> {
+) -> Vec<PrintMove> {
     let travels = Travels { crossings: Crossings::new(contours), params };
     tour::improve(paths, at, &travels)
         .into_iter()
@@ -91,7 +72,7 @@ pub fn steps(
                 None => params.retracts,
             };
             at = Some(path.end());
-            Step { retract, path }
+            PrintMove { retract, path }
         })
         .collect()
 }

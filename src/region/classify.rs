@@ -7,9 +7,12 @@
 //! Where there is skin it reaches a little further, under or over what covers it,
 //! to hold on.
 
-use super::{Params, Prepared};
+use super::params::SkinParams;
+use super::prepare::LayerRows;
+use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span, intersect};
 use crate::units::Coord;
+use std::sync::Arc;
 
 /// Skin shorter than this along its line is noise of the contours, not shape (50 µm).
 const LEAST_SKIN: Coord = 500;
@@ -19,30 +22,31 @@ const LEAST_SKIN: Coord = 500;
 #[derive(Debug, Clone, Default)]
 pub struct Areas {
     /// Solid lines.
-    pub skin: Rows,
+    pub skin: Arc<Rows>,
     /// Sparse lines.
     pub infill: Rows,
-    /// Where both may go, if beads along the walls take some of the fill rows.
-    pub fill: Option<Rows>,
+    /// Both together: the fill rows without what beads along walls take.
+    pub fill: Arc<Rows>,
 }
 
-/// Where a neighbour of layer `k` leaves it bare on raster `r`. `layers(k)` is `None`
+/// Where a neighbour of layer `k` leaves it bare on `raster`. `layers(k)` is `None`
 /// outside the part.
 #[must_use]
 pub fn exposed<'a>(
     k: usize,
-    r: usize,
-    layers: &impl Fn(usize) -> Option<&'a Prepared>,
-    params: &Params,
+    raster: Raster,
+    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+    params: &SkinParams,
 ) -> Rows {
-    let Some(fill) = layers(k).map(|p| &p.rows[r].fill) else { return Rows::default() };
-    let covered = covered(fill, k, r, layers, params);
+    let Some(rows) = layers(k).and_then(|rows| rows.on(raster)) else { return Rows::default() };
+    let fill = &rows.fill;
+    let covered = covered(fill, k, raster, layers, params);
     fill.minus(&covered).filter(|_, span| span.len() >= i64::from(LEAST_SKIN))
 }
 
 /// Divides the `fill` rows of a layer on a raster whose rows lie `pitch` apart.
 #[must_use]
-pub fn areas(fill: &Rows, exposed: &Rows, pitch: Coord, params: &Params) -> Areas {
+pub fn areas(fill: &Arc<Rows>, exposed: &Rows, pitch: Coord, params: &SkinParams) -> Areas {
     let skin = fill.and(&exposed.dilate(params.reach, pitch));
     let infill = fill.minus(&skin);
     bridge_gaps(fill, skin, infill, 2 * params.line_width)
@@ -55,25 +59,25 @@ pub fn areas_beside(
     fill: &Rows,
     exposed: &Rows,
     pitch: Coord,
-    params: &Params,
+    params: &SkinParams,
 ) -> Areas {
-    let fill = fill.minus(taken);
+    let fill = Arc::new(fill.minus(taken));
     let left = exposed.minus(taken).filter(|_, span| span.len() >= i64::from(LEAST_SKIN));
-    Areas { fill: Some(fill.clone()), ..areas(&fill, &left, pitch, params) }
+    areas(&fill, &left, pitch, params)
 }
 
 /// Where all neighbours within the skins' reach cover `fill`.
 fn covered<'a>(
     fill: &Rows,
     k: usize,
-    r: usize,
-    layers: &impl Fn(usize) -> Option<&'a Prepared>,
-    params: &Params,
+    raster: Raster,
+    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+    params: &SkinParams,
 ) -> Rows {
-    let below = (1..=params.bottom_skins).map(|n| k.checked_sub(n).and_then(layers));
-    let above = (1..=params.top_skins).map(|n| layers(k + n));
+    let below = (1..=params.bottom).map(|n| k.checked_sub(n).and_then(layers));
+    let above = (1..=params.top).map(|n| layers(k + n));
     let neighbours: Option<Vec<&Rows>> =
-        below.chain(above).map(|p| p.map(|p| &p.rows[r].cover)).collect();
+        below.chain(above).map(|rows| Some(&rows?.on(raster)?.cover)).collect();
     let mut out = Rows::with_room_of(fill, fill.range().start);
     let (mut now, mut next) = (Vec::<Span>::new(), Vec::new());
     for (j, row) in fill.iter() {
@@ -93,15 +97,15 @@ fn covered<'a>(
 
 /// Gives infill shorter than `least` between two pieces of skin to the skin: such
 /// a hole would cost more turns than it saves material.
-fn bridge_gaps(fill: &Rows, skin: Rows, infill: Rows, least: Coord) -> Areas {
+fn bridge_gaps(fill: &Arc<Rows>, skin: Rows, infill: Rows, least: Coord) -> Areas {
     let is_gap = |j: i32, span: Span| {
         span.len() < i64::from(least)
             && skin.row(j).iter().any(|s| s.end == span.start)
             && skin.row(j).iter().any(|s| s.start == span.end)
     };
     if !infill.iter().any(|(j, row)| row.iter().any(|&s| is_gap(j, s))) {
-        return Areas { skin, infill, fill: None };
+        return Areas { skin: Arc::new(skin), infill, fill: fill.clone() };
     }
     let infill = infill.filter(|j, span| !is_gap(j, span));
-    Areas { skin: fill.minus(&infill), infill, fill: None }
+    Areas { skin: Arc::new(fill.minus(&infill)), infill, fill: fill.clone() }
 }

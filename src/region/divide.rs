@@ -1,85 +1,101 @@
-//! Layer and its neighbours -> Areas and Beads: narrow skin along the walls, the rest skin or infill.
+//! Layer and its neighbours -> Areas and beads: narrow skin along the walls, the rest skin or infill.
 
-use super::classify::{areas, areas_beside, exposed};
-use super::dual::LayerAreas;
-use super::gap_closing::Crossed;
-use super::thin::{Strip, apart};
-use super::wall_beads::{Bead, rings, taken};
-use super::walls::Wall;
-use super::{Params, Prepared};
+use super::classify::{Areas, areas, areas_beside, exposed};
+use super::crossed::Crossed;
+use super::params::{BeadParams, RegionParams};
+use super::per_raster::{PerRaster, skin_turn};
+use super::prepare::{LayerRows, Own};
+use super::strips::{Strip, apart};
+use super::wall_beads::{taken, wall_beads};
 use crate::geom::Contour;
+use crate::geom::polyline::Polyline;
+use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
 
-/// Divides layer `k` of `layers`: its areas on both skin rasters and on those that `more`
-/// names, and the beads along its walls, in the frame of the raster of its skin.
-/// `layers(k)` is `None` outside the part.
+/// Areas of one layer on both rasters of skins, and on others as far as they were asked for.
+pub type LayerAreas = PerRaster<Areas>;
+
+/// Divides the layer `own`, one of `layers`: its areas on both rasters of skins and on `more`,
+/// and the beads along its walls, in the frame of the raster of its skin. `layers(k)` is
+/// `None` outside the part.
 #[must_use]
 pub fn divide<'a>(
-    k: usize,
-    more: impl Iterator<Item = usize>,
-    layers: &impl Fn(usize) -> Option<&'a Prepared>,
-    params: &Params,
-) -> (LayerAreas, Vec<Bead>) {
-    let mut out: LayerAreas = vec![None; params.rasters.len()];
-    let Some(layer) = layers(k) else { return (out, Vec::new()) };
-    let exposed = |r| exposed(k, r, layers, params);
-    let skins = [exposed(0), exposed(1)];
-    let innermost = [0, 1].map(|r| &layer.rows[r].fill);
-    let mut beads = along_walls(k, layer, &skins, innermost, params);
-    beads.extend(in_strips(k, layer, &skins, params));
-    let along = params.rasters[params.skin_rasters(k).0];
-    for r in [0, 1].into_iter().chain(more) {
-        if out[r].is_some() {
-            continue;
-        }
-        let (raster, fill) = (params.rasters[r], &layer.rows[r].fill);
+    own: &Own,
+    more: impl Iterator<Item = Raster>,
+    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+    params: &RegionParams,
+) -> (LayerAreas, Vec<Polyline>) {
+    let k = own.layer.index;
+    let exposed = |raster| exposed(k, raster, layers, &params.skins);
+    let skins = [0, 1].map(|r| exposed(params.rasters.skin(r)));
+    let fill = |raster| layers(k)?.on(raster).map(|rows| &rows.fill);
+    let beads = beads(own, &skins, layers, params);
+    let along = params.rasters.skin(skin_turn(k).0);
+    let areas_on = |raster: Raster| {
+        let Some(fill) = fill(raster) else { return Areas::default() };
         let other;
-        let bare = match skins.get(r) {
-            Some(rows) => rows,
+        let bare = match (0..2).find(|&r| params.rasters.skin(r) == raster) {
+            Some(r) => &skins[r],
             None => {
-                other = exposed(r);
+                other = exposed(raster);
                 &other
             }
         };
-        out[r] = Some(if beads.is_empty() {
-            areas(fill, bare, raster.pitch, params)
-        } else {
-            let taken = taken(&beads, along.frame, raster, params);
-            areas_beside(&taken, fill, bare, raster.pitch, params)
-        });
-    }
-    (out, beads)
-}
-
-/// The beads of layer `k` where it is too thin for both passes of an inner wall, and where
-/// it is too thin for infill and there is no skin as `skins` says.
-fn in_strips(k: usize, layer: &Prepared, skins: &[Rows; 2], params: &Params) -> Vec<Bead> {
-    let beads = |(walls, Strip { room: [a, b], narrow }): (u32, &Strip)| {
-        let within = params.within(walls);
-        if walls < params.walls {
-            return along_walls(k, layer, narrow, [a, b], &within);
+        if beads.is_empty() {
+            return areas(fill, bare, raster.pitch, &params.skins);
         }
-        let hollow = params.infill.is_empty();
-        let bare = |r: usize| if hollow { Rows::default() } else { apart(&narrow[r], &skins[r]) };
-        along_walls(k, layer, &[bare(0), bare(1)], [a, b], &within)
+        let taken = taken(&beads, along.frame, raster, &params.beads);
+        areas_beside(&taken, fill, bare, raster.pitch, &params.skins)
     };
-    (1..).zip(&layer.strips).flat_map(beads).collect()
+    let areas = PerRaster::new(&params.rasters, more, areas_on);
+    (areas, beads)
 }
 
-/// The beads along the innermost of `params.walls` walls of layer `k`, whose skin is exposed
-/// where `skins` says within `room`.
+/// The beads of a layer: along its innermost walls where `skins` are narrow, and in strips.
+fn beads<'a>(
+    own: &Own,
+    skins: &[Rows; 2],
+    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+    params: &RegionParams,
+) -> Vec<Polyline> {
+    let Some(rows) = layers(own.layer.index) else { return Vec::new() };
+    let innermost = [0, 1].map(|r| &*rows.skin(r).fill);
+    let mut beads = along_walls(own, params.walls.count, skins, innermost, params, &params.beads);
+    beads.extend(in_strips(own, skins, params));
+    beads
+}
+
+/// The beads of a layer where it is too thin for both passes of an inner wall, and where
+/// it is too thin for infill and has no skin.
+fn in_strips(own: &Own, skins: &[Rows; 2], params: &RegionParams) -> Vec<Polyline> {
+    let only_strips = BeadParams { only_strips: true, ..params.beads };
+    let beads = |(walls, Strip { room: [a, b], narrow }): (u32, &Strip)| {
+        let room = [a, b];
+        if walls < params.walls.count {
+            return along_walls(own, walls, narrow, room, params, &only_strips);
+        }
+        let hollow = params.sparse.is_empty();
+        let bare = |r: usize| if hollow { Rows::default() } else { apart(&narrow[r], &skins[r]) };
+        along_walls(own, walls, &[bare(0), bare(1)], room, params, &only_strips)
+    };
+    (1..).zip(&own.strips).flat_map(beads).collect()
+}
+
+/// The beads of a layer along the innermost of its first `count` walls, where the skin is
+/// exposed as `skins` tell within `room`.
 fn along_walls(
-    k: usize,
-    layer: &Prepared,
+    own: &Own,
+    count: u32,
     skins: &[Rows; 2],
     room: [&Rows; 2],
-    params: &Params,
-) -> Vec<Bead> {
+    params: &RegionParams,
+    beads: &BeadParams,
+) -> Vec<Polyline> {
     // Without walls the ends of the lines are the part's outside, all of them alike.
-    if params.walls == 0 || skins.iter().all(Rows::is_empty) {
+    if count == 0 || skins.iter().all(Rows::is_empty) {
         return Vec::new();
     }
-    let (along, across) = params.skin_rasters(k);
+    let (along, across) = skin_turn(own.layer.index);
     let crossed = Crossed {
         skin: &skins[along],
         fill: room[along],
@@ -87,9 +103,8 @@ fn along_walls(
         fill_columns: room[across],
         left_turn: along == 0,
     };
-    let frame = params.rasters[along].frame;
-    let innermost = layer.walls.iter().filter(|w| w.depth + 1 == params.walls);
-    let enter = |w: &Wall| -> Contour { w.path.iter().map(|&p| frame.enter(p)).collect() };
-    let walls: Vec<Contour> = innermost.map(enter).collect();
-    rings(&walls, &crossed, params)
+    let frame = params.rasters.skin(along).frame;
+    let innermost = own.walls.iter().filter(|w| w.depth + 1 == count);
+    let walls = innermost.map(|w| -> Contour { w.path.iter().map(|&p| frame.enter(p)).collect() });
+    wall_beads(&walls.collect::<Vec<_>>(), &crossed, beads)
 }

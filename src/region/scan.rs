@@ -10,7 +10,7 @@
 //! Euclidean inset, inside spans and chords together the outset: no polygon
 //! offset is needed.
 
-use crate::geom::frame::Frame;
+use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span, merge, subtract};
 use crate::geom::{Contour, Point, edges, side};
 use crate::units::{Bounded as _, Coord, between, nearest};
@@ -18,30 +18,6 @@ use crate::units::{Bounded as _, Coord, between, nearest};
 /// Rows so much further up and down than an edge reaches are asked as well (2 µm): what rounding
 /// can have made of the contours.
 const MARGIN: Coord = 20;
-
-/// A set of raster lines: row `j` runs at `v = j · pitch` in `frame`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Raster {
-    /// The lines' direction.
-    pub frame: Frame,
-    /// Distance between neighbouring lines, grid units, > 0.
-    pub pitch: Coord,
-}
-
-impl Raster {
-    /// Lines at `degrees` no further apart than `width`, every `stride`-th of which
-    /// (given with them) lies `spacing` > 0 from the next.
-    #[must_use]
-    pub fn fine(degrees: f64, spacing: Coord, width: Coord) -> (Self, i32) {
-        let stride = ((spacing + width - 1) / width).max(1);
-        (Self { frame: Frame::new(degrees), pitch: (spacing + stride / 2) / stride }, stride)
-    }
-
-    /// The rows `j` with `low < j · pitch <= high` (on the line counts as above).
-    fn rows(&self, low: Coord, high: Coord) -> std::ops::Range<i32> {
-        low.div_euclid(self.pitch) + 1..high.div_euclid(self.pitch) + 1
-    }
-}
 
 /// A layer's contours as one raster sees them: in its frame, with the crossings
 /// of every row already found, ready for insets and outsets.

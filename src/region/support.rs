@@ -5,29 +5,33 @@
 //! layer, keeping its distance from the part, until it reaches the bed or the part:
 //! `S(k) = (O(k+1+gap) ∪ S(k+1)) − outset(L(k))`.
 
-use super::Comb;
-use super::scan::{Raster, Scan};
+use super::scan::Scan;
 use crate::geom::Point;
+use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span, subtract};
+use crate::pattern::{Lines, Pattern};
 use crate::profile::{Settings, SupportBase};
 use crate::slice::{Layer, Slicer};
-use crate::units::{Coord, to_units};
+use crate::units::{Coord, to_mm, to_units};
 use rayon::prelude::*;
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// Overhangs and supports shorter than this along their line are left out (50 µm and
 /// one line width): noise, and blobs.
 const LEAST_OVERHANG: Coord = 500;
 
+/// A layer is never taken to lean out further than this, mm: at an angle of nearly zero
+/// nothing is an overhang.
+const MOST_LEAN_MM: f64 = 1000.0;
+
 /// The numbers of support, in grid units.
 #[derive(Debug, Clone, Copy)]
 pub struct SupportParams {
-    /// The lines: fine enough to see every overhang; every `stride`-th is printed.
-    pub raster: Raster,
-    /// See `raster`.
-    pub stride: i32,
-    /// How far a layer may reach over the one below without support.
-    lean: Coord,
+    /// The lines, on rows fine enough to see every overhang.
+    lines: Lines,
+    /// How far a layer may reach over the one below without support, for each unit of its height.
+    lean: f64,
     outset: Coord,
     /// Distance from the part to the middle of a support line, sideways.
     clearance: Coord,
@@ -38,10 +42,15 @@ pub struct SupportParams {
 }
 
 impl SupportParams {
-    /// The lines that are printed.
+    /// What support is filled with.
     #[must_use]
-    pub fn comb(&self) -> Comb {
-        Comb { raster: 0, offset: 0, stride: self.stride, joined: true }
+    pub fn pattern(&self) -> Pattern {
+        Arc::new(self.lines)
+    }
+
+    /// The rows on which support is worked out.
+    fn raster(&self) -> Raster {
+        self.lines.raster
     }
 
     /// The numbers that `settings` mean for support; none if there is to be none.
@@ -49,17 +58,13 @@ impl SupportParams {
     pub fn new(settings: &Settings) -> Option<Self> {
         let support = &settings.support;
         let (w, spacing) = (to_units(settings.line_width), to_units(support.spacing));
-        let (raster, stride) = Raster::fine(settings.angle.degrees(), spacing, w);
+        let lines = Lines::new(settings.angle.degrees(), spacing, w);
         let angle = support.threshold_angle.to_radians();
-        let lean = if support.threshold_angle >= 90.0 {
-            0.0
-        } else {
-            settings.layer_height * libm::cos(angle) / libm::sin(angle)
-        };
+        let lean =
+            if support.threshold_angle >= 90.0 { 0.0 } else { libm::cos(angle) / libm::sin(angle) };
         support.enabled.then(|| Self {
-            raster,
-            stride,
-            lean: to_units(lean.min(1000.0)),
+            lines,
+            lean,
             outset: to_units(support.outset),
             clearance: to_units(support.xy_distance) + w / 2,
             gap: (support.z_distance / settings.layer_height).round() as usize,
@@ -80,13 +85,15 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(layer: &Layer, params: &SupportParams) -> Self {
-        let scan = Scan::new(&layer.contours, params.raster);
+    /// `above` is the height of the layer above.
+    fn new(layer: &Layer, above: Coord, params: &SupportParams) -> Self {
+        let lean = to_units((to_mm(above) * params.lean).min(MOST_LEAN_MM));
+        let scan = Scan::new(&layer.contours, params.raster());
         Self {
             index: layer.index,
             inside: scan.inside().clone(),
             near: scan.outset(params.clearance),
-            carries: scan.outset(params.lean),
+            carries: scan.outset(lean),
         }
     }
 }
@@ -95,12 +102,15 @@ impl Seen {
 /// `within` is the bed, as the corners of a rectangle around the origin.
 #[must_use]
 pub fn supports(slicer: &Slicer<'_>, params: &SupportParams, within: (Point, Point)) -> Vec<Rows> {
-    let count = slicer.heights().count;
-    let mut columns = vec![Rows::default(); count];
+    let heights = slicer.heights();
+    let mut columns = vec![Rows::default(); heights.count()];
     let mut window = Window::default();
+    let seen = |layer: &Layer| {
+        let above = (layer.index + 1).min(heights.count() - 1);
+        Seen::new(layer, heights.height(above), params)
+    };
     for block in (0..slicer.blocks()).rev() {
-        let mut seen: Vec<Seen> =
-            slicer.block(block).par_iter().map(|layer| Seen::new(layer, params)).collect();
+        let mut seen: Vec<Seen> = slicer.block(block).par_iter().map(seen).collect();
         while let Some(layer) = seen.pop() {
             window.push(layer, params, &mut columns);
         }
@@ -111,7 +121,7 @@ pub fn supports(slicer: &Slicer<'_>, params: &SupportParams, within: (Point, Poi
     }
     let (low, high) = within;
     let corners = vec![low, Point { x: high.x, y: low.y }, high, Point { x: low.x, y: high.y }];
-    let bed = Scan::new(&[corners], params.raster);
+    let bed = Scan::new(&[corners], params.raster());
     let long = |_, span: Span| span.len() >= i64::from(params.least);
     columns.par_iter().map(|rows| rows.and(bed.inside()).filter(long)).collect()
 }
@@ -137,7 +147,7 @@ impl Window {
                 .inside
                 .minus(&layer.carries)
                 .filter(|_, s| s.len() >= i64::from(LEAST_OVERHANG));
-            self.overhangs.push_back(hanging.dilate(params.outset, params.raster.pitch));
+            self.overhangs.push_back(hanging.dilate(params.outset, params.raster().pitch));
         }
         self.layers.push_back(layer);
         if self.layers.len() > params.gap {
@@ -206,7 +216,7 @@ fn keep_to_bed(slicer: &Slicer<'_>, params: &SupportParams, columns: &mut [Rows]
         let layers = slicer.block(block);
         let near: Vec<Rows> = layers
             .par_iter()
-            .map(|l| Scan::new(&l.contours, params.raster).outset(params.clearance))
+            .map(|l| Scan::new(&l.contours, params.raster()).outset(params.clearance))
             .collect();
         for (layer, near) in layers.iter().zip(&near) {
             columns[layer.index] = columns[layer.index].minus(&shadow);

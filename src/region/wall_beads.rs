@@ -7,19 +7,17 @@
 //! 45° or steeper. What one to three beads can cover is laid along the wall; what is
 //! deeper stays for lines. Between two walls the beads of both sides share the width.
 
-use super::Params;
-use super::gap_closing::Crossed;
+use super::crossed::Crossed;
 use super::near::Near;
-use super::scan::{Raster, around};
-use super::variable_width::LinePoint;
-use super::wall_samples::{MOST_BEADS, NARROWEST, SHORT, Station, stations};
+use super::params::BeadParams;
+use super::scan::around;
+use super::wall_samples::{MOST_BEADS, NARROWEST, SHORT, WallSample, samples};
 use crate::geom::frame::Frame;
+use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
 use crate::units::{Bounded as _, Coord, nearest};
-
-/// A bead that follows a wall, in the frame of the skin's raster.
-pub type Bead = Vec<LinePoint>;
 
 /// Beads may be this much nearer to a wall than asked for, in line widths: walls on
 /// both sides of a strip are not quite parallel.
@@ -46,11 +44,11 @@ struct Place {
 /// The beads that cover the narrow parts of the exposed skin `crossed` along `walls`:
 /// the innermost walls, in the frame of the raster that is printed.
 #[must_use]
-pub fn rings(walls: &[Contour], crossed: &Crossed<'_>, params: &Params) -> Vec<Bead> {
+pub fn wall_beads(walls: &[Contour], crossed: &Crossed<'_>, params: &BeadParams) -> Vec<Polyline> {
     if crossed.skin.is_empty() && crossed.columns.is_empty() {
         return Vec::new();
     }
-    let Some((laps, near)) = stations(walls, crossed, params) else { return Vec::new() };
+    let Some((laps, near)) = samples(walls, crossed, params) else { return Vec::new() };
     let mut out = Vec::new();
     for lap in &laps {
         for index in 0..MOST_BEADS {
@@ -62,31 +60,31 @@ pub fn rings(walls: &[Contour], crossed: &Crossed<'_>, params: &Params) -> Vec<B
     out
 }
 
-/// Where the bead with `index`, counted from the wall, runs at a station; none if there
+/// Where the bead with `index`, counted from the wall, runs at a sample; none if there
 /// is none, or if another wall is too near.
-fn place(station: &Station, index: usize, near: &Near, params: &Params) -> Option<Place> {
+fn place(sample: &WallSample, index: usize, near: &Near, params: &BeadParams) -> Option<Place> {
     let w = f64::from(params.line_width);
-    if index >= station.beads {
+    if index >= sample.beads {
         return None;
     }
     let edge = w / 2.0;
-    let (width, from) = if station.is_single(params) {
+    let (width, from) = if sample.is_single(params) {
         // One of the two walls lays the bead between them.
-        (2.0 * station.depth, station.leads.then_some(0.0)?)
+        (2.0 * sample.depth, sample.leads.then_some(0.0)?)
     } else {
-        let even = station.depth / station.beads as f64;
-        let width = if station.shared { even } else { even.max(NARROWEST * w) };
+        let even = sample.depth / sample.beads as f64;
+        let width = if sample.shared { even } else { even.max(NARROWEST * w) };
         (width, index as f64 * width)
     };
     let away = edge + from + width / 2.0;
-    let [x, y] = [0, 1].map(|k| station.at[k] + away * station.normal[k]);
+    let [x, y] = [0, 1].map(|k| sample.at[k] + away * sample.normal[k]);
     let clear = away - SLACK * w;
     near.is_free([[x, y]], clear).then_some(Place { at: [x, y], width, clear })
 }
 
 /// The stretches of a lap around a wall that bead `index` takes, long enough to be
 /// worth it. One that goes all round ends where it begins.
-fn arcs(lap: &[Station], index: usize, near: &Near, params: &Params) -> Vec<Vec<Place>> {
+fn arcs(lap: &[WallSample], index: usize, near: &Near, params: &BeadParams) -> Vec<Vec<Place>> {
     let short = SHORT * f64::from(params.line_width);
     // Begins where there is no such bead, so that no arc is cut in two; else once more at its end.
     let bare = lap.iter().position(|s| s.beads <= index);
@@ -94,14 +92,14 @@ fn arcs(lap: &[Station], index: usize, near: &Near, params: &Params) -> Vec<Vec<
     let around = around.take(lap.len() + usize::from(bare.is_none()));
     let mut arcs: Vec<Vec<Place>> = Vec::new();
     let mut open = false;
-    for station in around {
-        if station.beads <= index {
+    for sample in around {
+        if sample.beads <= index {
             open = false;
             continue;
         }
         // What is too near to another wall is left out: the corner of a bead is where
         // its two sides meet.
-        let Some(place) = place(station, index, near, params) else { continue };
+        let Some(place) = place(sample, index, near, params) else { continue };
         let last = arcs.last_mut().filter(|_| open);
         match last.filter(|a| a.last().is_some_and(|l| joins(l, &place, near, params))) {
             Some(arc) => arc.push(place),
@@ -120,7 +118,7 @@ fn arcs(lap: &[Station], index: usize, near: &Near, params: &Params) -> Vec<Vec<
 
 /// Whether a bead may go straight from one place to the next: not far, and not across
 /// a wall that pokes in between.
-fn joins(a: &Place, b: &Place, near: &Near, params: &Params) -> bool {
+fn joins(a: &Place, b: &Place, near: &Near, params: &BeadParams) -> bool {
     let w = f64::from(params.line_width);
     let far = distance(a.at, b.at);
     let clear = a.clear.min(b.clear) - SLACK * w;
@@ -131,7 +129,7 @@ fn joins(a: &Place, b: &Place, near: &Near, params: &Params) -> bool {
 /// Where on `raster` no line may end because of `beads`, which are in `frame`: lines
 /// reach into them as they do into walls.
 #[must_use]
-pub fn taken(beads: &[Bead], frame: Frame, raster: Raster, params: &Params) -> Rows {
+pub fn taken(beads: &[Polyline], frame: Frame, raster: Raster, params: &BeadParams) -> Rows {
     let enter = |p: &LinePoint| raster.frame.enter(frame.leave(Point { x: p.u, y: p.v }));
     let more = params.line_width / 2 - params.overlap;
     let edges: Vec<(Point, Point, Coord)> = beads
@@ -152,7 +150,7 @@ fn length(arc: &[Place]) -> f64 {
 }
 
 /// The points of a bead, only those where it bends or changes its width.
-fn bead(arc: &[Place]) -> Bead {
+fn bead(arc: &[Place]) -> Polyline {
     let mut kept = Vec::with_capacity(arc.len());
     kept.push(0);
     keep_bends(arc, 0, arc.len() - 1, &mut kept);
@@ -205,18 +203,19 @@ mod tests {
     use super::*;
     use crate::geom::polygon;
     use crate::profile;
+    use crate::region::RegionParams;
     use crate::region::scan::Scan;
 
     /// The beads of a part with one wall whose skin is exposed up to `covered` from its
     /// contour; lines along x.
-    fn beads(part: &[Contour], covered: Coord) -> (Vec<Bead>, Params) {
+    fn beads(part: &[Contour], covered: Coord) -> (Vec<Polyline>, BeadParams) {
         let mut settings = profile::load("generic-marlin", &[]).unwrap().settings;
         settings.angle = profile::Angle::Degrees(0.0);
         settings.walls = 1;
-        let params = Params::new(&settings);
+        let params = RegionParams::new(&settings);
         let rows = |r: usize| {
-            let scan = Scan::new(part, params.rasters[r]);
-            let fill = scan.inset(params.fill_inset);
+            let scan = Scan::new(part, params.rasters.skin(r));
+            let fill = scan.inset(params.insets.fill);
             (fill.minus(&scan.inset(covered)), fill)
         };
         let ((skin, fill), (columns, fill_columns)) = (rows(0), rows(1));
@@ -227,8 +226,8 @@ mod tests {
             fill_columns: &fill_columns,
             left_turn: true,
         };
-        let walls = polygon::inset(part, params.outer_inset);
-        (rings(&walls, &crossed, &params), params)
+        let walls = polygon::inset(part, params.walls.outer_inset);
+        (wall_beads(&walls, &crossed, &params.beads), params.beads)
     }
 
     fn block(width: Coord, depth: Coord) -> Vec<Contour> {
@@ -274,7 +273,7 @@ mod tests {
 
     /// The beads of a strip about along x, 1.24 mm wide with its walls at the middle. It is
     /// `lean` narrower on the right than on the left, and rises by `turn` from left to right.
-    fn leaning(lean: Coord, turn: Coord) -> Vec<Bead> {
+    fn leaning(lean: Coord, turn: Coord) -> Vec<Polyline> {
         let p = |x, y| Point { x, y };
         let (left, right) = (-turn / 2, turn / 2);
         let half = 6_200;

@@ -1,8 +1,8 @@
-//! Wall and exposed rows -> Stations: how deep the exposed skin is behind each place of a wall.
+//! Wall and exposed rows -> Samples: how deep the exposed skin is behind each place of a wall.
 
-use super::Params;
-use super::gap_closing::Crossed;
+use super::crossed::Crossed;
 use super::near::{Area, Near};
+use super::params::BeadParams;
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, Point, edges};
 use crate::units::{Bounded as _, Coord, between, nearest};
@@ -51,7 +51,7 @@ const ROUND: f64 = 1.2;
 const CORNER: f64 = 11.0;
 
 /// Beads and gaps closed in them are no further than this many line widths from a
-/// station that has beads.
+/// sample that has beads.
 const MARGIN: f64 = CORNER + 8.0;
 
 /// Side of the cells that edges are sorted into, in line widths: larger than what is asked for
@@ -60,7 +60,7 @@ const CELL: f64 = 4.0;
 
 /// A place of a wall, and the skin behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Station {
+pub(super) struct WallSample {
     /// On the wall.
     pub at: [f64; 2],
     /// What leads away from the wall: its length is that of a mitre, 1 where the wall is straight.
@@ -79,14 +79,15 @@ pub(super) struct Station {
     skin: bool,
 }
 
-/// The stations of closed walls in the order of their points; none where beads cover
-/// nothing. Also all edges of the walls, if there are stations.
-pub(super) fn stations(
+/// The samples of closed walls in the order of their points; none where beads cover
+/// nothing. Also all edges of the walls, if there are samples.
+pub(super) fn samples(
     walls: &[Contour],
     crossed: &Crossed<'_>,
-    params: &Params,
-) -> Option<(Vec<Vec<Station>>, Near)> {
-    let mut laps: Vec<Vec<Station>> = walls.iter().map(|w| measured(w, crossed, params)).collect();
+    params: &BeadParams,
+) -> Option<(Vec<Vec<WallSample>>, Near)> {
+    let mut laps: Vec<Vec<WallSample>> =
+        walls.iter().map(|w| measured(w, crossed, params)).collect();
     if laps.iter().flatten().all(|s| s.beads == 0) {
         return None;
     }
@@ -104,8 +105,8 @@ pub(super) fn stations(
     Some((laps, near))
 }
 
-/// The stations of a wall without short changes, with the wall's own corners.
-fn settled(wall: &Contour, mut found: Vec<Station>, params: &Params) -> Vec<Station> {
+/// The samples of a wall without short changes, with the wall's own corners.
+fn settled(wall: &Contour, mut found: Vec<WallSample>, params: &BeadParams) -> Vec<WallSample> {
     if found.iter().all(|s| s.beads == 0) {
         return Vec::new();
     }
@@ -115,16 +116,16 @@ fn settled(wall: &Contour, mut found: Vec<Station>, params: &Params) -> Vec<Stat
     with_corners(wall, &found, round, params)
 }
 
-impl Station {
+impl WallSample {
     /// Whether it is at a strip so thin that one bead fills it.
-    pub(super) fn is_single(&self, params: &Params) -> bool {
+    pub(super) fn is_single(&self, params: &BeadParams) -> bool {
         self.shared && 2.0 * self.depth < SINGLE * f64::from(params.line_width)
     }
 
     /// Keeps no beads where the wall at the other end of the row is not beside this one:
     /// beyond the middle of a strip the other wall is the nearer one, in a corner it is not.
     /// Else settles which of the two leads.
-    fn confirm(&mut self, near: &Near, params: &Params) {
+    fn confirm(&mut self, near: &Near, params: &BeadParams) {
         let across = 2.0 * (self.depth + f64::from(params.line_width) / 2.0);
         let beyond = [0, 1].map(|k| self.at[k] + BEYOND * across * self.normal[k]);
         if let Some(other) = near.nearest(beyond, (1.0 - BEYOND + SLOPE) * across) {
@@ -148,7 +149,7 @@ fn leads(normal: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
 
 /// Where rows cross the inner edge of the walls: each edge of the wall under the raster
 /// whose rows it crosses at 45° or steeper.
-fn measured(wall: &Contour, crossed: &Crossed<'_>, params: &Params) -> Vec<Station> {
+fn measured(wall: &Contour, crossed: &Crossed<'_>, params: &BeadParams) -> Vec<WallSample> {
     let turned = |p: Point| {
         if crossed.left_turn { Point { x: p.y, y: -p.x } } else { Point { x: -p.y, y: p.x } }
     };
@@ -189,16 +190,16 @@ impl Edge {
         [-self.along[1], self.along[0]]
     }
 
-    /// Adds the stations where the rows of `fill` and `exposed` cross this edge, which
+    /// Adds the samples where the rows of `fill` and `exposed` cross this edge, which
     /// is `p` to `q` in their frame.
     fn measure(
         &self,
         (p, q): (Point, Point),
         (fill, exposed): (&Rows, &Rows),
-        params: &Params,
-        out: &mut Vec<Station>,
+        params: &BeadParams,
+        out: &mut Vec<WallSample>,
     ) {
-        let inset = f64::from(params.wall_to_fill());
+        let inset = f64::from(params.wall_to_fill);
         let rise = f64::from(q.y) - f64::from(p.y);
         let run = f64::from(q.x) - f64::from(p.x);
         let by = |part: f64| nearest(inset * part / self.length.at_least(1.0)) as Coord;
@@ -214,7 +215,7 @@ impl Edge {
             let u = between(low.x, high.x, (v, low.y, high.y));
             let t = f64::from(v - a.y) / f64::from(b.y - a.y);
             let at = [0, 1].map(|k| self.from[k] + t * self.length * self.along[k]);
-            let blank = Station {
+            let blank = WallSample {
                 at,
                 normal: self.normal(),
                 depth: 0.0,
@@ -229,7 +230,7 @@ impl Edge {
                 continue;
             }
             let behind = Behind::new(fill.row(j), exposed.row(j), u, !up, pitch);
-            out.extend(behind.map(|b| b.station(blank, sine, params)));
+            out.extend(behind.map(|b| b.sample(blank, sine, params)));
         }
         if !up {
             out[first..].reverse();
@@ -266,9 +267,9 @@ impl Behind {
     }
 
     /// `blank` with what is behind it; `sine` is that of the angle at which the row crosses.
-    fn station(&self, blank: Station, sine: f64, params: &Params) -> Station {
+    fn sample(&self, blank: WallSample, sine: f64, params: &BeadParams) -> WallSample {
         let w = f64::from(params.line_width);
-        let lead = f64::from(params.wall_to_fill()) - w / 2.0;
+        let lead = f64::from(params.wall_to_fill) - w / 2.0;
         let skin = self.skin > 0 || self.other > 0;
         let depth = |length: i64| length as f64 * sine + lead;
         // What a bead covers at least of either side.
@@ -277,13 +278,13 @@ impl Behind {
         if skin && across - taken(self.skin) - taken(self.other) <= GAP * w {
             let depth = across / 2.0;
             let beads = usize::from(depth <= SHARED * w);
-            return Station { depth, shared: true, beads, skin: true, ..blank };
+            return WallSample { depth, shared: true, beads, skin: true, ..blank };
         }
         if self.skin == 0 {
             return blank;
         }
         let depth = depth(self.skin);
-        Station { depth, beads: beads(depth, w), skin: true, ..blank }
+        WallSample { depth, beads: beads(depth, w), skin: true, ..blank }
     }
 }
 
@@ -306,56 +307,56 @@ fn beads(depth: f64, w: f64) -> usize {
     if count <= MOST_BEADS { count } else { 0 }
 }
 
-/// The stretches of stations with the same value of `key` as index ranges around the
-/// wall, which go on beyond the last station into the first ones.
+/// The stretches of samples with the same value of `key` as index ranges around the
+/// wall, which go on beyond the last sample into the first ones.
 fn stretches<K: PartialEq>(
-    stations: &[Station],
-    key: impl Fn(&Station) -> K,
+    samples: &[WallSample],
+    key: impl Fn(&WallSample) -> K,
 ) -> Vec<(usize, usize)> {
-    let n = stations.len();
-    let differs = |k: usize| key(&stations[k % n]) != key(&stations[(k + n - 1) % n]);
+    let n = samples.len();
+    let differs = |k: usize| key(&samples[k % n]) != key(&samples[(k + n - 1) % n]);
     let starts: Vec<usize> = (0..n).filter(|&k| differs(k)).collect();
     let ends = starts.iter().skip(1).copied().chain(starts.first().map(|k| k + n));
     starts.iter().copied().zip(ends).collect()
 }
 
-/// The way from the station before a stretch to the one behind it.
-fn span(stations: &[Station], (from, to): (usize, usize), round: f64) -> f64 {
-    let n = stations.len();
-    let way = stations[to % n].way - stations[(from + n - 1) % n].way;
+/// The way from the sample before a stretch to the one behind it.
+fn span(samples: &[WallSample], (from, to): (usize, usize), round: f64) -> f64 {
+    let n = samples.len();
+    let way = samples[to % n].way - samples[(from + n - 1) % n].way;
     if way > 0.0 { way } else { way + round }
 }
 
 /// Gives beads to short stretches without between two with beads.
-fn bridge(stations: &mut [Station], round: f64, params: &Params) {
-    let (n, w) = (stations.len(), f64::from(params.line_width));
-    for (from, to) in stretches(stations, |s| s.beads > 0) {
-        let (before, after) = (stations[(from + n - 1) % n], stations[to % n]);
-        if stations[from % n].beads > 0 {
+fn bridge(samples: &mut [WallSample], round: f64, params: &BeadParams) {
+    let (n, w) = (samples.len(), f64::from(params.line_width));
+    for (from, to) in stretches(samples, |s| s.beads > 0) {
+        let (before, after) = (samples[(from + n - 1) % n], samples[to % n]);
+        if samples[from % n].beads > 0 {
             continue;
         }
-        let deep = (from..to).any(|k| stations[k % n].skin);
+        let deep = (from..to).any(|k| samples[k % n].skin);
         let most = if deep { CORNER } else { SHORT } * w;
-        if span(stations, (from, to), round) > most {
+        if span(samples, (from, to), round) > most {
             continue;
         }
         let model = if before.depth <= after.depth { before } else { after };
         // Around the end of a strip the wall turns from one side to the other.
         let leads = before.leads || after.leads;
         for k in from..to {
-            let station = &mut stations[k % n];
-            let Station { depth, shared, beads, .. } = model;
-            *station = Station { depth, shared, leads, beads, ..*station };
+            let sample = &mut samples[k % n];
+            let WallSample { depth, shared, beads, .. } = model;
+            *sample = WallSample { depth, shared, leads, beads, ..*sample };
         }
     }
 }
 
 /// Spares beads on short stretches, and closes short gaps in them.
-fn calm(stations: &mut [Station], round: f64, params: &Params) {
-    let (n, w) = (stations.len(), f64::from(params.line_width));
-    for (from, to) in stretches(stations, |s| s.beads) {
-        let (before, after) = (stations[(from + n - 1) % n].beads, stations[to % n].beads);
-        let here = stations[from % n].beads;
+fn calm(samples: &mut [WallSample], round: f64, params: &BeadParams) {
+    let (n, w) = (samples.len(), f64::from(params.line_width));
+    for (from, to) in stretches(samples, |s| s.beads) {
+        let (before, after) = (samples[(from + n - 1) % n].beads, samples[to % n].beads);
+        let here = samples[from % n].beads;
         let (fewer, more) = (before.min(after), before.max(after));
         let other = match here {
             0 => continue,
@@ -363,18 +364,23 @@ fn calm(stations: &mut [Station], round: f64, params: &Params) {
             _ if here > more => more,
             _ => continue,
         };
-        if other == 0 || span(stations, (from, to), round) > SHORT * w {
+        if other == 0 || span(samples, (from, to), round) > SHORT * w {
             continue;
         }
-        let fits = |s: &Station| s.depth <= other as f64 * STRETCHED * w;
-        if (from..to).all(|k| fits(&stations[k % n])) {
-            (from..to).for_each(|k| stations[k % n].beads = other);
+        let fits = |s: &WallSample| s.depth <= other as f64 * STRETCHED * w;
+        if (from..to).all(|k| fits(&samples[k % n])) {
+            (from..to).for_each(|k| samples[k % n].beads = other);
         }
     }
 }
 
-/// Adds the wall's own corners to the stations found, with the skin of the nearest one.
-fn with_corners(wall: &Contour, found: &[Station], round: f64, params: &Params) -> Vec<Station> {
+/// Adds the wall's own corners to the samples found, with the skin of the nearest one.
+fn with_corners(
+    wall: &Contour,
+    found: &[WallSample],
+    round: f64,
+    params: &BeadParams,
+) -> Vec<WallSample> {
     let most = SHORT * f64::from(params.line_width);
     let n = wall.len();
     let mut out = Vec::with_capacity(found.len() + n);
@@ -383,9 +389,9 @@ fn with_corners(wall: &Contour, found: &[Station], round: f64, params: &Params) 
     for (k, (p, q)) in edges(wall).enumerate() {
         let (before, edge) = (Edge::new(wall[(k + n - 1) % n], p, 0.0), Edge::new(p, q, way));
         let near = |k: usize| {
-            let station = found[k % found.len()];
-            let away = (station.way - way).abs();
-            (away.at_most(round - away), station)
+            let sample = found[k % found.len()];
+            let away = (sample.way - way).abs();
+            (away.at_most(round - away), sample)
         };
         let (a, b) = (near(next + found.len() - 1), near(next));
         let nearest = if a.0 <= b.0 { a } else { b };
@@ -398,11 +404,11 @@ fn with_corners(wall: &Contour, found: &[Station], round: f64, params: &Params) 
         };
         let beads = if nearest.0 <= most { nearest.1.beads } else { 0 };
         let leads = a.1.leads || b.1.leads;
-        let corner = Station { at: edge.from, way, depth, leads, beads, ..nearest.1 };
+        let corner = WallSample { at: edge.from, way, depth, leads, beads, ..nearest.1 };
         add_corner(&before, &edge, corner, &mut out);
         way += edge.length;
-        while let Some(station) = found.get(next).filter(|s| s.way <= way) {
-            out.push(*station);
+        while let Some(sample) = found.get(next).filter(|s| s.way <= way) {
+            out.push(*sample);
             next += 1;
         }
     }
@@ -413,12 +419,12 @@ fn with_corners(wall: &Contour, found: &[Station], round: f64, params: &Params) 
 
 /// Adds a corner between two edges: on its mitre, or round in three points where that
 /// would reach far.
-fn add_corner(before: &Edge, after: &Edge, corner: Station, out: &mut Vec<Station>) {
+fn add_corner(before: &Edge, after: &Edge, corner: WallSample, out: &mut Vec<WallSample>) {
     let (a, b) = (before.normal(), after.normal());
     let cosine = a[0] * b[0] + a[1] * b[1];
     if cosine >= 0.0 {
         let normal = [0, 1].map(|k| (a[k] + b[k]) / (1.0 + cosine));
-        out.push(Station { normal, ..corner });
+        out.push(WallSample { normal, ..corner });
         return;
     }
     // Between the edges, or straight on where the wall turns back.
@@ -427,5 +433,5 @@ fn add_corner(before: &Edge, after: &Edge, corner: Station, out: &mut Vec<Statio
         let ahead = if length > 0.1 { (a[k] + b[k]) / length } else { before.along[k] };
         ahead * ROUND
     });
-    out.extend([a, middle, b].map(|normal| Station { normal, ..corner }));
+    out.extend([a, middle, b].map(|normal| WallSample { normal, ..corner }));
 }

@@ -1,7 +1,8 @@
 //! Contours -> Walls: loops parallel to the contours, one line width apart.
 
 use super::dual::groups::{Block, Grouping};
-use super::{Params, thin};
+use super::params::WallParams;
+use super::thin;
 use crate::geom::follow::follow;
 use crate::geom::{Contour, double_area, polygon};
 use crate::units::UNITS_PER_MM;
@@ -20,10 +21,10 @@ pub struct Wall {
 /// The walls of `contours`, from the outside inwards. Where the part is too thin
 /// for a wall there is none; nor for an inner wall's two passes, if it `may_be_thin`.
 #[must_use]
-pub fn walls(contours: &[Contour], may_be_thin: bool, params: &Params) -> Vec<Wall> {
+pub fn walls(contours: &[Contour], may_be_thin: bool, params: &WallParams) -> Vec<Wall> {
     let mut walls = Vec::new();
     let mut ring = contours.to_vec();
-    for depth in 0..params.walls {
+    for depth in 0..params.count {
         let distance = if depth == 0 { params.outer_inset } else { params.line_width };
         if distance > 0 {
             ring = polygon::inset(&ring, distance);
@@ -48,7 +49,7 @@ pub fn share(
     block: &Block,
     layers: &[&[Wall]],
     grouping: &Grouping,
-    params: &Params,
+    params: &WallParams,
 ) -> Vec<Vec<u32>> {
     let far = params.line_width / ALIKE;
     let mut out: Vec<Vec<u32>> = layers.iter().map(|walls| vec![1; walls.len()]).collect();
@@ -81,8 +82,8 @@ const SHARPEST_CORNER: f64 = 1.75;
 /// polygon has the area `P·d + d²·Σ tan(φ/2)` with perimeter `P` and turns `φ`.
 /// Nothing is too thin for no wall, or for one on the contour.
 #[must_use]
-pub fn thin_area(contours: &[Contour], walls: &[Wall], params: &Params) -> f64 {
-    if params.walls == 0 || params.outer_inset == 0 {
+pub fn thin_area(contours: &[Contour], walls: &[Wall], params: &WallParams) -> f64 {
+    if params.count == 0 || params.outer_inset == 0 {
         return 0.0;
     }
     let d = f64::from(params.outer_inset);

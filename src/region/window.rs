@@ -1,97 +1,70 @@
 //! Slicer -> Regions, batch by batch: the rolling window of layers that need each other.
 //!
-//! A layer is divided into skin and infill once the layers above that its top
-//! skins look at are there; a block of layers is handed on once all of it, and what
-//! it shares skins with, is divided. A layer is forgotten once no layer above looks at
-//! it: memory holds a batch and a few layers, whatever the height of the print.
+//! Words: to *prepare* a layer is to make its walls and rows from its contours. To *divide* it
+//! is to tell skin from infill, once the layers above that its top skins depend on are prepared.
+//! A *block* of layers is *filled* once all of it, and what it shares skins with, is divided:
+//! dual injection decides which layer prints what.
+//!
+//! Two kinds of values are kept for a layer. What neighbours look at (rows, areas) stays until
+//! no layer above needs it. What belongs to the layer alone (contours, walls, beads) is taken
+//! out once, when its region is handed on. So memory holds a batch and a few layers, whatever
+//! the height of the print.
 
-use super::classify::Areas;
-use super::divide::divide;
+use super::divide::{LayerAreas, divide};
+use super::dual;
 use super::dual::audit::Audit;
 use super::dual::groups::{Block, Grouping};
 use super::dual::inner_skin::Skins;
-use super::dual::{self, LayerAreas};
-use super::gap_closing::{Crossed, close};
-use super::wall_beads::Bead;
+use super::params::RegionParams;
+use super::per_raster::skin_turn;
+use super::prepare::{LayerRows, Own, prepare};
+use super::queue::Queue;
 use super::walls::{self, Wall};
-use super::{Comb, Hatch, Params, Prepared, Region, Skin};
+use super::{Region, Skin, SkinRows, Sparse};
+use crate::geom::polyline::Polyline;
 use crate::geom::spans::Rows;
+use crate::pattern::Pattern;
 use crate::profile::DualPart;
 use crate::slice::Slicer;
 use rayon::prelude::*;
-use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// Makes the regions of a print in batches, from the bed upwards.
 #[derive(Debug)]
 pub struct Window<'a> {
     slicer: &'a Slicer<'a>,
-    params: &'a Params,
+    params: &'a RegionParams,
     grouping: &'a Grouping,
     support: Option<Support>,
     /// The next batch to be sliced.
     batch: usize,
-    layers: Queue<Prepared>,
-    /// Those divided into skin and infill.
-    divided: Queue<Divided>,
-    /// Layers handed on so far.
-    done: usize,
+    /// What layers keep for themselves.
+    own: Queue<Own>,
+    /// Beads along the walls of the layers that are divided.
+    beads: Queue<Vec<Polyline>>,
+    /// Rows of the layers that are prepared.
+    rows: Queue<LayerRows>,
+    /// Areas of the layers that are divided.
+    areas: Queue<LayerAreas>,
     audits: Vec<Audit>,
 }
 
 /// The support of a print.
 #[derive(Debug)]
 pub struct Support {
-    /// Its lines.
-    pub comb: Comb,
-    /// Where they stand, by layer.
+    /// What it is filled with.
+    pub pattern: Pattern,
+    /// Where it stands, by layer.
     pub rows: Vec<Rows>,
 }
 
-/// A layer's areas and the beads along its walls.
-#[derive(Debug)]
-struct Divided {
-    areas: LayerAreas,
-    beads: Vec<Bead>,
-}
-
-/// What classification finds for one layer, before it takes its walls along.
+/// What is decided for one layer of a block, before its walls and beads are taken along.
 struct Filling {
     skins: Vec<Skin>,
-    infill: Vec<Hatch>,
-    support: Vec<Hatch>,
+    infill: Vec<Sparse>,
+    support: Vec<Sparse>,
     /// How many layers each wall is printed for.
     walls: Vec<u32>,
-}
-
-/// Values of successive layers, of which the first are forgotten.
-#[derive(Debug)]
-struct Queue<T> {
-    first: usize,
-    values: VecDeque<T>,
-}
-
-impl<T> Default for Queue<T> {
-    fn default() -> Self {
-        Self { first: 0, values: VecDeque::new() }
-    }
-}
-
-impl<T> Queue<T> {
-    /// One more than the last layer.
-    fn end(&self) -> usize {
-        self.first + self.values.len()
-    }
-
-    fn get(&self, k: usize) -> Option<&T> {
-        k.checked_sub(self.first).and_then(|k| self.values.get(k))
-    }
-
-    /// Forgets the layers before `k`.
-    fn forget(&mut self, k: usize) {
-        while self.first < k && self.values.pop_front().is_some() {
-            self.first += 1;
-        }
-    }
 }
 
 impl<'a> Window<'a> {
@@ -99,7 +72,7 @@ impl<'a> Window<'a> {
     #[must_use]
     pub fn new(
         slicer: &'a Slicer<'a>,
-        params: &'a Params,
+        params: &'a RegionParams,
         grouping: &'a Grouping,
         support: Option<Support>,
     ) -> Self {
@@ -109,9 +82,10 @@ impl<'a> Window<'a> {
             grouping,
             support,
             batch: 0,
-            layers: Queue::default(),
-            divided: Queue::default(),
-            done: 0,
+            own: Queue::default(),
+            beads: Queue::default(),
+            rows: Queue::default(),
+            areas: Queue::default(),
             audits: Vec::new(),
         }
     }
@@ -123,7 +97,7 @@ impl<'a> Window<'a> {
     }
 
     fn count(&self) -> usize {
-        self.slicer.heights().count
+        self.slicer.heights().count()
     }
 
     /// How many layers up and down a layer's skin may depend on another's.
@@ -136,34 +110,37 @@ impl<'a> Window<'a> {
     fn load(&mut self) {
         let layers = self.slicer.block(self.batch);
         self.batch += 1;
-        let prepared: Vec<Prepared> =
-            layers.into_par_iter().map(|layer| Prepared::new(layer, self.params)).collect();
-        self.layers.values.extend(prepared);
-        let known = self.layers.end();
+        let prepared: Vec<(Own, LayerRows)> =
+            layers.into_par_iter().map(|layer| prepare(layer, self.params)).collect();
+        let (own, rows): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
+        self.own.extend(own);
+        self.rows.extend(rows);
+        let known = self.rows.end();
         let all = self.batch == self.slicer.blocks();
-        let until = if all { known } else { known.saturating_sub(self.params.top_skins.max(1)) };
-        let divided: Vec<Divided> =
-            (self.divided.end()..until).into_par_iter().map(|k| self.divide(k)).collect();
-        self.divided.values.extend(divided);
+        let until = if all { known } else { known.saturating_sub(self.params.skins.top.max(1)) };
+        let divided: Vec<(LayerAreas, Vec<Polyline>)> =
+            (self.areas.end()..until).into_par_iter().filter_map(|k| self.divide(k)).collect();
+        let (areas, beads): (Vec<_>, Vec<_>) = divided.into_iter().unzip();
+        self.areas.extend(areas);
+        self.beads.extend(beads);
     }
 
-    /// The areas of layer `k` on both skin rasters and on those of its block's infill, and
-    /// the beads along its walls.
-    fn divide(&self, k: usize) -> Divided {
+    /// The areas of layer `k` on both rasters of skins and on those of its block's infill, and
+    /// the beads along its walls; `None` if the layer is not there.
+    fn divide(&self, k: usize) -> Option<(LayerAreas, Vec<Polyline>)> {
         let block = self.grouping.block(k, self.count());
-        let combs = dual::combs(&block, self.grouping, self.params);
-        let rasters = combs.iter().map(|c| c.raster);
-        let (areas, beads) = divide(k, rasters, &|k| self.layers.get(k), self.params);
-        Divided { areas, beads }
+        let patterns = dual::patterns(&block, self.grouping, &self.params.sparse);
+        let rasters = patterns.iter().map(|pattern| pattern.raster());
+        Some(divide(self.own.get(k)?, rasters, &|k| self.rows.get(k), self.params))
     }
 
     /// The next blocks whose layers have all they need.
     fn ready(&self) -> Vec<Block> {
-        let divided = self.divided.end();
+        let divided = self.areas.end();
         let all = divided == self.count();
         let until = if all { divided } else { divided.saturating_sub(2 * self.skin_reach()) };
         let mut blocks = Vec::new();
-        let mut from = self.done;
+        let mut from = self.own.start();
         while from < until {
             let block = self.grouping.block(from, self.count());
             from = block.layers.end;
@@ -176,11 +153,11 @@ impl<'a> Window<'a> {
 
     /// Fills the layers of a block.
     fn fill(&self, block: &Block) -> (Vec<Filling>, Vec<Audit>) {
-        let none = LayerAreas::new();
         let layers = block.layers.clone();
-        let areas: Vec<&LayerAreas> =
-            layers.clone().map(|k| self.divided.get(k).map_or(&none, |d| &d.areas)).collect();
-        let (infill, audit) = dual::infill(block, &areas, self.grouping, self.params);
+        let line_width = self.params.walls.line_width;
+        let areas: Vec<&LayerAreas> = layers.clone().filter_map(|k| self.areas.get(k)).collect();
+        let (infill, audit) =
+            dual::infill(block, &areas, self.grouping, &self.params.sparse, line_width);
         let (support, support_audit) = self.share_support(block);
         let skins: Vec<Vec<Skin>> = layers.into_par_iter().map(|k| self.skins(k)).collect();
         let lines = infill.into_iter().zip(support).zip(self.share_walls(block));
@@ -193,104 +170,99 @@ impl<'a> Window<'a> {
 
     /// How many layers each wall of each layer of a block is printed for.
     fn share_walls(&self, block: &Block) -> Vec<Vec<u32>> {
-        let walls = |k| self.layers.get(k).map_or(&[] as &[Wall], |layer| &layer.walls);
+        let walls = |k| self.own.get(k).map_or(&[] as &[Wall], |own| &own.walls);
         let layers: Vec<&[Wall]> = block.layers.clone().map(walls).collect();
         if self.grouping.shares(DualPart::InnerWalls) {
-            walls::share(block, &layers, self.grouping, self.params)
+            walls::share(block, &layers, self.grouping, &self.params.walls)
         } else {
             layers.iter().map(|walls| vec![1; walls.len()]).collect()
         }
     }
 
     /// The support of each layer of a block.
-    fn share_support(&self, block: &Block) -> (Vec<Vec<Hatch>>, Option<Audit>) {
+    fn share_support(&self, block: &Block) -> (Vec<Vec<Sparse>>, Option<Audit>) {
         let Some(support) = &self.support else {
             return (vec![Vec::new(); block.layers.len()], None);
         };
         let rows = &support.rows[block.layers.clone()];
-        dual::support(block, rows, support.comb, self.grouping, self.params.line_width)
+        let line_width = self.params.walls.line_width;
+        dual::support(block, rows, &support.pattern, self.grouping, line_width)
     }
 
-    /// The areas of layer `k` on raster `r`, if it is divided.
-    fn areas(&self, k: usize, r: usize) -> Option<&Areas> {
-        self.divided.get(k)?.areas.get(r)?.as_ref()
-    }
-
-    /// The skins of layer `k`, closed up to the walls.
+    /// The skins of layer `k`, which is divided.
     fn skins(&self, k: usize) -> Vec<Skin> {
-        let (along, across) = self.params.skin_rasters(k);
+        let Some(areas) = self.areas.get(k) else { return Vec::new() };
+        let (along, across) = skin_turn(k);
         if !self.grouping.shares(DualPart::InnerSkin) {
-            let none = Rows::default();
-            let rows = |r: usize| self.areas(k, r).map_or(&none, |areas| &areas.skin);
-            return vec![self.skin(k, 1, rows(along), rows(across))];
+            let skin = |r: usize| areas.skin(r).skin.clone();
+            return vec![self.skin(k, 1, areas, skin(along), skin(across))];
         }
         let ((thick, thin), (thick_across, thin_across)) =
             (self.share_skin(k, along), self.share_skin(k, across));
-        let mut skins = vec![self.skin(k, 1, &thin, &thin_across)];
+        let mut skins = vec![self.skin(k, 1, areas, thin.into(), thin_across.into())];
         for (layers, rows) in thick {
             let columns = thick_across.iter().find(|(count, _)| *count == layers);
             let columns = columns.map(|(_, rows)| rows.clone()).unwrap_or_default();
-            skins.push(self.skin(k, layers, &rows, &columns));
+            skins.push(self.skin(k, layers, areas, rows.into(), columns.into()));
         }
         skins
     }
 
-    /// The skin of layer `k` on raster `r`: what is printed for several layers, and what for
-    /// this one alone.
+    /// The skin of layer `k` on raster `r` of skins: what is printed for several layers, and
+    /// what for this one alone.
     fn share_skin(&self, k: usize, r: usize) -> (Vec<(u32, Rows)>, Rows) {
         let skins = Skins {
-            layers: |k| self.layers.get(k),
-            skins: |k| self.areas(k, r).map(|areas| &areas.skin),
-            raster: r,
+            layers: |k| self.rows.get(k),
+            skins: |k| self.areas.get(k).map(|areas| &*areas.skin(r).skin),
+            raster: self.params.rasters.skin(r),
             ratio: self.grouping.ratio(),
-            params: self.params,
+            params: &self.params.skins,
         };
         skins.share(k)
     }
 
-    /// The skin of layer `k` on these rows and columns, closed up to the walls.
-    fn skin(&self, k: usize, layers: u32, rows: &Rows, columns: &Rows) -> Skin {
-        let (along, across) = self.params.skin_rasters(k);
-        let Some(layer) = self.layers.get(k) else { return Skin::default() };
-        let left = |r: usize| self.areas(k, r).and_then(|areas| areas.fill.as_ref());
-        let fill = |r: usize| left(r).unwrap_or(&layer.rows[r].fill);
-        let crossed = Crossed {
-            skin: rows,
-            fill: fill(along),
-            columns,
-            fill_columns: fill(across),
+    /// The skin of layer `k` on these rows and columns. Beads come with the layer's own.
+    fn skin(
+        &self,
+        k: usize,
+        layers: u32,
+        areas: &LayerAreas,
+        rows: Arc<Rows>,
+        columns: Arc<Rows>,
+    ) -> Skin {
+        let (along, across) = skin_turn(k);
+        let fill = |r: usize| areas.skin(r).fill.clone();
+        Skin {
+            layers,
+            raster: self.params.rasters.skin(along),
+            rows: SkinRows { skin: rows, fill: fill(along) },
+            columns: SkinRows { skin: columns, fill: fill(across) },
             left_turn: along == 0,
-        };
-        let (lines, slivers) = close(&crossed, self.params);
-        // Beads along walls are for this layer alone.
-        let beads =
-            self.divided.get(k).filter(|_| layers == 1).map_or(&[] as &[Bead], |d| &d.beads);
-        Skin { layers, raster: along, lines, beads: [beads, &slivers].concat() }
+            beads: Vec::new(),
+        }
     }
 
     /// The regions of the layers that `fillings` were made for, in order.
     fn hand_on(&mut self, fillings: Vec<Filling>) -> Vec<Region> {
-        let mut regions = Vec::with_capacity(fillings.len());
-        for Filling { skins, infill, support, walls: printed } in fillings {
-            let prepared = &mut self.layers.values[self.done - self.layers.first];
-            // Neighbours look at the rows only.
-            let (walls, contours) =
-                (std::mem::take(&mut prepared.walls), std::mem::take(&mut prepared.layer.contours));
-            let layer = crate::slice::Layer { contours, ..prepared.layer.clone() };
-            let thin_mm2 = walls::thin_area(&layer.contours, &walls, self.params);
-            let walls = walls
-                .into_iter()
-                .zip(printed)
-                .filter(|(_, layers)| *layers > 0)
-                .map(|(wall, layers)| Wall { layers, ..wall })
-                .collect();
-            regions.push(Region { layer, walls, skins, infill, support, thin_mm2 });
-            self.done += 1;
-        }
+        let own = std::iter::from_fn(|| self.own.take().zip(self.beads.take()));
+        let regions = fillings.into_iter().zip(own).map(|(filling, (own, beads))| {
+            let Filling { mut skins, infill, support, walls: printed } = filling;
+            // Beads along walls are for this layer alone.
+            if let Some(skin) = skins.first_mut() {
+                skin.beads = beads;
+            }
+            let Own { layer, walls, .. } = own;
+            let thin_mm2 = walls::thin_area(&layer.contours, &walls, &self.params.walls);
+            let printed = walls.into_iter().zip(printed).filter(|(_, layers)| *layers > 0);
+            let walls = printed.map(|(wall, layers)| Wall { layers, ..wall }).collect();
+            Region { layer, walls, skins, infill, support, thin_mm2 }
+        });
+        let regions: Vec<Region> = regions.collect();
+        let done = self.own.start();
         let below = self.skin_reach();
-        let deepest = self.params.bottom_skins.max(if below > 0 { below + 1 } else { 0 });
-        self.divided.forget(self.done.saturating_sub(below));
-        self.layers.forget(self.done.saturating_sub(below + deepest));
+        let deepest = self.params.skins.bottom.max(if below > 0 { below + 1 } else { 0 });
+        self.areas.forget(done.saturating_sub(below));
+        self.rows.forget(done.saturating_sub(below + deepest));
         regions
     }
 }

@@ -69,7 +69,7 @@ impl<'a> Slicer<'a> {
         tolerance: Coord,
     ) -> Self {
         let block = LAYERS * rayon::current_num_threads().max(2);
-        let blocks = heights.count.div_ceil(block);
+        let blocks = heights.count().div_ceil(block);
         let below = |v: &[Coord; 3]| u32::try_from(heights.planes_up_to(v[2])).unwrap_or(u32::MAX);
         let below: Vec<u32> = mesh.vertices.par_iter().map(below).collect();
         let reach = |t: &[u32; 3]| -> Range<usize> {
@@ -103,8 +103,8 @@ impl<'a> Slicer<'a> {
 
     /// The heights that the mesh is cut at.
     #[must_use]
-    pub fn heights(&self) -> Heights {
-        self.heights
+    pub fn heights(&self) -> &Heights {
+        &self.heights
     }
 
     /// The number of blocks.
@@ -116,7 +116,7 @@ impl<'a> Slicer<'a> {
     /// The layers of block `b`, from the lowest to the highest.
     #[must_use]
     pub fn block(&self, b: usize) -> Vec<Layer> {
-        let layers = b * self.block..((b + 1) * self.block).min(self.heights.count);
+        let layers = b * self.block..((b + 1) * self.block).min(self.heights.count());
         let mut buckets = vec![Vec::new(); layers.len()];
         for &t in &self.triangles[self.starts[b]..self.starts[b + 1]] {
             let crossed = crossed(&self.below, &self.mesh.triangles[t as usize]);
@@ -302,7 +302,7 @@ mod tests {
         let kept = all.enumerate().filter(|(k, _)| !left_out.contains(k));
         let mesh = Mesh { vertices, triangles: kept.map(|(_, t)| t).collect() };
         let adjacency = adjacency(&mesh.vertices, &mesh.triangles);
-        let heights = Heights::new(2_000, 2_000, 100_000);
+        let heights = Heights::even(2_000, 2_000, 100_000);
         let slicer = Slicer::new(&mesh, &adjacency, heights, 100);
         (0..slicer.blocks()).flat_map(|b| slicer.block(b)).collect()
     }

@@ -12,9 +12,9 @@ pub fn solid_mm3(mesh: &Mesh, adjacency: &Adjacency) -> f64 {
     const LAYERS: i32 = 400;
     let top = mesh.top();
     let height = (top / LAYERS).max(1);
-    let slicer = Slicer::new(mesh, adjacency, Heights::new(height, height, top), 1);
+    let slicer = Slicer::new(mesh, adjacency, Heights::even(height, height, top), 1);
     let blocks = (0..slicer.blocks()).flat_map(|block| slicer.block(block));
     let volume: f64 = blocks.map(|layer| layer.volume_mm3()).sum();
     // The top cuts off the last layer, or the last layer does not reach it.
-    volume * f64::from(top) / f64::from(height) / slicer.heights().count.max(1) as f64
+    volume * f64::from(top) / f64::from(height) / slicer.heights().count().max(1) as f64
 }

@@ -10,21 +10,24 @@
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use hashbrown::HashMap;
 use nalgebra::Vector3;
+use slicer::Job;
+use slicer::fill::{self, FillParams};
 use slicer::gcode::moves::{MoveParams, Moves};
 use slicer::gcode::times::Timer;
 use slicer::gcode::write::WriteParams;
-use slicer::geom::Point;
 use slicer::mesh::place::{Placed, place};
 use slicer::mesh::{Bed, Placement, read};
 use slicer::motion::Limits;
+use slicer::plan::order::{self, Unordered};
+use slicer::plan::{Head, PlanParams, Toolpath, travel};
 use slicer::profile::{self, Override, Settings, ValueOrigin};
 use slicer::region::dual::groups::Grouping;
+use slicer::region::prepare::{LayerRows, prepare};
 use slicer::region::scan::Scan;
 use slicer::region::window::Window;
-use slicer::region::{Params, Prepared, Region, classify, walls};
+use slicer::region::{Region, RegionParams, classify, walls};
 use slicer::slice::{Heights, Layer, Slicer};
 use slicer::units::to_units;
-use slicer::{Job, plan};
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -43,7 +46,7 @@ struct Model {
     file: PathBuf,
     bytes: Vec<u8>,
     settings: Settings,
-    params: Params,
+    params: RegionParams,
 }
 
 impl Model {
@@ -56,7 +59,7 @@ impl Model {
         let overrides = [set("walls", "1"), set("dual.mode", "pair")];
         let settings = profile::load("generic-marlin", &overrides).expect("it is shipped").settings;
         let bytes = std::fs::read(&file).expect("the model can be read");
-        let params = Params::new(&settings);
+        let params = RegionParams::new(&settings);
         Self { name, file, bytes, settings, params }
     }
 
@@ -75,7 +78,7 @@ impl Model {
     fn slicer<'a>(&self, placed: &'a Placed) -> Slicer<'a> {
         let top = placed.mesh.vertices.iter().map(|v| v[2]).max().unwrap_or(0);
         let first = to_units(self.settings.first_layer_height);
-        let heights = Heights::new(first, to_units(self.settings.layer_height), top);
+        let heights = Heights::even(first, to_units(self.settings.layer_height), top);
         let tolerance = to_units(self.settings.tolerance);
         Slicer::new(&placed.mesh, &placed.adjacency, heights, tolerance)
     }
@@ -169,7 +172,10 @@ fn region(c: &mut Criterion, model: &Model) {
     let mut group = c.benchmark_group("region, middle block");
     group.bench_function(BenchmarkId::new("walls", model.name), |b| {
         b.iter(|| {
-            layers.iter().map(|l| walls::walls(&l.contours, false, params).len()).sum::<usize>()
+            layers
+                .iter()
+                .map(|l| walls::walls(&l.contours, false, &params.walls).len())
+                .sum::<usize>()
         });
     });
     group.bench_function(BenchmarkId::new("raster scan", model.name), |b| {
@@ -177,57 +183,62 @@ fn region(c: &mut Criterion, model: &Model) {
     });
     let scans: Vec<Scan> = layers.iter().map(|l| scan(l, params)).collect();
     group.bench_function(BenchmarkId::new("inset", model.name), |b| {
-        b.iter(|| scans.iter().map(|s| s.inset(params.fill_inset).total()).sum::<i64>());
+        b.iter(|| scans.iter().map(|s| s.inset(params.insets.fill).total()).sum::<i64>());
     });
-    let prepared: Vec<Prepared> = layers.iter().map(|l| Prepared::new(l.clone(), params)).collect();
+    let rows: Vec<LayerRows> = layers.iter().map(|l| prepare(l.clone(), params).1).collect();
     group.bench_function(BenchmarkId::new("classify", model.name), |b| {
         let areas = |k: usize| {
-            let fill = &prepared[k].rows[0].fill;
-            let exposed = classify::exposed(k, 0, &|k| prepared.get(k), params);
-            classify::areas(fill, &exposed, params.rasters[0].pitch, params).skin.total()
+            let (fill, raster) = (&rows[k].skin(0).fill, params.rasters.skin(0));
+            let exposed = classify::exposed(k, raster, &|k| rows.get(k), &params.skins);
+            classify::areas(fill, &exposed, raster.pitch, &params.skins).skin.total()
         };
-        b.iter(|| (0..prepared.len()).map(areas).sum::<i64>());
+        b.iter(|| (0..rows.len()).map(areas).sum::<i64>());
     });
     group.finish();
 }
 
-fn scan(layer: &Layer, params: &Params) -> Scan {
-    Scan::new(&layer.contours, params.rasters[0])
+fn scan(layer: &Layer, params: &RegionParams) -> Scan {
+    Scan::new(&layer.contours, params.rasters.skin(0))
 }
 
-/// All regions of a print to linked pieces, to paths in order.
-fn plan(c: &mut Criterion, model: &Model) {
+/// The numbers of filling, for layers that are enough for every model.
+fn fill_params(model: &Model) -> FillParams {
+    FillParams::new(&model.settings, model.slicer(&model.place()).heights())
+}
+
+/// All regions of a print to paths, and to paths in order.
+fn fill_and_plan(c: &mut Criterion, model: &Model) {
     let regions = model.regions();
-    let params = plan::PlanParams::new(&model.settings, &model.params, None);
-    let pieces = || regions.iter().map(|r| plan::pieces(r, &params)).collect::<Vec<_>>();
+    let (fill, plan) = (fill_params(model), PlanParams::new(&model.settings));
+    let paths = || regions.iter().map(|r| fill::paths(r, &fill)).collect::<Vec<_>>();
     let mut group = c.benchmark_group("plan");
-    group.bench_function(BenchmarkId::new("link", model.name), |b| b.iter(pieces));
+    group.bench_function(BenchmarkId::new("fill", model.name), |b| b.iter(paths));
     group.bench_function(BenchmarkId::new("order", model.name), |b| {
-        let order = |all: Vec<plan::Pieces>| {
-            let mut at = Point::default();
-            for (region, pieces) in regions.iter().zip(all) {
-                let paths = plan::order::order(pieces, region.layer.height, at, &params);
-                at = paths.last().map_or(at, plan::Path::end);
+        let order = |all: Vec<Vec<fill::Path>>| {
+            let mut head = Head::default();
+            for (region, paths) in regions.iter().zip(all) {
+                let paths = Unordered::new(paths, &region.layer.contours);
+                let paths = order::order(paths, head.at.unwrap_or_default(), &plan);
+                head = head.after(&region.layer, &paths);
             }
-            at
+            head
         };
-        b.iter_batched(pieces, order, BatchSize::LargeInput);
+        b.iter_batched(paths, order, BatchSize::LargeInput);
     });
     group.finish();
 }
 
 /// All toolpaths of a print to moves, to text and to times.
 fn gcode(c: &mut Criterion, model: &Model) {
-    let params = plan::PlanParams::new(&model.settings, &model.params, None);
-    let mut at = None;
+    let (fill, plan) = (fill_params(model), PlanParams::new(&model.settings));
+    let mut head = Head::default();
     let toolpath = |region: &Region| {
-        let pieces = plan::pieces(region, &params);
-        let from = at.unwrap_or_default();
-        let paths = plan::order::order(pieces, region.layer.height, from, &params);
-        let end = paths.last().map(plan::Path::end).or(at);
-        plan::toolpath(region, paths, std::mem::replace(&mut at, end), &params)
+        let paths = Unordered::new(fill::paths(region, &fill), &region.layer.contours);
+        let paths = order::order(paths, head.at.unwrap_or_default(), &plan);
+        let next = head.after(&region.layer, &paths);
+        travel::toolpath(&region.layer, paths, std::mem::replace(&mut head, next), &plan)
     };
-    let toolpaths: Vec<plan::Toolpath> = model.regions().iter().map(toolpath).collect();
+    let toolpaths: Vec<Toolpath> = model.regions().iter().map(toolpath).collect();
     let params = MoveParams::new(&model.settings, [150.0; 2]);
     let moves = || toolpaths.iter().map(|layer| params.moves(layer)).collect::<Vec<_>>();
     let mut group = c.benchmark_group("gcode");
@@ -274,7 +285,7 @@ fn all(c: &mut Criterion) {
     for model in models() {
         mesh_and_slice(c, &model);
         region(c, &model);
-        plan(c, &model);
+        fill_and_plan(c, &model);
         gcode(c, &model);
         whole(c, &model);
     }

@@ -3,7 +3,8 @@
 use super::solid::{Outline, star};
 use proptest::prelude::*;
 use slicer::geom::{Contour, Point, polygon};
-use slicer::region::{Params, Prepared};
+use slicer::region::RegionParams;
+use slicer::region::prepare::{LayerRows, Own, prepare};
 use slicer::slice::Layer;
 use slicer::units::{Coord, to_units};
 
@@ -22,8 +23,14 @@ pub(crate) fn contours(outlines: &[Outline]) -> Vec<Contour> {
     outlines.iter().map(contour).collect()
 }
 
-/// A stack of layers of random stars, prepared as the pipeline does it.
-pub(crate) fn stack(params: &Params, outlines: &[Vec<Outline>]) -> Vec<Prepared> {
+/// Layers, prepared as the pipeline does it.
+pub(crate) struct Stack {
+    pub(crate) own: Vec<Own>,
+    pub(crate) rows: Vec<LayerRows>,
+}
+
+/// A stack of layers of random stars.
+pub(crate) fn stack(params: &RegionParams, outlines: &[Vec<Outline>]) -> Stack {
     let prepared = |(index, outlines): (usize, &Vec<Outline>)| {
         let layer = Layer {
             index,
@@ -32,9 +39,10 @@ pub(crate) fn stack(params: &Params, outlines: &[Vec<Outline>]) -> Vec<Prepared>
             contours: polygon::union(&contours(outlines)),
             closed_gap: 0,
         };
-        Prepared::new(layer, params)
+        prepare(layer, params)
     };
-    outlines.iter().enumerate().map(prepared).collect()
+    let (own, rows) = outlines.iter().enumerate().map(prepared).unzip();
+    Stack { own, rows }
 }
 
 pub(crate) fn stacks() -> impl Strategy<Value = Vec<Vec<Outline>>> {

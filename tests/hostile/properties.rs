@@ -149,7 +149,7 @@ pub(crate) fn contours(bytes: &[u8]) {
     let triangles: Vec<[u32; 3]> = faces.chunks_exact(3).take(400).map(triangle).collect();
     let adjacency = edges::adjacency(&vertices, &triangles);
     let mesh = Mesh { vertices, triangles };
-    let heights = Heights::new(2_000, 2_000, 1 << 15);
+    let heights = Heights::even(2_000, 2_000, 1 << 15);
     let slicer = Slicer::new(&mesh, &adjacency, heights, 60);
     for layer in (0..slicer.blocks()).flat_map(|block| slicer.block(block)) {
         are_apart(&layer.contours);

@@ -3,23 +3,27 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use crate::common::solid::circle;
-use crate::common::stack::{stack, stacks};
+use crate::common::stack::{Stack, stack, stacks};
 use crate::common::{Kind, Run, Solid, fixture, settings, slice};
 use proptest::prelude::*;
-use slicer::geom::spans::{Rows, Span, total};
+use slicer::geom::raster::Raster;
+use slicer::geom::spans::{Rows, Span};
+use slicer::pattern::{Pattern, Turns};
 use slicer::profile::Settings;
-use slicer::region::divide::divide;
-use slicer::region::dual::groups::{Block, Grouping};
+use slicer::region::divide::{LayerAreas, divide};
+use slicer::region::dual;
+use slicer::region::dual::audit::Audit;
+use slicer::region::dual::groups::{Block, Grouping, Lane};
 use slicer::region::dual::inner_skin::Skins;
-use slicer::region::dual::{self, LayerAreas};
-use slicer::region::{Comb, Hatch, Params, Prepared};
+use slicer::region::{RegionParams, Sparse};
 use std::collections::{BTreeMap, BTreeSet};
 
 const MODES: [&str; 2] = ["pair", "interlaced"];
 const PATTERNS: [&str; 4] = ["rectilinear", "aligned", "grid", "triangles"];
 
-fn all_areas(k: usize, layers: &[Prepared], params: &Params) -> LayerAreas {
-    divide(k, 0..params.rasters.len(), &|k| layers.get(k), params).0
+fn all_areas(layers: &Stack, params: &RegionParams) -> Vec<LayerAreas> {
+    let areas = |own| divide(own, params.rasters.iter(), &|k| layers.rows.get(k), params).0;
+    layers.own.iter().map(areas).collect()
 }
 
 /// The blocks that `count` layers make.
@@ -50,33 +54,53 @@ fn grouped(mode: &str, ratio: u32, pattern: &str) -> Settings {
     settings("generic-marlin", &set)
 }
 
-/// The length of the lines of a comb on `rows`, however short.
-fn length(comb: Comb, rows: &Rows) -> i64 {
-    let printed = |j: i32| (j - comb.offset).rem_euclid(comb.stride) == 0;
-    rows.iter().filter(|(j, _)| printed(*j)).map(|(_, row)| total(row)).sum()
+/// The length of what a pattern prints on `rows`, however short.
+fn length(pattern: &Pattern, rows: &Rows) -> i64 {
+    pattern.length(rows, 0)
+}
+
+/// The length of what sparse regions print in strands as long as a line is wide.
+fn printed(all: &[Sparse], params: &RegionParams) -> i64 {
+    all.iter().map(|sparse| sparse.length(params.walls.line_width)).sum()
 }
 
 /// The infill of every layer: what it prints, and what it has.
 struct Filled {
-    hatches: Vec<Vec<Hatch>>,
+    sparse: Vec<Vec<Sparse>>,
     areas: Vec<LayerAreas>,
     blocks: Vec<Block>,
 }
 
-fn fill(layers: &[Prepared], params: &Params, grouping: &Grouping) -> Filled {
-    let areas: Vec<LayerAreas> = (0..layers.len()).map(|k| all_areas(k, layers, params)).collect();
-    let blocks = blocks(grouping, layers.len());
-    let infill = |block: &Block| dual::infill(block, &of_block(&areas, block), grouping, params).0;
-    let hatches = blocks.iter().flat_map(infill).collect();
-    Filled { hatches, areas, blocks }
+fn fill(layers: &Stack, params: &RegionParams, grouping: &Grouping) -> Filled {
+    let areas = all_areas(layers, params);
+    let blocks = blocks(grouping, areas.len());
+    let infill = |block: &Block| infill(&areas, block, params, grouping).0;
+    let sparse = blocks.iter().flat_map(infill).collect();
+    Filled { sparse, areas, blocks }
+}
+
+/// The infill of a block, and what became of it.
+fn infill(
+    areas: &[LayerAreas],
+    block: &Block,
+    params: &RegionParams,
+    grouping: &Grouping,
+) -> (Vec<Vec<Sparse>>, Option<Audit>) {
+    let (turns, line_width) = (&params.sparse, params.walls.line_width);
+    dual::infill(block, &of_block(areas, block), grouping, turns, line_width)
+}
+
+/// Whether a sparse region is filled by the share of this lane.
+fn is_of(sparse: &Sparse, lane: &Lane) -> bool {
+    format!("{:?}", sparse.pattern) == format!("{:?}", lane.pattern)
 }
 
 fn of_block<'a>(areas: &'a [LayerAreas], block: &Block) -> Vec<&'a LayerAreas> {
     areas[block.layers.clone()].iter().collect()
 }
 
-fn infill_of(areas: &LayerAreas, raster: usize) -> &Rows {
-    &areas[raster].as_ref().unwrap().infill
+fn infill_of<'a>(areas: &'a LayerAreas, pattern: &Pattern) -> &'a Rows {
+    &areas.on(pattern.raster()).unwrap().infill
 }
 
 proptest! {
@@ -87,25 +111,25 @@ proptest! {
         outlines in stacks(), mode in 0..2_usize, ratio in 2..6_u32, pattern in 0..4_usize,
     ) {
         let settings = grouped(MODES[mode], ratio, PATTERNS[pattern]);
-        let (params, grouping) = (Params::new(&settings), grouping(&settings));
+        let (params, grouping) = (RegionParams::new(&settings), grouping(&settings));
         let layers = stack(&params, &outlines);
         let filled = fill(&layers, &params, &grouping);
         for block in &filled.blocks {
-            for lane in dual::turn(block.turn, &params).iter().flat_map(|&c| grouping.lanes(c)) {
-                let comb = lane.comb;
+            let lanes = params.sparse.of(block.turn).iter().flat_map(|p| grouping.lanes(p));
+            for lane in lanes {
                 // What is left of each layer's lines when what is printed is taken away.
                 let mut left: BTreeMap<usize, Rows> = block.layers.clone()
-                    .map(|k| (k, infill_of(&filled.areas[k], comb.raster).clone()))
+                    .map(|k| (k, infill_of(&filled.areas[k], &lane.pattern).clone()))
                     .collect();
                 for k in block.layers.clone() {
-                    for hatch in filled.hatches[k].iter().filter(|h| h.comb == comb) {
-                        prop_assert!((1..=ratio).contains(&hatch.layers));
-                        for down in k + 1 - hatch.layers as usize..=k {
+                    for sparse in filled.sparse[k].iter().filter(|s| is_of(s, &lane)) {
+                        prop_assert!((1..=ratio).contains(&sparse.layers));
+                        for down in k + 1 - sparse.layers as usize..=k {
                             let rest = left.get_mut(&down);
                             prop_assert!(rest.is_some(), "a line reaches out of its block");
                             let rest = rest.unwrap();
-                            prop_assert!(hatch.rows.minus(rest).is_empty(), "over nothing, or twice");
-                            *rest = rest.minus(&hatch.rows);
+                            prop_assert!(sparse.rows.minus(rest).is_empty(), "over nothing, or twice");
+                            *rest = rest.minus(&sparse.rows);
                         }
                     }
                 }
@@ -119,32 +143,31 @@ proptest! {
         outlines in stacks(), mode in 0..2_usize, ratio in 2..6_u32, pattern in 0..4_usize,
     ) {
         let settings = grouped(MODES[mode], ratio, PATTERNS[pattern]);
-        let (params, grouping) = (Params::new(&settings), grouping(&settings));
+        let (params, grouping) = (RegionParams::new(&settings), grouping(&settings));
         let layers = stack(&params, &outlines);
         let filled = fill(&layers, &params, &grouping);
         for block in &filled.blocks {
-            let printed: i64 = block.layers.clone().flat_map(|k| &filled.hatches[k])
-                .map(|h| i64::from(h.layers) * length(h.comb, &h.rows))
+            let printed: i64 = block.layers.clone().flat_map(|k| &filled.sparse[k])
+                .map(|s| i64::from(s.layers) * length(&s.pattern, &s.rows))
                 .sum();
-            let combs = dual::turn(block.turn, &params);
+            let patterns = params.sparse.of(block.turn);
             let plain: i64 = block.layers.clone()
-                .flat_map(|k| combs.iter().map(move |&c| (k, c)))
-                .map(|(k, comb)| length(comb, infill_of(&filled.areas[k], comb.raster)))
+                .flat_map(|k| patterns.iter().map(move |p| (k, p)))
+                .map(|(k, pattern)| length(pattern, infill_of(&filled.areas[k], pattern)))
                 .sum();
             prop_assert_eq!(printed, plain, "block {:?}", block);
-            let areas = of_block(&filled.areas, block);
-            let (_, audit) = dual::infill(block, &areas, &grouping, &params);
+            let (_, audit) = infill(&filled.areas, block, &params, &grouping);
             let audit = audit.unwrap();
             // Lines too short to be printed are made up for by at most a twentieth.
             let lost = (audit.plain - audit.material) as f64;
-            let thick: i64 = block.layers.clone().flat_map(|k| &filled.hatches[k])
-                .filter(|h| h.layers > 1)
-                .map(|h| i64::from(h.layers) * h.length(params.line_width))
+            let thick: i64 = block.layers.clone().flat_map(|k| &filled.sparse[k])
+                .filter(|s| s.layers > 1)
+                .map(|s| i64::from(s.layers) * s.length(params.walls.line_width))
                 .sum();
             if thick > 0 && lost > 0.001 * audit.plain as f64 {
-                let widest = params.line_width + params.line_width / 20;
-                let at_most = |h: &Hatch| h.layers == 1 || h.width == widest;
-                prop_assert!(block.layers.clone().flat_map(|k| &filled.hatches[k]).all(at_most));
+                let widest = params.walls.line_width + params.walls.line_width / 20;
+                let at_most = |s: &Sparse| s.layers == 1 || s.width == widest;
+                prop_assert!(block.layers.clone().flat_map(|k| &filled.sparse[k]).all(at_most));
             }
             prop_assert!(lost >= -0.001 * audit.plain as f64, "{:?}", audit);
         }
@@ -155,21 +178,21 @@ proptest! {
         outlines in stacks(), ratio in 2..6_u32,
     ) {
         let settings = grouped("pair", ratio, "rectilinear");
-        let (params, grouping) = (Params::new(&settings), grouping(&settings));
+        let (params, grouping) = (RegionParams::new(&settings), grouping(&settings));
         let layers = stack(&params, &outlines);
         let filled = fill(&layers, &params, &grouping);
         for block in filled.blocks.iter().filter(|b| b.layers.len() > 1) {
-            let comb = dual::turn(block.turn, &params)[0];
-            let of = |k: usize| infill_of(&filled.areas[k], comb.raster);
+            let pattern = &params.sparse.of(block.turn)[0];
+            let of = |k: usize| infill_of(&filled.areas[k], pattern);
             let mut shared = of(block.layers.start).clone();
-            let long = |_, s: Span| s.len() >= i64::from(params.line_width);
+            let long = |_, s: Span| s.len() >= i64::from(params.walls.line_width);
             for k in block.layers.clone().skip(1) {
                 shared = shared.and(of(k)).filter(long);
             }
             let count = block.layers.len() as u32;
-            let top = &filled.hatches[block.layers.end - 1];
-            let whole = top.iter().find(|h| h.layers == count);
-            let rows = whole.map_or_else(Rows::default, |h| h.rows.clone());
+            let top = &filled.sparse[block.layers.end - 1];
+            let whole = top.iter().find(|s| s.layers == count);
+            let rows = whole.map_or_else(Rows::default, |s| s.rows.clone());
             prop_assert!(shared.minus(&rows).is_empty() && rows.minus(&shared).is_empty());
         }
     }
@@ -180,21 +203,20 @@ proptest! {
     ) {
         let (top, bottom) = (top.to_string(), bottom.to_string());
         let set = [("top_skin_layers", top.as_str()), ("bottom_skin_layers", &bottom)];
-        let params = Params::new(&settings("generic-marlin", &set));
+        let params = RegionParams::new(&settings("generic-marlin", &set));
         let layers = stack(&params, &outlines);
-        let areas: Vec<LayerAreas> =
-            (0..layers.len()).map(|k| all_areas(k, &layers, &params)).collect();
-        for raster in 0..2 {
-            let of = |k: usize| Some(&areas.get(k)?[raster].as_ref().unwrap().skin);
+        let areas = all_areas(&layers, &params);
+        for raster in [0, 1] {
+            let of = |k: usize| Some(&*areas.get(k)?.skin(raster).skin);
             let skins = Skins {
-                layers: |k| layers.get(k),
+                layers: |k| layers.rows.get(k),
                 skins: of,
-                raster,
+                raster: params.rasters.skin(raster),
                 ratio: ratio as usize,
-                params: &params,
+                params: &params.skins,
             };
-            let shared: Vec<_> = (0..layers.len()).map(|k| skins.share(k)).collect();
-            let mut left: Vec<Rows> = (0..layers.len()).map(|k| of(k).unwrap().clone()).collect();
+            let shared: Vec<_> = (0..areas.len()).map(|k| skins.share(k)).collect();
+            let mut left: Vec<Rows> = (0..areas.len()).map(|k| of(k).unwrap().clone()).collect();
             for (k, (thick, thin)) in shared.iter().enumerate() {
                 prop_assert!(thin.minus(&left[k]).is_empty(), "thin lines on thick ones");
                 left[k] = left[k].minus(thin);
@@ -206,8 +228,8 @@ proptest! {
                         *left = left.minus(rows);
                         // What is seen from above or below is in no thick line.
                         for next in [down.checked_sub(1), Some(down + 1)] {
-                            let next = next.and_then(|n| layers.get(n));
-                            let cover = next.map_or_else(Rows::default, |n| n.rows[raster].cover.clone());
+                            let next = next.and_then(|n| layers.rows.get(n));
+                            let cover = next.map_or_else(Rows::default, |n| n.skin(raster).cover.clone());
                             let bare = rows.minus(&cover);
                             let longest = bare.iter().flat_map(|(_, row)| row).map(|s| s.len()).max();
                             prop_assert!(longest.unwrap_or(0) < 500, "{:?} of {} is seen", longest, down);
@@ -222,20 +244,19 @@ proptest! {
     #[test]
     fn the_thesis_prints_the_shorter_layer_thick_and_drops_the_other(outlines in stacks()) {
         let settings = settings("thesis", &[("skin_layers", "1")]);
-        let (params, grouping) = (Params::new(&settings), grouping(&settings));
+        let (params, grouping) = (RegionParams::new(&settings), grouping(&settings));
         let layers = stack(&params, &outlines);
         let filled = fill(&layers, &params, &grouping);
         for block in filled.blocks.iter().filter(|b| b.layers.len() == 2) {
             let (below, above) = (block.layers.start, block.layers.start + 1);
             // Lines shorter than they are wide are not printed and not counted.
-            let printed =
-                |all: &[Hatch]| -> i64 { all.iter().map(|h| h.length(params.line_width)).sum() };
             let plain = [below, above].map(|k| {
-                printed(&dual::plain(dual::turn(k, &params), &filled.areas[k], &params))
+                let (patterns, line_width) = (params.sparse.of(k), params.walls.line_width);
+                printed(&dual::plain(patterns, &filled.areas[k], line_width), &params)
             });
-            prop_assert!(filled.hatches[above].iter().all(|h| h.layers == 2));
-            prop_assert!(filled.hatches[below].is_empty());
-            prop_assert_eq!(printed(&filled.hatches[above]), plain[0].min(plain[1]));
+            prop_assert!(filled.sparse[above].iter().all(|s| s.layers == 2));
+            prop_assert!(filled.sparse[below].is_empty());
+            prop_assert_eq!(printed(&filled.sparse[above], &params), plain[0].min(plain[1]));
         }
     }
 }
@@ -244,11 +265,10 @@ proptest! {
 fn directions_of_blocks_cross_whatever_their_lengths() {
     for mode in MODES {
         let settings = settings("generic-marlin", &[("dual.mode", mode)]);
-        let (params, grouping) = (Params::new(&settings), grouping(&settings));
+        let (turns, grouping) = (Turns::new(&settings), grouping(&settings));
         let blocks = blocks(&grouping, 200);
         assert_eq!(blocks.last().unwrap().layers.end, 200);
-        let rasters: Vec<usize> =
-            blocks.iter().map(|b| dual::turn(b.turn, &params)[0].raster).collect();
+        let rasters: Vec<Raster> = blocks.iter().map(|b| turns.of(b.turn)[0].raster()).collect();
         assert!(rasters.windows(2).skip(1).all(|w| w[0] != w[1]), "{mode}: {rasters:?}");
     }
 }
@@ -257,17 +277,19 @@ fn directions_of_blocks_cross_whatever_their_lengths() {
 fn each_interlaced_layer_prints_its_share_of_the_lines() {
     for ratio in 2..5 {
         let settings = grouped("interlaced", ratio, "rectilinear");
-        let (params, grouping) = (Params::new(&settings), grouping(&settings));
+        let (turns, grouping) = (Turns::new(&settings), grouping(&settings));
         let block = grouping.block(100 / ratio as usize * ratio as usize, 1000);
-        let comb = dual::turn(block.turn, &params)[0];
-        let lanes = grouping.lanes(comb);
+        let pattern = &turns.of(block.turn)[0];
+        let lanes = grouping.lanes(pattern);
         // Every line belongs to one lane.
         for j in -40..40 {
-            let lanes = lanes.iter().filter(|l| l.comb.prints(j)).count();
-            assert_eq!(lanes, usize::from(comb.prints(j)), "line {j}");
+            let mut line = Rows::starting_at(j);
+            line.push_row(|out| out.push(Span { start: 0, end: 1 }));
+            let lanes: i64 = lanes.iter().map(|l| length(&l.pattern, &line)).sum();
+            assert_eq!(lanes, length(pattern, &line), "line {j}");
         }
         for k in block.layers.clone() {
-            let ends = lanes.iter().filter(|&&l| grouping.ends(l.phase, k, &block)).count();
+            let ends = lanes.iter().filter(|l| grouping.ends(l.phase, k, &block)).count();
             let is_last = k + 1 == block.layers.end;
             assert_eq!(ends, if is_last { ratio as usize } else { 1 }, "layer {k}");
         }

@@ -9,15 +9,16 @@ use i_overlay::mesh::float::outline::offset::OutlineOffset;
 use i_overlay::mesh::float::style::{LineJoin, OutlineStyle};
 use proptest::prelude::*;
 use slicer::geom::frame::Frame;
+use slicer::geom::polyline::{LinePoint, Polyline};
+use slicer::geom::raster::Raster;
 use slicer::geom::spans::{Rows, Span, total};
 use slicer::geom::{Contour, Point, double_area, edges, polygon};
 use slicer::mesh::{Bed, place, read};
-use slicer::region::Params;
+use slicer::region::RegionParams;
 use slicer::region::classify::Areas;
 use slicer::region::divide::divide;
-use slicer::region::scan::{Raster, Scan, around};
-use slicer::region::variable_width::LinePoint;
-use slicer::region::wall_beads::Bead;
+use slicer::region::per_raster::skin_turn;
+use slicer::region::scan::{Scan, around};
 use slicer::slice::{Heights, Layer, Slicer};
 use slicer::units::{Coord, UNITS_PER_MM, to_units};
 
@@ -186,28 +187,29 @@ proptest! {
     ) {
         let (skins, reach) = (skins.to_string(), reach.to_string());
         let set = [("skin_layers", skins.as_str()), ("skin_reach", &reach), ("pattern", "triangles")];
-        let params = Params::new(&settings("generic-marlin", &set));
+        let params = RegionParams::new(&settings("generic-marlin", &set));
         let layers = stack(&params, &outlines);
-        for k in 0..layers.len() {
-            let (areas, beads) = divide(k, 0..params.rasters.len(), &|k| layers.get(k), &params);
-            for (r, areas) in areas.into_iter().enumerate() {
-                let Areas { skin, infill, fill } = areas.unwrap();
+        let rows = &layers.rows;
+        for (k, own) in layers.own.iter().enumerate() {
+            let (areas, beads) = divide(own, params.rasters.iter(), &|k| rows.get(k), &params);
+            prop_assert_eq!(areas.iter().count(), params.rasters.iter().count());
+            for (raster, areas) in areas.iter() {
+                let Areas { skin, infill, fill } = areas;
                 // Beads along the walls take a part of the fill rows, or nothing.
-                let whole = &layers[k].rows[r].fill;
-                prop_assert_eq!(fill.is_none(), beads.is_empty());
-                let fill = &fill.unwrap_or_else(|| whole.clone());
+                let whole = &rows[k].on(raster).unwrap().fill;
+                prop_assert!(!beads.is_empty() || fill == whole);
                 prop_assert!(fill.minus(whole).is_empty());
-                prop_assert!(is_tidy(&skin) && is_tidy(&infill));
-                prop_assert!(skin.and(&infill).is_empty(), "layer {} raster {}", k, r);
+                prop_assert!(is_tidy(skin) && is_tidy(infill));
+                prop_assert!(skin.and(infill).is_empty(), "layer {} raster {:?}", k, raster);
                 prop_assert_eq!(skin.total() + infill.total(), fill.total());
-                prop_assert_eq!(spans(&skin.or(&infill)), spans(fill));
-                for n in 1..=params.top_skins {
+                prop_assert_eq!(spans(&skin.or(infill)), spans(fill));
+                for n in 1..=params.skins.top {
                     // A neighbour that is not there covers nothing.
-                    let above = layers.get(k + n);
-                    let below = k.checked_sub(n).map(|k| &layers[k]);
+                    let above = rows.get(k + n);
+                    let below = k.checked_sub(n).map(|k| &rows[k]);
                     for neighbour in [above, below] {
-                        let bare = match neighbour {
-                            Some(neighbour) => infill.minus(&neighbour.rows[r].cover),
+                        let bare = match neighbour.and_then(|rows| rows.on(raster)) {
+                            Some(neighbour) => infill.minus(&neighbour.cover),
                             None => infill.clone(),
                         };
                         let longest = bare.iter().flat_map(|(_, row)| row).map(|s| s.len()).max();
@@ -224,18 +226,18 @@ proptest! {
     ) {
         let walls = walls.to_string();
         let profile = ["generic-marlin", "thesis"][profile];
-        let params = Params::new(&settings(profile, &[("walls", &walls)]));
+        let params = RegionParams::new(&settings(profile, &[("walls", &walls)]));
         let layers = stack(&params, &outlines);
-        for k in 0..layers.len() {
-            let (_, beads) = divide(k, 0..2, &|k| layers.get(k), &params);
-            let raster = params.rasters[params.skin_rasters(k).0];
-            let scan = Scan::new(&layers[k].layer.contours, Raster { pitch: 500, ..raster });
+        for (k, own) in layers.own.iter().enumerate() {
+            let (_, beads) = divide(own, std::iter::empty(), &|k| layers.rows.get(k), &params);
+            let raster = params.rasters.skin(skin_turn(k).0);
+            let scan = Scan::new(&own.layer.contours, Raster { pitch: 500, ..raster });
             for w in beads.iter().flat_map(|b| b.windows(2)) {
                 let (low, high) = if w[0].v < w[1].v { (w[0], w[1]) } else { (w[1], w[0]) };
                 // Half the bead, less what strips of uneven width may take. Strips too thin for
                 // an inner wall have one within the outer wall already.
-                let walls = if layers[k].strips.is_empty() { params.walls } else { 1 };
-                let edge = params.within(walls).fill_inset - params.wall_to_fill();
+                let walls = if own.strips.is_empty() { params.walls.count } else { 1 };
+                let edge = params.walls.inset_of(walls);
                 let free = scan.inset((edge + w[1].width / 2).max(0));
                 for j in low.v.div_euclid(500) + 1..high.v.div_euclid(500) + 1 {
                     let t = f64::from(j * 500 - low.v) / f64::from(high.v - low.v);
@@ -262,7 +264,7 @@ fn blade(length: f64, wide: f64, bends: &[f64], degrees: f64) -> Outline {
 
 /// The longest stretch of `beads` that runs along another bead, or back along its own, with
 /// their middles nearer than `apart`; grid units, in steps of 500.
-fn longest_twice(beads: &[Bead], apart: f64) -> f64 {
+fn longest_twice(beads: &[Polyline], apart: f64) -> f64 {
     const STEP: f64 = 500.0;
     let point = |p: &LinePoint| [f64::from(p.u), f64::from(p.v)];
     let segments: Vec<[[f64; 2]; 2]> =
@@ -298,14 +300,15 @@ proptest! {
         length in 5.0..20.0_f64, lines in 0.5..3.0_f64, degrees in 0.0..360.0_f64, raster: bool,
         bends in (2..5_usize).prop_flat_map(|n| prop::collection::vec(-0.2..0.2_f64, 2 * n)),
     ) {
-        let params = Params::new(&settings("generic-marlin", &[("walls", "1")]));
-        let w = f64::from(params.line_width) / UNITS_PER_MM;
+        let params = RegionParams::new(&settings("generic-marlin", &[("walls", "1")]));
+        let w = f64::from(params.walls.line_width) / UNITS_PER_MM;
         // As it comes, or along the lines up to what its walls lean.
         let degrees = if raster { 45.0 } else { degrees };
         let outline = blade(length, (2.0 + lines) * w, &bends, degrees);
         let layers = stack(&params, &[vec![outline]]);
-        let (_, beads) = divide(0, 0..2, &|k| layers.get(k), &params);
-        let twice = longest_twice(&beads, f64::from(params.line_width) / 2.0);
+        let own = &layers.own[0];
+        let (_, beads) = divide(own, std::iter::empty(), &|k| layers.rows.get(k), &params);
+        let twice = longest_twice(&beads, f64::from(params.walls.line_width) / 2.0);
         // Two beads that come together to go on as one are this near for a short way.
         prop_assert!(twice <= 20_000.0, "{} of {:?}", twice, beads);
     }
@@ -398,7 +401,7 @@ fn layers(solid: &Solid, tolerance: f64) -> Vec<Layer> {
     let placed = place::place(vec![mesh], &as_it_is(), &bed).unwrap();
     assert!(placed.reports[0].left.is_empty());
     let top = placed.mesh.vertices.iter().map(|v| v[2]).max().unwrap();
-    let heights = Heights::new(1000, 1000, top);
+    let heights = Heights::even(1000, 1000, top);
     let slicer = Slicer::new(&placed.mesh, &placed.adjacency, heights, to_units(tolerance));
     (0..slicer.blocks()).flat_map(|b| slicer.block(b)).collect()
 }

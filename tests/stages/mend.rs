@@ -44,7 +44,7 @@ fn mended(triangles: &[Corners]) -> Placed {
 
 fn layers(placed: &Placed) -> Vec<Layer> {
     let top = placed.mesh.vertices.iter().map(|vertex| vertex[2]).max().unwrap();
-    let heights = Heights::new(3_000, 3_000, top);
+    let heights = Heights::even(3_000, 3_000, top);
     let slicer = Slicer::new(&placed.mesh, &placed.adjacency, heights, 100);
     (0..slicer.blocks()).flat_map(|block| slicer.block(block)).collect()
 }

@@ -3,13 +3,15 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use proptest::prelude::*;
+use slicer::fill::PathPoint;
+use slicer::fill::rounding::Rounding;
 use slicer::geom::{Point, side};
-use slicer::plan::PathPoint;
-use slicer::plan::round::Rounding;
 use slicer::units::Coord;
 
 fn path(places: &[(Coord, Coord)], width: Coord) -> Vec<PathPoint> {
-    places.iter().map(|&(x, y)| PathPoint { at: Point { x, y }, width }).collect()
+    let point =
+        |&(x, y): &(Coord, Coord)| PathPoint { at: Point { x, y }, z: 0, width, height: 2_000 };
+    places.iter().map(point).collect()
 }
 
 fn volume(path: &[PathPoint]) -> f64 {

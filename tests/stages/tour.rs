@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use proptest::prelude::*;
+use slicer::fill::{Path, PathPoint, Role, Shape};
 use slicer::geom::Point;
 use slicer::plan::tour::{Cost, improve};
-use slicer::plan::{Path, PathPoint, Role};
 use slicer::units::Coord;
 
 /// A travel costs its length, and more where it crosses the y axis.
@@ -32,6 +32,14 @@ fn cost(from: Point, paths: &[Path]) -> f64 {
     ends.zip(starts).map(|(a, b)| Lengths.whole(a, b)).sum()
 }
 
+fn place(x: Coord, y: Coord) -> PathPoint {
+    PathPoint { at: Point { x, y }, z: 0, width: 4_000, height: 2_000 }
+}
+
+fn line(role: Role, points: Vec<PathPoint>) -> Path {
+    Path { role, shape: Shape::Open, points, layers: 1, tool: 0 }
+}
+
 /// A path without its direction.
 fn undirected(path: &Path) -> (Role, Vec<Point>) {
     let mut points: Vec<Point> = path.points.iter().map(|p| p.at).collect();
@@ -42,14 +50,13 @@ fn undirected(path: &Path) -> (Role, Vec<Point>) {
 }
 
 fn paths() -> impl Strategy<Value = Vec<Path>> {
-    let place = || (-200_000..200_000_i32, -200_000..200_000_i32);
+    let at = || (-200_000..200_000_i32, -200_000..200_000_i32);
     let roles =
         prop::sample::select(vec![Role::OuterWall, Role::Skin, Role::Infill, Role::Support]);
     let path = |(role, a, b): (Role, (Coord, Coord), (Coord, Coord))| {
-        let point = |(x, y)| PathPoint { at: Point { x, y }, width: 4_000 };
-        Path { role, points: vec![point(a), point(b)], height: 2_000, layers: 1 }
+        line(role, vec![place(a.0, a.1), place(b.0, b.1)])
     };
-    prop::collection::vec((roles, place(), place()).prop_map(path), 0..80).prop_map(|mut paths| {
+    prop::collection::vec((roles, at(), at()).prop_map(path), 0..80).prop_map(|mut paths| {
         paths.sort_by_key(|p| match p.role {
             Role::OuterWall => p.start().x / 100_000,
             Role::Skin | Role::Infill => 3,
@@ -85,11 +92,8 @@ proptest! {
 
 #[test]
 fn a_path_left_behind_is_fetched_on_the_way() {
-    let line = |x: Coord| {
-        let point = |y| PathPoint { at: Point { x, y }, width: 4_000 };
-        Path { role: Role::Infill, points: vec![point(0), point(10_000)], height: 2_000, layers: 1 }
-    };
-    let order = [10_000, 20_000, 40_000, 50_000, 30_000, 60_000].map(line).to_vec();
+    let upright = |x: Coord| line(Role::Infill, vec![place(x, 0), place(x, 10_000)]);
+    let order = [10_000, 20_000, 40_000, 50_000, 30_000, 60_000].map(upright).to_vec();
     let better = improve(order, Some(Point { x: 0, y: 0 }), &Lengths);
     let xs: Vec<Coord> = better.iter().map(|p| p.start().x).collect();
     assert_eq!(xs, [10_000, 20_000, 30_000, 40_000, 50_000, 60_000]);

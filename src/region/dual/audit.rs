@@ -1,9 +1,11 @@
 //! Lines of a block and what is printed of them -> Audit: what is thick, what is not and why, and whether the material is all there.
 
 use crate::geom::spans::Rows;
+use crate::pattern::SparsePattern;
 use crate::profile::DualPart;
-use crate::region::{Comb, Hatch};
+use crate::region::Sparse;
 use crate::units::Coord;
+use std::sync::Arc;
 
 /// What became of one kind of lines of a block; lengths in grid units. Lines shorter
 /// than they are wide are not printed on their own, with or without dual injection.
@@ -69,32 +71,32 @@ impl Audit {
     }
 
     /// Counts what an undoubled print has on one layer.
-    pub fn plain(&mut self, comb: Comb, rows: &Rows, least: Coord) {
-        self.plain += comb.length(rows, least);
+    pub fn plain(&mut self, pattern: &dyn SparsePattern, rows: &Rows, least: Coord) {
+        self.plain += pattern.length(rows, least);
     }
 
     /// Counts lines that are printed.
-    pub fn printed(&mut self, hatch: &Hatch, line_width: Coord) {
-        let length = hatch.length(line_width);
-        *(if hatch.layers > 1 { &mut self.thick } else { &mut self.thin }) += length;
-        let layers = i64::from(hatch.layers);
-        self.material += layers * length * i64::from(hatch.width) / i64::from(line_width);
+    pub fn printed(&mut self, sparse: &Sparse, line_width: Coord) {
+        let length = sparse.length(line_width);
+        *(if sparse.layers > 1 { &mut self.thick } else { &mut self.thin }) += length;
+        let layers = i64::from(sparse.layers);
+        self.material += layers * length * i64::from(sparse.width) / i64::from(line_width);
     }
 }
 
-/// What of the lines of `comb` on each layer of a group is not in `whole`, the lines
+/// What of the strands of `pattern` on each layer of a group is not in `whole`, the lines
 /// printed for all its layers, and why. `full` says whether the group has as many
 /// layers as the ratio.
 #[must_use]
 pub fn apart(
-    comb: Comb,
+    pattern: &dyn SparsePattern,
     layers: &[Rows],
-    skins: &[Option<&Rows>],
+    skins: &[Option<Arc<Rows>>],
     whole: Option<&Rows>,
     full: bool,
 ) -> Apart {
     let mut out = Apart::default();
-    let length = |rows: &Rows| comb.length(rows, 0);
+    let length = |rows: &Rows| pattern.length(rows, 0);
     for (k, here) in layers.iter().enumerate() {
         if !full {
             out.ends += length(here);
@@ -107,7 +109,7 @@ pub fn apart(
         let others = || (0..layers.len()).filter(|&n| n != k);
         let shared = others().fold(left.clone(), |rows, n| rows.and(&layers[n]));
         let beyond = left.minus(&shared);
-        let bare = others().fold(beyond.clone(), |rows, n| match skins[n] {
+        let bare = others().fold(beyond.clone(), |rows, n| match &skins[n] {
             Some(skin) => rows.minus(skin),
             None => rows,
         });

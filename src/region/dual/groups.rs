@@ -6,8 +6,8 @@
 //! shared beyond a block, so that lines of two directions never lie in the same
 //! layers and cross without being stacked twice.
 
+use crate::pattern::Pattern;
 use crate::profile::{Dual, DualDirection, DualMode, DualPart, DualRemainder};
-use crate::region::Comb;
 use std::ops::Range;
 
 /// Groups that an interlaced block is high. Lines that are not interlaced end at
@@ -37,11 +37,11 @@ pub struct Block {
     pub layers: Range<usize>,
 }
 
-/// Lines that are printed on the same layers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The share of a pattern that is printed on the same layers.
+#[derive(Debug, Clone)]
 pub struct Lane {
-    /// The lines.
-    pub comb: Comb,
+    /// The share.
+    pub pattern: Pattern,
     /// How many layers earlier than the block's their groups end.
     pub phase: usize,
 }
@@ -87,18 +87,14 @@ impl Grouping {
         Block { turn, layers: (turn * size).max(1)..((turn + 1) * size).min(count) }
     }
 
-    /// The lanes that the lines of `comb` are divided into.
+    /// The lanes that `pattern` is divided into.
     #[must_use]
-    pub fn lanes(&self, comb: Comb) -> Vec<Lane> {
+    pub fn lanes(&self, pattern: &Pattern) -> Vec<Lane> {
         if !self.is_interlaced() {
-            return vec![Lane { comb, phase: 0 }];
+            return vec![Lane { pattern: pattern.clone(), phase: 0 }];
         }
-        let n = self.ratio as i32;
-        let lane = |c: i32| {
-            let offset = comb.offset + c * comb.stride;
-            Lane { comb: Comb { stride: n * comb.stride, offset, ..comb }, phase: c as usize }
-        };
-        (0..n).map(lane).collect()
+        let lane = |(phase, pattern)| Lane { pattern, phase };
+        pattern.shares(self.ratio).into_iter().enumerate().map(lane).collect()
     }
 
     /// How many layers earlier than the block's the groups of walls of this depth end.

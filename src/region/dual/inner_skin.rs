@@ -9,8 +9,10 @@
 //! layer prints it for all.
 
 use super::runs::Printed;
+use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span};
-use crate::region::{Params, Prepared};
+use crate::region::params::SkinParams;
+use crate::region::prepare::LayerRows;
 use crate::units::Coord;
 
 /// As in : exposed stretches shorter than this are noise (50 µm).
@@ -26,12 +28,12 @@ pub struct Skins<'a, L, S> {
     pub layers: L,
     /// Their skins, `None` where they are not known: they share nothing.
     pub skins: S,
-    /// Index of the raster.
-    pub raster: usize,
+    /// The raster.
+    pub raster: Raster,
     /// Layers of a group.
     pub ratio: usize,
     /// The stage's numbers.
-    pub params: &'a Params,
+    pub params: &'a SkinParams,
 }
 
 /// A group of depths: printed on its uppermost layer.
@@ -46,7 +48,7 @@ struct Depths {
 
 impl<'a, L, S> Skins<'a, L, S>
 where
-    L: Fn(usize) -> Option<&'a Prepared>,
+    L: Fn(usize) -> Option<&'a LayerRows>,
     S: Fn(usize) -> Option<&'a Rows>,
 {
     /// What layer `k` prints for itself and layers below it, and what of its skin is left for
@@ -112,7 +114,7 @@ where
                 Depths { from_top, depth, count }
             })
         };
-        let (top, bottom) = (self.params.top_skins, self.params.bottom_skins);
+        let (top, bottom) = (self.params.top, self.params.bottom);
         groups(top, true).chain(groups(bottom, false)).filter(|d| d.count > 1)
     }
 
@@ -120,7 +122,7 @@ where
     /// covers them.
     fn margined(&self, k: usize, depths: Depths) -> Rows {
         let core = self.core(k, depths);
-        let pitch = self.params.rasters[self.raster].pitch;
+        let pitch = self.raster.pitch;
         if core.is_empty() { core } else { core.dilate(self.params.reach, pitch) }
     }
 
@@ -150,7 +152,7 @@ where
             // Its lowest layer is not seen from below.
             rows = and(rows, down(count));
         } else {
-            for n in 1..=self.params.top_skins {
+            for n in 1..=self.params.top {
                 rows = and(rows, up(n));
             }
         }
@@ -162,7 +164,7 @@ where
     /// everything around it reaches in by half of that, and it grows again.
     fn wide(&self, k: usize, rows: Rows) -> Rows {
         let Some(fill) = self.fill(Some(k)) else { return Rows::default() };
-        let pitch = self.params.rasters[self.raster].pitch;
+        let pitch = self.raster.pitch;
         let half = self.params.line_width * LEAST_WIDE / 2;
         let around = fill.minus(&rows);
         if around.is_empty() || rows.is_empty() {
@@ -180,15 +182,15 @@ where
             hidden = cover.map_or_else(Rows::default, |cover| hidden.and(cover));
         }
         let seen = fill.minus(&hidden).filter(|_, span| span.len() >= i64::from(LEAST_SEEN));
-        let pitch = self.params.rasters[self.raster].pitch;
+        let pitch = self.raster.pitch;
         if seen.is_empty() { seen } else { seen.dilate(self.params.reach, pitch) }
     }
 
     fn fill(&self, k: Option<usize>) -> Option<&'a Rows> {
-        k.and_then(&self.layers).map(|layer| &layer.rows[self.raster].fill)
+        Some(&k.and_then(&self.layers)?.on(self.raster)?.fill)
     }
 
     fn cover(&self, k: Option<usize>) -> Option<&'a Rows> {
-        k.and_then(&self.layers).map(|layer| &layer.rows[self.raster].cover)
+        Some(&k.and_then(&self.layers)?.on(self.raster)?.cover)
     }
 }

@@ -11,9 +11,10 @@
 //! line ends before its neighbour does, and are known from these two ends. Only edges at a wall are closed: an edge at the
 //! infill has more skin around it than it needs.
 
-use super::Params;
-use super::variable_width::{Line, LinePoint, SHORT_STRIP, Strip, WIDEST};
-use crate::geom::spans::{Rows, Span};
+use super::variable_width::{Line, LineParams, SHORT_STRIP, Strip, WIDEST};
+use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::spans::Span;
+use crate::region::crossed::Crossed;
 use crate::units::Coord;
 
 /// Strips narrower than this stay open (20 µm): half of what positioning can tell.
@@ -25,26 +26,11 @@ const LEAST_COLUMNS: usize = 2;
 /// Strips that are added at the ends of a line, at most.
 const AT_ENDS: usize = 6;
 
-/// A layer's skin on its own raster and on the one across.
-#[derive(Debug, Clone, Copy)]
-pub struct Crossed<'a> {
-    /// The skin on the raster that is printed.
-    pub skin: &'a Rows,
-    /// Where skin and infill may go, on the same raster.
-    pub fill: &'a Rows,
-    /// The skin on the raster across.
-    pub columns: &'a Rows,
-    /// Where skin and infill may go, on the raster across.
-    pub fill_columns: &'a Rows,
-    /// The raster across is turned by +90° (else by −90°).
-    pub left_turn: bool,
-}
-
 /// The lines of a skin, and the beads along strips too thin for a line.
 #[must_use]
-pub fn close(crossed: &Crossed<'_>, params: &Params) -> (Vec<Line>, Vec<Vec<LinePoint>>) {
+pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Polyline>) {
     // Without a wall there is nothing to close up to, only an outside to stay within.
-    let walled = params.walls > 0;
+    let walled = params.walled;
     let mut strips = Strips::new(crossed.skin.range(), params);
     let mut thin = Vec::new();
     for extent in extents(crossed, params) {
@@ -78,7 +64,7 @@ struct Extent {
 }
 
 /// The extents of all columns, in the order of u.
-fn extents(crossed: &Crossed<'_>, params: &Params) -> Vec<Extent> {
+fn extents(crossed: &Crossed<'_>, params: &LineParams) -> Vec<Extent> {
     let mut out = Vec::new();
     for (c, spans) in crossed.columns.iter() {
         let walls = crossed.fill_columns.row(c);
@@ -109,7 +95,7 @@ struct Strips {
 }
 
 impl Strips {
-    fn new(range: std::ops::Range<i32>, params: &Params) -> Self {
+    fn new(range: std::ops::Range<i32>, params: &LineParams) -> Self {
         let empty = vec![Vec::new(); range.len()];
         Self { first: range.start, above: empty.clone(), below: empty, pitch: params.line_width }
     }
@@ -137,7 +123,7 @@ impl Strips {
 
     /// Notes the strips above the highest and below the lowest line within `extent`;
     /// says no if there is no line in it.
-    fn add(&mut self, extent: &Extent, params: &Params) -> bool {
+    fn add(&mut self, extent: &Extent, params: &LineParams) -> bool {
         let highest = extent.high.div_euclid(self.pitch);
         let lowest = -(-extent.low).div_euclid(self.pitch);
         if lowest > highest {
@@ -165,7 +151,7 @@ fn add_ends(
     span: Span,
     crossed: &Crossed<'_>,
     (row, other): (i32, i32),
-    params: &Params,
+    params: &LineParams,
 ) {
     let (walls, others) = (crossed.fill.row(row), crossed.fill.row(other));
     let beside = |u: Coord| others.iter().any(|o| o.start <= u && u <= o.end);
@@ -187,7 +173,7 @@ fn add_end(
     strips: &mut Vec<Strip>,
     span: Span,
     (edge, end): (Option<Coord>, Coord),
-    params: &Params,
+    params: &LineParams,
 ) {
     let pitch = params.line_width;
     let inside = |u: Coord| span.start < u && u < span.end;
@@ -206,8 +192,8 @@ fn add_end(
 }
 
 /// Beads along the middle of extents that no line reaches, joined from column to column.
-fn slivers(thin: Vec<Extent>, params: &Params) -> Vec<Vec<LinePoint>> {
-    let mut beads: Vec<(Extent, Vec<LinePoint>)> = Vec::new();
+fn slivers(thin: Vec<Extent>, params: &LineParams) -> Vec<Polyline> {
+    let mut beads: Vec<(Extent, Polyline)> = Vec::new();
     let w = params.line_width;
     for extent in thin {
         let height = extent.high - extent.low;
@@ -236,18 +222,19 @@ fn slivers(thin: Vec<Extent>, params: &Params) -> Vec<Vec<LinePoint>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fill::variable_width::{Joined, points};
     use crate::geom::{Contour, Point};
     use crate::profile;
+    use crate::region::RegionParams;
     use crate::region::scan::Scan;
-    use crate::region::variable_width::{Joined, points};
 
     /// Closes a skin that is all of `contour`, lines along x.
-    fn closed(contour: Contour) -> (Vec<Line>, Vec<Vec<LinePoint>>, Params) {
+    fn closed(contour: Contour) -> (Vec<Line>, Vec<Polyline>, LineParams) {
         let mut settings = profile::load("generic-marlin", &[]).unwrap().settings;
         settings.angle = profile::Angle::Degrees(0.0);
-        let params = Params::new(&settings);
-        let along = Scan::new(std::slice::from_ref(&contour), params.rasters[0]).inside().clone();
-        let across = Scan::new(&[contour], params.rasters[1]).inside().clone();
+        let rasters = RegionParams::new(&settings).rasters;
+        let along = Scan::new(std::slice::from_ref(&contour), rasters.skin(0)).inside().clone();
+        let across = Scan::new(&[contour], rasters.skin(1)).inside().clone();
         let crossed = Crossed {
             skin: &along,
             fill: &along,
@@ -255,6 +242,7 @@ mod tests {
             fill_columns: &across,
             left_turn: true,
         };
+        let params = LineParams::new(&settings);
         let (lines, slivers) = close(&crossed, &params);
         (lines, slivers, params)
     }

@@ -1,8 +1,9 @@
 //! Line with open strips beside it -> points: the line moved and widened to fill them.
 
-use super::Params;
+use crate::geom::polyline::LinePoint;
 use crate::geom::spans::Span;
-use crate::units::{Coord, nearest};
+use crate::profile::Settings;
+use crate::units::{Coord, nearest, to_units};
 
 /// A line gets at most this many line widths wide (what a nozzle's flat still irons).
 pub(super) const WIDEST: f64 = 1.75;
@@ -18,15 +19,26 @@ pub(super) const SHORT_STRIP: Coord = 3;
 /// Changes of width or place below this are not worth a corner in a line (20 µm).
 const LEAST_BEND: f64 = 200.0;
 
-/// A point of a bead's middle, in the frame of its raster.
+/// The numbers for solid lines, in grid units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct LinePoint {
-    /// Along the raster lines.
-    pub u: Coord,
-    /// Across them.
-    pub v: Coord,
-    /// Width of the bead on the way to here from the point before.
-    pub width: Coord,
+pub struct LineParams {
+    /// Width of a line and distance between lines.
+    pub line_width: Coord,
+    /// How far lines reach into the innermost wall.
+    pub overlap: Coord,
+    /// There is a wall around the lines.
+    pub walled: bool,
+}
+
+impl LineParams {
+    /// The numbers that `settings` mean.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        let walled = settings.walls > 0;
+        let overlap = if walled { settings.infill_overlap * settings.line_width } else { 0.0 };
+        let line_width = to_units(settings.line_width);
+        Self { line_width, overlap: to_units(overlap), walled }
+    }
 }
 
 /// What is printed of one span of a row, with the open strips above (towards the
@@ -81,7 +93,7 @@ impl Joined {
 /// The points of `line` from left to right, moved and widened to fill the strips
 /// beside it; widths are those at the points.
 #[must_use]
-pub fn points(line: &Line, joined: Joined, params: &Params) -> Vec<LinePoint> {
+pub fn points(line: &Line, joined: Joined, params: &LineParams) -> Vec<LinePoint> {
     let w = params.line_width;
     let point = |sample| filled(line.row, sample, w);
     let mut points = if line.above.is_empty() && line.below.is_empty() {

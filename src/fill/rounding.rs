@@ -6,7 +6,7 @@
 //! than the way round the corner; the material that this saves is spread over the
 //! whole path, since a wider arc would be more at once than a hot end melts.
 
-use super::PathPoint;
+use super::path::PathPoint;
 use crate::geom::Point;
 use crate::units::{Bounded as _, Coord, nearest};
 
@@ -188,6 +188,6 @@ fn round_off(corner: &[PathPoint], (a, b): (Line, Line), t: f64, out: &mut Vec<P
     for _ in 1..arc.corners {
         (u, v) = (u * cos - v * sin, u * sin + v * cos);
         (x, y) = (x + arc.length * u, y + arc.length * v);
-        out.push(PathPoint { at: point(x, y), width });
+        out.push(PathPoint { at: point(x, y), width, ..middle });
     }
 }

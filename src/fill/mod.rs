@@ -1,0 +1,135 @@
+//! Region -> Paths: how each area of a layer is laid.
+//!
+//! The region stage says where walls, skin and sparse lines go; here they become paths. Skin is
+//! closed up to the walls ([`gap_closing`], [`variable_width`]) and its lines are joined to zigzags
+//! ([`skin`]); sparse areas are filled by their pattern; corners are rounded ([`rounding`]).
+//! Whatever is laid, the next stage sees nothing but [`Path`]: points with their own height above
+//! the layer, width and height of the bead. A new thing to print is a new file here.
+//!
+//! Guaranteed to the next stage: every path has a point; a loop repeats its first point; a bead
+//! stays inside its region but for half its width.
+
+pub mod gap_closing;
+mod path;
+mod role;
+pub mod rounding;
+pub mod skin;
+pub mod variable_width;
+
+pub use path::{Path, PathPoint, Shape};
+pub use role::{Both, Place, Role, RoleFacts, RoleTable};
+
+use crate::geom::Point;
+use crate::geom::frame::Frame;
+use crate::geom::polyline::{LinePoint, Polyline};
+use crate::profile::Settings;
+use crate::region::{Region, Skin, Sparse, walls::Wall};
+use crate::slice::Heights;
+use crate::units::{Coord, to_units};
+use rounding::Rounding;
+use variable_width::LineParams;
+
+/// The numbers that this stage needs, in grid units.
+#[derive(Debug, Clone)]
+pub struct FillParams {
+    heights: Heights,
+    line_width: Coord,
+    lines: LineParams,
+    rounding: Rounding,
+    skin_rounding: Rounding,
+    tool: u8,
+}
+
+impl FillParams {
+    /// The numbers that `settings` mean for this stage, for layers at `heights`.
+    #[must_use]
+    pub fn new(settings: &Settings, heights: &Heights) -> Self {
+        let line_width = to_units(settings.line_width);
+        // Without a wall the ends of lines are the outside, where nothing gets wider.
+        let radius = if settings.walls == 0 { 0 } else { to_units(settings.corner_radius) };
+        Self {
+            heights: heights.clone(),
+            line_width,
+            lines: LineParams::new(settings),
+            rounding: Rounding { radius },
+            skin_rounding: Rounding { radius: radius.min(line_width / 2) },
+            tool: u8::try_from(settings.machine.tool).unwrap_or(u8::MAX),
+        }
+    }
+}
+
+/// The paths of a layer, in no order. Independent of all other layers.
+#[must_use]
+pub fn paths(region: &Region, params: &FillParams) -> Vec<Path> {
+    let mut maker = Maker { k: region.layer.index, params, out: Vec::new() };
+    region.walls.iter().for_each(|wall| maker.wall(wall));
+    region.skins.iter().for_each(|skin| maker.skin(skin));
+    region.infill.iter().for_each(|sparse| maker.sparse(Role::Infill, sparse));
+    region.support.iter().for_each(|sparse| maker.sparse(Role::Support, sparse));
+    maker.out
+}
+
+/// Collects the paths of layer `k`.
+struct Maker<'a> {
+    k: usize,
+    params: &'a FillParams,
+    out: Vec<Path>,
+}
+
+impl Maker<'_> {
+    fn wall(&mut self, wall: &Wall) {
+        let (width, height) = (self.params.line_width, self.height(wall.layers));
+        let role = if wall.depth == 0 { Role::OuterWall } else { Role::InnerWall };
+        let corners = wall.path.iter().chain(wall.path.first());
+        let points = corners.map(|&at| PathPoint { at, z: 0, width, height }).collect();
+        self.push(role, Shape::Loop { depth: wall.depth }, wall.layers, points);
+    }
+
+    fn skin(&mut self, skin: &Skin) {
+        let (frame, rounding) = (skin.raster.frame, self.params.skin_rounding);
+        let (lines, slivers) = gap_closing::close(&skin.crossed(), &self.params.lines);
+        let lines = skin::zigzags(&lines, &self.params.lines, rounding.radius);
+        for polyline in lines.iter().chain(&skin.beads).chain(&slivers) {
+            self.polyline(Role::Skin, skin.layers, frame, polyline, rounding);
+        }
+    }
+
+    fn sparse(&mut self, role: Role, sparse: &Sparse) {
+        let Sparse { pattern, rows, layers, width } = sparse;
+        let (frame, rounding) = (pattern.raster().frame, self.params.rounding);
+        for strand in pattern.strands(rows, *width, self.params.line_width) {
+            self.polyline(role, *layers, frame, &strand, rounding);
+        }
+    }
+
+    /// Adds a polyline of a raster with this frame, its corners rounded.
+    fn polyline(
+        &mut self,
+        role: Role,
+        layers: u32,
+        frame: Frame,
+        polyline: &Polyline,
+        rounding: Rounding,
+    ) {
+        let height = self.height(layers);
+        let place = |&LinePoint { u, v, width }: &LinePoint| PathPoint {
+            at: frame.leave(Point { x: u, y: v }),
+            z: 0,
+            width,
+            height,
+        };
+        let points = rounding.round(polyline.iter().map(place).collect());
+        self.push(role, Shape::Open, layers, points);
+    }
+
+    fn push(&mut self, role: Role, shape: Shape, layers: u32, points: Vec<PathPoint>) {
+        if !points.is_empty() {
+            self.out.push(Path { role, shape, points, layers, tool: self.params.tool });
+        }
+    }
+
+    /// Height of a bead that is printed for so many layers.
+    fn height(&self, layers: u32) -> Coord {
+        self.params.heights.stack(self.k, layers)
+    }
+}

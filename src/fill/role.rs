@@ -1,0 +1,181 @@
+//! Role: what a path is printed for, and all that is particular to each role, in one table.
+
+use crate::profile::{Extrusion, Speed};
+use std::ops::{Index, IndexMut};
+
+/// What a path is printed for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Role {
+    /// The outermost wall.
+    OuterWall,
+    /// Walls inside it.
+    InnerWall,
+    /// Solid lines at tops and bottoms.
+    Skin,
+    /// Sparse infill.
+    Infill,
+    /// Support.
+    Support,
+}
+
+/// Where a role has its place in the order of a layer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// Before all else of its island, by depth.
+    Walls,
+    /// Inside the walls of its island, role after role.
+    Inside,
+    /// No part of the model: after all islands of the layer.
+    Helper,
+}
+
+/// What is particular to a role.
+#[derive(Debug, Clone, Copy)]
+pub struct RoleFacts {
+    /// Its name in reports.
+    pub name: &'static str,
+    /// Its annotation in G-code, after `;TYPE:`, in the words that viewers know.
+    pub annotation: &'static str,
+    /// Its place in the order of a layer.
+    pub place: Place,
+    /// Whether it may be printed for several layers at once.
+    pub may_be_thick: bool,
+    /// The settings of its speed, thin and thick.
+    pub speed_keys: Both<&'static str>,
+    /// Its speed, thin and thick.
+    pub speed: fn(&Speed) -> Both<f64>,
+    /// Filament per length of path, where the profile gives it, mm/mm.
+    pub factor: fn(&Extrusion) -> f64,
+}
+
+impl Role {
+    /// All roles, in the order of reports.
+    pub const ALL: [Self; 5] =
+        [Self::OuterWall, Self::InnerWall, Self::Skin, Self::Infill, Self::Support];
+
+    /// What is particular to it.
+    #[must_use]
+    pub const fn facts(self) -> RoleFacts {
+        match self {
+            Self::OuterWall => RoleFacts {
+                name: "outer wall",
+                annotation: "External perimeter",
+                place: Place::Walls,
+                may_be_thick: false,
+                speed_keys: Both::same("speed.wall"),
+                speed: |speed| Both::same(speed.wall),
+                factor: |extrusion| extrusion.wall_factor,
+            },
+            Self::InnerWall => RoleFacts {
+                name: "inner wall",
+                annotation: "Perimeter",
+                may_be_thick: true,
+                ..Self::OuterWall.facts()
+            },
+            Self::Skin => RoleFacts {
+                name: "skin",
+                annotation: "Solid infill",
+                place: Place::Inside,
+                may_be_thick: true,
+                speed_keys: Both::same("speed.skin"),
+                speed: |speed| Both::same(speed.skin),
+                factor: |extrusion| extrusion.skin_factor,
+            },
+            Self::Infill => RoleFacts {
+                name: "infill",
+                annotation: "Internal infill",
+                place: Place::Inside,
+                may_be_thick: true,
+                speed_keys: Both { thin: "speed.infill", thick: "speed.thick_infill" },
+                speed: |speed| Both { thin: speed.infill, thick: speed.thick_infill },
+                factor: |extrusion| extrusion.infill_factor,
+            },
+            Self::Support => RoleFacts {
+                name: "support",
+                annotation: "Support material",
+                place: Place::Helper,
+                may_be_thick: true,
+                speed_keys: Both::same("speed.support"),
+                speed: |speed| Both::same(speed.support),
+                factor: |extrusion| extrusion.support_factor,
+            },
+        }
+    }
+}
+
+/// A value for each role.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct RoleTable<T>([T; Role::ALL.len()]);
+
+impl<T> RoleTable<T> {
+    /// The values that `of` gives.
+    #[must_use]
+    pub fn new(of: impl FnMut(Role) -> T) -> Self {
+        Self(Role::ALL.map(of))
+    }
+
+    /// The roles with their values, in the order of [`Role::ALL`].
+    pub fn iter(&self) -> impl Iterator<Item = (Role, &T)> {
+        Role::ALL.into_iter().zip(&self.0)
+    }
+}
+
+impl<T> Index<Role> for RoleTable<T> {
+    type Output = T;
+
+    fn index(&self, role: Role) -> &T {
+        &self.0[role as usize]
+    }
+}
+
+impl<T> IndexMut<Role> for RoleTable<T> {
+    fn index_mut(&mut self, role: Role) -> &mut T {
+        &mut self.0[role as usize]
+    }
+}
+
+/// A value for beads of one layer's height, and one for thick beads.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Both<T> {
+    /// For one layer's height.
+    pub thin: T,
+    /// For several layers' height.
+    pub thick: T,
+}
+
+impl<T> Both<T> {
+    /// The value for thick beads, or for thin ones.
+    pub fn of(&self, thick: bool) -> &T {
+        if thick { &self.thick } else { &self.thin }
+    }
+
+    /// The same, to be changed.
+    pub fn of_mut(&mut self, thick: bool) -> &mut T {
+        if thick { &mut self.thick } else { &mut self.thin }
+    }
+
+    /// Thin, then thick.
+    pub fn iter(&self) -> impl Iterator<Item = (bool, &T)> {
+        [(false, &self.thin), (true, &self.thick)].into_iter()
+    }
+}
+
+impl<T: Copy> Both<T> {
+    /// The same value for both.
+    #[must_use]
+    pub const fn same(value: T) -> Self {
+        Self { thin: value, thick: value }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_finds_each_role_where_it_stands() {
+        let table = RoleTable::new(|role| role);
+        assert!(Role::ALL.into_iter().all(|role| table[role] == role));
+        assert!(table.iter().all(|(role, value)| role == *value));
+    }
+}

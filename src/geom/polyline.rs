@@ -1,0 +1,17 @@
+//! Points with widths -> Polyline: a bead in the frame of a raster, before it is placed on the bed.
+
+use crate::units::Coord;
+
+/// A point of a bead's centre line, in the frame of its raster.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LinePoint {
+    /// Along the raster lines.
+    pub u: Coord,
+    /// Across them.
+    pub v: Coord,
+    /// Width of the bead from the previous point to this one.
+    pub width: Coord,
+}
+
+/// A bead in the frame of its raster.
+pub type Polyline = Vec<LinePoint>;

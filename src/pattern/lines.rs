@@ -1,0 +1,245 @@
+//! Raster -> Lines: parallel lines as a pattern, every so many lines of a fine raster.
+//!
+//! The raster is as fine as a solid fill: the rows between two printed lines show where the
+//! region's edge runs, so that joins can follow it. Where the spacing is a multiple of the line
+//! width the raster is the skin's own, and its rows cost nothing more.
+
+use super::zigzag::{self, Side};
+use super::{Pattern, SparsePattern};
+use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::raster::Raster;
+use crate::geom::spans::{Rows, Span};
+use crate::geom::{Point, side};
+use crate::units::{Bounded as _, Coord};
+use std::sync::Arc;
+
+/// A join runs at most this many rows' distance along the lines from row to row.
+const FLATTEST_STEP: Coord = 2;
+
+/// Ends of lines further apart than this, in line widths, are not joined: the joins along a
+/// wall would weigh more than the lines, most where lines of several directions end there.
+const LONGEST_JOIN: i64 = 12;
+
+/// A straight join may leave its region by this much (10 µm): edges are rounded to the grid.
+const SLACK: Coord = 100;
+
+/// Bends of a join along an edge that move it by less, in line widths, are left out.
+const BEND: f64 = 0.125;
+
+/// Every `stride`-th line of a raster.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lines {
+    /// The raster.
+    pub raster: Raster,
+    /// Index of a line that is printed.
+    pub offset: i32,
+    /// From one printed line to the next.
+    pub stride: i32,
+    /// Neighbouring lines are joined at their ends. Not where lines of several directions
+    /// end at the same wall: their joins would lie on each other.
+    pub joined: bool,
+}
+
+impl Lines {
+    /// Lines at `degrees` that lie `spacing` apart, on rows no further apart than `width`.
+    #[must_use]
+    pub fn new(degrees: f64, spacing: Coord, width: Coord) -> Self {
+        let (raster, stride) = Raster::fine(degrees, spacing, width);
+        Self { raster, offset: 0, stride, joined: true }
+    }
+
+    /// Whether line `j` is printed.
+    #[must_use]
+    pub fn prints(&self, j: i32) -> bool {
+        (j - self.offset).rem_euclid(self.stride) == 0
+    }
+}
+
+impl SparsePattern for Lines {
+    fn raster(&self) -> Raster {
+        self.raster
+    }
+
+    fn length(&self, region: &Rows, least: Coord) -> i64 {
+        let printed = region.iter().filter(|(j, _)| self.prints(*j)).flat_map(|(_, row)| row);
+        printed.map(|span| span.len()).filter(|&len| len >= i64::from(least)).sum()
+    }
+
+    fn shares(&self, count: usize) -> Vec<Pattern> {
+        let share = |c: i32| -> Pattern {
+            let offset = self.offset + c * self.stride;
+            Arc::new(Self { offset, stride: count as i32 * self.stride, ..*self })
+        };
+        (0..count as i32).map(share).collect()
+    }
+
+    fn strands(&self, region: &Rows, width: Coord, least: Coord) -> Vec<Polyline> {
+        let pitch = self.raster.pitch;
+        let printed = region.iter().filter(|(j, _)| self.prints(*j));
+        let long = |s: &Span| Some(*s).filter(|s| s.len() >= i64::from(least));
+        let rows = printed.map(|(j, row)| (j, row.iter().map(long)));
+        let edges = Edges { region, pitch, width };
+        let short = |from: (Coord, i32), to: (Coord, i32)| {
+            let (du, dv) = (i64::from(to.0 - from.0), i64::from((to.1 - from.1) * pitch));
+            du * du + dv * dv <= (LONGEST_JOIN * i64::from(width)).pow(2)
+        };
+        let join = |from: (Coord, i32), to: (Coord, i32), side: Side| {
+            let straight = || edges.straight(from, to).then(Vec::new);
+            let join = || straight().or_else(|| edges.along(from, to, side));
+            (self.joined && short(from, to)).then(join).flatten()
+        };
+        let zigzags = zigzag::link(rows, self.stride, self.stride * pitch, join);
+        let strand = |zigzag: Vec<zigzag::Link>| {
+            let mut strand = Vec::with_capacity(2 * zigzag.len());
+            for link in zigzag {
+                strand.extend(link.join);
+                let v = link.row * pitch;
+                let end = |side: Side| LinePoint { u: side.of(link.span), v, width };
+                strand.extend([end(link.from), end(link.from.other())]);
+            }
+            strand
+        };
+        zigzags.into_iter().map(strand).collect()
+    }
+}
+
+/// The edges of a sparse region, as its fine rows show them. Ends are given as `(u, row)`.
+struct Edges<'a> {
+    region: &'a Rows,
+    pitch: Coord,
+    width: Coord,
+}
+
+impl Edges<'_> {
+    /// Whether the straight join is inside the region on every row between.
+    fn straight(&self, (u, a): (Coord, i32), (to, b): (Coord, i32)) -> bool {
+        let run = i64::from(to) - i64::from(u);
+        // A flatter join could slip past a hole between two rows.
+        run.abs() <= i64::from(FLATTEST_STEP * self.pitch * (b - a))
+            && (a + 1..b).all(|j| {
+                let u = u + (run * i64::from(j - a) / i64::from(b - a)) as Coord;
+                let holds = |s: &Span| s.start - SLACK <= u && u <= s.end + SLACK;
+                self.region.row(j).iter().any(holds)
+            })
+    }
+
+    /// The points of a join along the region's edge, if one edge leads there.
+    fn along(
+        &self,
+        (u, a): (Coord, i32),
+        (to, b): (Coord, i32),
+        side: Side,
+    ) -> Option<Vec<LinePoint>> {
+        // Along a flatter edge a join would be longer than a travel is worth.
+        let step = FLATTEST_STEP * self.pitch;
+        let mut at = u;
+        let mut points = Vec::new();
+        for j in a + 1..b {
+            let ends = self.region.row(j).iter().map(|&s| side.of(s));
+            at = ends.filter(|u| (u - at).abs() <= step).min_by_key(|u| ((u - at).abs(), *u))?;
+            points.push(LinePoint { u: at, v: j * self.pitch, width: self.width });
+        }
+        ((to - at).abs() <= step).then(|| {
+            let end = |u, row| LinePoint { u, v: row * self.pitch, width: self.width };
+            let mut kept = Vec::new();
+            keep_bends(&points, end(u, a), end(to, b), f64::from(self.width) * BEND, &mut kept);
+            kept
+        })
+    }
+}
+
+/// Of `points` between `a` and `b`, keeps those that straight lines between the kept ones would
+/// miss by more than `least` (Ramer 1972, Douglas and Peucker 1973).
+fn keep_bends(
+    points: &[LinePoint],
+    a: LinePoint,
+    b: LinePoint,
+    least: f64,
+    kept: &mut Vec<LinePoint>,
+) {
+    let at = |p: LinePoint| Point { x: p.u, y: p.v };
+    let length = at(a).distance(at(b)).at_least(1.0);
+    let miss = |p: LinePoint| side(at(a), at(b), at(p)).abs() as f64 / length;
+    let worst = (0..points.len())
+        .max_by(|&k, &l| miss(points[k]).total_cmp(&miss(points[l])).then(l.cmp(&k)));
+    if let Some(k) = worst.filter(|&k| miss(points[k]) > least) {
+        keep_bends(&points[..k], a, points[k], least, kept);
+        kept.push(points[k]);
+        keep_bends(&points[k + 1..], points[k], b, least, kept);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::frame::Frame;
+    use crate::geom::spans::subtract;
+
+    const W: Coord = 4_000;
+
+    fn every(stride: i32) -> Lines {
+        let raster = Raster { frame: Frame::new(0.0), pitch: W };
+        Lines { raster, offset: 0, stride, joined: true }
+    }
+
+    /// Rows 0 to `count`, 40 mm long, without `hole` on the rows it names.
+    fn region(count: i32, hole: Option<(std::ops::Range<i32>, Span)>) -> Rows {
+        let whole = [Span { start: 0, end: 400_000 }];
+        let mut rows = Rows::starting_at(0);
+        for j in 0..count {
+            let cut = hole.as_ref().filter(|(rows, _)| rows.contains(&j)).map(|(_, s)| *s);
+            rows.push_row(|out| subtract(&whole, cut.as_slice(), out));
+        }
+        rows
+    }
+
+    fn joins_are_inside(region: &Rows, strand: &Polyline) {
+        for w in strand.windows(2).filter(|w| w[0].v != w[1].v) {
+            for j in w[0].v.min(w[1].v) / W..=w[0].v.max(w[1].v) / W {
+                let holds = |u: Coord| region.row(j).iter().any(|s| s.start <= u && u <= s.end);
+                assert!(holds(w[0].u) && holds(w[1].u), "{w:?} on row {j}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_convex_region_is_one_zigzag() {
+        let strands = every(5).strands(&region(26, None), W, W);
+        assert_eq!(strands.len(), 1);
+        let ends: Vec<Coord> = strands[0].iter().map(|p| p.u).collect();
+        assert_eq!(ends[..6], [0, 400_000, 400_000, 0, 0, 400_000]);
+        assert_eq!(strands[0].len(), 12);
+    }
+
+    #[test]
+    fn joins_go_round_a_hole_and_never_across() {
+        let hole = (6..14, Span { start: 100_000, end: 300_000 });
+        let region = region(26, Some(hole));
+        let strands = every(5).strands(&region, W, W);
+        strands.iter().for_each(|strand| joins_are_inside(&region, strand));
+        let lines: usize = strands.iter().map(|c| c.len() / 2).sum();
+        assert_eq!(lines, 7, "six rows, one of them in two pieces: {strands:?}");
+        assert!(strands.len() > 1);
+    }
+
+    #[test]
+    fn lines_of_a_crossing_pattern_are_not_joined() {
+        let grid = Lines { joined: false, ..every(5) };
+        let strands = grid.strands(&region(26, None), W, W);
+        assert_eq!(strands.len(), 6);
+    }
+
+    #[test]
+    fn sparse_lines_far_apart_are_not_joined() {
+        let strands = every(20).strands(&region(41, None), W, W);
+        assert_eq!(strands.len(), 3);
+        assert!(strands.iter().all(|c| c.len() == 2));
+    }
+
+    #[test]
+    fn a_sparse_line_shorter_than_wide_is_left_out() {
+        let mut rows = Rows::starting_at(0);
+        rows.push_row(|out| out.push(Span { start: 0, end: W - 1 }));
+        assert!(every(1).strands(&rows, W, W).is_empty());
+    }
+}

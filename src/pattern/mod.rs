@@ -1,0 +1,98 @@
+//! Settings -> patterns: how sparse lines run, as values that answer for themselves.
+//!
+//! A *pattern* is a set of lines or curves that covers the plane: every fifth raster line, say,
+//! or a curve. Sparse infill and support are a pattern inside a region. Nobody else needs
+//! to know what the curves are: the region stage asks a pattern how long it is inside some
+//! rows and for its *shares* (interlaced layers print one share each), the fill stage asks for
+//! its *strands*, the polylines to print. So a new pattern is a new file here, and a line in
+//! [`Turns::new`].
+//!
+//! A *turn* is the set of patterns that one block of layers prints: one direction of rectilinear
+//! infill, or both directions of a grid. Blocks take the turns one after the other.
+
+mod lines;
+pub mod zigzag;
+
+pub use lines::Lines;
+
+use crate::geom::polyline::Polyline;
+use crate::geom::raster::Raster;
+use crate::geom::spans::Rows;
+use crate::profile::{self, Settings};
+use crate::units::{Coord, to_units};
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// Lines or curves that fill a region sparsely. The same on every layer that prints it.
+///
+/// A region is given as rows of [`Self::raster`]; strands come in that raster's frame.
+/// Strands shorter than `least` are not printed, so that they do not count in lengths either.
+pub trait SparsePattern: Debug + Send + Sync {
+    /// The raster whose rows tell this pattern where a region is.
+    fn raster(&self) -> Raster;
+
+    /// The length of what is printed inside `region`, grid units.
+    fn length(&self, region: &Rows, least: Coord) -> i64;
+
+    /// This pattern divided evenly into `count` patterns that together print what it prints.
+    fn shares(&self, count: usize) -> Vec<Pattern>;
+
+    /// What is printed inside `region` with lines `width` wide.
+    fn strands(&self, region: &Rows, width: Coord, least: Coord) -> Vec<Polyline>;
+}
+
+/// A pattern that several layers and stages refer to.
+pub type Pattern = Arc<dyn SparsePattern>;
+
+/// The patterns of the sparse infill, turn by turn.
+#[derive(Debug, Clone, Default)]
+pub struct Turns(Vec<Vec<Pattern>>);
+
+impl Turns {
+    /// The patterns that `settings` ask for; no turns without infill.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        if settings.infill <= 0.0 {
+            return Self::default();
+        }
+        // Directions in degrees from that of the skin: those printed together, for each turn.
+        let turns: &[&[f64]] = match settings.pattern {
+            profile::Pattern::Rectilinear => &[&[0.0], &[90.0]],
+            profile::Pattern::Aligned => &[&[0.0]],
+            profile::Pattern::Grid => &[&[0.0, 90.0]],
+            profile::Pattern::Triangles => &[&[0.0, 60.0, 120.0]],
+        };
+        Self(turns.iter().map(|directions| lines(settings, directions)).collect())
+    }
+
+    /// The patterns of turn `n`; none without infill.
+    #[must_use]
+    pub fn of(&self, n: usize) -> &[Pattern] {
+        match self.0.len() {
+            0 => &[],
+            turns => &self.0[n % turns],
+        }
+    }
+
+    /// Whether there is no infill.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The rasters of all patterns, some of them several times.
+    pub fn rasters(&self) -> impl Iterator<Item = Raster> {
+        self.0.iter().flatten().map(|pattern| pattern.raster())
+    }
+}
+
+/// Lines in several directions, printed on the same layers: together as dense as asked for.
+fn lines(settings: &Settings, directions: &[f64]) -> Vec<Pattern> {
+    let spacing = settings.line_width * 100.0 / settings.infill * directions.len() as f64;
+    let (spacing, width) = (to_units(spacing), to_units(settings.line_width));
+    let lines = |turn: &f64| -> Pattern {
+        let lines = Lines::new(settings.angle.degrees() + turn, spacing, width);
+        Arc::new(Lines { joined: directions.len() == 1, ..lines })
+    };
+    directions.iter().map(lines).collect()
+}

@@ -1,0 +1,126 @@
+//! Settings -> RegionParams: the numbers of the region stage, in one small struct for each part of it.
+//!
+//! All lengths are grid units. Distances from the contour are to the centre line of a bead or
+//! to the end of a line.
+
+use super::per_raster::Rasters;
+use crate::geom::frame::Frame;
+use crate::geom::raster::Raster;
+use crate::pattern::Turns;
+use crate::profile::Settings;
+use crate::units::{Coord, to_units};
+
+/// The numbers of the whole stage.
+#[derive(Debug, Clone)]
+pub struct RegionParams {
+    /// For the walls.
+    pub walls: WallParams,
+    /// For the rows of a layer.
+    pub insets: Insets,
+    /// For dividing these into skin and infill.
+    pub skins: SkinParams,
+    /// For beads along walls.
+    pub beads: BeadParams,
+    /// All rasters in use.
+    pub rasters: Rasters,
+    /// The patterns of the sparse infill.
+    pub sparse: Turns,
+}
+
+/// How walls are laid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WallParams {
+    /// Width of a line and distance between walls.
+    pub line_width: Coord,
+    /// Number of walls.
+    pub count: u32,
+    /// Distance of the outer wall's centre line from the contour.
+    pub outer_inset: Coord,
+}
+
+/// How far inside the contour lines may run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Insets {
+    /// Distance of the ends of skin and infill lines from the contour.
+    pub fill: Coord,
+    /// How far inside its contour a neighbouring layer counts as covering this one,
+    /// so that skin begins where this layer's walls stop closing what is exposed.
+    pub cover: Coord,
+}
+
+/// Where skin is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SkinParams {
+    /// Solid layers at the top.
+    pub top: usize,
+    /// Solid layers at the bottom.
+    pub bottom: usize,
+    /// How far skins reach under or over the infill.
+    pub reach: Coord,
+    /// Width of a line.
+    pub line_width: Coord,
+}
+
+/// How beads along walls are laid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BeadParams {
+    /// Width of a line.
+    pub line_width: Coord,
+    /// From the centre line of the innermost wall to where lines end; there is a wall.
+    pub wall_to_fill: Coord,
+    /// How far lines reach into the innermost wall.
+    pub overlap: Coord,
+    /// Beads are only laid along the middle of strips, not along walls.
+    pub only_strips: bool,
+}
+
+impl RegionParams {
+    /// The numbers that `settings` mean for this stage.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        let w = settings.line_width;
+        let outer = settings.outer_wall_inset;
+        // Without a wall there is none to reach into.
+        let (wall, overlap) = match settings.walls {
+            0 => (0.5, 0.0),
+            walls => (outer + f64::from(walls), settings.infill_overlap),
+        };
+        let fill = wall - overlap;
+        // Where the walls' inner edge is, seen from the ends of the lines; never quite
+        // as far in as they are, so that an upright side needs no skin.
+        let cover = (0.5 - overlap).min(fill - 0.25).max(0.0);
+        let line_width = to_units(w);
+        let walls =
+            WallParams { line_width, count: settings.walls, outer_inset: to_units(outer * w) };
+        let insets = Insets { fill: to_units(fill * w), cover: to_units(cover * w) };
+        let skin =
+            |turn| Raster { frame: Frame::new(settings.angle.degrees() + turn), pitch: line_width };
+        let sparse = Turns::new(settings);
+        Self {
+            walls,
+            insets,
+            skins: SkinParams {
+                top: settings.top_skins() as usize,
+                bottom: settings.bottom_skins() as usize,
+                reach: to_units(settings.skin_reach),
+                line_width,
+            },
+            beads: BeadParams {
+                line_width,
+                wall_to_fill: insets.fill - walls.inset_of(walls.count),
+                overlap: to_units(overlap * w),
+                only_strips: false,
+            },
+            rasters: Rasters::new([skin(0.0), skin(90.0)], sparse.rasters()),
+            sparse,
+        }
+    }
+}
+
+impl WallParams {
+    /// Distance of the centre line of wall `number`, counted from 1 at the outside, from the contour.
+    #[must_use]
+    pub fn inset_of(&self, number: u32) -> Coord {
+        self.outer_inset + (number as Coord - 1) * self.line_width
+    }
+}

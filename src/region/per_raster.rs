@@ -1,0 +1,94 @@
+//! Rasters -> PerRaster: a value for each raster, found by the raster itself.
+
+use crate::geom::raster::Raster;
+
+/// The rasters in use, each once. The first two carry the skins of even and odd layers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rasters(Vec<Raster>);
+
+impl Rasters {
+    /// The rasters of skins, and `others`.
+    #[must_use]
+    pub fn new(skin: [Raster; 2], others: impl Iterator<Item = Raster>) -> Self {
+        let mut all = skin.to_vec();
+        for raster in others {
+            if !all.contains(&raster) {
+                all.push(raster);
+            }
+        }
+        Self(all)
+    }
+
+    /// One of the two rasters of skins.
+    #[must_use]
+    pub fn skin(&self, index: usize) -> Raster {
+        self.0[index]
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = Raster> {
+        self.0.iter().copied()
+    }
+}
+
+/// Which of the two rasters of skins carries the lines of layer `k`, and which lies across.
+#[must_use]
+pub fn skin_turn(k: usize) -> (usize, usize) {
+    (k % 2, 1 - k % 2)
+}
+
+/// Values for the two rasters of skins, and for others as far as they were asked for.
+#[derive(Debug, Clone)]
+pub struct PerRaster<T> {
+    skins: [T; 2],
+    others: Vec<(Raster, T)>,
+    rasters: [Raster; 2],
+}
+
+impl<T> PerRaster<T> {
+    /// The values that `make` gives for the rasters of skins and for `others`.
+    #[must_use]
+    pub fn new(
+        rasters: &Rasters,
+        others: impl Iterator<Item = Raster>,
+        mut make: impl FnMut(Raster) -> T,
+    ) -> Self {
+        let skins = [0, 1].map(|index| rasters.skin(index));
+        let mut out = Self { skins: skins.map(&mut make), others: Vec::new(), rasters: skins };
+        for raster in others {
+            if out.on(raster).is_none() {
+                out.others.push((raster, make(raster)));
+            }
+        }
+        out
+    }
+
+    /// For each value another.
+    #[must_use]
+    pub fn map<U>(&self, make: impl Fn(&T) -> U) -> PerRaster<U> {
+        let others = self.others.iter().map(|(raster, value)| (*raster, make(value))).collect();
+        let skins = [make(&self.skins[0]), make(&self.skins[1])];
+        PerRaster { skins, others, rasters: self.rasters }
+    }
+
+    /// The value for one of the two rasters of skins.
+    #[must_use]
+    pub fn skin(&self, index: usize) -> &T {
+        &self.skins[index]
+    }
+
+    /// The value for `raster`; `None` if nobody asked for one.
+    #[must_use]
+    pub fn on(&self, raster: Raster) -> Option<&T> {
+        if let Some(index) = self.rasters.iter().position(|r| *r == raster) {
+            return Some(&self.skins[index]);
+        }
+        self.others.iter().find(|(r, _)| *r == raster).map(|(_, value)| value)
+    }
+
+    /// All values, those for the rasters of skins first.
+    pub fn iter(&self) -> impl Iterator<Item = (Raster, &T)> {
+        let skins = self.rasters.iter().copied().zip(&self.skins);
+        skins.chain(self.others.iter().map(|(raster, value)| (*raster, value)))
+    }
+}

@@ -1,0 +1,122 @@
+//! Layer heights -> Heights: where the layers of a print lie, as a list.
+
+use crate::units::Coord;
+
+/// The layers of a print from the bed upwards: each lies on the one before. Their heights may
+/// all differ.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Heights {
+    /// Top of each layer above the bed, grid units.
+    tops: Vec<Coord>,
+    /// The plane that each layer is cut at: the middle of its height.
+    planes: Vec<Coord>,
+}
+
+impl Heights {
+    /// Layers of the given heights, grid units, all > 0.
+    #[must_use]
+    pub fn new(heights: impl IntoIterator<Item = Coord>) -> Self {
+        let mut out = Self::default();
+        let mut top: Coord = 0;
+        for height in heights {
+            top = top.saturating_add(height);
+            out.tops.push(top);
+            out.planes.push(top - height / 2);
+        }
+        out
+    }
+
+    /// Layers of one height but for the first, for a mesh `top` high: as many as have their
+    /// middle inside it.
+    #[must_use]
+    pub fn even(first: Coord, other: Coord, top: Coord) -> Self {
+        // Layer k > 0 has its middle at first + (k − ½)·other.
+        let above = i64::from(top) - i64::from(first) + i64::from(other / 2);
+        let more = usize::try_from((above - 1).div_euclid(i64::from(other))).unwrap_or(0);
+        let first = (top > first / 2).then_some(first);
+        let more = if first.is_some() { more } else { 0 };
+        Self::new(first.into_iter().chain(std::iter::repeat_n(other, more)))
+    }
+
+    /// Number of layers.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.tops.len()
+    }
+
+    /// Height of layer `k`.
+    #[must_use]
+    pub fn height(&self, k: usize) -> Coord {
+        self.stack(k, 1)
+    }
+
+    /// Height of the `count` layers up to layer `k` together.
+    #[must_use]
+    pub fn stack(&self, k: usize, count: u32) -> Coord {
+        let below = (k + 1).checked_sub(count as usize + 1).map_or(0, |below| self.tops[below]);
+        self.tops[k] - below
+    }
+
+    /// Top of layer `k` above the bed.
+    #[must_use]
+    pub fn top(&self, k: usize) -> Coord {
+        self.tops[k]
+    }
+
+    /// The plane that layer `k` is cut at: the middle of its height.
+    #[must_use]
+    pub fn plane(&self, k: usize) -> Coord {
+        self.planes[k]
+    }
+
+    /// How many planes lie at or below `z`. A triangle from `low` to `high` crosses those of
+    /// layers `planes_up_to(low)..planes_up_to(high)`.
+    #[must_use]
+    pub fn planes_up_to(&self, z: Coord) -> usize {
+        self.planes.partition_point(|&plane| plane <= z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn even_layers_are_those_with_their_middle_inside() {
+        let count = |first, other, top| Heights::even(first, other, top).count();
+        assert_eq!(count(2000, 2000, 403_200), 202);
+        assert_eq!(count(2000, 2000, 200_000), 100);
+        assert_eq!(count(2000, 2000, 1001), 1);
+        assert_eq!(count(2000, 2000, 1000), 0);
+        assert_eq!(count(3000, 2000, 5000), 2);
+        assert_eq!(count(3000, 2000, 4000), 1);
+    }
+
+    #[test]
+    fn layers_stand_on_each_other_whatever_their_heights() {
+        let heights = Heights::new([3000, 1000, 2500, 500]);
+        assert_eq!([0, 1, 2, 3].map(|k| heights.top(k)), [3000, 4000, 6500, 7000]);
+        assert_eq!([0, 1, 2, 3].map(|k| heights.plane(k)), [1500, 3500, 5250, 6750]);
+        assert_eq!([0, 1, 2, 3].map(|k| heights.height(k)), [3000, 1000, 2500, 500]);
+        assert_eq!((heights.stack(3, 2), heights.stack(3, 4)), (3000, 7000));
+    }
+
+    #[test]
+    fn a_range_of_heights_crosses_the_planes_within_it() {
+        let lists = [
+            Heights::even(2000, 2000, 50_000),
+            Heights::even(3000, 2000, 50_000),
+            Heights::even(1001, 1501, 50_000),
+            Heights::new([2000, 999, 1500, 3000, 1000]),
+        ];
+        for heights in lists {
+            for (low, high) in [(0, 50_000), (999, 1000), (1000, 4000), (7000, 7000), (-5, 2500)] {
+                let expected: Vec<usize> = (0..heights.count())
+                    .filter(|&k| low < heights.plane(k) && heights.plane(k) <= high)
+                    .collect();
+                let found = heights.planes_up_to(low)..heights.planes_up_to(high);
+                assert_eq!(found.collect::<Vec<_>>(), expected);
+            }
+        }
+    }
+}
