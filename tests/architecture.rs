@@ -9,11 +9,11 @@ use std::path::{Path, PathBuf};
 /// What each module of the library may use of the crate, beside itself.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("units", &[]),
-    ("error", &[]),
+    ("error", &["mesh"]),
     ("warning", &[]),
     ("progress", &[]),
     ("geom", &["units"]),
-    ("mesh", &["units", "error", "warning"]),
+    ("mesh", &["geom", "units", "warning"]),
     ("slice", &["geom", "mesh", "units"]),
     ("render", &["mesh", "units"]),
     ("pattern", &["geom", "profile", "units"]),

@@ -45,6 +45,12 @@ impl<T: Copy + Default> Cells<T> {
         self.starts.len() - 1
     }
 
+    /// The items of a cell, to be sorted.
+    #[must_use]
+    pub fn of_mut(&mut self, cell: usize) -> &mut [T] {
+        &mut self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+
     /// The items of some cells beside each other, one cell after the other.
     #[must_use]
     pub fn of(&self, cells: Range<usize>) -> &[T] {

@@ -1,20 +1,39 @@
 //! Triangles -> Adjacency: finds the triangle on the other side of every edge.
+//!
+//! An edge joins two vertices. A half-edge is one side of one triangle, with the direction in
+//! which the triangle's corners run. Two half-edges of one edge in opposite directions are
+//! neighbours: there the surface goes on. A mesh is sound if each edge has exactly two
+//! half-edges, in opposite directions.
+//!
+//! A sound mesh is paired by lists, by all threads. Each thread takes a range of vertices and all
+//! half-edges whose lower vertex is in it; a half-edge waits in the list of its lower vertex
+//! until the other one of its edge comes. That takes linear time, unless very many edges meet
+//! at one vertex.
+//!
+//! Where that fails, half-edges are sorted into buckets by their lower vertex, and each bucket by
+//! the higher one. At an edge of more than two half-edges, the triangles are ordered by their
+//! angle around the edge, and neighbours are those that bound the same wedge of solid. So two
+//! bodies that touch along an edge stay two bodies, whatever the order of the triangles.
 
-use super::geometry::vector::minus;
+use super::geometry::measure::corners_of;
+use super::geometry::vector::{Corner, minus};
+use crate::geom::cells::Cells;
+use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// No half-edge: what [`Adjacency::neighbour`] says at an open edge.
+/// No half-edge: the value of [`Adjacency::neighbour`] at an open edge.
 pub const NONE: u32 = u32::MAX;
 
-/// Which half-edge continues which. A half-edge is side `edge` of `triangle`,
-/// from corner `edge` to corner `(edge + 1) % 3`, and its number is
-/// `triangle * 4 + edge`; see [`half_edge`].
+/// Most triangles of a mesh: half-edges are numbered `triangle * 4 + edge` in 32 bits.
+pub const MAX_TRIANGLES: usize = (1 << 30) - 1;
+
+/// Which half-edges are neighbours. A half-edge is side `edge` of `triangle`, from corner `edge`
+/// to corner `(edge + 1) % 3`; its number is `triangle * 4 + edge`, see [`half_edge`].
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Adjacency {
-    /// For each side of each triangle the half-edge of the same two vertices
-    /// in the opposite direction, or [`NONE`]. Always mutual.
+    /// For each side of each triangle its neighbour, or [`NONE`]. Always mutual.
     pub neighbour: Vec<[u32; 3]>,
     /// Half-edges without a neighbour; 0 means that the mesh is closed.
     pub unpaired: usize,
@@ -35,12 +54,8 @@ pub fn parts(half_edge: u32) -> (usize, usize) {
     ((half_edge >> 2) as usize, (half_edge & 3) as usize)
 }
 
-/// Pairs the half-edges of fewer than 2³⁰ `triangles` over `vertices`, in linear time.
-///
-/// Where an edge has more than two half-edges, they are taken in the order of their
-/// triangles around the edge, and those that bound the same wedge of solid are
-/// paired; the order of the triangles does not matter. An edge from a vertex to
-/// itself has no neighbour.
+/// Pairs the half-edges of at most [`MAX_TRIANGLES`] `triangles` over `vertices`. A side from a
+/// vertex to itself has no neighbour.
 ///
 /// # Panics
 /// If a triangle names a vertex that is not there.
@@ -61,41 +76,43 @@ pub fn adjacency(vertices: &[[i32; 3]], triangles: &[[u32; 3]]) -> Adjacency {
     result
 }
 
-/// A half-edge whose other one was not met yet, in a list of those with the same lower vertex.
+/// An entry in the list of a lower vertex: one of its edges.
 struct Waiting {
     high: u32,
-    /// [`NONE`] once it is paired.
+    /// The half-edge that waits for its neighbour; [`NONE`] once it has one.
     half: u32,
-    /// The one before it in the list, or [`NONE`].
+    /// The entry before it in the list, or [`NONE`].
     next: u32,
 }
 
-/// The neighbours in a mesh each edge of which has two half-edges in opposite directions; none
-/// if it has others, or if so many edges meet at one vertex that lists are no way to find them.
+/// The neighbours in a sound mesh; `None` if it is not sound, or if so many edges meet at one
+/// vertex that lists are too slow.
 fn of_sound(vertices: usize, triangles: &[[u32; 3]]) -> Option<Vec<[u32; 3]>> {
     let blank = |_: &[u32; 3]| [NONE; 3].map(AtomicU32::new);
     let neighbour: Vec<[AtomicU32; 3]> = triangles.par_iter().map(blank).collect();
-    // All half-edges of an edge have the same lower vertex: each thread takes some vertices.
+    // All half-edges of an edge have the same lower vertex, so that threads share the vertices.
     let share = vertices.div_ceil(rayon::current_num_threads()).max(1);
     let shares = (0..vertices.div_ceil(share)).into_par_iter();
     let edges = shares
         .map(|k| pair_lists(k * share..vertices.min((k + 1) * share), triangles, &neighbour))
         .sum::<Option<usize>>()?;
-    // All are paired if so many were left waiting at first, and no edge has one vertex only.
+    // With half as many edges as half-edges, each edge has two, and none is from a vertex to itself.
     let is_sound = 2 * edges == 3 * triangles.len();
     let known = |sides: [AtomicU32; 3]| sides.map(AtomicU32::into_inner);
     is_sound.then(|| neighbour.into_iter().map(known).collect())
 }
 
-/// Pairs the half-edges whose lower vertex is one of `vertices`. Returns how many edges they
-/// are on, or none as [`of_sound`] does.
+/// Pairs the half-edges whose lower vertex is one of `vertices`. Returns the number of their
+/// edges, or `None` as [`of_sound`] does.
 #[expect(clippy::cast_possible_truncation, reason = "vertices have numbers of 32 bits")]
 fn pair_lists(
     vertices: Range<usize>,
     triangles: &[[u32; 3]],
     neighbour: &[[AtomicU32; 3]],
 ) -> Option<usize> {
-    /// Half-edges that may be looked at to find one, on average.
+    /// List entries that may be visited per half-edge, on average. Real meshes need about 2, since
+    /// a vertex has three edges in its list. Without a limit, a cone whose tip is vertex 0 takes
+    /// quadratic time.
     const MOST_STEPS: usize = 16;
     let mut last = vec![NONE; vertices.len()];
     // A closed mesh has three edges for each vertex, and for two triangles.
@@ -131,14 +148,14 @@ fn pair_lists(
     Some(waiting.len())
 }
 
-/// A place in a list of fewer than 3 · 2³⁰ half-edges.
+/// An index into a list of fewer than 3 · 2³⁰ half-edges.
 #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^30 triangles, see adjacency")]
 fn index(place: usize) -> u32 {
     place as u32
 }
 
-/// Calls `visit` with every edge of `triangles`, its lower and its higher vertex, and the
-/// half-edges on it in both directions, at least one. Edges come in the order of their vertices.
+/// Calls `visit` for every edge of `triangles` with its lower and higher vertex and all of its
+/// half-edges, at least one. Edges come in the order of their vertices.
 ///
 /// # Panics
 /// If a triangle names a vertex that is not below `vertices`.
@@ -147,12 +164,10 @@ pub(crate) fn each_edge(
     triangles: &[[u32; 3]],
     mut visit: impl FnMut((u32, u32), &[u32]),
 ) {
-    let (mut entries, ends) = bucketed(vertices, triangles);
-    let mut start = 0;
+    let mut buckets = bucketed(vertices, triangles);
     let mut sides = Vec::new();
-    for (low, end) in (0_u32..).zip(ends) {
-        let bucket = &mut entries[start..end as usize];
-        start = end as usize;
+    for (low, cell) in (0_u32..).zip(0..vertices) {
+        let bucket = buckets.of_mut(cell);
         bucket.sort_unstable();
         for edge in bucket.chunk_by(|a, b| a >> 32 == b >> 32) {
             sides.clear();
@@ -162,31 +177,20 @@ pub(crate) fn each_edge(
     }
 }
 
-/// All half-edges as `higher vertex << 32 | half-edge`, grouped by their lower
-/// vertex, and for each vertex where its group ends.
-fn bucketed(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u64>, Vec<u32>) {
-    let mut next = vec![0_u32; vertices];
-    for corners in triangles {
-        for edge in 0..3 {
-            next[ends_of(corners, edge).0 as usize] += 1;
-        }
-    }
-    let mut sum = 0;
-    for slot in &mut next {
-        let count = *slot;
-        *slot = sum;
-        sum += count;
-    }
-    let mut entries = vec![0_u64; triangles.len() * 3];
-    for (triangle, corners) in triangles.iter().enumerate() {
-        for edge in 0..3 {
-            let (low, high) = ends_of(corners, edge);
-            let slot = &mut next[low as usize];
-            entries[*slot as usize] = u64::from(high) << 32 | u64::from(half_edge(triangle, edge));
-            *slot += 1;
-        }
-    }
-    (entries, next)
+/// All half-edges as `higher vertex << 32 | half-edge`, in a cell for each lower vertex.
+fn bucketed(vertices: usize, triangles: &[[u32; 3]]) -> Cells<u64> {
+    let entry = |(triangle, corners): (usize, &[u32; 3]), edge: usize| {
+        u64::from(ends_of(corners, edge).1) << 32 | u64::from(half_edge(triangle, edge))
+    };
+    let entries = || {
+        let sides = move |one| [entry(one, 0), entry(one, 1), entry(one, 2)];
+        triangles.iter().enumerate().flat_map(sides)
+    };
+    let low = |entry: u64| {
+        let (triangle, edge) = parts(number(entry));
+        ends_of(&triangles[triangle], edge).0 as usize
+    };
+    Cells::new(vertices, entries, |entry| std::iter::once(low(entry)))
 }
 
 /// Lower and higher vertex of a side.
@@ -195,13 +199,13 @@ fn ends_of(corners: &[u32; 3], edge: usize) -> (u32, u32) {
     (a.min(b), a.max(b))
 }
 
-/// The half-edge in the lower half of an entry.
+/// The half-edge of an entry: its lower half.
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is wanted")]
 fn number(entry: u64) -> u32 {
     entry as u32
 }
 
-/// Whether a half-edge starts at vertex `low`.
+/// Whether a half-edge starts at the vertex `low`.
 pub(crate) fn starts_at(low: u32, half: u32, triangles: &[[u32; 3]]) -> bool {
     let (triangle, edge) = parts(half);
     triangles[triangle][edge] == low
@@ -225,8 +229,8 @@ fn pair(
     let is_balanced = 2 * sides.iter().filter(|&&half| upwards(half)).count() == sides.len();
     result.non_manifold += usize::from(is_balanced);
     let around = in_order_around(sides, vertices, triangles, upwards);
-    // Like brackets in a ring: a face that goes up is closed by the next free one that goes
-    // down, so that bodies that touch along the edge stay apart.
+    // Matched like brackets in a ring: a half-edge that goes up pairs with the next free one that
+    // goes down, so that bodies that touch along the edge stay apart.
     let count = around.len();
     let mut taken = vec![false; count];
     let mut waiting = Vec::new();
@@ -236,7 +240,7 @@ fn pair(
             continue;
         }
         if upwards(around[k]) {
-            // In the second round they wait already.
+            // In the second round it waits already.
             waiting.extend((step < count).then_some(k));
         } else if let Some(opened) = waiting.pop() {
             join(around[opened], around[k], result);
@@ -246,39 +250,38 @@ fn pair(
     result.unpaired += taken.iter().filter(|&&taken| !taken).count();
 }
 
-/// The half-edges of one edge by the angle of their triangles about it; those that go down
-/// come first where angles are equal, then by the coordinates of the third corner.
+/// The half-edges of one edge, ordered by the angle of their triangles around it. At equal angles
+/// those that go down come first; then the coordinates of the third corner decide.
 fn in_order_around(
     sides: &[u32],
     vertices: &[[i32; 3]],
     triangles: &[[u32; 3]],
     upwards: impl Fn(u32) -> bool,
 ) -> Vec<u32> {
-    let corner = |half: u32, step: usize| {
+    let corner = |half: u32, step: usize| -> Corner {
         let (triangle, edge) = parts(half);
-        vertices[triangles[triangle][(edge + step) % 3] as usize]
+        corners_of(vertices, triangles[triangle])[(edge + step) % 3]
     };
     let Some(&first) = sides.iter().find(|&&half| upwards(half)).or(sides.first()) else {
         return Vec::new();
     };
-    let from = if upwards(first) { corner(first, 0) } else { corner(first, 1) };
-    let to = if upwards(first) { corner(first, 1) } else { corner(first, 0) };
-    let along = minus(to, from).map(|side| side as f64);
-    // Across the edge in the plane of its two longer extents, and across both.
-    let least = (0..3).min_by(|&a, &b| along[a].abs().total_cmp(&along[b].abs())).unwrap_or(0);
+    let (from, to) = if upwards(first) { (0, 1) } else { (1, 0) };
+    let (from, to) = (corner(first, from), corner(first, to));
+    let vector = |to: Corner| Vector3::from(minus(to, from).map(|side| side as f64));
+    let along = vector(to);
+    // Two directions across the edge: one in the plane of its two longer extents, and one
+    // across both.
+    let least = along.map(f64::abs).imin();
     let (j, k) = ((least + 1) % 3, (least + 2) % 3);
-    let mut u = [0.0; 3];
+    let mut u = Vector3::zeros();
     (u[j], u[k]) = (-along[k], along[j]);
-    let v: [f64; 3] = std::array::from_fn(|axis| {
-        let (a, b) = ((axis + 1) % 3, (axis + 2) % 3);
-        along[a] * u[b] - along[b] * u[a]
-    });
+    let v = along.cross(&u);
+    // The lengths of `u` and `v` differ by that of the edge.
+    let length = along.norm();
+    // Not the angle, but a number from 0 to 4 that grows with it.
     let turn = |half: u32| {
-        let side = minus(corner(half, 2), from).map(|side| side as f64);
-        let part = |axis: [f64; 3]| (0..3).map(|i| axis[i] * side[i]).sum::<f64>();
-        // Scaled to like lengths; a measure that grows with the angle, from 0 to 4.
-        let length = along.iter().map(|side| side * side).sum::<f64>().sqrt();
-        let (x, y) = (part(u) * length, part(v));
+        let side = vector(corner(half, 2));
+        let (x, y) = (u.dot(&side) * length, v.dot(&side));
         let share = if x == 0.0 && y == 0.0 { 0.0 } else { y / (x.abs() + y.abs()) };
         if x < 0.0 {
             2.0 - share

@@ -1,8 +1,8 @@
-//! Corners -> Bounds: boxes along the axes, on the grid.
+//! Corners -> Bounds: axis-aligned boxes on the grid.
 
 use super::vector::{Corner, length, minus};
 
-/// A box along the axes, grid units; both corners belong to it.
+/// An axis-aligned box, grid units; it includes both corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Bounds {
     /// The lowest x, y and z.
@@ -12,7 +12,7 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// The box that no box is smaller than; [`Bounds::join`] leaves the other as it is.
+    /// The empty box: joined with another it gives the other.
     pub(crate) const NONE: Self = Self { low: [i32::MAX; 3], high: [i32::MIN; 3] };
 
     /// The box around some corners.
@@ -34,7 +34,7 @@ impl Bounds {
         }
     }
 
-    /// What both have in common, if they touch.
+    /// The box that both have in common, if they touch.
     pub(crate) fn common(self, other: Self) -> Self {
         Self {
             low: std::array::from_fn(|axis| self.low[axis].max(other.low[axis])),
@@ -47,7 +47,8 @@ impl Bounds {
         (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
     }
 
-    /// Whether the ray up from the point, moved as [`super::tree::Tree::above`] says, can meet what is inside.
+    /// Whether the ray straight up from `point` can hit something in this box. The point counts as
+    /// moved a little, as [`super::tree::Tree::above`] says.
     pub(crate) fn is_over(&self, point: [i32; 3]) -> bool {
         let beside = |axis: usize| point[axis] < self.low[axis] || self.high[axis] <= point[axis];
         !beside(0) && !beside(1) && point[2] < self.high[2]

@@ -1,4 +1,18 @@
 //! Tree -> Crossings: finds the pairs of triangles that pass through each other.
+//!
+//! Two triangles cross if each passes through the other along a line of some length. Triangles
+//! that share a side, that only touch in a point or along a line, that lie in one plane, or that
+//! have no area do not cross. Only coordinates count, so that it does not matter whether equal
+//! corners are one vertex.
+//!
+//! The tree of boxes gives the pairs whose boxes touch. The test of a pair takes exact signs of
+//! determinants (after Guigue and Devillers, 2003): each triangle must have corners on both sides
+//! of the other's plane; then each covers an interval of the line in which the planes meet, and the
+//! triangles cross if the intervals overlap.
+//!
+//! Groups of triangles are walked by all threads, some at a time. Between these batches the pairs
+//! and steps are counted, so that a mesh of random triangles ends early, with the same result on
+//! any number of threads.
 
 use super::tree::Tree;
 use super::vector::{dot, length, minus, normal};
@@ -7,43 +21,36 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
-/// Most pairs that [`crossings`] gives.
+/// Most pairs that [`crossings`] returns. A report needs far fewer; without a limit, random triangles fill
+/// the memory.
 pub const MOST_PAIRS: usize = 1 << 20;
 
-/// Steps of [`Tree::pairs`] that are taken whatever the size of the mesh …
+/// Steps of [`Tree::pairs`] that a mesh of any size may take: less than a second.
 const STEPS: u64 = 1 << 26;
 
-/// … and those more for each group of about 64 triangles: real meshes take 2000 to 3000.
+/// Steps more for each group of about 64 triangles. Real meshes take 2000 to 3000; a value below
+/// would leave crossings of large sound meshes unreported.
 const STEPS_OF_GROUP: u64 = 1 << 13;
 
-/// Groups that are walked side by side before pairs and steps are counted again. Each may find
-/// and take one part in so many of the most, so that the most are exceeded twofold at worst.
+/// Groups that are walked in parallel before pairs and steps are counted again. Each may take
+/// 1/32 of the limits, so that these are exceeded twofold at worst.
 const BATCH: usize = 32;
 
 /// The pairs of triangles that cross.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Crossings {
-    /// The numbers of the two triangles, the lower first; the pairs by their [`place`]: by z,
-    /// then y, x and the numbers. At most [`MOST_PAIRS`].
+    /// The numbers of the two triangles, the lower first. Pairs are ordered by the z, y and x of
+    /// their [`place`], then by the numbers. At most [`MOST_PAIRS`].
     pub pairs: Vec<[u32; 2]>,
-    /// Whether these are all. If not, there may be more, anywhere.
+    /// Whether these are all. If not, there may be more anywhere.
     pub complete: bool,
 }
 
-/// Finds the triangles that pass through each other, exactly.
+/// Finds the triangles that pass through each other, exactly, in n log n time for a usual mesh.
 ///
-/// Two triangles cross if they have a point in common that is on no side of either, and do not
-/// lie in one plane: each passes through the other along a line of some length. That is so too
-/// for two that share a corner and cross elsewhere. Not counted are triangles that share a side
-/// or only touch, in a point or along a line, as where one stands on the other; triangles in one
-/// plane, whether they overlap or are the same; triangles without area. Only coordinates are
-/// looked at, so that it does not matter whether equal corners are one vertex.
-///
-/// In n log n for a usual mesh, and in parallel. A hostile one is left early: when more than
-/// [`MOST_PAIRS`] are found, or a thirty-second part of that within 64 neighbouring triangles, or
-/// after a fixed number of looks at boxes, over a hundred for each triangle. The result does not
-/// depend on the number of threads; nor, but for the numbers in it, on the order of the
-/// triangles, unless it is not complete.
+/// It ends early with more than [`MOST_PAIRS`] crossings, with 1/32 of that within one group, or after a
+/// number of steps that no real mesh takes. The result does not depend on the number of threads.
+/// If it is complete it does not depend on the order of the triangles, except for their numbers.
 #[must_use]
 pub fn crossings(tree: &Tree) -> Crossings {
     crossings_within(tree, STEPS + STEPS_OF_GROUP * tree.groups() as u64)
@@ -75,7 +82,8 @@ fn crossings_within(tree: &Tree, most_steps: u64) -> Crossings {
     all
 }
 
-/// Where two triangles of a tree cross: the middle of what their boxes have in common, grid units.
+/// Where two triangles of a tree cross: the middle of the box that their boxes have in common,
+/// grid units.
 #[must_use]
 pub fn place(tree: &Tree, pair: [u32; 2]) -> [i32; 3] {
     let [a, b] = pair.map(|triangle| tree.bounds(triangle));
@@ -83,13 +91,13 @@ pub fn place(tree: &Tree, pair: [u32; 2]) -> [i32; 3] {
     std::array::from_fn(|axis| common.low[axis].midpoint(common.high[axis]))
 }
 
-/// How deep two triangles of a tree that cross are in each other, mm: each reaches past the plane
-/// of the other by at least that on both sides.
+/// How deep two crossing triangles of a tree are in each other, mm: each reaches past the plane of
+/// the other by at least that, on both sides.
 ///
 /// Rounding to the grid alone makes crossings of up to two grid units, where corners lie on sides
-/// or sheets lie on each other. Numbers are rounded, but alike on every machine.
+/// or surfaces lie on each other. The result is rounded, but the same on every machine.
 #[must_use]
-#[expect(clippy::cast_precision_loss, reason = "a length to be told and compared, not a sign")]
+#[expect(clippy::cast_precision_loss, reason = "a length to be reported and compared, not a sign")]
 pub fn depth(tree: &Tree, pair: [u32; 2]) -> f64 {
     let [a, b] = pair.map(|triangle| tree.corners(triangle).map(|corner| corner.map(i64::from)));
     let past = |plane: [[i64; 3]; 3], corners: [[i64; 3]; 3]| {
@@ -102,7 +110,8 @@ pub fn depth(tree: &Tree, pair: [u32; 2]) -> f64 {
     past(a, b).min(past(b, a)) / UNITS_PER_MM
 }
 
-/// The crossings of the triangles of a group with these and later ones, and the steps it took, at most `most`.
+/// The crossings of the triangles of a group with each other and with later ones, and the steps
+/// that it took, at most `most`.
 fn of_group(tree: &Tree, group: usize, most: u64) -> (Crossings, u64) {
     let (mut pairs, mut left) = (Vec::new(), most);
     let flow = tree.pairs(group, &mut left, |a, b| {
@@ -117,17 +126,17 @@ fn of_group(tree: &Tree, group: usize, most: u64) -> (Crossings, u64) {
     (Crossings { pairs, complete: flow.is_continue() }, most - left)
 }
 
-/// Whether two triangles cross, as [`crossings`] says.
+/// Whether two triangles cross.
 ///
 /// After Guigue and Devillers, "Fast and robust triangle-triangle overlap test using orientation
 /// predicates", 2003, with strict signs. Each triangle has corners on both sides of the other's
-/// plane, so that it covers a stretch of the line in which the planes meet; the stretches overlap
-/// if each begins before the other ends, and which is first is the sign of a determinant.
+/// plane, so that it covers an interval of the line in which the planes meet. The intervals
+/// overlap if each begins before the other ends; a determinant's sign says which comes first.
 fn do_cross(a: [[i32; 3]; 3], b: [[i32; 3]; 3]) -> bool {
     let [a, b] = [a, b].map(|corners| corners.map(|corner| corner.map(i64::from)));
     let Some((a, a_side)) = alone_first(a, b) else { return false };
     let Some((b, b_side)) = alone_first(b, a) else { return false };
-    // The other two are put so that each first corner is on the upper side of the other triangle.
+    // Turned so that each first corner is on the upper side of the other triangle.
     let turn = |[first, second, third]: [[i64; 3]; 3], side: Ordering| match side {
         Ordering::Greater => [first, second, third],
         _ => [first, third, second],
@@ -137,8 +146,8 @@ fn do_cross(a: [[i32; 3]; 3], b: [[i32; 3]; 3]) -> bool {
         && side([a[0], a[2], b[2]], b[0]) == Ordering::Less
 }
 
-/// The corners in the same sense, first one that is alone on its side of the plane of `other`,
-/// and that side; none if the plane does not have corners on both sides.
+/// The corners in the same sense, beginning with one that is alone on its side of the plane of
+/// `other`, and that side. `None` if the corners are not on both sides.
 fn alone_first(corners: [[i64; 3]; 3], other: [[i64; 3]; 3]) -> Option<([[i64; 3]; 3], Ordering)> {
     let sides = corners.map(|corner| side(other, corner));
     if !sides.contains(&Ordering::Less) || !sides.contains(&Ordering::Greater) {
@@ -151,7 +160,8 @@ fn alone_first(corners: [[i64; 3]; 3], other: [[i64; 3]; 3]) -> Option<([[i64; 3
     Some((std::array::from_fn(|k| corners[(first + k) % 3]), sides[first]))
 }
 
-/// On which side of the plane through three points a point lies; greater is where their normal points.
+/// The side of the plane through three points on which a point lies; greater is where the normal
+/// points.
 fn side([a, b, c]: [[i64; 3]; 3], point: [i64; 3]) -> Ordering {
     dot(normal([a, b, c]), minus(point, a)).cmp(&0)
 }

@@ -1,4 +1,4 @@
-//! Mesh -> volume: measures a placed mesh in integers, so that the order of triangles does not matter.
+//! Mesh -> volume: measures a mesh in integers, so that the order of triangles does not matter.
 
 use super::vector::{Corner, cross, dot, minus, normal};
 use crate::mesh::Mesh;
@@ -15,8 +15,7 @@ pub(crate) fn corners_of(vertices: &[Corner], triangle: [u32; 3]) -> [Corner; 3]
     triangle.map(|corner| vertices[corner as usize])
 }
 
-/// The signed volume: a sixth of the sum of the triangles' determinants, in
-/// integers, so that no order of the triangles changes it.
+/// The signed volume: a sixth of the sum of the triangles' determinants.
 pub(crate) fn volume_mm3(mesh: &Mesh) -> f64 {
     of_determinants(determinants(&mesh.vertices, &mesh.triangles))
 }

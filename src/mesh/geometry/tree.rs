@@ -1,4 +1,17 @@
-//! Triangles -> Tree: finds the triangles above a point, and the pairs whose boxes touch, in a tree of boxes.
+//! Triangles -> Tree: a tree of boxes that finds the triangles above a point, and pairs whose boxes touch.
+//!
+//! The triangles are sorted by the Morton code of the middles of their boxes (Morton, 1966: the
+//! bits of x, y and z in turn), so that triangles close to each other in space are close in the order. Four
+//! triangles in a row are a leaf, and two nodes in a row have a parent on the next level: the
+//! tree needs no pointers, only a box for each node. Building it takes n log n time.
+//!
+//! A query from above walks down from the root through all boxes that the ray can hit. A query for pairs
+//! walks two nodes at a time, one from a group of leaves and one from the root down, and
+//! splits the larger one while their boxes touch. Groups are independent, so that threads can
+//! share them; steps are counted, so that a hostile mesh cannot take quadratic time.
+//!
+//! All predicates are exact integers. A ray never hits an edge or a corner: the point counts as
+//! moved by an infinitesimal (Edelsbrunner and Mücke, 1990: simulation of simplicity).
 
 use super::bounds::Bounds;
 use super::measure::corners_of;
@@ -7,13 +20,15 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
-/// Triangles of a leaf.
+/// Triangles of a leaf. Two make the tree twice as large; eight test more boxes of triangles in
+/// vain.
 const LEAF: usize = 4;
 
-/// The level of the nodes that are the groups of [`Tree::pairs`]: 16 leaves, 64 triangles.
+/// The level of the nodes that are the groups of [`Tree::pairs`]: 16 leaves, 64 triangles. Smaller
+/// groups walk the upper levels more often; larger ones give threads less to share.
 const GROUP_LEVEL: usize = 4;
 
-/// Bits of each coordinate in the code that triangles are sorted by.
+/// Bits of each coordinate in a Morton code: three times 21 fit a `u64`.
 const BITS: u32 = 21;
 
 /// One node: number `index` of those of `level`, the leaves being level 0.
@@ -29,37 +44,33 @@ impl Node {
         self.index << self.level
     }
 
-    /// One behind the last leaf that may be under it.
+    /// One past the last leaf that can be under it.
     fn end(self) -> usize {
         (self.index + 1) << self.level
     }
 
     /// Its children; the second may be missing.
     fn children(self) -> [Self; 2] {
-        [0, 1].map(|k| Self { level: self.level - 1, index: 2 * self.index + k })
+        let child = |k: usize| Self { level: self.level - 1, index: 2 * self.index + k };
+        [child(0), child(1)]
     }
 }
 
-/// A tree of boxes over the triangles of a mesh.
-///
-/// The triangles are sorted by the Morton code of the middles of their boxes
-/// (Morton, 1966: the bits of x, y and z in turn), so that what lies together
-/// in space does so in the order too. Each four of them in that order
-/// are a leaf, each two nodes a node of the next level: nothing but boxes is kept.
-/// Built in n log n with about 16 bytes for each triangle, and 16 more while building.
+/// A tree of boxes over the triangles of a mesh. It takes about 16 bytes for each triangle, and 16
+/// more while it is built.
 #[derive(Debug, Clone)]
 pub struct Tree<'a> {
     vertices: &'a [[i32; 3]],
     triangles: &'a [[u32; 3]],
     /// The triangles in the order of the leaves.
     order: Vec<u32>,
-    /// The boxes of each level, leaves first; the last level has one. None if there are no triangles.
+    /// The boxes of each level, leaves first; the last level has one. Empty without triangles.
     levels: Vec<Vec<Bounds>>,
 }
 
 impl<'a> Tree<'a> {
-    /// The tree over fewer than 2³⁰ `triangles`, whose corners are indices into `vertices`;
-    /// grid units, no coordinate beyond ±10⁸.
+    /// The tree over fewer than 2³⁰ `triangles`, whose corners are indices into `vertices`.
+    /// Coordinates are grid units, within ±10⁸.
     ///
     /// # Panics
     /// If a triangle names a vertex that is not there.
@@ -95,14 +106,14 @@ impl<'a> Tree<'a> {
         Bounds::of(self.corners(triangle))
     }
 
-    /// The triangles by the Morton codes of the middles of their boxes; equal ones by their numbers.
+    /// The triangles in the order of their Morton codes; equal ones in the order of their numbers.
     #[expect(clippy::cast_possible_truncation, reason = "fewer than 2^30 triangles, see new")]
     fn sorted(&self) -> Vec<u32> {
         let numbers = || (0..self.triangles.len() as u32).into_par_iter();
         let all = numbers().map(|t| self.bounds(t)).reduce(|| Bounds::NONE, Bounds::join);
         let side = |axis: usize| i64::from(all.high[axis]) - i64::from(all.low[axis]);
         let longest = side(0).max(side(1)).max(side(2)).max(1);
-        // Middles are doubled: below 2^BITS after the shift.
+        // Middles are doubled, so that they are integers; after the shift they are below 2^BITS.
         let used = u64::BITS - (2 * longest).unsigned_abs().leading_zeros();
         let shift = used.saturating_sub(BITS);
         let code = |t: u32| {
@@ -118,19 +129,18 @@ impl<'a> Tree<'a> {
         keys.into_par_iter().map(|(_, t)| t).collect()
     }
 
-    /// Calls `hit` with every triangle that the ray from `point` straight up passes through, and
-    /// with 1 if its normal points up there (the ray leaves a body wound outward), -1 if down.
+    /// Calls `hit` with every triangle that the ray from `point` straight up passes through. The
+    /// sign is 1 if the triangle's normal points up, where the ray leaves a body, and -1 if down.
+    /// The signs of a closed shell add up to its winding number around the point.
     ///
-    /// Exact, and without special cases: everything is as if the point was moved by (e, e², e³),
-    /// e being smaller than any number (Edelsbrunner and Mücke, 1990: simulation of simplicity).
-    /// So a ray through an edge or a vertex of a closed mesh passes through one triangle of each
-    /// fan that it enters or leaves by; upright triangles and those without area are never hit;
-    /// and a triangle that contains the point is hit if the moved point is below it. The point is
-    /// moved to larger x first: on a side of a box it is inside if the box lies towards larger x,
-    /// on a top it is outside and on a bottom inside. The signs of a closed shell add up to the
-    /// number of times that it winds around the moved point.
+    /// Exact, and without special cases: the point counts as moved by (e, e², e³), where e is
+    /// smaller than any number. So a ray through an edge or a vertex of a closed mesh passes
+    /// through one triangle of each fan. Vertical triangles and those without area are never hit.
+    /// A point on a triangle is below or above it after the move: on a side of a box it is inside
+    /// if the box lies towards larger x, on a top it is outside, and on a bottom inside.
     ///
-    /// Time: proportional to what is hit and the logarithm of the number of triangles, in a usual mesh.
+    /// In a usual mesh it takes the time of the hits, and of the logarithm of the number of
+    /// triangles.
     pub fn above(&self, point: [i32; 3], mut hit: impl FnMut(u32, i32)) {
         let Some(level) = self.levels.len().checked_sub(1) else { return };
         self.above_in(Node { level, index: 0 }, point, &mut hit);
@@ -159,7 +169,7 @@ impl<'a> Tree<'a> {
         &self.order[start..self.order.len().min(start + LEAF)]
     }
 
-    /// How many groups of about 64 triangles there are, see [`Tree::pairs`].
+    /// The number of groups of about 64 triangles, see [`Tree::pairs`].
     #[must_use]
     pub fn groups(&self) -> usize {
         self.levels.get(self.group_level()).map_or(0, Vec::len)
@@ -169,14 +179,15 @@ impl<'a> Tree<'a> {
         GROUP_LEVEL.min(self.levels.len().saturating_sub(1))
     }
 
-    /// Calls `pair` with all pairs of different triangles whose boxes touch, the one in `group`
-    /// and the other in it or a later group: over all groups each pair comes once. Groups are
-    /// independent of each other, so that they can be walked in parallel.
+    /// Calls `pair` with all pairs of different triangles whose boxes touch, one of them in `group`
+    /// and the other in it or in a later group. Over all groups each pair comes once. Groups are
+    /// independent, so that they can be walked in parallel.
     ///
-    /// `steps` is counted down by one for each pair of nodes and each pair of triangles; at 0 the walk stops.
+    /// `steps` is counted down by one for each pair of nodes and each pair of triangles; at 0 the
+    /// walk ends.
     ///
     /// # Errors
-    /// [`ControlFlow::Break`] if `pair` said so or the steps were used up.
+    /// [`ControlFlow::Break`] if `pair` returned it, or if the steps are used up.
     pub fn pairs(
         &self,
         group: usize,
@@ -233,7 +244,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// One step less, if there is one.
+/// Takes one step, if there is one left.
 fn count_down(steps: &mut u64) -> ControlFlow<()> {
     match steps.checked_sub(1) {
         Some(left) => *steps = left,
@@ -257,7 +268,8 @@ fn spread(bits: u64) -> u64 {
     bits
 }
 
-/// Whether the ray up from the moved point passes through the triangle: 1 or -1 as its normal points.
+/// Whether the ray up from the moved point passes through the triangle: 1 if its normal points up,
+/// -1 if it points down.
 fn passes(point: [i32; 3], corners: [[i32; 3]; 3]) -> Option<i32> {
     let p = point.map(i64::from);
     let [a, b, c] = corners.map(|corner| corner.map(i64::from));
@@ -279,8 +291,8 @@ fn passes(point: [i32; 3], corners: [[i32; 3]; 3]) -> Option<i32> {
     }
 }
 
-/// On which side of the line through two points the moved point lies, seen from above; greater is left.
-/// Equal only if the line has no length in x and y.
+/// The side of the line through two points on which the moved point lies, seen from above: greater
+/// is left. Equal only if the line has no length in x and y.
 fn side(from: [i64; 3], to: [i64; 3], point: [i64; 3]) -> Ordering {
     let (along, towards) = (minus(to, from), minus(point, from));
     // The moved point's product is larger by e²·along.x - e·along.y.
@@ -297,7 +309,7 @@ mod tests {
 
     /// The corners of a box, x in the lowest bit, and its faces wound outward.
     fn cuboid(low: i32, high: i32) -> (Vec<[i32; 3]>, Vec<[u32; 3]>) {
-        let corner = |k: u32| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low } else { high });
+        let corner = |k: u32| [1, 2, 4].map(|bit| if k & bit == 0 { low } else { high });
         let faces =
             [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let split = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
@@ -433,7 +445,9 @@ mod tests {
         ) {
             // Smaller triangles at the same places, so that not all boxes touch.
             let about = |[a, b, c]: [[i32; 3]; 3]| {
-                let near = |v: [i32; 3]| [0, 1, 2].map(|axis| a[axis] + (v[axis] - a[axis]) / size);
+                let near = |v: [i32; 3]| -> [i32; 3] {
+                    std::array::from_fn(|axis| a[axis] + (v[axis] - a[axis]) / size)
+                };
                 [a, near(b), near(c)]
             };
             let soup: Vec<_> = soup.into_iter().map(about).collect();

@@ -1,4 +1,7 @@
-//! Corners on the grid -> differences and products: the little vector algebra that the mesh stage needs, exact.
+//! Corners on the grid -> differences and products: exact vectors of integers.
+//!
+//! Signs of these products decide what crosses and what lies inside, so they must be exact; a
+//! vector of `f64` is a nalgebra one.
 
 /// A corner on the integer grid.
 pub(crate) type Corner = [i32; 3];
@@ -13,7 +16,8 @@ pub(crate) fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// The scalar product; exact for a cross product and a difference: below 2⁸⁷ on a grid of 2²⁸.
+/// The scalar product. Exact for a cross product and a difference: on a grid of 2²⁸ it is below
+/// 2⁸⁷.
 pub(crate) fn dot(a: [i64; 3], b: [i64; 3]) -> i128 {
     (0..3).map(|axis| i128::from(a[axis]) * i128::from(b[axis])).sum()
 }

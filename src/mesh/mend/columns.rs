@@ -1,31 +1,35 @@
-//! Places -> Columns: which triangles may lie above or below one of them, quickly told.
+//! Places -> Columns: a quick test whether a triangle can lie above or below one of some places.
 
 use crate::mesh::geometry::bounds::Bounds;
-use crate::mesh::geometry::vector::Corner;
+use crate::mesh::geometry::vector::{Corner, minus};
 
-/// Cells along the longer side of the places, at most.
+/// Cells along the longer side of the area, at most: a table of up to 256 KB. With fewer cells more
+/// triangles pass the test in vain; with more the table leaves the cache.
 const MOST: u32 = 512;
 
-/// Square cells of the plane, some with places in them.
+/// Square cells of the plane, which say where there are places.
 pub(super) struct Columns {
     low: [i64; 2],
     /// The side of a cell is 2 to this power, grid units.
     shift: u32,
     /// Columns and rows of cells.
     size: [usize; 2],
-    /// Whether there is a place in each cell, row by row.
+    /// Whether a cell has a place, row by row.
     has: Vec<bool>,
 }
 
 impl Columns {
-    /// Those of `places`.
+    /// The cells of `places`.
     pub(super) fn of(places: &[Corner]) -> Self {
-        let all = |axis: usize| places.iter().map(move |place| i64::from(place[axis]));
-        let low = [0, 1].map(|axis| all(axis).min().unwrap_or(0));
-        let extent = [0, 1].map(|axis| all(axis).max().unwrap_or(0) - low[axis]);
-        let longer = extent[0].max(extent[1]).unsigned_abs();
+        let Bounds { low, high } = match places {
+            [] => Bounds { low: [0; 3], high: [0; 3] },
+            places => Bounds::of(places.iter().copied()),
+        };
+        let [width, depth, _] = minus(high, low);
+        let longer = width.max(depth).unsigned_abs();
         let shift = (u64::BITS - longer.leading_zeros()).saturating_sub(MOST.ilog2());
-        let size = extent.map(|side| (side >> shift) as usize + 1);
+        let low = [i64::from(low[0]), i64::from(low[1])];
+        let size = [width, depth].map(|side| (side >> shift) as usize + 1);
         let mut columns = Self { low, shift, size, has: vec![false; size[0] * size[1]] };
         for &[x, y, _] in places {
             let [column, row] = columns.cell([x, y]);
@@ -34,7 +38,7 @@ impl Columns {
         columns
     }
 
-    /// Whether there is a place in a cell that the box around some triangle covers.
+    /// Whether there is a place in a cell under or over the box of a triangle.
     pub(super) fn meet(&self, bounds: Bounds) -> bool {
         let Bounds { low: [left, front, _], high: [right, back, _] } = bounds;
         let beyond = |axis: usize, from: i32, to: i32| {
@@ -50,10 +54,11 @@ impl Columns {
 
     /// Column and row of the cell of a point, or of the nearest one.
     fn cell(&self, point: [i32; 2]) -> [usize; 2] {
-        [0, 1].map(|axis| {
+        let along = |axis: usize| {
             let cell = (i64::from(point[axis]) - self.low[axis]).max(0) >> self.shift;
             (cell as usize).min(self.size[axis] - 1)
-        })
+        };
+        [along(0), along(1)]
     }
 }
 

@@ -1,18 +1,19 @@
-//! Points -> cells: a hash of cubes, to find the points near a place.
+//! Points -> cubes: a hash of cubes, to find the points near a place.
 
 use crate::mesh::geometry::vector::Corner;
 use hashbrown::HashMap;
 
-/// Points by the cube they lie in. Looked up only, never walked.
-pub(super) struct Cells {
+/// Points by the cube that they lie in. Cubes are looked up but never iterated over, so that the
+/// order of a hash table shows nowhere.
+pub(super) struct Cubes {
     size: i64,
     /// Where each cube's points begin in `points`, and how many there are.
     cubes: HashMap<[i32; 3], (u32, u32)>,
     points: Vec<u32>,
 }
 
-impl Cells {
-    /// Sorts `points`, indices into `vertices`, into cubes with sides of `size` grid units.
+impl Cubes {
+    /// Sorts `points`, indices into `vertices`, into cubes of `size` grid units.
     pub(super) fn new(vertices: &[Corner], points: &[u32], size: i64) -> Self {
         let size = size.max(1);
         let mut keyed: Vec<([i32; 3], u32)> =
@@ -28,7 +29,7 @@ impl Cells {
         Self { size, cubes, points: keyed.into_iter().map(|(_, point)| point).collect() }
     }
 
-    /// The points in the cubes that touch the box from `low` to `high`.
+    /// Calls `visit` with the points in the cubes that touch the box from `low` to `high`.
     pub(super) fn near(&self, low: Corner, high: Corner, mut visit: impl FnMut(u32)) {
         let (low, high) = (cube_of(low, self.size), cube_of(high, self.size));
         for x in low[0]..=high[0] {
@@ -42,10 +43,10 @@ impl Cells {
         }
     }
 
-    /// The points in the cubes along the line from `a` to `b` and around it by `reach`;
-    /// some may come twice.
+    /// Calls `visit` with the points in the cubes within `reach` of the line from `a` to `b`, some of
+    /// them twice.
     pub(super) fn along(&self, a: Corner, b: Corner, reach: i32, mut visit: impl FnMut(u32)) {
-        // Pieces as long as a cube: then each piece's box holds few cubes.
+        // The box around a piece as long as a cube touches few cubes.
         let extent = (0..3).map(|axis| (i64::from(b[axis]) - i64::from(a[axis])).abs()).max();
         let pieces = extent.unwrap_or(0) / self.size + 1;
         let at = |k: i64| -> Corner {

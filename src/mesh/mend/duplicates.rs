@@ -1,4 +1,4 @@
-//! Copies of triangles -> one or none: keeps one of each where it closes the surface, none where it is an inner wall or a sheet.
+//! Copies of triangles -> one or none: keeps one where it closes the surface, and none where it is an inner wall or a sheet.
 
 use super::Work;
 use super::links::Links;
@@ -6,13 +6,13 @@ use crate::mesh::edges::{each_edge, parts};
 use crate::mesh::faults::{Fault, Mending};
 use rayon::prelude::*;
 
-/// Drops copies of triangles over the same three corners, in either direction.
+/// Drops copies of triangles: those over the same three corners, in either direction.
 ///
-/// Of an odd number one stays. An even number may be a surface that was written twice, or
-/// two bodies' common wall, or a sheet with a front and a back. Neighbouring doubled
-/// triangles are judged together, by the edges where they end: if a single other triangle
-/// goes on there, one copy is needed to close the surface; if two do, or none, it is not.
-/// A closed surface of doubled triangles has no such edges, and stays once.
+/// Of an odd number one stays. An even number can be a surface that was written twice, the common
+/// wall of two bodies, or a sheet with a front and a back. Adjacent doubled triangles share their
+/// fate; the edges where they end decide it. If one other triangle continues there, one copy is
+/// needed to close the surface; if two or none continue, it is not. A closed surface of doubled
+/// triangles has no such edges, and one copy stays.
 pub(super) fn drop_duplicates(work: &mut Work) {
     let mut keyed: Vec<([u32; 3], u32)> =
         work.triangles.par_iter().zip(0_u32..work.count()).map(|(t, k)| (sorted(*t), k)).collect();
@@ -45,10 +45,10 @@ fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
     triangle
 }
 
-/// The one of some copies that stays: one of the more frequent direction.
+/// The copy that stays: one in the more frequent direction.
 fn kept_of(work: &Work, group: &[([u32; 3], u32)]) -> u32 {
     let is_even = |t: u32| {
-        // By place, not by number: the order of the triangles must not show.
+        // By coordinates before numbers, so that the order of the triangles does not matter.
         let [a, b, c] = work.triangles[t as usize].map(|v| (work.vertices[v as usize], v));
         (a < b) ^ (b < c) ^ (c < a)
     };
@@ -64,7 +64,8 @@ fn needless(work: &Work, drop: &[bool], doubled: &[u32]) -> Vec<u32> {
         place[t as usize] = k;
     }
     let mut links = Links::new(doubled.len());
-    // Doubled triangle at an edge where an odd number of them meet, number of other triangles there.
+    // For each edge with an odd number of doubled triangles: one of these, and the number of
+    // other triangles.
     let mut ends: Vec<(u32, usize)> = Vec::new();
     each_edge(work.vertices.len(), &work.triangles, |_, sides| {
         let kept = sides.iter().map(|&half| parts(half).0).filter(|&t| !drop[t]);
@@ -76,13 +77,13 @@ fn needless(work: &Work, drop: &[bool], doubled: &[u32]) -> Vec<u32> {
             ends.push((place[of_two[0]], others.len()));
         }
     });
-    // Votes for keeping less votes for dropping, by the patch's first triangle.
+    // Votes for keeping minus votes for dropping, under the first triangle of each patch.
     let mut votes = vec![0_i64; doubled.len()];
     let is_flat = flat_patches(work, doubled, &mut links);
     for (k, others) in ends {
         let patch = links.root(k) as usize;
         votes[patch] += match others {
-            // Where nothing goes on: the rim of a sheet, or of a hole in a doubled surface.
+            // Nothing continues: the rim of a sheet, or of a hole in a doubled surface.
             0 => -i64::from(is_flat[patch]),
             _ if others % 2 == 1 => 1,
             _ => -1,
@@ -92,7 +93,7 @@ fn needless(work: &Work, drop: &[bool], doubled: &[u32]) -> Vec<u32> {
     (0_u32..).zip(doubled).filter(|(k, _)| is_needless(*k)).map(|(_, &t)| t).collect()
 }
 
-/// Whether each patch encloses next to nothing, by the patch's first triangle.
+/// Whether each patch encloses next to nothing, under its first triangle.
 fn flat_patches(work: &Work, doubled: &[u32], links: &mut Links) -> Vec<bool> {
     let groups = links.groups();
     let mut is_flat = vec![false; doubled.len()];

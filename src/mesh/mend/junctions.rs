@@ -1,14 +1,15 @@
-//! Corners on edges -> split triangles: gives an open edge the corners that its neighbours have along it.
+//! Corners on edges -> split triangles: gives an open edge the corners that the triangles beside it have there.
 
 use super::Work;
-use super::cubes::Cells;
+use super::cubes::Cubes;
 use super::near::open_edges;
 use crate::mesh::faults::{Fault, Mending};
 use crate::mesh::geometry::vector::{Corner, distance2, dot, length, minus};
 use hashbrown::HashMap;
 
-/// A corner further from an edge than this share of its length is none of it, even within the
-/// tolerance: in small triangles it is another triangle's.
+/// A corner further from an edge than this share of the edge's length does not lie on it, even
+/// within the tolerance. In small triangles it is a corner of the next triangle, and a larger
+/// value would split there.
 const MOST_OFF: f64 = 0.05;
 
 /// An open side of a triangle and the vertices along it.
@@ -16,8 +17,8 @@ type Split = (usize, Vec<u32>);
 
 /// Splits the triangles of open edges at the open corners that lie on them.
 ///
-/// Each pass splits a triangle along one edge: its other edges come into one piece each,
-/// so that a third pass leaves nothing to do.
+/// Each pass splits a triangle along one edge. Its other two edges then belong to one piece each,
+/// so that three passes are enough.
 pub(super) fn split_junctions(work: &mut Work, tolerance: i32) {
     for _ in 0..3 {
         let splits = splits(work, tolerance);
@@ -40,7 +41,7 @@ pub(super) fn split_junctions(work: &mut Work, tolerance: i32) {
     }
 }
 
-/// For each triangle to be split the side to begin with: its longest.
+/// For each triangle to be split the side to split: the longest that has corners on it.
 fn splits(work: &Work, tolerance: i32) -> HashMap<usize, Split> {
     let edges = open_edges(work);
     let ends_of = |(t, side): (usize, usize)| {
@@ -51,13 +52,13 @@ fn splits(work: &Work, tolerance: i32) -> HashMap<usize, Split> {
     let mut ends: Vec<u32> = edges.iter().flat_map(|&edge| ends_of(edge)).collect();
     ends.sort_unstable();
     ends.dedup();
-    // An edge touches few cubes as long as the mean of all, and a cube holds few corners.
+    // With cubes as long as the mean edge, an edge touches few cubes and a cube holds few corners.
     let lengths = edges.iter().map(|&edge| line_of(edge)).map(|[from, to]| length(minus(to, from)));
     let mean = lengths.sum::<f64>() / edges.len().max(1) as f64;
-    let cells = Cells::new(work.vertices, &ends, (mean as i64).max(i64::from(tolerance)));
+    let cubes = Cubes::new(work.vertices, &ends, (mean as i64).max(i64::from(tolerance)));
     let mut splits: HashMap<usize, Split> = HashMap::default();
     for (t, side) in edges {
-        let between = between(work, &cells, (work.triangles[t], line_of((t, side))), tolerance);
+        let between = between(work, &cubes, (work.triangles[t], line_of((t, side))), tolerance);
         if between.is_empty() {
             continue;
         }
@@ -72,15 +73,15 @@ fn splits(work: &Work, tolerance: i32) -> HashMap<usize, Split> {
     splits
 }
 
-/// The open corners on a line that is a side of a triangle, in the order along it.
+/// The open corners on a side of a triangle, in their order along it.
 fn between(
     work: &Work,
-    cells: &Cells,
+    cubes: &Cubes,
     (triangle, [from, to]): ([u32; 3], [Corner; 2]),
     tolerance: i32,
 ) -> Vec<u32> {
     let mut on_it: Vec<(i128, Corner, u32)> = Vec::new();
-    cells.along(from, to, tolerance, |v| {
+    cubes.along(from, to, tolerance, |v| {
         if !triangle.contains(&v) {
             let at = work.vertices[v as usize];
             let place = place_on([from, to], at, f64::from(tolerance));
@@ -92,8 +93,8 @@ fn between(
     on_it.into_iter().map(|(.., v)| v).collect()
 }
 
-/// How far along the line `v` lies, if it is within the tolerance of it and further than that
-/// from its ends.
+/// How far along the line `v` lies, if it is within the tolerance of the line and further than
+/// that from its ends.
 fn place_on([from, to]: [Corner; 2], v: Corner, tolerance: f64) -> Option<i128> {
     let (line, side) = (minus(to, from), minus(v, from));
     let (long, place) = (length(line), dot(line, side));
@@ -106,7 +107,8 @@ fn place_on([from, to]: [Corner; 2], v: Corner, tolerance: f64) -> Option<i128> 
 
 /// The pieces of a triangle that is split at the vertices `between` the ends of a side.
 fn fan(triangle: [u32; 3], side: usize, between: &[u32], out: &mut Vec<[u32; 3]>) {
-    let [first, last, apex] = [0, 1, 2].map(|step| triangle[(side + step) % 3]);
+    let corner = |step: usize| triangle[(side + step) % 3];
+    let (first, last, apex) = (corner(0), corner(1), corner(2));
     let way: Vec<u32> = [&[first], between, &[last]].concat();
     out.extend(way.windows(2).map(|ends| [ends[0], ends[1], apex]));
 }

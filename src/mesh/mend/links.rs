@@ -1,23 +1,23 @@
-//! Things that belong together -> groups: sets of numbers that are joined two by two.
+//! Pairs of numbers -> groups: disjoint sets of numbers that are joined two by two.
 
 use rayon::prelude::*;
 
-/// Disjoint sets of the numbers below some count.
+/// Disjoint sets of the numbers below some count (union-find with path halving).
 #[derive(Debug, Clone)]
 pub(crate) struct Links {
-    /// A number of the same set for each, itself for the least.
+    /// For each number one of the same set that is not greater; the least has itself.
     to: Vec<u32>,
     sets: usize,
 }
 
 impl Links {
-    /// Every number by itself.
+    /// Every number in a set of its own.
     pub(crate) fn new(count: usize) -> Self {
         Self { to: (0..u32::try_from(count).unwrap_or(u32::MAX)).collect(), sets: count }
     }
 
-    /// The sets of the numbers below `count`, each joined with the lower ones that `lower` gives for
-    /// it. Every thread joins those of a range; what reaches from one range into another comes last.
+    /// The sets of the numbers below `count`, each joined with the lower numbers that `lower` gives
+    /// for it. Each thread joins those of a range; joins between ranges come last.
     pub(crate) fn of<L: Iterator<Item = u32>>(
         count: usize,
         lower: impl Fn(u32) -> L + Sync,
@@ -61,7 +61,7 @@ impl Links {
         self.sets -= usize::from(join(&mut self.to, 0, a, b));
     }
 
-    /// The sets, by their least numbers; each in increasing order.
+    /// The sets in the order of their least numbers, each in increasing order.
     pub(crate) fn groups(&mut self) -> Vec<Vec<u32>> {
         let mut place = vec![usize::MAX; self.to.len()];
         let mut groups: Vec<Vec<u32>> = Vec::new();
@@ -81,14 +81,14 @@ impl Links {
 fn root(to: &mut [u32], first: u32, mut k: u32) -> u32 {
     let at = |k: u32| (k - first) as usize;
     while to[at(k)] != k {
-        // Shortens the way for the next.
+        // Halves the path for the next look-up.
         to[at(k)] = to[at(to[at(k)])];
         k = to[at(k)];
     }
     k
 }
 
-/// Makes one set of those of `a` and `b`; says whether they were two.
+/// Makes one set of those of `a` and `b`. Returns whether they were two.
 fn join(to: &mut [u32], first: u32, a: u32, b: u32) -> bool {
     let (a, b) = (root(to, first, a), root(to, first, b));
     to[(a.max(b) - first) as usize] = a.min(b);

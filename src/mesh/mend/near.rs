@@ -1,16 +1,17 @@
-//! Open corners -> welded: gives corners of open edges that nearly meet one vertex.
+//! Open corners -> welded corners: gives corners of open edges that nearly meet one vertex.
 
 use super::Work;
-use super::cubes::Cells;
+use super::cubes::Cubes;
 use super::links::Links;
 use crate::mesh::edges::{each_edge, parts};
 use crate::mesh::faults::Mending;
 use crate::mesh::geometry::vector::{distance2, length, minus};
 use crate::units::UNITS_PER_MM;
 
-/// Corners of open edges no further apart than this are one, mm: the first is far below what a
-/// printer can lay, and above what rounding and single precision do to a corner on a bed; the
-/// second is tried only where that leaves edges open.
+/// Corners of open edges that are no further apart than this are one, mm. The first value is far
+/// below what a printer can lay, and above what rounding and single precision do to a corner on a
+/// bed. The second, a quarter of a line's width, is tried only if edges are still open. Larger
+/// values close real slots; smaller ones leave the seams of badly exported files open.
 pub const TOLERANCES_MM: [f64; 2] = [0.02, 0.1];
 
 /// [`TOLERANCES_MM`] in grid units.
@@ -18,25 +19,25 @@ pub const TOLERANCES_MM: [f64; 2] = [0.02, 0.1];
 pub(super) const TOLERANCES: [i32; 2] =
     [(TOLERANCES_MM[0] * UNITS_PER_MM) as i32, (TOLERANCES_MM[1] * UNITS_PER_MM) as i32];
 
-/// Edges up to this long, grid units, do not keep their ends from being welded: they are
-/// rounding (2 µm).
+/// Edges up to this long, grid units (2 µm), do not keep their ends from being welded: they come
+/// from rounding. A smaller value leaves slivers open that welding should collapse.
 const ROUNDING: f64 = 20.0;
 
-/// Welds, and drops the triangles that have two equal corners after it.
+/// Welds, and drops the triangles that have two equal corners afterwards.
 ///
-/// A corner is moved by no more than half of the shortest edge at it, so that no triangle
-/// that is larger than rounding vanishes or turns over.
+/// A corner moves by no more than half of the shortest edge at it, so that no triangle larger
+/// than rounding vanishes or turns over.
 pub(super) fn weld(work: &mut Work, tolerance: i32) {
     let reach = reaches(work, tolerance);
     let open: Vec<u32> =
         (0_u32..).zip(&reach).filter(|(_, reach)| **reach >= 0.0).map(|(v, _)| v).collect();
-    let cells = Cells::new(work.vertices, &open, i64::from(tolerance));
+    let cubes = Cubes::new(work.vertices, &open, i64::from(tolerance));
     let mut links = Links::new(work.vertices.len());
     for &a in &open {
         let at = work.vertices[a as usize];
         let low = at.map(|side| side - tolerance);
         let high = at.map(|side| side + tolerance);
-        cells.near(low, high, |b| {
+        cubes.near(low, high, |b| {
             let least = reach[a as usize].min(reach[b as usize]);
             let apart2 = distance2(at, work.vertices[b as usize]) as f64;
             if b > a && apart2 <= least * least {
@@ -44,7 +45,7 @@ pub(super) fn weld(work: &mut Work, tolerance: i32) {
             }
         });
     }
-    // The least corner stands for all, whatever the order of the triangles.
+    // The least corner of a group stands for all, so that the order of triangles does not matter.
     let mut stands: Vec<u32> = (0_u32..).zip(work.vertices).map(|(v, _)| v).collect();
     for &v in &open {
         let least = &mut stands[links.root(v) as usize];
@@ -56,7 +57,7 @@ pub(super) fn weld(work: &mut Work, tolerance: i32) {
     for &v in &open {
         let stand = stands[links.root(v) as usize];
         let moved = length(minus(work.vertices[v as usize], work.vertices[stand as usize]));
-        // In a row of near corners the last may be far from the first.
+        // In a chain of near corners the last may be far from the first.
         if stand != v && moved <= f64::from(tolerance) {
             to[v as usize] = stand;
             work.done.sized(Mending::Welded, v, moved);
@@ -68,7 +69,7 @@ pub(super) fn weld(work: &mut Work, tolerance: i32) {
     work.drop_degenerate();
 }
 
-/// How far each vertex may be moved, grid units; negative for those of no open edge.
+/// How far each vertex may move, grid units; negative if it has no open edge.
 fn reaches(work: &Work, tolerance: i32) -> Vec<f64> {
     let most = f64::from(tolerance);
     let mut reach = vec![-1.0; work.vertices.len()];
@@ -90,7 +91,7 @@ fn reaches(work: &Work, tolerance: i32) -> Vec<f64> {
     reach
 }
 
-/// The edges of a single triangle: the triangle, and which side of it.
+/// The open edges: the triangle of each, and which of its sides it is.
 pub(super) fn open_edges(work: &Work) -> Vec<(usize, usize)> {
     let mut open = Vec::new();
     each_edge(work.vertices.len(), &work.triangles, |_, sides| {

@@ -8,13 +8,13 @@ use crate::mesh::geometry::measure::corners_of;
 use crate::mesh::geometry::tree::Tree;
 use crate::mesh::geometry::vector::Corner;
 
-/// A patch may have so many of its triangles turned before its winding counts as unknown:
-/// then what it lies in tells whether it is a body or a cavity.
+/// If more than this share of a patch would have to be turned, the majority does not decide which
+/// way it faces; what it lies in does. Files with some wrong triangles have a few per cent of
+/// them, files with random ones half: a quarter is the middle between them.
 const MOST_TURNED: f64 = 0.25;
 
-/// Winds the triangles of every patch alike. A patch is what hangs together by edges of two
-/// triangles; the winding that more of its triangles have is right. Where too many are wound
-/// either way, it is wound as a body, or as a cavity if it lies in an odd number of others.
+/// Winds the triangles of each patch alike, as the majority of them is wound. Where there is no
+/// clear majority, the patch faces outward, or inward if it lies in an odd number of others.
 pub(super) fn orient(work: &mut Work) {
     let neighbours = neighbours(work);
     let mut turned = vec![false; work.triangles.len()];
@@ -41,8 +41,8 @@ pub(super) fn orient(work: &mut Work) {
     }
 }
 
-/// The triangles of a patch from its first, `seed`, on; marks them with the patch's `number`,
-/// and those that are wound against the first as to be turned.
+/// The triangles of the patch of `seed`. Marks them with the `number` of the patch, and those that
+/// are wound against `seed` as to be turned.
 fn reach(
     work: &Work,
     neighbours: &[[u32; 3]],
@@ -69,7 +69,7 @@ fn reach(
     patch
 }
 
-/// Winds patches of unclear winding by what they lie in.
+/// Winds patches without a clear majority by what they lie in.
 fn as_they_lie(work: &Work, patch_of: &[u32], unclear: &[Vec<usize>], turned: &mut [bool]) {
     if unclear.is_empty() {
         return;
@@ -98,8 +98,8 @@ fn as_they_lie(work: &Work, patch_of: &[u32], unclear: &[Vec<usize>], turned: &m
     }
 }
 
-/// For each side of each triangle the half-edge on the other side of an edge of exactly two
-/// triangles, in whatever direction it runs.
+/// For each side of each triangle the other half-edge of an edge of exactly two triangles, in
+/// either direction.
 fn neighbours(work: &mut Work) -> Vec<[u32; 3]> {
     let mut neighbours = vec![[NONE; 3]; work.triangles.len()];
     let (triangles, found) = (&work.triangles, &mut work.found);

@@ -1,17 +1,17 @@
-//! Surface -> places on it: six points of a surface by which is told what it lies in.
+//! Surface -> places on it: six points of a surface that show what it lies in.
 
 use crate::mesh::geometry::vector::Corner;
 
 /// The middles of the triangles of a surface that are furthest to each side. They do not depend
-/// on the order of the triangles. Corners would not do: where surfaces touch, they lie on both.
+/// on the order of the triangles. Corners would not do: where two surfaces touch, they lie on both.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Probes {
-    /// Sums of the corners, the least and the greatest by x, y and z.
+pub(in crate::mesh) struct Probes {
+    /// Sums of the three corners: the least by x, y and z, then the greatest.
     furthest: Option<[[i64; 3]; 6]>,
 }
 
 impl Probes {
-    /// Takes a triangle of the surface in.
+    /// Adds a triangle of the surface.
     pub(super) fn add(&mut self, corners: [Corner; 3]) {
         let sum: [i64; 3] =
             std::array::from_fn(|axis| corners.iter().map(|corner| i64::from(corner[axis])).sum());
@@ -34,6 +34,7 @@ impl Probes {
     }
 }
 
-/// So many of the six places have to be inside for the surface to be: where surfaces touch,
-/// some are on the other one.
+/// A surface lies in another one if at least this many of its six places do. Where surfaces touch,
+/// one or two places are on the other one and may count either way, so that 6 would miss bodies
+/// that touch the inside of others, and 3 would take touching neighbours for nested bodies.
 pub(super) const MOST_INSIDE: usize = 4;
