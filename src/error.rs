@@ -25,6 +25,10 @@ pub enum Error {
         reason: String,
     },
 
+    /// A model cannot be read, mended or placed (exit 3), or a placement makes no sense (exit 2).
+    #[error(transparent)]
+    Mesh(#[from] crate::mesh::Error),
+
     /// The models are readable but do not fit the printer or leave nothing to print (exit 3).
     #[error("{0}")]
     Unprintable(String),
@@ -52,7 +56,8 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) | Self::Config(_) => 2,
-            Self::Input { .. } | Self::Unprintable(_) => 3,
+            Self::Mesh(error) if error.is_usage() => 2,
+            Self::Input { .. } | Self::Mesh(_) | Self::Unprintable(_) => 3,
             Self::Output { .. } => 4,
         }
     }

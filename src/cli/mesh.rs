@@ -5,7 +5,7 @@ use super::{Outcome, interrupt, usage};
 use clap::Args;
 use serde::Serialize;
 use slicer::error::Result;
-use slicer::mesh::faults::{self, Counted, Fault};
+use slicer::mesh::faults::{Counted, Fault, place_text};
 use slicer::mesh::place::part::part;
 use slicer::mesh::{Bed, MeshReport, Placement, inspect, read, write};
 use slicer::slice::volume::solid_mm3;
@@ -71,15 +71,16 @@ pub(super) fn run(args: &MeshArgs) -> Result<Outcome> {
     {
         usage::refuse("the output would replace the model; choose another name for it")?;
     }
-    let sink = args.output.as_deref().map(|out| Ok((out, Sink::open(out)?))).transpose()?;
+    let sink =
+        args.output.as_deref().map(|out| Sink::open(out).map(|sink| (out, sink))).transpose()?;
     let placement = Placement {
         unit: super::args::unit(&args.unit),
         max_triangles: args.max_triangles,
         ..Placement::default()
     };
-    let mut model = read::load(&args.file, args.max_triangles)?;
+    let mut model = read::from_path(&args.file, args.max_triangles)?;
     let part = part(&mut model, &placement, &Bed::ANY)?;
-    let seen = inspect::seen(&part, &model);
+    let seen = inspect::faults(&part.mesh, &part.adjacency, &model.vertices);
     let told = Told {
         schema: SCHEMA,
         slicer: slicer::NAME,
@@ -131,7 +132,7 @@ where
     Counted<K>: Display,
 {
     let line = |one: &Counted<K>| {
-        let places = one.places.iter().take(MOST_SHOWN).map(|&place| faults::told(place));
+        let places = one.places.iter().take(MOST_SHOWN).map(|&place| place_text(place));
         let places = places.collect::<Vec<_>>().join("; ");
         let more = if one.count > MOST_SHOWN { "; …" } else { "" };
         let at = if places.is_empty() { String::new() } else { format!(", at {places}{more}") };

@@ -35,7 +35,7 @@ pub(super) fn is_model(file: &str) -> bool {
     let mut head = Vec::new();
     length.is_some_and(|length| {
         source.take(read::HEADER as u64).read_to_end(&mut head).is_ok()
-            && read::seems(&head, length)
+            && read::looks_like_stl(&head, length)
     })
 }
 

@@ -37,7 +37,7 @@ pub(super) fn run(args: &SliceArgs) -> Result<u8> {
         say(&summary::settings(&profile));
     }
     let mut sink = Sink::open(out)?;
-    let report_sink = args.report.as_deref().map(|path| Ok((path, Sink::open(path)?)));
+    let report_sink = args.report.as_deref().map(|path| Sink::open(path).map(|sink| (path, sink)));
     let report_sink = report_sink.transpose()?;
 
     let report = work(args, out, profile, &mut sink)?;

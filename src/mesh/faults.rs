@@ -1,10 +1,10 @@
-//! Faults -> counts and places: what is wrong with a mesh and what was done about it, as the report tells it.
+//! Faults -> counts and places: names what is wrong with a mesh and what was done about it, for the report.
 
 use crate::warning::plural;
 use serde::Serialize;
 use std::fmt;
 
-/// Places told of each kind of fault, at most.
+/// Places in the report for each kind of fault, at most: enough to find the faults in an editor.
 pub const MOST_PLACES: usize = 8;
 
 /// What is wrong with a mesh.
@@ -23,9 +23,9 @@ pub enum Fault {
     FlippedEdge,
     /// Corners in the middle of another triangle's edge.
     TJunction,
-    /// Openings in the surface, each with a closed rim.
+    /// Openings in the surface, each with one closed rim.
     Hole,
-    /// Strips that the surface lacks all round, each between two rims.
+    /// Missing strips all around the surface, each between two rims.
     Gap,
     /// Surfaces that enclose nothing.
     Sheet,
@@ -37,12 +37,12 @@ pub enum Fault {
     Crossing,
     /// Bodies that lie wholly within another, and vanish in it.
     NestedShell,
-    /// Corners that stick out as needles do.
+    /// Corners that stick out like needles.
     Spike,
 }
 
 impl Fault {
-    /// What one of them is called, and what several are.
+    /// The name of one of them, and of several.
     fn names(self) -> [&'static str; 2] {
         match self {
             Self::Degenerate => ["triangle without area", "triangles without area"],
@@ -69,7 +69,7 @@ impl Fault {
         }
     }
 
-    /// What one of them is called.
+    /// The name of one of them.
     #[must_use]
     pub fn one(self) -> &'static str {
         self.names()[0]
@@ -80,7 +80,7 @@ impl Fault {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mending {
-    /// Corners moved onto another one near by.
+    /// Corners moved onto another one nearby.
     Welded,
     /// Triangles without area dropped.
     DroppedDegenerate,
@@ -88,7 +88,7 @@ pub enum Mending {
     DroppedDuplicate,
     /// Triangles split at corners that lie on their edges.
     SplitTJunction,
-    /// Triangles wound the other way, like their neighbours.
+    /// Triangles turned, so that they are wound like their neighbours.
     Turned,
     /// Holes closed by new triangles.
     FilledHole,
@@ -96,12 +96,12 @@ pub enum Mending {
     Bridged,
     /// Triangles of surfaces that enclose nothing dropped.
     DroppedSheet,
-    /// Closed surfaces turned outside out.
+    /// Closed surfaces turned, so that they face outward.
     TurnedShell,
 }
 
 impl Mending {
-    /// What was done, and to what.
+    /// The words for what was done, and to what.
     fn deed(self) -> (&'static str, &'static str) {
         match self {
             Self::Welded => ("welded", "corner"),
@@ -116,7 +116,7 @@ impl Mending {
         }
     }
 
-    /// Whether it is a guess of what was meant, rather than a matter of form.
+    /// Whether it guesses what was meant, and so can be wrong; the rest changes no surface.
     fn is_guess(self) -> bool {
         matches!(self, Self::FilledHole | Self::Bridged | Self::DroppedSheet)
     }
@@ -125,11 +125,12 @@ impl Mending {
 /// How many of a kind, and where the first of them are.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Counted<K> {
-    /// Of what kind.
+    /// The kind.
     pub kind: K,
     /// How many.
     pub count: usize,
-    /// How large the largest is, or how far the furthest was moved, mm; 0 where that means nothing.
+    /// The size of the largest, or the distance that the furthest was moved, mm; 0 where that
+    /// means nothing.
     pub largest_mm: f64,
     /// Where the first [`MOST_PLACES`] are, in the file's own coordinates and unit.
     pub places: Vec<[f64; 3]>,
@@ -155,7 +156,7 @@ fn size(f: &mut fmt::Formatter<'_>, largest_mm: f64) -> fmt::Result {
     if largest_mm > 0.0 { write!(f, " (up to {largest_mm:.3} mm)") } else { Ok(()) }
 }
 
-/// A list in words, with the place of its first; `None` if it is empty.
+/// Formats a list, with the place of its first item; `None` if it is empty.
 fn listed<K: Copy>(list: &[&Counted<K>]) -> Option<String>
 where
     Counted<K>: fmt::Display,
@@ -163,31 +164,32 @@ where
     let first = list.first()?;
     let words: Vec<String> = list.iter().map(ToString::to_string).collect();
     let place = first.places.first();
-    let place = place.map_or_else(String::new, |&place| format!(", the first at {}", told(place)));
+    let place =
+        place.map_or_else(String::new, |&place| format!(", the first at {}", place_text(place)));
     Some(words.join(", ") + &place)
 }
 
-/// A place for people, to a thousandth of the file's unit.
+/// Formats a place, to a thousandth of the file's unit.
 #[must_use]
-pub fn told(place: [f64; 3]) -> String {
-    // Adding zero takes the sign off what is rounded to it.
+pub fn place_text(place: [f64; 3]) -> String {
+    // Adding zero turns -0 into 0.
     let rounded = place.map(|side| ((side * 1e3).round() / 1e3 + 0.0).to_string());
     rounded.join(", ")
 }
 
-/// What of the mending is a guess of what was meant, in words.
+/// Formats the mending that guesses what was meant.
 #[must_use]
 pub fn guessed(mended: &[Counted<Mending>]) -> Option<String> {
     listed(&mended.iter().filter(|one| one.kind.is_guess()).collect::<Vec<_>>())
 }
 
-/// What of the mending is a matter of form, in words.
+/// Formats the mending that changes no surface.
 #[must_use]
 pub fn tidied(mended: &[Counted<Mending>]) -> Option<String> {
     listed(&mended.iter().filter(|one| !one.kind.is_guess()).collect::<Vec<_>>())
 }
 
-/// What of the faults leaves layers open, in words.
+/// Formats the faults that leave layers open.
 #[must_use]
 pub fn open(left: &[Counted<Fault>]) -> Option<String> {
     let is_open =

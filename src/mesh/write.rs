@@ -1,14 +1,15 @@
 //! Triangles -> bytes: writes a mesh as binary STL.
 
+use nalgebra::Vector3;
 use std::io::{self, Write};
 
-/// The header, filled up with blanks. It must not begin with `solid`.
+/// The header, padded with blanks. It must not begin with `solid`: readers take that for text.
 const TITLE: &[u8] = b"binary STL";
 
 /// Writes `triangles` over `vertices` to `out` as binary STL: the same bytes for the same mesh.
 ///
-/// Numbers are written as they are. A normal is that of the winding, of length 1, or 0 for a
-/// triangle without area.
+/// Coordinates are written unchanged. Normals follow the order of the corners and have length 1,
+/// or 0 for a triangle without area.
 ///
 /// # Errors
 /// Those of `out`, and [`io::ErrorKind::InvalidInput`] for more triangles than STL can count.
@@ -35,15 +36,10 @@ pub fn write(out: &mut dyn Write, vertices: &[[f32; 3]], triangles: &[[u32; 3]])
 
 #[expect(clippy::cast_possible_truncation, reason = "a number of at most 1")]
 fn normal([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
-    let from_a =
-        |p: [f32; 3]| -> [f64; 3] { std::array::from_fn(|i| f64::from(p[i]) - f64::from(a[i])) };
-    let (u, v) = (from_a(b), from_a(c));
-    let across: [f64; 3] = std::array::from_fn(|i| {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        u[j] * v[k] - u[k] * v[j]
-    });
-    let length = across.iter().map(|side| side * side).sum::<f64>().sqrt();
-    if length > 0.0 { across.map(|side| (side / length) as f32) } else { [0.0; 3] }
+    let from_a = |to: [f32; 3]| Vector3::from(to.map(f64::from)) - Vector3::from(a.map(f64::from));
+    let across = from_a(b).cross(&from_a(c));
+    let length = across.norm();
+    if length > 0.0 { across.map(|side| (side / length) as f32).into() } else { [0.0; 3] }
 }
 
 #[cfg(test)]
@@ -57,11 +53,11 @@ mod tests {
         let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
         let mut bytes = Vec::new();
         write(&mut bytes, &vertices, &triangles).unwrap();
-        let read = read::parse("x", &bytes, 9).unwrap();
+        let read = read::from_bytes("x", &bytes, 9).unwrap();
         assert_eq!((read.triangles.len(), read.wrong_normals), (4, 0));
-        let corner = |t: usize, k: usize| read.vertices[read.triangles[t][k] as usize];
-        for (t, triangle) in triangles.iter().enumerate() {
-            assert_eq!([0, 1, 2].map(|k| corner(t, k)), triangle.map(|v| vertices[v as usize]));
+        for (read_back, triangle) in read.triangles.iter().zip(triangles) {
+            let corners = read_back.map(|v| read.vertices[v as usize]);
+            assert_eq!(corners, triangle.map(|v| vertices[v as usize]));
         }
     }
 }

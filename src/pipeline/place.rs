@@ -14,9 +14,9 @@ use crate::units::{to_mm, to_units};
 /// Those of reading and placing: [`Error::Input`](crate::error::Error::Input),
 /// [`Error::Usage`](crate::error::Error::Usage), [`Error::Unprintable`](crate::error::Error::Unprintable).
 pub fn place(models: &[String], placement: &Placement, bed: &Bed) -> Result<Placed> {
-    let load = |file: &String| mesh::read::load(file, placement.max_triangles);
-    let models = models.iter().map(load).collect::<Result<_>>()?;
-    mesh::place::place(models, placement, bed)
+    let load = |file: &String| mesh::read::from_path(file, placement.max_triangles);
+    let models = models.iter().map(load).collect::<mesh::Result<_>>()?;
+    Ok(mesh::place::place(models, placement, bed)?)
 }
 
 /// The machine's print volume.

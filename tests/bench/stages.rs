@@ -70,7 +70,7 @@ impl Model {
             max: [machine.bed_width, machine.bed_depth],
             height: machine.bed_height,
         };
-        let raw = read::parse(self.name, &self.bytes, read::DEFAULT_MAX_TRIANGLES)
+        let raw = read::from_bytes(self.name, &self.bytes, read::DEFAULT_MAX_TRIANGLES)
             .expect("a sound model");
         place(vec![raw], &placement(), &bed).expect("it fits")
     }
@@ -145,7 +145,9 @@ fn mesh_and_slice(c: &mut Criterion, model: &Model) {
         b.iter(|| weld_and_sum(black_box(&model.bytes)));
     });
     group.bench_function(BenchmarkId::new("parse and weld", model.name), |b| {
-        b.iter(|| read::parse(model.name, black_box(&model.bytes), read::DEFAULT_MAX_TRIANGLES));
+        b.iter(|| {
+            read::from_bytes(model.name, black_box(&model.bytes), read::DEFAULT_MAX_TRIANGLES)
+        });
     });
     group.bench_function(BenchmarkId::new("parse and place", model.name), |b| {
         b.iter(|| black_box(model).place());

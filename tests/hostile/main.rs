@@ -240,7 +240,7 @@ fn what_was_once_a_fault_is_none() {
 /// Reads a text; the triangles that it gives, or why it gives none.
 fn read(bytes: &[u8]) -> Result<usize, String> {
     properties::stl(bytes);
-    let mesh = slicer::mesh::read::parse("x.stl", bytes, 1000);
+    let mesh = slicer::mesh::read::from_bytes("x.stl", bytes, 1000);
     mesh.map(|mesh| mesh.triangles.len()).map_err(|error| error.to_string())
 }
 
@@ -314,7 +314,7 @@ fn a_pipe_is_read_as_a_file_is_and_a_failure_leaves_no_output() {
     proptest!(config(25), |(which in 0..models.len(), damages in damage())| {
         let bytes = damaged(&models[which], &damages, &models);
         let (code, said) = run(&["-", "-q", "-p", "witbox-1", "-o", "x.gcode"], &bytes, folder.path());
-        let file = slicer::mesh::read::parse("<stdin>", &bytes, 1000);
+        let file = slicer::mesh::read::from_bytes("<stdin>", &bytes, 1000);
         match code {
             Some(0) => prop_assert!(std::fs::remove_file(&out).is_ok()),
             Some(3) => {

@@ -42,9 +42,9 @@ fn settings(set: &[(&str, &str)]) -> Settings {
 
 /// Bytes of a model are refused, or sliced into G-code that this program's own reader knows.
 pub(crate) fn stl(bytes: &[u8]) {
-    let model = match read::parse("x.stl", bytes, MOST_TRIANGLES) {
+    let model = match read::from_bytes("x.stl", bytes, MOST_TRIANGLES) {
         Ok(model) => model,
-        Err(error) => return is_good_refusal(&error, 3, "x.stl: "),
+        Err(error) => return is_good_refusal(&error.into(), 3, "x.stl: "),
     };
     let settings =
         settings(&[("layer_height", "0.2"), ("support.enabled", "true"), ("dual.mode", "pair")]);
@@ -52,7 +52,7 @@ pub(crate) fn stl(bytes: &[u8]) {
     let bed = slicer::bed(&settings.machine);
     let placed = match place::place(vec![model], &placement, &bed) {
         Ok(placed) => placed,
-        Err(error) => return is_good_refusal(&error, 3, ""),
+        Err(error) => return is_good_refusal(&error.into(), 3, ""),
     };
     if placed.size_mm[2] > MOST_HEIGHT_MM || placed.size_mm[0].max(placed.size_mm[1]) > 60.0 {
         return;

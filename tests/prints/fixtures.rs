@@ -31,7 +31,7 @@ fn fixtures_are_closed_and_have_their_volume() {
     let placement = Placement::default();
     for (name, bytes) in fixtures() {
         assert!(bytes.len() < 500_000, "{name} is too large for a fixture");
-        let mesh = read::parse(name, &bytes, read::DEFAULT_MAX_TRIANGLES).unwrap();
+        let mesh = read::from_bytes(name, &bytes, read::DEFAULT_MAX_TRIANGLES).unwrap();
         let placed = place::place(vec![mesh], &placement, &bed).unwrap();
         assert_eq!(placed.warnings, [], "{name}");
         let report = &placed.reports[0];

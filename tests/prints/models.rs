@@ -80,7 +80,16 @@ fn folder() -> Option<PathBuf> {
 
 /// Settings that are far from what the bed holds are no failure, but must say the sizes.
 fn says_the_size(error: &Error) -> bool {
-    matches!(error, Error::Unprintable(text) if text.contains("mm") && !text.contains('\n'))
+    let is_fit = match error {
+        Error::Mesh(error) => matches!(
+            error,
+            slicer::mesh::Error::TooLarge { .. } | slicer::mesh::Error::BedFull { .. }
+        ),
+        Error::Unprintable(_) => true,
+        _ => false,
+    };
+    let text = error.to_string();
+    is_fit && text.contains("mm") && !text.contains('\n')
 }
 
 fn check(path: &Path, profile: &str, set: &[(&str, &str)]) {

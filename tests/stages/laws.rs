@@ -396,7 +396,7 @@ fn the_report_counts_what_the_file_holds() {
 
 /// The layers of `solid`, 0.1 mm high, simplified within `tolerance` mm.
 fn layers(solid: &Solid, tolerance: f64) -> Vec<Layer> {
-    let mesh = read::parse("test", &solid.stl(), read::DEFAULT_MAX_TRIANGLES).unwrap();
+    let mesh = read::from_bytes("test", &solid.stl(), read::DEFAULT_MAX_TRIANGLES).unwrap();
     let bed = Bed { min: [-100.0; 2], max: [100.0; 2], height: 100.0 };
     let placed = place::place(vec![mesh], &as_it_is(), &bed).unwrap();
     assert!(placed.reports[0].left.is_empty());

@@ -17,7 +17,7 @@ const SOLIDS: [&str; 4] = ["cube_20.stl", "bracket.stl", "two_shells.stl", "cavi
 
 fn triangles(name: &str) -> Vec<Corners> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures").join(name);
-    let mesh = read::load(path.to_str().unwrap(), read::DEFAULT_MAX_TRIANGLES).unwrap();
+    let mesh = read::from_path(path.to_str().unwrap(), read::DEFAULT_MAX_TRIANGLES).unwrap();
     let corner = |vertex: u32| mesh.vertices[vertex as usize];
     mesh.triangles.iter().map(|triangle| triangle.map(corner)).collect()
 }
@@ -30,8 +30,8 @@ fn placed(triangles: &[Corners], policy: Policy) -> Result<Placed, Error> {
         bytes.extend(triangle.as_flattened().iter().flat_map(|number| number.to_le_bytes()));
         bytes.extend([0; 2]);
     }
-    let mesh = read::parse("x.stl", &bytes, read::DEFAULT_MAX_TRIANGLES)?;
-    place(vec![mesh], &Placement { policy, ..Placement::default() }, &Bed::ANY)
+    let mesh = read::from_bytes("x.stl", &bytes, read::DEFAULT_MAX_TRIANGLES)?;
+    Ok(place(vec![mesh], &Placement { policy, ..Placement::default() }, &Bed::ANY)?)
 }
 
 fn mended(triangles: &[Corners]) -> Placed {

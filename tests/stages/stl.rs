@@ -68,8 +68,8 @@ proptest! {
 
     #[test]
     fn binary_and_ascii_are_one_mesh(triangles in triangles()) {
-        let a = read::parse("x", &binary(&triangles), MOST).unwrap();
-        let b = read::parse("x", &ascii(&triangles), MOST).unwrap();
+        let a = read::from_bytes("x", &binary(&triangles), MOST).unwrap();
+        let b = read::from_bytes("x", &ascii(&triangles), MOST).unwrap();
         prop_assert_eq!(&a.vertices, &b.vertices);
         prop_assert_eq!(&a.triangles, &b.triangles);
         prop_assert_eq!(a.degenerate, b.degenerate);
@@ -80,7 +80,7 @@ proptest! {
     fn the_order_of_triangles_changes_nothing(
         (plain, shuffled) in triangles().prop_flat_map(|all| (Just(all.clone()), Just(all).prop_shuffle()))
     ) {
-        let [a, b] = [plain, shuffled].map(|all| read::parse("x", &binary(&all), MOST).unwrap());
+        let [a, b] = [plain, shuffled].map(|all| read::from_bytes("x", &binary(&all), MOST).unwrap());
         prop_assert_eq!(canonical(&a), canonical(&b));
         prop_assert_eq!(a.vertices.len(), b.vertices.len());
         // Where there is something to place, it is measured alike.
@@ -115,7 +115,7 @@ proptest! {
     }
 }
 
-fn placed(mesh: RawMesh) -> Result<place::Placed, Error> {
+fn placed(mesh: RawMesh) -> slicer::mesh::Result<place::Placed> {
     let placement = Placement::default();
     let bed = Bed { min: [0.0; 2], max: [400.0; 2], height: 400.0 };
     place::place(vec![mesh], &placement, &bed)
@@ -123,7 +123,7 @@ fn placed(mesh: RawMesh) -> Result<place::Placed, Error> {
 
 /// Reads and places; a refusal must be one line that names the file.
 fn check(bytes: &[u8]) -> Result<place::Placed, Error> {
-    let result = read::parse("x.stl", bytes, MOST).and_then(placed);
+    let result = read::from_bytes("x.stl", bytes, MOST).and_then(placed).map_err(Error::from);
     if let Err(error) = &result {
         let text = error.to_string();
         assert!(text.starts_with("x.stl: ") && !text.contains(char::is_control), "{text:?}");
@@ -195,7 +195,7 @@ fn good_files_read_as_by_another_reader() {
             corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0]
         };
         let theirs: Vec<Corners> = theirs.into_iter().filter(same).collect();
-        let mesh = read::parse(&name, &bytes, MOST).unwrap();
+        let mesh = read::from_bytes(&name, &bytes, MOST).unwrap();
         let ours = mesh.triangles.iter().map(|corners| corners.map(|v| mesh.vertices[v as usize]));
         assert!(ours.eq(theirs), "{name}");
     }
@@ -205,8 +205,9 @@ fn good_files_read_as_by_another_reader() {
 fn broken_models_are_read_or_refused_with_a_reason() {
     let Some(folder) = models() else { return println!("{SKIPPED}") };
     let table = std::fs::read_to_string(folder.join("broken/EXPECT.tsv")).unwrap();
-    let good =
-        placed(read::load(&folder.join("broken/good_tower.stl").to_string_lossy(), MOST).unwrap());
+    let good = placed(
+        read::from_path(&folder.join("broken/good_tower.stl").to_string_lossy(), MOST).unwrap(),
+    );
     let good = good.unwrap().reports[0].volume_mm3;
     let mut seen = 0;
     for line in table.lines().skip(1) {
@@ -233,7 +234,7 @@ fn broken_models_are_read_or_refused_with_a_reason() {
 #[test]
 fn the_fixture_in_both_forms_is_one_mesh() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures");
-    let load = |name: &str| read::load(&folder.join(name).to_string_lossy(), MOST).unwrap();
+    let load = |name: &str| read::from_path(&folder.join(name).to_string_lossy(), MOST).unwrap();
     let (a, b) = (load("cube_20.stl"), load("cube_ascii.stl"));
     assert_eq!((a.report.format, b.report.format), ("binary", "ascii"));
     assert_eq!((&a.vertices, &a.triangles), (&b.vertices, &b.triangles));

@@ -1,49 +1,63 @@
 //! Rims -> pairs and bands: joins two rims that run along each other across a gap.
 //!
-//! Where a strip of the surface is missing all round, its two rims face each other closely.
-//! A band between them closes the gap as it was; a cap on each would cut the body in two.
+//! Where a strip of the surface is missing all around, its two rims face each other closely. A
+//! band of triangles between them restores it; a filling of each would cut the body in two.
+//!
+//! Two rims are a pair if
+//! - no corner of one is further from the other than a quarter of the smaller diameter,
+//! - each lies in front of the other's filling: the two faces of a thin plate are close as well,
+//!   but back to back,
+//! - each is the nearest of the other.
+//!
+//! The distance of two rims is the largest from a corner of one to the other one. Rims are sorted
+//! by their lowest x, so that only near ones are compared, and comparisons are counted.
+//!
+//! A band begins at the closest two corners and always takes the shorter of the next two
+//! diagonals.
 
 use super::fill::newell;
-use super::holes::Rim;
+use super::rim::Rim;
 use crate::mesh::geometry::bounds::Bounds;
 use crate::mesh::geometry::vector::{Corner, distance2};
+use nalgebra::Vector3;
 
-/// Rims are joined if no corner of one is further from the other than this share of the
-/// smaller one's extent.
+/// The largest distance of two rims of a pair, as a share of the smaller diameter. A larger value
+/// joins neighbouring holes of a body, a smaller one leaves wide gaps to be filled on both sides.
 const MOST_APART: f64 = 0.25;
 
-/// How far a rim may lie behind the plane of the one that it faces, as a share of its extent:
-/// for rims in one plane, as those of the end face of a tube.
+/// How far the middle of a rim may lie behind the plane of the other, as a share of the smaller
+/// diameter: above zero for rims in one plane, as those of the end face of a tube.
 const MOST_BEHIND: f64 = 0.01;
 
-/// Looks at a corner and a side, for all pairs together; what is beyond is not joined.
+/// Comparisons of a corner with a side, for all pairs together: about a second. Pairs after that
+/// are not found, and their holes filled instead.
 const MOST_LOOKS: u64 = 1 << 29;
 
 /// Two rims that face each other.
 pub(super) struct Pair {
-    /// The numbers of the rims; the one with the lesser first corner first.
+    /// The numbers of the rims, that with the lesser first corner first.
     pub(super) rims: [usize; 2],
-    /// The largest distance from a corner of one to the other, grid units.
+    /// Their distance, grid units.
     pub(super) apart: f64,
 }
 
 /// The pairs of rims that face each other and are each other's nearest.
 pub(super) fn pairs(vertices: &[Corner], rims: &[Rim]) -> Vec<Pair> {
-    let seen: Vec<Seen> = rims.iter().map(|rim| Seen::new(vertices, rim)).collect();
+    let measured: Vec<Measured> = rims.iter().map(|rim| Measured::new(vertices, rim)).collect();
     let mut order: Vec<usize> = (0..rims.len()).filter(|&k| !rims[k].is_fin).collect();
-    order.sort_by_key(|&k| (seen[k].bounds.low, seen[k].corners[0]));
-    // The nearest of each, and how far it is.
+    order.sort_by_key(|&k| (measured[k].bounds.low, measured[k].corners[0]));
+    // The nearest rim of each, and its distance.
     let mut nearest: Vec<Option<(f64, usize)>> = vec![None; rims.len()];
     let mut looks = MOST_LOOKS;
     for (place, &a) in order.iter().enumerate() {
         for &b in &order[place + 1..] {
-            let most = MOST_APART * seen[a].size.min(seen[b].size);
-            if f64::from(seen[b].bounds.low[0]) - f64::from(seen[a].bounds.low[0])
-                > MOST_APART * seen[a].size
+            let most = MOST_APART * measured[a].size.min(measured[b].size);
+            if f64::from(measured[b].bounds.low[0]) - f64::from(measured[a].bounds.low[0])
+                > MOST_APART * measured[a].size
             {
                 break;
             }
-            let Some(apart) = seen[a].apart(&seen[b], most, &mut looks) else { continue };
+            let Some(apart) = measured[a].apart(&measured[b], most, &mut looks) else { continue };
             for (one, other) in [(a, b), (b, a)] {
                 if nearest[one].is_none_or(|(known, _)| apart < known) {
                     nearest[one] = Some((apart, other));
@@ -53,38 +67,36 @@ pub(super) fn pairs(vertices: &[Corner], rims: &[Rim]) -> Vec<Pair> {
     }
     let mutual = |&a: &usize| {
         let (apart, b) = nearest[a]?;
-        let is_first = seen[a].corners[0] < seen[b].corners[0];
+        let is_first = measured[a].corners[0] < measured[b].corners[0];
         let is_mutual = nearest[b].is_some_and(|(_, back)| back == a);
         (is_first && is_mutual).then_some(Pair { rims: [a, b], apart })
     };
     order.iter().filter_map(mutual).collect()
 }
 
-/// A rim with what is needed to compare it.
-struct Seen {
+/// A rim with the measures by which rims are compared.
+struct Measured {
     corners: Vec<Corner>,
     bounds: Bounds,
     /// The mean of its corners.
-    middle: [f64; 3],
-    /// Where the triangles that fill it would face, of length 1 or 0.
-    normal: [f64; 3],
+    middle: Vector3<f64>,
+    /// The direction in which its filling would face, of length 1 or 0.
+    normal: Vector3<f64>,
     size: f64,
 }
 
-impl Seen {
+impl Measured {
     fn new(vertices: &[Corner], rim: &Rim) -> Self {
         let corners: Vec<Corner> = rim.way.iter().map(|&v| vertices[v as usize]).collect();
-        let of = |axis: usize| corners.iter().map(move |corner| corner[axis]);
         let bounds = Bounds::of(corners.iter().copied());
-        let count = corners.len() as f64;
-        let middle = std::array::from_fn(|axis| of(axis).map(f64::from).sum::<f64>() / count);
+        let middle = corners.iter().map(|&corner| point(corner)).sum::<Vector3<f64>>();
+        let middle = middle / corners.len() as f64;
         let normal = newell(&corners);
-        let long = normal.iter().map(|side| side * side).sum::<f64>().sqrt().max(1.0);
-        let normal = normal.map(|side| side / long);
+        let normal = normal / normal.norm().max(1.0);
         Self { bounds, middle, normal, size: rim.size, corners }
     }
 
-    /// How far this rim and another are apart if they face each other and it is at most `most`.
+    /// The distance of this rim and another, if they face each other and it is at most `most`.
     fn apart(&self, other: &Self, most: f64, looks: &mut u64) -> Option<f64> {
         let is_near = |a: Corner, b: Corner| {
             (0..3).all(|axis| (f64::from(a[axis]) - f64::from(b[axis])).abs() <= most)
@@ -98,15 +110,13 @@ impl Seen {
         Some(one.max(other.reach(self, most, looks)?))
     }
 
-    /// Whether the other rim is not behind what would fill this one: two faces of a thin plate
-    /// are near each other too, but back to back.
+    /// Whether the other rim is not behind the filling of this one.
     fn faces(&self, other: &Self) -> bool {
-        let ahead: f64 =
-            (0..3).map(|axis| self.normal[axis] * (other.middle[axis] - self.middle[axis])).sum();
+        let ahead = self.normal.dot(&(other.middle - self.middle));
         ahead >= -MOST_BEHIND * self.size.min(other.size)
     }
 
-    /// The largest distance from a corner of this rim to the other, if at most `most`.
+    /// The largest distance from a corner of this rim to the other, if it is at most `most`.
     fn reach(&self, other: &Self, most: f64, looks: &mut u64) -> Option<f64> {
         let count = other.corners.len();
         let mut largest = 0.0_f64;
@@ -122,21 +132,19 @@ impl Seen {
     }
 }
 
-/// The square of the distance from a point to the line from `a` to `b`.
-fn to_side(point: Corner, a: Corner, b: Corner) -> f64 {
-    let from = |to: Corner| -> [f64; 3] {
-        std::array::from_fn(|axis| f64::from(to[axis]) - f64::from(a[axis]))
-    };
-    let dot = |u: [f64; 3], v: [f64; 3]| (0..3).map(|axis| u[axis] * v[axis]).sum::<f64>();
-    let (way, out) = (from(b), from(point));
-    let share = (dot(way, out) / dot(way, way).max(1.0)).clamp(0.0, 1.0);
-    let off: [f64; 3] = std::array::from_fn(|axis| out[axis] - share * way[axis]);
-    dot(off, off)
+/// A corner as a vector of floats.
+fn point(corner: Corner) -> Vector3<f64> {
+    Vector3::from(corner.map(f64::from))
 }
 
-/// The triangles between two rims, which run against each other: each side of both once.
-///
-/// From the closest corners on, always across the shorter diagonal.
+/// The square of the distance from a corner to the line from `a` to `b`.
+fn to_side(corner: Corner, a: Corner, b: Corner) -> f64 {
+    let (way, out) = (point(b) - point(a), point(corner) - point(a));
+    let share = (way.dot(&out) / way.norm_squared().max(1.0)).clamp(0.0, 1.0);
+    (out - way * share).norm_squared()
+}
+
+/// The triangles between two rims that run in opposite directions: one on each side of both.
 pub(super) fn band(vertices: &[Corner], one: &[u32], other: &[u32]) -> Vec<[u32; 3]> {
     let at = |vertex: u32| vertices[vertex as usize];
     let start = closest(vertices, one, other);
@@ -159,7 +167,7 @@ pub(super) fn band(vertices: &[Corner], one: &[u32], other: &[u32]) -> Vec<[u32;
     band
 }
 
-/// Where on each of two rims the corners are that are closest to each other.
+/// The places on two rims of the two corners that are closest to each other.
 fn closest(vertices: &[Corner], one: &[u32], other: &[u32]) -> [usize; 2] {
     let at = |vertex: u32| vertices[vertex as usize];
     let all = (0..one.len()).flat_map(|i| (0..other.len()).map(move |j| [i, j]));
@@ -213,7 +221,7 @@ mod tests {
 
     #[test]
     fn a_missing_ring_is_joined() {
-        // A tube of 20 mm with a bore of 12 mm; its outside lacks what is between 14 and 17 mm.
+        // A tube of 20 mm with a bore of 12 mm; its outside is missing between 14 and 17 mm.
         let of = [[10, 0], [10, 14], [10, 17], [10, 30], [6, 0], [6, 30]];
         let strips = [[0, 1], [2, 3], [3, 5], [5, 4], [4, 0]];
         assert_eq!(mended(&of, &strips), ((400 - 144) * 30, 1, 0));

@@ -1,23 +1,33 @@
-//! Rim -> triangles: closes a hole by cutting off ears.
+//! Rim -> triangles: fills a hole by cutting off ears.
 //!
-//! The rim is seen along its normal (Newell's). An ear is a corner with a convex angle whose
-//! triangle holds no other corner of the rim (Meisters 1975: a simple polygon has at least
-//! two). The one with the shortest cut comes first, which gives well-shaped triangles. All
-//! corners are used and each side of the rim once, so that the filled mesh is closed even
-//! where corners lie on one line or a rim touches itself.
+//! The rim is projected along the axis that is nearest to its normal (Newell's method). An ear is a
+//! corner with a convex angle whose triangle contains no other corner of the rim; a simple polygon
+//! has at least two (Meisters, 1975). Its cut is the side of that triangle that is not on the rim.
+//!
+//! 1. Put all corners into a queue, the shortest cut first: that gives well-shaped triangles.
+//! 2. Take the first that is an ear, and cut it off. Its two neighbours have new cuts, and enter
+//!    the queue again; older entries of theirs are skipped.
+//! 3. If no corner is an ear the rim crosses itself in the projection. Cut off the first corner, and
+//!    mark the filling as crooked.
+//!
+//! Every corner is used, and each side of the rim once. So the filled mesh is closed even where
+//! corners lie on one line or a rim touches itself.
+//!
+//! Only hollow corners, those that were not convex at first, can lie in an ear. They are sorted by
+//! x, so that a test looks at few of them.
 
 use crate::mesh::geometry::vector::{Corner, cross, distance2, minus};
+use nalgebra::Vector3;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// What closes a hole.
+/// The filling of a hole.
 pub(super) struct Filled {
-    /// Triangles along the rim's direction.
+    /// Triangles that run along the rim's direction.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Whether the rim crosses itself as seen along its normal, so that some of the
-    /// triangles are on each other.
+    /// Whether the rim crosses itself in the projection, so that some triangles overlap.
     pub(super) is_crooked: bool,
-    /// How far the rim leaves its plane, to both sides together, grid units.
+    /// How thick the rim is along its normal, grid units.
     pub(super) depth: f64,
 }
 
@@ -36,35 +46,34 @@ pub(super) fn fill(vertices: &[Corner], rim: &[u32]) -> Filled {
     filled
 }
 
-/// The normal of a closed line of corners, as long as twice the area that it has as seen
-/// along it.
-pub(super) fn newell(corners: &[Corner]) -> [f64; 3] {
+/// The normal of a closed line of corners. Its length is twice the area of the projection along
+/// it.
+pub(super) fn newell(corners: &[Corner]) -> Vector3<f64> {
     let mut sum = [0_i128; 3];
     for k in 1..corners.len().saturating_sub(1) {
         let part = cross(minus(corners[k], corners[0]), minus(corners[k + 1], corners[0]));
         (0..3).for_each(|axis| sum[axis] += i128::from(part[axis]));
     }
-    sum.map(|side| side as f64)
+    Vector3::from(sum.map(|side| side as f64))
 }
 
 /// How far the corners reach along the `normal`.
-fn depth(corners: &[Corner], normal: [f64; 3]) -> f64 {
-    let long = normal.iter().map(|side| side * side).sum::<f64>().sqrt();
+fn depth(corners: &[Corner], normal: Vector3<f64>) -> f64 {
+    let long = normal.norm();
     if long == 0.0 {
         return 0.0;
     }
     let heights = corners.iter().map(|&corner| {
-        let from_first = minus(corner, corners[0]).map(|side| side as f64);
-        (0..3).map(|axis| normal[axis] * from_first[axis]).sum::<f64>() / long
+        let from_first = Vector3::from(minus(corner, corners[0]).map(|side| side as f64));
+        normal.dot(&from_first) / long
     });
     let (low, high) = heights.fold((0.0_f64, 0.0_f64), |(l, h), at| (l.min(at), h.max(at)));
     high - low
 }
 
-/// The corners as seen along the axis that the normal is nearest to, counter-clockwise.
-///
-/// Leaving out a coordinate keeps them exact.
-fn flattened(corners: &[Corner], normal: [f64; 3]) -> Vec<[i64; 2]> {
+/// The corners projected along the axis that is nearest to the normal, counter-clockwise. Without
+/// one coordinate they stay exact.
+fn flattened(corners: &[Corner], normal: Vector3<f64>) -> Vec<[i64; 2]> {
     let size = normal.map(f64::abs);
     let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(2);
     let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -72,16 +81,16 @@ fn flattened(corners: &[Corner], normal: [f64; 3]) -> Vec<[i64; 2]> {
     corners.iter().map(|corner| [i64::from(corner[x]), i64::from(corner[y])]).collect()
 }
 
-/// What is left of a polygon while ears are cut off it.
+/// The rest of a polygon while ears are cut off.
 struct Ears<'a> {
     corners: &'a [Corner],
     flat: &'a [[i64; 2]],
     before: Vec<usize>,
     after: Vec<usize>,
     is_cut: Vec<bool>,
-    /// Corners that were not convex at first, by x: only these can lie in an ear.
+    /// The hollow corners, by x.
     hollow: Vec<usize>,
-    /// Candidates, the shortest cut first; those whose neighbours have changed are passed over.
+    /// Candidates, the shortest cut first; some are out of date.
     queue: BinaryHeap<Reverse<Candidate>>,
     left: usize,
 }
@@ -104,7 +113,7 @@ impl<'a> Ears<'a> {
         ears
     }
 
-    /// Puts corner `k` among the candidates.
+    /// Puts corner `k` into the queue.
     fn offer(&mut self, k: usize) {
         let (a, b) = (self.before[k], self.after[k]);
         let ends = [self.corners[a], self.corners[b]];
@@ -112,12 +121,12 @@ impl<'a> Ears<'a> {
         self.queue.push(Reverse((distance2(ends[0], ends[1]), ends, [k, a, b])));
     }
 
-    /// Cuts off the next ear; `true` with it if there was none that is one.
+    /// Cuts off the next ear. Returns `true` with it if the polygon crosses itself.
     fn cut(&mut self) -> Option<([usize; 3], bool)> {
         if self.left < 3 {
             return None;
         }
-        // Those that are no ears now, for when there are no others.
+        // Corners that are no ears now.
         let mut refused = Vec::new();
         let mut found = None;
         while let Some(Reverse(candidate)) = self.queue.pop() {
@@ -131,7 +140,7 @@ impl<'a> Ears<'a> {
             }
             refused.push(candidate);
         }
-        // What is left in the end of a rim that crosses itself may be turned over.
+        // The last triangle of a rim that crosses itself may be turned over.
         let is_last = self.left == 3;
         let is_crooked = found.is_none_or(|k| is_last && self.turn_at(k) < 0);
         let k = found.or_else(|| refused.first().map(|candidate| candidate.2[0]))?;
@@ -160,13 +169,13 @@ impl<'a> Ears<'a> {
         let within = self.hollow[from..].iter().take_while(|&&h| self.flat[h][0] <= high);
         within.copied().filter(|&h| !self.is_cut[h]).all(|h| {
             let p = self.flat[h];
-            // Corners at the ear's own are the rim touching itself.
+            // A corner at one of the ear's corners is the rim touching itself.
             ear.contains(&p) || (0..3).any(|side| turn(ear[side], ear[(side + 1) % 3], p) < 0)
         })
     }
 }
 
-/// Twice the area of a triangle: positive if it turns left.
+/// Twice the signed area of a triangle: positive if it turns left.
 fn turn(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }

@@ -1,13 +1,22 @@
 //! Mesh -> mended Mesh: welds, drops, splits, turns and fills until the surface is closed, and counts what it did.
 //!
-//! In this order, since each step relies on those before it: corners that nearly meet are
-//! welded, triangles without area and copies dropped, corners on edges joined to them,
-//! neighbours wound alike, gaps bridged and holes filled, sheets dropped, and shells turned
-//! outward. Corners are never moved but by welding, and no new ones are made: a mended triangle
-//! has corners of the file. Nothing depends on the order of the triangles.
+//! An open edge has one triangle. A rim is a closed line of open edges around a hole. A patch is
+//! what is connected by edges of two triangles, a shell what is connected when mending is
+//! done. A sheet is a surface that encloses nothing.
 //!
-//! Shells that overlap stay as they are: the winding rule makes one solid of them when they
-//! are cut into layers.
+//! The steps, in this order, since each relies on those before it:
+//! 1. `duplicates`: drop copies of triangles.
+//! 2. `near`, `junctions`: weld corners that nearly meet, and split triangles at corners on their edges;
+//!    first within 0.02 mm, then, if edges are still open, within 0.1 mm.
+//! 3. `orient`: wind the triangles of each patch alike.
+//! 4. `rim`, `bridge`, `fill`, `holes`: bridge gaps between two rims, and fill the other holes.
+//! 5. `shells`: drop shells that enclose nothing, and turn the others outward.
+//!
+//! A mesh that is closed goes through the last step only. No step makes new corners, and only
+//! welding moves them, so that mended triangles have corners of the file. The result does not
+//! depend on the order of the triangles.
+//!
+//! Shells that overlap stay as they are: the winding rule of slicing makes one solid of them.
 
 mod bridge;
 mod columns;
@@ -20,30 +29,32 @@ mod links;
 mod near;
 mod orient;
 mod probes;
-mod shells;
+mod rim;
+pub(super) mod shells;
 
 pub use holes::SMALL_MM;
 pub use near::TOLERANCES_MM;
 
 use super::Mesh;
 use super::edges::{self, Adjacency};
-use super::faults::{Counted, Fault, Mending};
+use super::faults::{Fault, Mending};
 use super::geometry::measure::{corners_of, determinant};
 use super::geometry::vector::{Corner, distance2, length, normal};
-use super::notes::{Note, Notes, told_mm};
+use super::notes::Notes;
 use near::TOLERANCES;
-pub(super) use shells::nested;
 
-/// Triangles no higher than this are lines, grid units: their corners were rounded.
+/// Triangles no higher than this are lines, grid units: rounding their corners to the grid moves
+/// each by up to 0.9. A larger value drops real thin triangles and opens gaps.
 const LEAST_HEIGHT: f64 = 2.0;
 
-/// So many faces a body has at least: with fewer, sheets are no body that came apart.
+/// The fewest faces of a body. If fewer sheets were dropped, they are not a body whose faces came
+/// apart.
 const LEAST_FACES: usize = 4;
 
 /// What mending found and did.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Mended {
-    /// Which half-edge of the mended mesh continues which.
+    /// Which half-edges of the mended mesh are neighbours.
     pub(super) adjacency: Adjacency,
     /// Faults of the mesh as it was.
     pub(super) found: Notes<Fault>,
@@ -51,10 +62,10 @@ pub(super) struct Mended {
     pub(super) done: Notes<Mending>,
     /// Faults that are left.
     pub(super) left: Notes<Fault>,
-    /// Closed surfaces, or surfaces left open, that hang together.
+    /// The number of connected surfaces.
     pub(super) shells: usize,
-    /// Whether more of the surface was dropped than is left: then it was no sheets that were
-    /// dropped, but faces that do not meet.
+    /// Whether more of the surface was dropped than is left. Then these were not sheets, but faces
+    /// of a body that do not meet.
     pub(super) is_lost: bool,
 }
 
@@ -69,7 +80,7 @@ pub(super) fn mend(mesh: &mut Mesh) -> Mended {
     let mut is_mended = false;
     if !is_closed || adjacency.non_manifold > 0 {
         work.found = faults(work.vertices, &work.triangles);
-        // Counted when gaps are closed, since they show only then.
+        // Counted after gaps are closed, since some show only then.
         work.found.0.retain(|note| note.kind != Fault::FlippedEdge);
         let count = work.count();
         duplicates::drop_duplicates(&mut work);
@@ -91,7 +102,7 @@ pub(super) fn mend(mesh: &mut Mesh) -> Mended {
     Mended { adjacency, found, done, left, shells, is_lost }
 }
 
-/// The mesh as it is.
+/// The faults of a mesh that stays as it is.
 pub(super) fn inspect(mesh: &Mesh) -> Mended {
     let adjacency = edges::adjacency(&mesh.vertices, &mesh.triangles);
     let found = faults(&mesh.vertices, &mesh.triangles);
@@ -113,11 +124,11 @@ fn close(work: &mut Work) {
     }
     orient::orient(work);
     holes::fill_holes(work);
-    // What fills the rim of a sheet is its copy.
+    // The filling of the rim of a sheet is a copy of the sheet.
     duplicates::drop_duplicates(work);
 }
 
-/// The faults that the edges of a mesh tell.
+/// The faults that the edges of a mesh show.
 pub(super) fn faults(vertices: &[Corner], triangles: &[[u32; 3]]) -> Notes<Fault> {
     let mut notes = Notes::default();
     edges::each_edge(vertices.len(), triangles, |(low, _), sides| match *sides {
@@ -138,20 +149,20 @@ struct Work<'a> {
     triangles: Vec<[u32; 3]>,
     found: Notes<Fault>,
     done: Notes<Mending>,
-    /// Area of the dropped sheets, twice, grid units².
+    /// Twice the area of the dropped sheets, grid units².
     dropped: f64,
-    /// Dropped sheets that hung together with nothing.
+    /// Dropped sheets that were shells of their own.
     sheets: usize,
 }
 
 impl Work<'_> {
-    /// Counts a triangle of a sheet, which the caller drops.
+    /// Counts a triangle of a sheet that the caller drops.
     fn drop_sheet(&mut self, triangle: [u32; 3]) {
         self.done.add(Mending::DroppedSheet, triangle[0]);
         self.dropped += self.area(triangle);
     }
 
-    /// Whether more of the surface was dropped than is left, as no sheets are.
+    /// Whether more of the surface was dropped than is left, see [`Mended::is_lost`].
     fn is_lost(&self) -> bool {
         if self.dropped == 0.0 {
             return false;
@@ -176,8 +187,8 @@ impl Work<'_> {
         self.triangles.retain(|_| !marks.next().copied().unwrap_or(false));
     }
 
-    /// Drops triangles without area: those with two equal corners, and those with three on a
-    /// line, whose neighbours are joined by splitting.
+    /// Drops triangles without area: two corners are equal, or three are on one line. Splitting
+    /// joins the neighbours of the latter.
     fn drop_degenerate(&mut self) {
         let Self { vertices, triangles, found, done, .. } = self;
         triangles.retain(|&triangle| {
@@ -193,8 +204,8 @@ impl Work<'_> {
         });
     }
 
-    /// Six times the signed volume that some triangles have about their own middle: as far as
-    /// they enclose something, that of it.
+    /// Six times the signed volume between some triangles and the mean of their corners: that of
+    /// what they enclose, if they enclose something.
     fn volume(&self, triangles: impl Iterator<Item = [u32; 3]> + Clone) -> i128 {
         let corners = triangles.map(|triangle| corners_of(self.vertices, triangle));
         let (mut sum, mut count) = ([0_i64; 3], 0);
@@ -207,23 +218,12 @@ impl Work<'_> {
         corners.map(|corners| determinant(corners.map(about))).sum()
     }
 
-    /// Whether some triangles enclose next to nothing: less than a body as thick as the
-    /// tolerance of welding would.
+    /// Whether some triangles enclose next to nothing: less than a plate of their area that is as
+    /// thick as the tolerance of welding.
     fn is_flat(&self, triangles: impl Iterator<Item = [u32; 3]> + Clone) -> bool {
         let volume = self.volume(triangles.clone()).unsigned_abs() as f64 / 6.0;
         let area = triangles.map(|t| self.area(t)).sum::<f64>();
-        // The doubled area is that of both sides, so that a quarter of it is one side.
+        // `area` is twice that of both sides of a plate: a quarter of it is one side.
         volume <= area / 4.0 * f64::from(TOLERANCES[0])
     }
-}
-
-/// Notes as the report tells them, with places in the file's own coordinates.
-pub(super) fn told<K: Copy>(notes: Notes<K>, vertices: &[[f32; 3]]) -> Vec<Counted<K>> {
-    let of = |note: Note<K>| Counted {
-        kind: note.kind,
-        count: note.count,
-        largest_mm: told_mm(note.largest),
-        places: note.at.iter().map(|&v| vertices[v as usize].map(f64::from)).collect(),
-    };
-    notes.0.into_iter().map(of).collect()
 }

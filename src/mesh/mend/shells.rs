@@ -1,39 +1,52 @@
-//! Surfaces that hang together -> shells wound outward: drops those that enclose nothing, turns those that are inside out.
+//! Connected surfaces -> shells that face outward: drops those that enclose nothing, turns those that are inside out.
+//!
+//! A shell is a connected surface: a body, or a cavity in one. It faces outward if its volume is
+//! positive. A shell is flat if it encloses nothing.
+//!
+//! 1. Join the triangles across their sides; sum the volume of each shell.
+//! 2. Drop flat shells.
+//! 3. A shell that faces inward and lies in no other is inverted, and so is everything in it: such
+//!    files come from mirroring. Turn them. A shell that faces inward within another is a cavity.
+//!
+//! What a shell lies in is found from six places on it: another shell encloses it if it winds
+//! around four of them. A ray up from each place counts the windings (see
+//! [`Tree::above`]); the tree holds only the triangles that can lie above a place.
+//!
+//! Volumes are integers, and places do not depend on the order of the triangles: neither does the
+//! result.
 
 use super::Work;
 use super::columns::Columns;
 use super::links::Links;
 use super::probes::{MOST_INSIDE, Probes};
-use crate::mesh::Mesh;
 use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::mesh::faults::{Fault, Mending};
 use crate::mesh::geometry::bounds::Bounds;
 use crate::mesh::geometry::measure::{corners_of, determinant, determinants};
 use crate::mesh::geometry::tree::Tree;
 use crate::mesh::geometry::vector::Corner;
-use crate::mesh::notes::Notes;
 use rayon::prelude::*;
 
 /// The shells of a mesh.
-struct Shells {
+pub(in crate::mesh) struct Shells {
     /// The shell of each triangle.
-    of: Vec<u32>,
-    each: Vec<Shell>,
+    pub(in crate::mesh) of: Vec<u32>,
+    /// All shells.
+    pub(in crate::mesh) each: Vec<Shell>,
 }
 
-/// A surface that hangs together.
-struct Shell {
-    first: u32,
-    is_closed: bool,
-    /// Six times its volume, negative if it is wound inward.
-    volume: i128,
+/// A connected surface.
+pub(in crate::mesh) struct Shell {
+    /// The first of its triangles.
+    pub(in crate::mesh) first: u32,
+    /// Whether none of its edges is open.
+    pub(in crate::mesh) is_closed: bool,
+    /// Six times its volume; negative if it faces inward.
+    pub(in crate::mesh) volume: i128,
 }
 
-/// Drops closed shells without volume (of a mesh that was mended: with next to none) and turns
-/// inverted ones. Returns the number of shells, and whether anything was changed.
-///
-/// A shell that is wound inward and lies in no other is inverted, and with it all that lies
-/// within it: such files come from mirroring. A shell wound inward within another is a cavity.
+/// Drops flat shells and turns inverted ones. Returns the number of shells that are left, and
+/// whether anything was changed.
 pub(super) fn settle(work: &mut Work, adjacency: &Adjacency, is_mended: bool) -> (usize, bool) {
     let shells = shells(work.vertices, &work.triangles, adjacency);
     let flat = flat(work, &shells, is_mended);
@@ -62,43 +75,26 @@ pub(super) fn settle(work: &mut Work, adjacency: &Adjacency, is_mended: bool) ->
     (flat.len() - work.sheets, true)
 }
 
-/// The bodies of a mended mesh that lie within others; `tree` is that over its triangles.
-pub(in crate::mesh) fn nested(mesh: &Mesh, adjacency: &Adjacency, tree: &Tree) -> Notes<Fault> {
-    let mut notes = Notes::default();
-    let shells = shells(&mesh.vertices, &mesh.triangles, adjacency);
-    // Of a single shell there is nothing to find.
-    if shells.each.len() == 1 {
-        return notes;
-    }
-    let flat = vec![false; shells.each.len()];
-    let is_body = |k: &usize| shells.each[*k].is_closed && shells.each[*k].volume > 0;
-    let bodies: Vec<usize> = (0..shells.each.len()).filter(is_body).collect();
-    for (k, probes) in shells.probes(&bodies, &mesh.vertices, &mesh.triangles) {
-        let outer = around(tree, &shells.of, &flat, (k, &probes));
-        let within = outer.iter().filter(|&&o| shells.each[o as usize].volume > 0).count();
-        // As many cavities as bodies around it: it stands free in a cavity.
-        if 2 * within > outer.len() {
-            notes.add(Fault::NestedShell, mesh.triangles[shells.each[k].first as usize][0]);
-        }
-    }
-    notes
-}
-
-/// The number of surfaces that hang together.
+/// The number of connected surfaces.
 pub(super) fn count(adjacency: &Adjacency) -> usize {
     links(adjacency).sets()
 }
 
 /// The triangles, joined across their sides.
 pub(super) fn links(adjacency: &Adjacency) -> Links {
-    // From one of the two is enough.
+    // One of the two triangles at an edge is enough.
     Links::of(adjacency.neighbour.len(), |t| {
         let sides = adjacency.neighbour[t as usize].into_iter().filter(|side| *side != NONE);
         sides.map(|side| parts(side).0 as u32).filter(move |other| *other < t)
     })
 }
 
-fn shells(vertices: &[Corner], triangles: &[[u32; 3]], adjacency: &Adjacency) -> Shells {
+/// The shells of a mesh, in the order of their first triangles.
+pub(in crate::mesh) fn shells(
+    vertices: &[Corner],
+    triangles: &[[u32; 3]],
+    adjacency: &Adjacency,
+) -> Shells {
     let mut links = links(adjacency);
     if links.sets() == 1 {
         let volume = determinants(vertices, triangles);
@@ -108,7 +104,7 @@ fn shells(vertices: &[Corner], triangles: &[[u32; 3]], adjacency: &Adjacency) ->
     let mut shells = Shells { of: Vec::with_capacity(triangles.len()), each: Vec::new() };
     for (t, sides) in (0_u32..).zip(&adjacency.neighbour) {
         let root = links.root(t);
-        // A set's root is its least number, so that it was met before.
+        // The root is the least triangle of a set, so that its shell is known.
         let k = if root == t { shells.each.len() as u32 } else { shells.of[root as usize] };
         if root == t {
             shells.each.push(Shell { first: t, is_closed: true, volume: 0 });
@@ -122,8 +118,8 @@ fn shells(vertices: &[Corner], triangles: &[[u32; 3]], adjacency: &Adjacency) ->
 }
 
 impl Shells {
-    /// The places by which is told what each of `some` shells lies in.
-    fn probes(
+    /// The probes of `some` of the shells, which show what each lies in.
+    pub(in crate::mesh) fn probes(
         &self,
         some: &[usize],
         vertices: &[Corner],
@@ -141,11 +137,11 @@ impl Shells {
     }
 }
 
-/// Which closed shells enclose nothing, or next to nothing if they were `mended`: the tiny
-/// bodies of a sound scan stay.
+/// Which closed shells enclose nothing; next to nothing, if the mesh was mended. The tiny bodies of
+/// a sound scan stay.
 fn flat(work: &Work, shells: &Shells, is_mended: bool) -> Vec<bool> {
     let mut triangles = vec![Vec::new(); shells.each.len()];
-    // Of a single shell there is nothing to drop.
+    // A single shell is never dropped.
     if shells.each.len() > 1 {
         for (t, &shell) in shells.of.iter().enumerate() {
             let of = &shells.each[shell as usize];
@@ -195,7 +191,7 @@ fn surroundings(
     let some: Vec<usize> = some.collect();
     let probes = shells.probes(&some, work.vertices, &work.triangles);
     let places: Vec<Corner> = probes.iter().flat_map(|(_, probes)| probes.places()).collect();
-    // A tree over all triangles would take longer to grow than to be asked.
+    // Building a tree over all triangles would take longer than all queries.
     let columns = Columns::of(&places);
     let bounds = |t: &[u32; 3]| Bounds::of(corners_of(work.vertices, *t));
     let all = work.triangles.par_iter().zip(&shells.of).map(|(t, shell)| (*t, *shell));
@@ -206,10 +202,15 @@ fn surroundings(
     probes.par_iter().map(around).collect()
 }
 
-/// The shells that shell `k` lies in, going by its `probes`; flat ones are none. `of` says which
-/// shell each triangle of the tree belongs to.
-fn around(tree: &Tree, of: &[u32], flat: &[bool], (k, probes): (usize, &Probes)) -> Vec<u32> {
-    // Each shell that winds around one of the places, once for each.
+/// The shells that shell `k` lies in, by its `probes`; flat ones do not count. `of` has the shell of
+/// each triangle of the tree.
+pub(in crate::mesh) fn around(
+    tree: &Tree,
+    of: &[u32],
+    flat: &[bool],
+    (k, probes): (usize, &Probes),
+) -> Vec<u32> {
+    // The shells that wind around a place, once for each place.
     let mut outer: Vec<u32> = Vec::new();
     for place in probes.places() {
         let mut windings: Vec<(u32, i32)> = Vec::new();

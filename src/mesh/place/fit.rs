@@ -1,106 +1,72 @@
-//! Sizes -> Result: says whether models and layout fit the print volume, and what to do if not.
+//! Sizes -> Result: checks that models and layout fit the print volume.
 
-use crate::error::{Error, Result};
-use crate::mesh::{Bed, Placement};
+use crate::mesh::{Bed, Error, Placement, Result};
 use crate::units::MAX_COORDINATE_MM;
 
-/// Half a grid unit: differences below it are rounding, mm.
+/// Half a grid unit, mm: smaller differences are rounding.
 const HALF_UNIT_MM: f64 = 0.000_05;
 
-/// Largest factor: keeps the largest coordinate of a file far from overflow.
+/// Largest factor on lengths. The largest coordinate of a file is 10⁹ in metres, so that products
+/// stay below 10²¹, far from overflow.
 const MAX_SCALE: f64 = 1e9;
 
 /// Refuses numbers that make no sense.
-pub(crate) fn check_placement(placement: &Placement) -> Result<()> {
+pub(super) fn check_placement(placement: &Placement) -> Result<()> {
     let Placement { scale, rotate, at, copies, .. } = *placement;
-    let finite = rotate.iter().chain(at.iter().flatten()).all(|number| number.is_finite());
     if !(scale > 0.0 && scale <= MAX_SCALE) {
-        return Err(Error::Usage(format!(
-            "--scale {scale}: must be above 0 and at most {MAX_SCALE:e}"
-        )));
+        return Err(Error::Scale { scale, most: MAX_SCALE });
     }
-    if !finite {
-        return Err(Error::Usage("--rotate and --at take finite numbers".to_owned()));
+    if !rotate.iter().chain(at.iter().flatten()).all(|number| number.is_finite()) {
+        return Err(Error::NotFinite);
     }
     if copies == 0 {
-        return Err(Error::Usage("--copies 0: must be at least 1".to_owned()));
+        return Err(Error::NoCopies);
     }
     Ok(())
 }
 
-/// Refuses a model that does not fit the bed by itself.
-pub(crate) fn check_size(
-    size: [f64; 3],
+/// Refuses a model that does not fit the print volume by itself.
+pub(super) fn check_size(
+    size_mm: [f64; 3],
     file: &str,
     placement: &Placement,
     bed: &Bed,
 ) -> Result<()> {
-    let space = [bed.max[0] - bed.min[0], bed.max[1] - bed.min[1], bed.height];
-    let limit = space.map(|side| side.min(MAX_COORDINATE_MM));
-    if (0..3).all(|axis| size[axis] <= limit[axis] + HALF_UNIT_MM) {
+    let [width, depth] = bed.size();
+    let space_mm = [width, depth, bed.height];
+    let limit = space_mm.map(|side| side.min(MAX_COORDINATE_MM));
+    if (0..3).all(|axis| size_mm[axis] <= limit[axis] + HALF_UNIT_MM) {
         return Ok(());
     }
-    let shrink = (0..3).map(|axis| limit[axis] / size[axis]).fold(f64::INFINITY, f64::min);
-    let what = if size[0] <= limit[0] && size[1] <= limit[1] { "higher" } else { "larger" };
+    let shrink = (0..3).map(|axis| limit[axis] / size_mm[axis]).fold(f64::INFINITY, f64::min);
     let scale = shrink * placement.scale;
-    // Rounded down to three digits, so that the advice does fit.
+    // Rounded down to three digits, so that the model fits with the number that is shown.
     let digits = libm::pow(10.0, 2.0 - libm::floor(libm::log10(scale)));
     let scale = libm::floor(scale * digits) / digits;
-    let advice = if scale > 0.0 && digits.is_finite() {
-        format!("use --scale {scale} or less, or turn it with --rotate")
-    } else {
-        "check the model and --scale".to_owned()
-    };
-    Err(Error::Unprintable(format!(
-        "{file}: the model is {} mm and so {what} than the print volume of {} mm; {advice}",
-        sides(&size),
-        sides(&space)
-    )))
+    Err(Error::TooLarge {
+        file: file.to_owned(),
+        size_mm,
+        space_mm,
+        is_only_too_high: size_mm[0] <= limit[0] && size_mm[1] <= limit[1],
+        scale: (scale > 0.0 && digits.is_finite()).then_some(scale),
+    })
 }
 
-/// Sizes or positions for a message.
-pub(crate) fn sides(mm: &[f64]) -> String {
-    let text: Vec<String> = mm.iter().map(|&mm| number(mm)).collect();
-    text.join(" × ")
-}
-
-/// A length for a message: at most two decimals, and powers of ten for numbers
-/// that only a damaged model or a wrong unit has.
-pub(crate) fn number(mm: f64) -> String {
-    if mm.abs() >= 1e6 { format!("{mm:.1e}") } else { format!("{}", (mm * 100.0).round() / 100.0) }
-}
-
-/// Where the layout's middle goes; refused if that pushes it off the bed.
-pub(crate) fn offset(placement: &Placement, bed: &Bed, size: [f64; 3]) -> Result<[f64; 2]> {
-    let middle = [0, 1].map(|axis| f64::midpoint(bed.min[axis], bed.max[axis]));
+/// Where the middle of the layout goes; refused if the layout sticks out of the bed there.
+pub(super) fn offset(placement: &Placement, bed: &Bed, size_mm: [f64; 2]) -> Result<[f64; 2]> {
+    let Bed { min, max, .. } = *bed;
     let Some(at) = placement.at else {
-        return Ok(middle);
+        return Ok([f64::midpoint(min[0], max[0]), f64::midpoint(min[1], max[1])]);
     };
-    let names = [["left", "right"], ["front", "back"]];
-    let mut beyond = Vec::new();
-    for axis in 0..2 {
-        let low = bed.min[axis] - (at[axis] - size[axis] / 2.0);
-        let high = at[axis] + size[axis] / 2.0 - bed.max[axis];
-        for (over, name) in [low, high].into_iter().zip(names[axis]) {
-            if over > 2.0 * HALF_UNIT_MM {
-                // Rounded up, but not for the noise of the subtraction.
-                let over = (over * 100.0 - 1e-6).ceil() / 100.0;
-                beyond.push(format!("{} mm at the {name}", number(over)));
-            }
-        }
-    }
-    if beyond.is_empty() {
+    let over = |axis: usize| {
+        let half = size_mm[axis] / 2.0;
+        let sides = [min[axis] - (at[axis] - half), at[axis] + half - max[axis]];
+        sides.map(|over| if over > 2.0 * HALF_UNIT_MM { over } else { 0.0 })
+    };
+    let over_mm = [over(0), over(1)];
+    if over_mm == [[0.0; 2]; 2] {
         return Ok(at);
     }
-    Err(Error::Unprintable(format!(
-        "--at {},{}: models of {} mm stick out of the bed by {}; the bed is x {} to {}, y {} to {} mm",
-        at[0],
-        at[1],
-        sides(&size[..2]),
-        beyond.join(" and "),
-        number(bed.min[0]),
-        number(bed.max[0]),
-        number(bed.min[1]),
-        number(bed.max[1])
-    )))
+    let bed_mm = [[min[0], max[0]], [min[1], max[1]]];
+    Err(Error::OffBed { at, size_mm, over_mm, bed_mm })
 }

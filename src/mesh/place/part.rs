@@ -1,34 +1,34 @@
 //! RawMesh -> Part: scales and turns one model, mends it, sets it down and rounds it to the integer grid.
 
-use super::fit::{check_size, sides};
-use crate::error::{Error, Result};
+use super::fit::check_size;
 use crate::mesh::edges::Adjacency;
-use crate::mesh::faults::{self, Fault};
+use crate::mesh::error::{Error, Flat, Result};
+use crate::mesh::faults::Fault;
 use crate::mesh::geometry::measure::{has_area, volume_mm3};
-use crate::mesh::mend::{self, Mended, told};
+use crate::mesh::mend::{self, Mended};
 use crate::mesh::notes::Notes;
-use crate::mesh::{Bed, Mesh, Placement, Policy, RawMesh, Unit, inspect};
+use crate::mesh::{Bed, Mesh, Placement, Policy, RawMesh, inspect};
 use crate::units::{sin_cos, sum_mm, to_units};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-/// One model on the grid, its bounding box's middle at x = y = 0.
+/// One model on the grid. The middle of its bounding box is at x = y = 0, its bottom at z = 0.
 #[derive(Debug, Clone)]
 pub struct Part {
-    /// The triangles. Vertices are those of the [`RawMesh`] that it was made of, in the same order.
+    /// The triangles over the vertices of the [`RawMesh`], in the same order.
     pub mesh: Mesh,
     /// Which half-edge of `mesh` continues which.
     pub adjacency: Adjacency,
-    /// Width, depth and height, grid units. The first two are even.
+    /// Width, depth and height, grid units. Width and depth are even.
     pub(super) size: [i64; 3],
 }
 
-/// Brings one model onto the grid, mends it and completes its report. What is left of the
-/// model are the vertices that the mended triangles use.
+/// Rounds one model to the grid, mends it and completes its report. `model` keeps the vertices
+/// that the mended triangles use, and its triangles move into the part.
 ///
 /// # Errors
-/// [`Error::Unprintable`] for what is larger than the bed; [`Error::Input`] for a model that
-/// is flat or encloses nothing, and with [`Policy::Strict`] for one with any fault.
+/// [`Error::TooLarge`], [`Error::Flat`], [`Error::Unmendable`], and with [`Policy::Strict`]
+/// [`Error::Faulty`].
 pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Part> {
     let mut points = points(model, placement);
     let [low, high] = bounds(&points);
@@ -41,22 +41,20 @@ pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Par
         Policy::Repair => mend::mend(&mut mesh),
         Policy::Strict => {
             let mut mended = mend::mend(&mut mesh);
-            // Of the mended mesh, since gaps and copies would be taken for crossings.
+            // Of the mended mesh: gaps and copies would count as crossings.
             mended.found.extend(inspect::inspect(&mesh, &mended.adjacency));
             mended
         }
     };
-    tell(model, &mut mended);
+    report(model, &mut mended);
     if mended.is_lost {
-        let why = "the mesh cannot be mended: more of its faces meet no others than enclose a \
-                   body; mend the model, or slice it as it is with --mesh warn";
-        return Err(Error::input(&model.report.file, why));
+        return Err(Error::Unmendable { file: model.report.file.clone() });
     }
     if placement.policy == Policy::Strict {
         refuse_faults(model)?;
     }
     if !model.report.mended.is_empty() {
-        // What was dropped may have been the outermost.
+        // The outermost triangles may have been dropped: then it has another middle and size.
         keep_used(model, &mut points, &mut mesh);
         (mesh.vertices, size) = on_grid(&points);
         refuse_flat(&mesh, size, &model.report.file)?;
@@ -69,13 +67,7 @@ pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Par
 
 /// The vertices, scaled and turned, mm.
 fn points(model: &RawMesh, placement: &Placement) -> Vec<Vector3<f64>> {
-    let unit = match placement.unit {
-        Unit::Mm => 1.0,
-        Unit::Cm => 10.0,
-        Unit::M => 1000.0,
-        Unit::Inch => 25.4,
-    };
-    let (turn, factor) = (rotation(placement.rotate), unit * placement.scale);
+    let (turn, factor) = (rotation(placement.rotate), placement.unit.mm() * placement.scale);
     let point = |corner: &[f32; 3]| turn * (Vector3::from(corner.map(f64::from)) * factor);
     model.vertices.par_iter().map(point).collect()
 }
@@ -103,58 +95,45 @@ fn on_grid(points: &[Vector3<f64>]) -> (Vec<[i32; 3]>, [i64; 3]) {
     // In this order, so that a mirrored model gives exactly the mirrored middle.
     let zero = Vector3::new((low.x + high.x) / 2.0, (low.y + high.y) / 2.0, low.z);
     let rounded = |point: &Vector3<f64>| <[f64; 3]>::from(point - zero).map(to_units);
-    // The middle of the box is at 0, so that both sides round alike.
+    // The middle of the box is at 0, so that opposite sides round alike.
     let half = rounded(&high).map(i64::from);
     (points.par_iter().map(rounded).collect(), [2 * half[0], 2 * half[1], half[2]])
 }
 
 /// Refuses a model that encloses nothing.
 fn refuse_flat(mesh: &Mesh, size: [i64; 3], file: &str) -> Result<()> {
-    let flat = |what: &str| {
-        let size = sides(&size.map(sum_mm));
-        let advice = "check the model, --unit and --scale";
-        Err(Error::input(file, format!("{what} ({size} mm), nothing to print; {advice}")))
+    let what = if mesh.triangles.len() < 4 {
+        Flat::FewTriangles
+    } else if size[2] == 0 {
+        Flat::NoHeight
+    } else if size[0] == 0 || size[1] == 0 || !has_area(mesh) {
+        Flat::NoArea
+    } else {
+        return Ok(());
     };
-    if mesh.triangles.len() < 4 {
-        return flat("fewer than four triangles enclose no body");
-    }
-    if size[2] == 0 {
-        return flat("the model has no height");
-    }
-    if size[0] == 0 || size[1] == 0 || !has_area(mesh) {
-        return flat("the model is flat and has no area in any layer");
-    }
-    Ok(())
+    Err(Error::Flat { file: file.to_owned(), what, size_mm: size.map(sum_mm) })
 }
 
 /// Writes what reading and mending found and did into the model's report.
-fn tell(model: &mut RawMesh, mended: &mut Mended) {
+fn report(model: &mut RawMesh, mended: &mut Mended) {
     let mut found = Notes::default();
     found.many(Fault::WrongNormal, model.wrong_normals);
     found.many(Fault::Degenerate, model.degenerate);
     found.extend(std::mem::take(&mut mended.found));
     let report = &mut model.report;
     report.shells = mended.shells;
-    report.found = told(found, &model.vertices);
-    report.mended = told(std::mem::take(&mut mended.done), &model.vertices);
-    report.left = told(std::mem::take(&mut mended.left), &model.vertices);
+    report.found = found.counted(&model.vertices);
+    report.mended = std::mem::take(&mut mended.done).counted(&model.vertices);
+    report.left = std::mem::take(&mut mended.left).counted(&model.vertices);
 }
 
 /// Refuses a model with any fault.
 fn refuse_faults(model: &RawMesh) -> Result<()> {
-    let Some(first) = model.report.found.first() else { return Ok(()) };
-    let all: Vec<String> = model.report.found.iter().map(ToString::to_string).collect();
-    let place = first.places.first().map_or_else(String::new, |&place| {
-        format!(" (the first {} at {})", first.kind.one(), faults::told(place))
-    });
-    Err(Error::input(
-        &model.report.file,
-        format!(
-            "the mesh has faults: {}{place}; mend the model, as `slicer mesh` does, or slice without \
-             --mesh strict",
-            all.join(", ")
-        ),
-    ))
+    let found = &model.report.found;
+    if found.is_empty() {
+        return Ok(());
+    }
+    Err(Error::Faulty { file: model.report.file.clone(), found: found.clone() })
 }
 
 /// Drops the vertices that no triangle uses.

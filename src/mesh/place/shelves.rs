@@ -1,30 +1,32 @@
-//! Boxes -> positions: lays models out on one bed in shelves.
+//! Boxes -> positions: lays models out on one bed, in rows.
 
 use crate::units::{Coord, to_units};
 
-/// Distance between the bounding boxes of neighbouring models, mm.
+/// Distance between the bounding boxes of neighbouring models, mm: about as much as other
+/// slicers leave. Less leaves no room for stringing and brims; more fits fewer models.
 pub const GAP_MM: f64 = 5.0;
 
-/// At most so many shelf widths are tried.
+/// Row widths that are tried at most, so that 10 000 boxes take a million steps. With fewer, large
+/// batches lie less squarely.
 const TRIALS: usize = 100;
 
-/// Where the boxes lie, in grid units.
+/// Where the boxes lie, grid units.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Layout {
-    /// The middle of each box, in the order given; the layout's middle is 0, 0 (to one unit).
-    pub(crate) middles: Vec<[Coord; 2]>,
+pub(super) struct Layout {
+    /// The middle of each box, in the order given. The middle of the layout is at 0, 0, to one
+    /// unit.
+    pub(super) middles: Vec<[Coord; 2]>,
     /// Size of the whole.
-    pub(crate) size: [i64; 2],
+    pub(super) size: [i64; 2],
 }
 
-/// Lays `boxes` (width and depth, even numbers of units) in rows of models of
-/// like depth, [`GAP_MM`] apart, deepest first. Of the row widths that fit the
-/// bed the one is taken that leaves most of the bed free around the whole.
-/// `None` if nothing fits.
+/// Lays `boxes` (width and depth, even numbers of units) out in rows, [`GAP_MM`] apart, the
+/// deepest first, so that boxes of similar depth share a row. Several row widths are tried; of
+/// those that fit the bed, the one wins that leaves the widest margin. `None` if none fits.
 ///
-/// Shelf packing by decreasing depth: Coffman, Garey, Johnson and Tarjan 1980
-/// (next-fit decreasing height).
-pub(crate) fn shelves(boxes: &[[i64; 2]], bed: [i64; 2]) -> Option<Layout> {
+/// Shelf packing by decreasing depth: Coffman, Garey, Johnson and Tarjan 1980, "Performance
+/// bounds for level-oriented two-dimensional packing algorithms" (next-fit decreasing height).
+pub(super) fn shelves(boxes: &[[i64; 2]], bed: [i64; 2]) -> Option<Layout> {
     let gap = i64::from(to_units(GAP_MM));
     let room = |[width, depth]: [i64; 2]| i128::from(width + gap) * i128::from(depth + gap);
     if boxes.iter().map(|&size| room(size)).sum::<i128>() > room(bed) {
@@ -40,7 +42,7 @@ pub(crate) fn shelves(boxes: &[[i64; 2]], bed: [i64; 2]) -> Option<Layout> {
             continue;
         }
         let layout = fill(boxes, &order, row.min(bed[0]), gap);
-        // How much of the bed the whole takes, along the side where it is scarcer.
+        // The share of the bed that it takes, along the side where less is left.
         let use_of = (layout.size[0] * bed[1]).max(layout.size[1] * bed[0]);
         let fits = layout.size[0] <= bed[0] && layout.size[1] <= bed[1];
         if fits && best.as_ref().is_none_or(|(least, _)| use_of < *least) {
@@ -50,7 +52,7 @@ pub(crate) fn shelves(boxes: &[[i64; 2]], bed: [i64; 2]) -> Option<Layout> {
     best.map(|(_, layout)| layout)
 }
 
-/// Fills rows of at most `width` (or one box) in the given order.
+/// Fills rows of at most `width` in the given order; a row has at least one box.
 #[expect(clippy::cast_possible_truncation, reason = "a layout that fits the bed fits Coord")]
 fn fill(boxes: &[[i64; 2]], order: &[usize], width: i64, gap: i64) -> Layout {
     let mut corners = vec![[0; 2]; boxes.len()];

@@ -1,47 +1,41 @@
-//! Number of triangles -> bytes: how much of a file is read, so that none can fill the memory or never end.
+//! Number of triangles -> bytes: how much of a file is read, so that no file can fill the memory and no pipe can keep the reader busy for ever.
 
-/// Bytes that a text may have without a triangle, and a binary file after its last one.
+/// Bytes that a text may have without any triangle, and a binary file after its last one.
+///
+/// Real files have a comment, a name or a colour table there, some kilobytes at most. Smaller
+/// values would refuse such files; larger ones only read more of a file that is no model.
 const SLACK: u64 = 16 << 20;
 
-/// Bytes that a triangle of a text takes at most: four times what the longest numbers need.
+/// Bytes of text that one triangle takes at most.
+///
+/// Twelve numbers of 20 characters with all keywords and indents make about 250 bytes; this is
+/// four times as many. A smaller value would refuse texts with wide indents.
 const FACET: u64 = 1024;
 
-/// Bytes that are read at once.
-pub(crate) const CHUNK: u64 = 1 << 18;
+/// Bytes of text that are read at a time: large enough that the calls to the system cost
+/// nothing, small enough to stay in the processor's cache while the words are parsed.
+pub(super) const CHUNK: u64 = 1 << 18;
 
 /// How much is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Limit {
-    /// Triangles of a file.
-    pub(crate) triangles: usize,
+pub(super) struct Limit {
+    /// Most triangles of a file.
+    pub(super) triangles: usize,
 }
 
 impl Limit {
-    /// Bytes that a file with so many `triangles` can need.
-    pub(crate) fn most_bytes(self, triangles: usize) -> u64 {
+    /// Most bytes that a file with this many `triangles` can need.
+    pub(super) fn most_bytes(self, triangles: usize) -> u64 {
         (triangles as u64).saturating_mul(FACET).saturating_add(SLACK)
     }
 
-    /// Bytes that a file with as many triangles as are allowed can need.
-    pub(crate) fn bytes(self) -> u64 {
+    /// Most bytes that a file with the allowed number of triangles can need.
+    pub(super) fn bytes(self) -> u64 {
         self.most_bytes(self.triangles)
     }
 
-    /// Bytes after the last triangle of a binary file.
-    pub(crate) fn trailing(self) -> u64 {
+    /// Most bytes after the last triangle of a binary file.
+    pub(super) fn trailing(self) -> u64 {
         SLACK
     }
-
-    /// Says that there are too many triangles; `found` is a verb and their number.
-    pub(crate) fn exceeded(self, found: &str) -> String {
-        format!(
-            "{found} triangles, and {} are allowed; simplify the model or raise --max-triangles",
-            self.triangles
-        )
-    }
-}
-
-/// Says that reading failed.
-pub(crate) fn unreadable(error: &std::io::Error) -> String {
-    format!("cannot be read: {error}; check the name and the permissions")
 }

@@ -1,5 +1,22 @@
-//! Bytes -> RawMesh: reads binary and ASCII STL and says what is wrong with the rest.
+//! Bytes -> RawMesh: reads a model from a file, from standard input or from memory, or says why it is none.
+//!
+//! Each format has a file of its own here, with a function `read` that takes a reader and
+//! returns a [`RawMesh`]; `sniff` recognizes formats by their first bytes, and [`from_reader`]'s
+//! `read_any` below is the one place that chooses. To add a format, add its file, let `sniff` recognize it,
+//! and call it in `read_any`.
+//!
+//! The head of a file is its first 64 KiB. A file is, in this order:
+//! 1. a binary STL, if its length is the one that the count of triangles in its head asks for,
+//!    whatever its header says (many binary files begin with `solid`);
+//! 2. refused, if its head is that of another known format;
+//! 3. an ASCII STL, if a line of its head begins with `solid`;
+//! 4. refused, if its head is other text;
+//! 5. else a binary STL with bytes too many or too few, which its reader judges.
+//!
+//! Both STL readers pass their triangles to `weld`, which joins equal corners. Memory is only taken
+//! for triangles that the bytes really hold, and no source is read further than `limit` says.
 
+mod error;
 mod limit;
 mod number;
 mod sniff;
@@ -7,70 +24,89 @@ mod stl_ascii;
 mod stl_binary;
 mod weld;
 
-use crate::error::{Error, Result};
-use crate::mesh::RawMesh;
-use limit::{Limit, unreadable};
+use crate::mesh::edges::MAX_TRIANGLES;
+use crate::mesh::{Error, RawMesh, Result};
+use limit::Limit;
 use std::fs::File;
 use std::io::Read;
 
+pub use error::{Damaged, NotStl, Place, ReadError, Truncated};
 pub use number::MAX_NUMBER;
-pub(crate) use weld::MAX_TRIANGLES;
 
-/// Bytes before the first triangle of a binary file: a header of 80 and the count.
+/// Bytes before the first triangle of a binary STL: a header of 80 and the count.
 pub const HEADER: usize = stl_binary::HEADER;
 
-/// Most triangles of a file and of a layout unless `--max-triangles` says another number: slicing
-/// them takes some 2 GB.
+/// Most triangles of a file, and of all models together, unless `--max-triangles` says another
+/// number. Slicing so many takes some 2 GB; a larger default would let a damaged file fill the
+/// memory of a small computer.
 pub const DEFAULT_MAX_TRIANGLES: usize = 20_000_000;
 
-/// Bytes of a file's start that tell what it is.
+/// Bytes of a file's start that tell its format.
 const HEAD: u64 = 1 << 16;
 
-/// Reads the STL file at `path`, or standard input if `path` is `-`. Pipes and devices
-/// are read no further than `max_triangles` can need.
+/// Reads the model at `path`, or from standard input if `path` is `-`. Pipes and devices are
+/// read no further than `max_triangles` can need.
 ///
 /// # Errors
-/// [`Error::Input`] if it cannot be read or is no usable STL; see [`parse`].
-pub fn load(path: &str, max_triangles: usize) -> Result<RawMesh> {
+/// [`Error::Read`] if it cannot be read or is no usable STL; see [`from_bytes`].
+pub fn from_path(path: &str, max_triangles: usize) -> Result<RawMesh> {
     if path == "-" {
-        return read("<stdin>", &mut std::io::stdin(), None, max_triangles);
+        return from_reader("<stdin>", &mut std::io::stdin(), max_triangles);
     }
-    let mut file = File::open(path).map_err(|error| match error.kind() {
-        _ if path.is_empty() => Error::input("''", "is no file name; name a model"),
-        _ => Error::input(path, unreadable(&error)),
-    })?;
-    let data = file.metadata().map_err(|error| Error::input(path, unreadable(&error)))?;
-    if data.is_dir() {
-        return Err(Error::input(path, "is a directory; name a file in it"));
+    if path.is_empty() {
+        return Err(refused("''")(ReadError::NoName));
     }
-    let length = data.is_file().then_some(data.len());
+    let (mut file, length) = open(path).map_err(refused(path))?;
     read(path, &mut file, length, max_triangles)
 }
 
-/// Whether a file of `length` bytes that begins with `head`, its first [`HEADER`] bytes, seems
-/// to be an STL.
-#[must_use]
-pub fn seems(head: &[u8], length: u64) -> bool {
-    is_binary(head, Some(length)) || head.trim_ascii_start().starts_with(b"solid")
-}
-
-/// Reads an STL file's `bytes`; `name` stands in messages and in the report.
+/// Reads a model that is in memory; `name` stands in messages and in the report.
 ///
-/// A file is binary when its length is the one that its count asks for,
-/// whatever its header says. The winding of the corners says what is outside;
-/// stored normals that say otherwise are only counted. Nothing is allocated by
-/// a count that the bytes do not bear out.
+/// The order of a triangle's corners says which side is outside. Stored normals that contradict
+/// it are only counted. A count of triangles is not believed before the bytes bear it out.
 ///
 /// # Errors
-/// [`Error::Input`] with the place, the cause and what to do, if the bytes are
-/// no STL, are cut off, hold no triangle with area, hold more than `max_triangles`, or a coordinate that
-/// is not finite or larger than [`MAX_NUMBER`].
-pub fn parse(name: &str, mut bytes: &[u8], max_triangles: usize) -> Result<RawMesh> {
+/// [`Error::Read`] if the bytes are no STL, are cut off, hold no triangle with three different
+/// corners, hold more than `max_triangles`, or a coordinate that is not finite or larger than
+/// [`MAX_NUMBER`].
+pub fn from_bytes(name: &str, mut bytes: &[u8], max_triangles: usize) -> Result<RawMesh> {
     let length = Some(bytes.len() as u64);
     read(name, &mut bytes, length, max_triangles)
 }
 
-/// As [`parse`], of a source whose length may not be known.
+/// Reads a model from any source, such as a pipe, whose length is not known.
+///
+/// # Errors
+/// As [`from_bytes`], and if the source fails.
+pub fn from_reader(
+    name: &str,
+    from: &mut (dyn Read + Send),
+    max_triangles: usize,
+) -> Result<RawMesh> {
+    read(name, from, None, max_triangles)
+}
+
+/// Whether a file of `length` bytes seems to be an STL, going by `head`, its first [`HEADER`] bytes.
+#[must_use]
+pub fn looks_like_stl(head: &[u8], length: u64) -> bool {
+    stl_binary::has_length(head, Some(length)) || head.trim_ascii_start().starts_with(b"solid")
+}
+
+/// Opens a file; its length too, if it is a regular one.
+fn open(path: &str) -> std::result::Result<(File, Option<u64>), ReadError> {
+    let file = File::open(path)?;
+    let data = file.metadata()?;
+    if data.is_dir() {
+        return Err(ReadError::Directory);
+    }
+    Ok((file, data.is_file().then_some(data.len())))
+}
+
+/// Adds the name of the file to what is wrong with it.
+fn refused(name: &str) -> impl Fn(ReadError) -> Error + '_ {
+    |source| Error::Read { file: name.to_owned(), source }
+}
+
 fn read(
     name: &str,
     from: &mut (dyn Read + Send),
@@ -78,70 +114,48 @@ fn read(
     max_triangles: usize,
 ) -> Result<RawMesh> {
     let limit = Limit { triangles: max_triangles.min(MAX_TRIANGLES) };
-    let mut mesh = read_any(from, length, limit).map_err(|reason| Error::input(name, reason))?;
+    let mut mesh = read_any(from, length, limit).map_err(refused(name))?;
     if mesh.triangles.is_empty() {
-        let dropped = mesh.degenerate;
-        let reason = if dropped == 0 {
-            "holds no triangles; export the model again".to_owned()
-        } else {
-            format!("none of its {dropped} triangles has three different corners; export it again")
-        };
-        return Err(Error::input(name, reason));
+        return Err(refused(name)(match mesh.degenerate {
+            0 => ReadError::NoTriangles,
+            triangles => ReadError::OnlyDegenerate { triangles },
+        }));
     }
     name.clone_into(&mut mesh.report.file);
     Ok(mesh)
 }
 
-/// Tells by its head what a file is, and reads it.
+/// Recognizes the format of a file by its head, and reads it.
 fn read_any(
     from: &mut (dyn Read + Send),
     length: Option<u64>,
     limit: Limit,
-) -> std::result::Result<RawMesh, String> {
+) -> std::result::Result<RawMesh, ReadError> {
     let mut head = Vec::new();
-    from.take(HEAD).read_to_end(&mut head).map_err(|error| unreadable(&error))?;
-    // What was read says more than what the system tells.
+    from.take(HEAD).read_to_end(&mut head)?;
+    // What was read counts more than what the system says.
     let length = if (head.len() as u64) < HEAD { Some(head.len() as u64) } else { length };
     let length = length.filter(|&length| length >= head.len() as u64);
     if head.is_empty() {
-        return Err("is empty; export the model again".to_owned());
+        return Err(ReadError::Empty);
     }
-    let count = stl_binary::count(&head);
-    let is_binary = is_binary(&head, length);
-    if let Some(what) = sniff::foreign(&head).filter(|_| !is_binary) {
-        return Err(format!("is no STL but seems to be {what}"));
+    let is_binary = stl_binary::has_length(&head, length);
+    if !is_binary {
+        if let Some(what) = sniff::foreign(&head) {
+            return Err(NotStl::Foreign(what).into());
+        }
+        if let Some(bytes) = length.filter(|&length| length > limit.bytes()) {
+            return Err(ReadError::TooManyBytes { bytes, most: limit.triangles });
+        }
+        if let Some(start) = sniff::ascii_start(&head) {
+            return stl_ascii::read(&mut head.as_slice().chain(from), start, limit);
+        }
+        if sniff::is_text(&head) {
+            return Err(NotStl::Text(sniff::first_line(&head)).into());
+        }
     }
-    if let Some(length) = length.filter(|&length| !is_binary && length > limit.bytes()) {
-        return Err(format!(
-            "has {length} bytes, more than the {} triangles that are allowed can need; simplify \
-             the model or raise --max-triangles",
-            limit.triangles
-        ));
-    }
-    let start = sniff::ascii_start(&head).filter(|_| !is_binary);
-    let mut from = head.as_slice().chain(from);
-    match (start, count) {
-        (Some(start), _) => stl_ascii::read(&mut from, start, limit),
-        (None, _) if !is_binary && sniff::is_text(&head) => Err(other_text(&head)),
-        (None, Some(count)) => stl_binary::read(&mut from, count, length, limit),
-        (None, None) => Err(format!(
-            "has only {} bytes, too few for an STL; export or download it again",
-            head.len()
-        )),
-    }
-}
-
-/// Whether a file is as long as the count in its `head` says.
-fn is_binary(head: &[u8], length: Option<u64>) -> bool {
-    let announced = stl_binary::count(head).map(|count| u64::from(u32::from_le_bytes(count)));
-    length.is_some() && announced.map(stl_binary::length_of) == length
-}
-
-/// Says what a text that is no STL begins with.
-fn other_text(head: &[u8]) -> String {
-    let line = head.trim_ascii_start().split(|&byte| byte == b'\n' || byte == b'\r').next();
-    let quote = stl_ascii::quote(line.unwrap_or_default());
-    format!("is no STL but text that begins with {quote}; export it as STL")
+    let count = stl_binary::count(&head).ok_or(NotStl::TooShort { bytes: head.len() })?;
+    stl_binary::read(&mut head.as_slice().chain(from), count, length, limit)
 }
 
 #[cfg(test)]
@@ -169,7 +183,7 @@ mod tests {
     }
 
     fn reason(bytes: &[u8]) -> String {
-        let text = parse("x.stl", bytes, 9).expect_err("must be refused").to_string();
+        let text = from_bytes("x.stl", bytes, 9).expect_err("must be refused").to_string();
         assert!(text.starts_with("x.stl: ") && !text.contains('\n'), "{text}");
         text
     }
@@ -177,7 +191,7 @@ mod tests {
     #[test]
     fn binary_is_told_by_its_length() {
         for header in [&b""[..], b"solid", b"solid x\nfacet normal 0 0 0\nendfacet"] {
-            let mesh = parse("x.stl", &tetrahedron(header), 9).unwrap();
+            let mesh = from_bytes("x.stl", &tetrahedron(header), 9).unwrap();
             assert_eq!((mesh.triangles.len(), mesh.vertices.len()), (4, 4));
             assert_eq!((mesh.report.format, mesh.report.file.as_str()), ("binary", "x.stl"));
         }
@@ -188,7 +202,7 @@ mod tests {
         for header in [&b""[..], b"solid facet normal endfacet"] {
             let mut bytes = tetrahedron(header);
             bytes.extend([0; 99]);
-            let mesh = parse("x.stl", &bytes, 9).unwrap();
+            let mesh = from_bytes("x.stl", &bytes, 9).unwrap();
             assert_eq!((mesh.triangles.len(), mesh.report.trailing_bytes), (4, 99));
         }
     }
@@ -240,8 +254,25 @@ mod tests {
 
     #[test]
     fn a_missing_file_is_named() {
-        let error = load("/nowhere/x.stl", 9).expect_err("there is no such file");
+        let error = from_path("/nowhere/x.stl", 9).expect_err("there is no such file");
         assert!(error.to_string().starts_with("/nowhere/x.stl: cannot be read"));
-        assert_eq!(error.exit_code(), 3);
+        assert!(!error.is_usage());
+        let Error::Read { source: ReadError::Io(cause), .. } = &error else { panic!("{error:?}") };
+        assert_eq!(cause.kind(), std::io::ErrorKind::NotFound);
+    }
+
+    #[test]
+    fn a_source_of_unknown_length_gives_what_its_bytes_give() {
+        for bytes in [tetrahedron(b""), tetrahedron(b"solid")[..270].to_vec(), b"solid".to_vec()] {
+            let whole = from_bytes("x.stl", &bytes, 9);
+            let stream = from_reader("x.stl", &mut bytes.as_slice(), 9);
+            match (whole, stream) {
+                (Ok(whole), Ok(stream)) => assert_eq!(whole.report, stream.report),
+                (whole, stream) => assert_eq!(
+                    whole.expect_err("refused alike").to_string(),
+                    stream.expect_err("refused alike").to_string()
+                ),
+            }
+        }
     }
 }

@@ -1,19 +1,12 @@
 //! Number -> verdict: which numbers of a file can be coordinates.
 
-/// Largest number accepted as a coordinate, in the file's unit. What is above
-/// is a damaged file, not a model.
+/// The largest coordinate that is accepted, in the file's unit.
+///
+/// A kilometre in micrometres is 10⁹; what is larger comes from a damaged file. Without the
+/// limit, squares of such numbers would overflow `f32`.
 pub const MAX_NUMBER: f32 = 1e9;
 
 /// Whether a number can be a coordinate; false for NaN too.
-pub(crate) fn usable(number: f32) -> bool {
+pub(super) fn usable(number: f32) -> bool {
     number.abs() <= MAX_NUMBER
-}
-
-/// Says why a number is not [`usable`].
-pub(crate) fn complaint(number: f32) -> String {
-    if number.is_finite() {
-        format!("the coordinate {number:e} is absurdly large")
-    } else {
-        format!("a coordinate is {number}, which is no finite number")
-    }
 }

@@ -1,10 +1,11 @@
-//! Bytes -> name of a format: tells a user who named something else `.stl` what it is.
+//! First bytes -> format: recognizes ASCII STL, and other formats that someone named `.stl`.
 
-/// How much of a file's start is looked at.
-const HEAD: usize = 1024;
+/// Bytes of the head that must be text for a file to be text. The count of a binary STL lies
+/// within the first 84, so that a binary file has a control character among these.
+const TEXT: usize = 1024;
 
-/// What the bytes seem to be, if that is a known format other than STL, and what to do about it.
-pub(crate) fn foreign(bytes: &[u8]) -> Option<&'static str> {
+/// The known format other than STL that the bytes begin like, and what to do about it.
+pub(super) fn foreign(bytes: &[u8]) -> Option<&'static str> {
     let magic: [(&[u8], &str); 7] = [
         (b"\x1f\x8b", "a gzip archive; unpack it first"),
         (b"PK\x03\x04", "a ZIP archive or 3MF file; unpack it, or export the model as STL"),
@@ -35,26 +36,26 @@ fn foreign_text(bytes: &[u8]) -> Option<&'static str> {
     if let Some((_, what)) = starts.iter().find(|(word, _)| starts_with(start, word)) {
         return Some(what);
     }
-    let head = &start[..start.len().min(HEAD)];
+    let head = &start[..start.len().min(TEXT)];
     let mut lines = head.split(|&byte| byte == b'\n' || byte == b'\r');
     let obj = lines.any(|line| starts_with(line, "v ") || starts_with(line, "mtllib "));
     obj.then_some("a Wavefront OBJ model; export it as STL")
 }
 
-/// Whether the start of `bytes` is text: no control characters but white space.
-/// Bytes above 127 are let through, for names in any encoding.
-pub(crate) fn is_text(bytes: &[u8]) -> bool {
-    bytes[..bytes.len().min(HEAD)].iter().all(|&byte| byte != 0 && plain(byte))
+/// Whether `bytes` begin as text: no control characters but white space. Bytes above 127 count
+/// as text, since names may be in any encoding.
+pub(super) fn is_text(bytes: &[u8]) -> bool {
+    bytes[..bytes.len().min(TEXT)].iter().all(|&byte| byte != 0 && plain(byte))
 }
 
-/// Where the text of an ASCII STL begins, if `bytes` can be one: at `solid`,
-/// which a byte order mark, blanks and lines of other text may precede.
+/// Where the text of an ASCII STL begins, if `bytes` can be one: at `solid`. A byte order mark,
+/// blanks and lines of other text may come before it.
 ///
-/// A binary file may begin with `solid` too. It has NUL bytes early on, because
-/// its count has (below 16 million triangles); a text with NUL bytes is taken
-/// for ASCII, and then refused for them, when `endfacet` stands after the place of a header.
-pub(crate) fn ascii_start(bytes: &[u8]) -> Option<usize> {
-    let head = &bytes[..bytes.len().min(HEAD)];
+/// A binary file may begin with `solid` too, but has NUL bytes early on: below 16 million
+/// triangles its count has one. A text with NUL bytes is taken for a damaged ASCII STL only if
+/// `endfacet` stands after the place of a binary header; its reader then refuses it.
+pub(super) fn ascii_start(bytes: &[u8]) -> Option<usize> {
+    let head = &bytes[..bytes.len().min(TEXT)];
     if !head.iter().all(|&byte| plain(byte)) {
         return None;
     }
@@ -77,12 +78,12 @@ pub(crate) fn ascii_start(bytes: &[u8]) -> Option<usize> {
     None
 }
 
-/// White space and everything that is no control character; NUL as well.
+/// Whether a byte is white space, NUL or no control character.
 fn plain(byte: u8) -> bool {
     byte == 0 || (byte >= 0x20 && byte != 0x7f) || (0x09..=0x0d).contains(&byte)
 }
 
-/// Without a UTF-8 byte order mark and leading white space.
+/// The bytes without a UTF-8 byte order mark and leading white space.
 fn trimmed(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start()
 }
@@ -95,19 +96,42 @@ fn contains(bytes: &[u8], word: &str) -> bool {
     bytes.windows(word.len()).any(|part| part.eq_ignore_ascii_case(word.as_bytes()))
 }
 
+/// The start of the first line of a text, in quotes.
+pub(super) fn first_line(head: &[u8]) -> String {
+    let line = head.trim_ascii_start().split(|&byte| byte == b'\n' || byte == b'\r').next();
+    quote(line.unwrap_or_default())
+}
+
+/// The start of some text in quotes, fit for a message of one line.
+pub(super) fn quote(text: &[u8]) -> String {
+    // A word may be of any length.
+    let text = String::from_utf8_lossy(&text[..text.len().min(100)]);
+    let mut short: String = text.chars().take(24).filter(|c| !c.is_control()).collect();
+    if text.chars().nth(24).is_some() {
+        short.push('…');
+    }
+    format!("'{short}'")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn other_formats_are_named() {
-        let said = |bytes: &[u8]| foreign(bytes).unwrap_or("nothing").to_owned();
-        assert!(said(b"\x1f\x8b\x08\x00").contains("gzip"));
-        assert!(said(b"\n<!DOCTYPE html><html>").contains("HTML"));
-        assert!(said(b"# a cube\nv 0 0 0\nv 1 0 0\n").contains("OBJ"));
-        assert!(said(b"version https://git-lfs.github.com/spec/v1\n").contains("git lfs pull"));
-        assert!(said(b"\xff\xfes\0o\0l\0i\0d\0").contains("UTF-16"));
-        assert_eq!(said(b"solid name\nfacet normal 0 0 1\n"), "nothing");
+        let named = |bytes: &[u8]| foreign(bytes).unwrap_or("nothing").to_owned();
+        assert!(named(b"\x1f\x8b\x08\x00").contains("gzip"));
+        assert!(named(b"\n<!DOCTYPE html><html>").contains("HTML"));
+        assert!(named(b"# a cube\nv 0 0 0\nv 1 0 0\n").contains("OBJ"));
+        assert!(named(b"version https://git-lfs.github.com/spec/v1\n").contains("git lfs pull"));
+        assert!(named(b"\xff\xfes\0o\0l\0i\0d\0").contains("UTF-16"));
+        assert_eq!(named(b"solid name\nfacet normal 0 0 1\n"), "nothing");
+    }
+
+    #[test]
+    fn quotes_are_short_and_of_one_line() {
+        assert_eq!(quote(b"a\nb\x07\xff"), "'ab\u{fffd}'");
+        assert_eq!(quote(&[b'x'; 99]).chars().count(), 27);
     }
 
     #[test]

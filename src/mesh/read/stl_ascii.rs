@@ -1,34 +1,52 @@
-//! Text -> RawMesh: reads ASCII STL word by word, so that its lines do not matter.
+//! Text -> RawMesh: reads ASCII STL word by word, so that its line breaks do not matter.
+//!
+//! A word is what stands between white space. A facet is
+//! `facet normal x y z outer loop vertex x y z vertex x y z vertex x y z endloop endfacet`;
+//! facets stand between `solid NAME` and `endsolid NAME`.
+//!
+//! The parser is a state machine: [`State`] says which word must come next. It is as tolerant as
+//! the files that exist need, and no more:
+//! - keywords may be in any case, and lines may end in LF, CR LF or CR, or be missing;
+//! - `solid` blocks are joined, and the last `endsolid` may be missing;
+//! - names and unknown words between facets are skipped, and so are unknown words before
+//!   `outer` and `endfacet`; a keyword in the wrong place is an error;
+//! - a normal may be anything, since the order of the corners counts;
+//! - each corner must have three numbers and each facet three corners.
+//!
+//! The text is read in chunks. A word that a chunk cuts in two stays in the buffer until the next
+//! chunk completes it.
 
-use super::limit::{CHUNK, Limit, unreadable};
-use super::number::{complaint, usable};
+use super::error::{Damaged, Place, ReadError, Truncated};
+use super::limit::{CHUNK, Limit};
+use super::number::usable;
+use super::sniff::quote;
 use super::weld::{Facet, Welder};
 use crate::mesh::RawMesh;
 use std::io::Read;
 
-/// The words that have a place inside a facet only.
+/// The keywords that stand inside a facet only.
 const INNER_WORDS: [&str; 6] = ["normal", "outer", "loop", "vertex", "endloop", "endfacet"];
 
-/// The words that have a place outside of facets only.
+/// The keywords that stand outside of facets only.
 const OUTER_WORDS: [&str; 3] = ["solid", "endsolid", "facet"];
 
-type Result<T> = std::result::Result<T, String>;
+type Result<T> = std::result::Result<T, ReadError>;
 
-/// Reads the ASCII STL that begins at byte `start`, and no more of it than as many triangles
-/// as `limit` allows can need. Keywords may be in any case; `solid` blocks are joined; names
-/// and stray words between facets are skipped.
+/// Reads the ASCII STL that begins at byte `start`, and no more of it than the triangles that
+/// `limit` allows can need.
 ///
 /// # Errors
-/// The line, the cause and what to do, as text without the file's name.
-pub(crate) fn read(from: &mut dyn Read, start: usize, limit: Limit) -> Result<RawMesh> {
+/// A word or a number that does not belong where it stands, with its line; a text that ends too
+/// early; a source that fails.
+pub(super) fn read(from: &mut dyn Read, start: usize, limit: Limit) -> Result<RawMesh> {
     let mut parser = Parser { line: 1, ..Parser::default() };
     let mut text = Vec::new();
-    from.take(start as u64).read_to_end(&mut text).map_err(|error| unreadable(&error))?;
+    from.take(start as u64).read_to_end(&mut text)?;
     text.drain(..).for_each(|byte| parser.blank(byte));
     let mut length = 0_u64;
     loop {
         let before = text.len();
-        from.take(CHUNK).read_to_end(&mut text).map_err(|error| unreadable(&error))?;
+        from.take(CHUNK).read_to_end(&mut text)?;
         let read = text.len() - before;
         length += read as u64;
         if read == 0 {
@@ -39,30 +57,26 @@ pub(crate) fn read(from: &mut dyn Read, start: usize, limit: Limit) -> Result<Ra
         let used = parser.words(&text[..end.map_or(text.len(), |end| before + end)], limit)?;
         let line = parser.line;
         if end.is_some() {
-            let damage = "NUL bytes within the text; the file is damaged: export it again";
-            return Err(format!("line {line}: {damage}"));
+            return Err(Damaged::Nul { line }.into());
         }
-        if length > limit.most_bytes(parser.welder.count()) {
-            let count = parser.welder.count();
-            return Err(format!(
-                "line {line}: {length} bytes of text and only {count} triangles until here; it is \
-                 damaged or no STL: export it again"
-            ));
+        let triangles = parser.welder.count();
+        if length > limit.most_bytes(triangles) {
+            return Err(Damaged::Text { line, bytes: length, triangles }.into());
         }
         text.drain(..used);
     }
 }
 
-/// What comes next.
+/// What must come next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum State {
-    /// A facet or a solid, or words that say nothing.
+    /// A facet or a solid, or words that mean nothing.
     #[default]
     Between,
-    /// The name of a solid: the rest of this line, or what stands before the next facet or
-    /// `endsolid` in a file without line breaks.
+    /// The name of a solid: the rest of the line with this number. In a file without line
+    /// breaks, the words up to the next facet or `endsolid`.
     Name(usize),
-    /// The same after the word `facet`, with which a facet begins if `normal` follows.
+    /// The same after the word `facet`: a facet begins if `normal` follows.
     NameOrFacet(usize),
     /// The words up to `outer`.
     Normal,
@@ -81,10 +95,10 @@ enum State {
 struct Parser {
     welder: Welder,
     state: State,
-    /// The line, counted from 1; LF, CR LF and CR end one.
+    /// The current line, counted from 1.
     line: usize,
     after_return: bool,
-    /// The numbers of the facet's normal, as far as they are numbers, and how many words it has.
+    /// The facet's normal, NaN for a word that is no number, and how many words it has.
     normal: [f32; 3],
     normal_words: usize,
     corners: [[f32; 3]; 3],
@@ -93,7 +107,7 @@ struct Parser {
 }
 
 impl Parser {
-    /// Takes the words of `text` that end in it, and says how many bytes of it are done with.
+    /// Parses the words of `text` that end in it. Returns how many bytes these take.
     fn words(&mut self, text: &[u8], limit: Limit) -> Result<usize> {
         let mut at = 0;
         loop {
@@ -109,7 +123,7 @@ impl Parser {
         }
     }
 
-    /// Counts the line that a byte ends.
+    /// Counts the line that a white-space byte ends, if it does.
     fn blank(&mut self, byte: u8) {
         if byte == b'\r' || (byte == b'\n' && !self.after_return) {
             self.line += 1;
@@ -117,7 +131,7 @@ impl Parser {
         self.after_return = byte == b'\r';
     }
 
-    /// Takes the next word; the empty one is none.
+    /// Parses the next word; an empty one is skipped.
     fn word(&mut self, word: &[u8], limit: Limit) -> Result<()> {
         if word.is_empty() {
             return Ok(());
@@ -134,7 +148,8 @@ impl Parser {
             State::Number => self.number(word)?,
             State::End if is(word, "endfacet") => {
                 if self.welder.count() >= limit.triangles {
-                    return Err(limit.exceeded(&format!("has more than {}", limit.triangles)));
+                    let (announced, most) = (None, limit.triangles);
+                    return Err(ReadError::TooManyTriangles { announced, most });
                 }
                 self.welder.add(&Facet::new(self.normal, self.corners));
                 State::Between
@@ -156,7 +171,7 @@ impl Parser {
         }
     }
 
-    /// A word after that of `line` with `solid`.
+    /// A word of a name, or after it; `line` is that of `solid`.
     fn name(&mut self, word: &[u8], line: usize) -> Result<State> {
         if self.line != line || is(word, "endsolid") {
             return self.between(word);
@@ -169,7 +184,7 @@ impl Parser {
         State::Normal
     }
 
-    /// A word before `outer`: part of a normal, which may be anything.
+    /// A word before `outer`: part of a normal.
     fn normal(&mut self, word: &[u8]) -> Result<State> {
         if is(word, "outer") {
             if self.normal_words != 3 {
@@ -197,11 +212,7 @@ impl Parser {
         }
         let count = self.numbers / 3;
         if count != 3 {
-            return Err(format!(
-                "line {}: a loop of {count} corners; STL knows triangles only: \
-                 triangulate the model and export it again",
-                self.line
-            ));
+            return Err(Damaged::Loop { line: self.line, corners: count }.into());
         }
         Ok(State::End)
     }
@@ -211,11 +222,7 @@ impl Parser {
             return Err(self.no_number(word));
         };
         if !usable(number) {
-            return Err(format!(
-                "line {}: {}; mend or export the model again",
-                self.line,
-                complaint(number)
-            ));
+            return Err(ReadError::Coordinate { place: Place::Line(self.line), number });
         }
         // Those of a fourth corner are only counted.
         if let Some(slot) = self.corners.as_flattened_mut().get_mut(self.numbers) {
@@ -225,8 +232,8 @@ impl Parser {
         Ok(if self.numbers.is_multiple_of(3) { State::Corners } else { State::Number })
     }
 
-    /// Steps over a word before `goal`, unless it is one of STL's own.
-    fn other(&self, word: &[u8], goal: &str) -> Result<State> {
+    /// Skips a word before `goal`, unless it is a keyword.
+    fn other(&self, word: &[u8], goal: &'static str) -> Result<State> {
         if INNER_WORDS.iter().chain(&OUTER_WORDS).any(|known| is(word, known)) {
             return Err(self.wrong(word, goal));
         }
@@ -235,36 +242,26 @@ impl Parser {
 
     fn finish(self) -> Result<RawMesh> {
         if !matches!(self.state, State::Between | State::Name(_) | State::NameOrFacet(_)) {
-            return Err(format!(
-                "line {}: the file ends within a facet; it is cut off: \
-                 export or download it again",
-                self.line
-            ));
+            return Err(Truncated::Text { line: self.line }.into());
         }
         let mut mesh = self.welder.finish();
         mesh.report.format = "ascii";
         Ok(mesh)
     }
 
-    fn wrong(&self, word: &[u8], expected: &str) -> String {
-        format!(
-            "line {}: {} stands where {expected} is expected; mend or export the file again",
-            self.line,
-            quote(word)
-        )
+    fn wrong(&self, word: &[u8], expected: &'static str) -> ReadError {
+        Damaged::Word { line: self.line, word: quote(word), expected }.into()
     }
 
-    fn no_number(&self, word: &[u8]) -> String {
-        let advice = if word.contains(&b',') {
-            "has a decimal comma; export it again with decimal points"
-        } else {
-            "stands where a number is expected; mend or export the file again"
-        };
-        format!("line {}: {} {advice}", self.line, quote(word))
+    fn no_number(&self, word: &[u8]) -> ReadError {
+        if word.contains(&b',') {
+            return Damaged::DecimalComma { line: self.line, word: quote(word) }.into();
+        }
+        self.wrong(word, "a number")
     }
 }
 
-/// The number that a word is, if it is one.
+/// The word as a number, if it is one.
 fn parsed(word: &[u8]) -> Option<f32> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
@@ -275,17 +272,6 @@ fn blank(byte: u8) -> bool {
 
 fn is(word: &[u8], keyword: &str) -> bool {
     word.eq_ignore_ascii_case(keyword.as_bytes())
-}
-
-/// The start of some text in quotes, made fit for a message of one line.
-pub(crate) fn quote(text: &[u8]) -> String {
-    // A word may be of any length.
-    let text = String::from_utf8_lossy(&text[..text.len().min(100)]);
-    let mut short: String = text.chars().take(24).filter(|c| !c.is_control()).collect();
-    if text.chars().nth(24).is_some() {
-        short.push('…');
-    }
-    format!("'{short}'")
 }
 
 #[cfg(test)]
@@ -303,7 +289,8 @@ mod tests {
     }
 
     fn reason(text: &str) -> String {
-        super::read(&mut text.as_bytes(), 0, ANY).expect_err("must be refused")
+        let error = super::read(&mut text.as_bytes(), 0, ANY).expect_err("must be refused");
+        error.to_string()
     }
 
     #[test]
@@ -353,11 +340,5 @@ mod tests {
             assert!(text.starts_with(&format!("line {line}: ")), "{to}: {text}");
             assert!(text.contains(word), "{to}: {text}");
         }
-    }
-
-    #[test]
-    fn quotes_are_short_and_of_one_line() {
-        assert_eq!(quote(b"a\nb\x07\xff"), "'ab\u{fffd}'");
-        assert_eq!(quote(&[b'x'; 99]).chars().count(), 27);
     }
 }

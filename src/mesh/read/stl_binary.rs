@@ -1,39 +1,50 @@
 //! Records -> RawMesh: reads the triangles of a binary STL, and no more than there are.
+//!
+//! A binary STL is a header of 80 bytes, the count of triangles in four (lowest byte first), and
+//! a record of 50 bytes for each triangle. The count and the length of the file must agree: some
+//! bytes more are counted and ignored, whole records more or any bytes fewer are refused.
 
-use super::limit::{Limit, unreadable};
-use super::number::{complaint, usable};
+use super::error::{Damaged, Place, ReadError, Truncated};
+use super::limit::Limit;
+use super::number::usable;
 use super::weld::{Facet, Welder};
 use crate::mesh::RawMesh;
 use std::io::Read;
 use std::ops::Range;
 
-/// Bytes before the first triangle of a binary file: a header of 80 and the count.
-pub(crate) const HEADER: usize = 84;
+/// Bytes before the first triangle: a header of 80 and the count.
+pub(super) const HEADER: usize = 84;
 
 /// Bytes of a triangle: normal and three corners as `f32`, and two attribute bytes.
 const RECORD: usize = 50;
 
-/// Records that are read at once.
+/// Records that are read at a time: 200 KB, which stay in the processor's cache until they are
+/// welded. Fewer make the two threads wait for each other more often.
 const AT_ONCE: u64 = 4096;
 
-type Result<T> = std::result::Result<T, String>;
+type Result<T> = std::result::Result<T, ReadError>;
 
-/// Length of a binary file with so many triangles.
-pub(crate) fn length_of(triangles: u64) -> u64 {
+/// Length of a file with this many triangles.
+fn length_of(triangles: u64) -> u64 {
     HEADER as u64 + RECORD as u64 * triangles
 }
 
-/// The count of triangles in a file's first [`HEADER`] bytes.
-pub(crate) fn count(head: &[u8]) -> Option<[u8; 4]> {
+/// The count of triangles in a file's first [`HEADER`] bytes, as it stands there.
+pub(super) fn count(head: &[u8]) -> Option<[u8; 4]> {
     head.get(HEADER - 4..HEADER).map(|count| [count[0], count[1], count[2], count[3]])
 }
 
-/// Reads a binary STL with this `count`; `length` is the file's, where it is known. Trailing bytes are
-/// left out, another length that is not what the count makes is an error.
+/// Whether a file is exactly as long as the count in its `head` asks for.
+pub(super) fn has_length(head: &[u8], length: Option<u64>) -> bool {
+    let announced = count(head).map(|count| u64::from(u32::from_le_bytes(count)));
+    length.is_some() && announced.map(length_of) == length
+}
+
+/// Reads a binary STL with this `count`; `length` is the file's, where it is known.
 ///
 /// # Errors
-/// The triangle, the cause and what to do, as text without the file's name.
-pub(crate) fn read(
+/// Triangles or bytes too many or too few, a number that is no coordinate, a source that fails.
+pub(super) fn read(
     from: &mut (dyn Read + Send),
     count: [u8; 4],
     length: Option<u64>,
@@ -44,25 +55,18 @@ pub(crate) fn read(
         check_length(announced, count, length)?;
     }
     if announced == 0 && length.is_none() {
-        return Err("announces 0 triangles, but more bytes follow; it is damaged or no STL: \
-                    export it again"
-            .to_owned());
+        return Err(Damaged::NoneAnnounced { bytes: None }.into());
     }
     if announced > limit.triangles as u64 {
-        return Err(limit.exceeded(&format!("announces {announced}")));
+        let (announced, most) = (Some(announced), limit.triangles);
+        return Err(ReadError::TooManyTriangles { announced, most });
     }
-    from.take(HEADER as u64).read_to_end(&mut Vec::new()).map_err(|error| unreadable(&error))?;
+    from.take(HEADER as u64).read_to_end(&mut Vec::new())?;
     let mut mesh = records(from, announced)?;
-    // Once more by what was read: the length may not be known, or have changed.
-    let mut after = from.take(limit.trailing() + 1);
-    let after =
-        std::io::copy(&mut after, &mut std::io::sink()).map_err(|error| unreadable(&error))?;
+    // Checked again by what was read: the length may be unknown, or have changed meanwhile.
+    let after = std::io::copy(&mut from.take(limit.trailing() + 1), &mut std::io::sink())?;
     if after > limit.trailing() {
-        return Err(format!(
-            "announces {announced} triangles, but more than {} bytes follow after them; it is \
-             damaged: export or download it again",
-            limit.trailing()
-        ));
+        return Err(Damaged::MoreBytes { announced, most: limit.trailing() }.into());
     }
     check_length(announced, count, length_of(announced) + after)?;
     mesh.report.trailing_bytes = after;
@@ -76,34 +80,24 @@ fn check_length(announced: u64, count: [u8; 4], length: u64) -> Result<()> {
         return Ok(());
     }
     if length_of(u64::from(u32::from_be_bytes(count))) == length {
-        return Err("is a big-endian binary STL; export it as a usual (little-endian) one".into());
+        return Err(Damaged::BigEndian.into());
     }
     if announced == 0 {
-        return Err(format!(
-            "announces 0 triangles, but {} more bytes follow; export it again",
-            length.saturating_sub(HEADER as u64)
-        ));
+        let bytes = Some(length.saturating_sub(HEADER as u64));
+        return Err(Damaged::NoneAnnounced { bytes }.into());
     }
     if surplus > 0 {
-        // Whole triangles too many: which number is right nobody can tell.
-        return Err(format!(
-            "announces {announced} triangles, but {} more follow; it is damaged: export or \
-             download it again",
-            surplus / RECORD as u64
-        ));
+        return Err(Damaged::MoreTriangles { announced, more: surplus / RECORD as u64 }.into());
     }
     Err(cut_off(announced, length))
 }
 
-fn cut_off(announced: u64, length: u64) -> String {
-    format!(
-        "announces {announced} triangles, but its {length} bytes hold only {}; it is cut off, \
-         damaged or no STL: export or download it again",
-        length.saturating_sub(HEADER as u64) / RECORD as u64
-    )
+fn cut_off(announced: u64, bytes: u64) -> ReadError {
+    let held = bytes.saturating_sub(HEADER as u64) / RECORD as u64;
+    Truncated::Binary { announced, bytes, held }.into()
 }
 
-/// Reads so many records: the next ones are read while those before are welded.
+/// Reads this many records. One thread reads the next ones while another welds those before.
 fn records(from: &mut (dyn Read + Send), announced: u64) -> Result<RawMesh> {
     let mut welder = Welder::with_capacity(usize::try_from(announced).unwrap_or(usize::MAX));
     let mut bytes = Vec::new();
@@ -138,12 +132,12 @@ fn read_facets(
     bytes.clear();
     facets.clear();
     let wanted = (numbers.end - numbers.start) * RECORD as u64;
-    let read = from.take(wanted).read_to_end(bytes).map_err(|error| unreadable(&error))?;
+    let read = from.take(wanted).read_to_end(bytes)?;
     for (number, record) in numbers.zip(bytes.chunks_exact(RECORD)) {
         let [normal, corners @ ..] = vectors(record);
-        if let Some(wrong) = corners.as_flattened().iter().find(|number| !usable(**number)) {
-            let (number, complaint) = (number + 1, complaint(*wrong));
-            return Err(format!("triangle {number}: {complaint}; mend or export the model again"));
+        if let Some(&wrong) = corners.as_flattened().iter().find(|number| !usable(**number)) {
+            let place = Place::Triangle(number + 1);
+            return Err(ReadError::Coordinate { place, number: wrong });
         }
         facets.push(Facet::new(normal, corners));
     }

@@ -1,49 +1,47 @@
-//! Corners -> RawMesh: gives bit-equal corners one vertex, drops triangles with two equal corners, judges stored normals.
+//! Corners -> RawMesh: gives equal corners one vertex, drops triangles with two equal corners, checks stored normals.
 
 use crate::mesh::RawMesh;
 use hashbrown::hash_table::Entry;
 use hashbrown::{DefaultHashBuilder, HashTable};
 use std::hash::BuildHasher as _;
 
-/// Most triangles a mesh may have: half-edges are numbered `triangle * 4 + edge` in 32 bits.
-pub(crate) const MAX_TRIANGLES: usize = (1 << 30) - 1;
-
-/// Room for so many triangles at most is taken before they are read.
+/// Most triangles that memory is reserved for before they are read: 12 MB of indices. A damaged
+/// count can claim no more; above it the lists grow by doubling, which costs little.
 const MOST_AHEAD: usize = 1 << 20;
 
-/// A triangle as a file has it, made ready to be welded.
+/// A triangle of a file, ready to be welded.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Facet {
+pub(super) struct Facet {
     corners: [[f32; 3]; 3],
-    /// Its stored normal is one, and points to where the corners say inside is.
+    /// Whether its stored normal points to the side that is inside by the order of the corners.
     is_against: bool,
 }
 
 impl Facet {
-    pub(crate) fn new(normal: [f32; 3], corners: [[f32; 3]; 3]) -> Self {
+    pub(super) fn new(normal: [f32; 3], corners: [[f32; 3]; 3]) -> Self {
         // Adding zero turns -0 into 0 and leaves every other number as it is.
         let corners = corners.map(|corner| corner.map(|number| number + 0.0));
         Self { corners, is_against: is_against(normal, corners) }
     }
 }
 
-/// Collects triangles into a [`RawMesh`]. The table is only looked up, never
-/// walked, so that a vertex's index is the order of its first use. It is keyed
-/// at random: no file can be made whose corners all meet in one place of it.
+/// Collects triangles into a [`RawMesh`]. Vertices are numbered in the order of their first use,
+/// since the hash table is looked up but never iterated over. Its keys are random, so that nobody
+/// can make a file whose corners all fall into one place of it.
 #[derive(Debug, Default)]
-pub(crate) struct Welder {
+pub(super) struct Welder {
     /// Indices of vertices by the bits of their numbers.
     index: HashTable<u32>,
     keys: DefaultHashBuilder,
-    /// The corners of the triangle before, and their vertices: most files go on from there, and
-    /// comparing is quicker than looking up.
+    /// The corners of the last triangle, and their vertices. In most files the next triangle
+    /// shares some of them, and comparing is faster than looking up.
     before: Option<([[f32; 3]; 3], [u32; 3])>,
     mesh: RawMesh,
 }
 
 impl Welder {
-    /// A welder with room for about `triangles`, or for as many as are worth it before any is read.
-    pub(crate) fn with_capacity(triangles: usize) -> Self {
+    /// A welder with room for `triangles`, but for no more than [`MOST_AHEAD`].
+    pub(super) fn with_capacity(triangles: usize) -> Self {
         let triangles = triangles.min(MOST_AHEAD);
         // A closed mesh has half as many vertices as triangles.
         let index = HashTable::with_capacity(triangles / 2);
@@ -54,7 +52,7 @@ impl Welder {
     }
 
     /// Adds one triangle, unless two of its corners are equal.
-    pub(crate) fn add(&mut self, facet: &Facet) {
+    pub(super) fn add(&mut self, facet: &Facet) {
         let corners = facet.corners;
         let [a, b, c] = corners;
         if a == b || b == c || c == a {
@@ -73,7 +71,7 @@ impl Welder {
         self.mesh.triangles.push(triangle);
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "3 * MAX_TRIANGLES fits u32")]
+    #[expect(clippy::cast_possible_truncation, reason = "3 * edges::MAX_TRIANGLES fits u32")]
     fn vertex(&mut self, corner: [f32; 3]) -> u32 {
         let Self { index, keys, mesh: RawMesh { vertices, .. }, .. } = self;
         let hash = |&[x, y, z]: &[f32; 3]| {
@@ -91,13 +89,13 @@ impl Welder {
         }
     }
 
-    /// How many triangles were added, those included that were dropped.
-    pub(crate) fn count(&self) -> usize {
+    /// How many triangles were added, with those that were dropped.
+    pub(super) fn count(&self) -> usize {
         self.mesh.triangles.len() + self.mesh.degenerate
     }
 
     /// The mesh, with the counts of its report filled in.
-    pub(crate) fn finish(self) -> RawMesh {
+    pub(super) fn finish(self) -> RawMesh {
         let mut mesh = self.mesh;
         mesh.report.triangles = mesh.triangles.len();
         mesh.report.vertices = mesh.vertices.len();
@@ -105,15 +103,15 @@ impl Welder {
     }
 }
 
-/// Whether a stored normal is finite and not zero, and more than 90° off the one that the
-/// winding gives.
+/// Whether a stored normal is finite and not zero, and more than 90° off the normal by the order
+/// of the corners.
 fn is_against(normal: [f32; 3], corners: [[f32; 3]; 3]) -> bool {
     let [a, b, c] = corners;
     let from_a = |p: [f32; 3], axis: usize| f64::from(p[axis]) - f64::from(a[axis]);
     let across = |i: usize, j: usize| from_a(b, i) * from_a(c, j) - from_a(b, j) * from_a(c, i);
     let [x, y, z] = normal.map(f64::from);
     let along = x * across(1, 2) + y * across(2, 0) + z * across(0, 1);
-    // Not so for NaN, and an infinite one is none.
+    // The comparison is false for NaN; an infinite normal is none.
     along < 0.0 && normal.iter().all(|number| number.is_finite())
 }
 
