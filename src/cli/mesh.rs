@@ -1,4 +1,4 @@
-//! `slicer mesh` -> what is wrong with a model, as lines or as JSON, and the mended mesh as STL.
+//! `slicer mesh` -> what is wrong with a model, as text or JSON, and the mended mesh as STL.
 
 use super::output::{self, Sink};
 use super::{Outcome, interrupt, usage};
@@ -16,10 +16,10 @@ use std::path::{Path, PathBuf};
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
 const SCHEMA: u32 = 1;
 
-/// Places of a kind that people get to read.
+/// Places of each kind of fault in the text; JSON has more.
 const MOST_SHOWN: usize = 3;
 
-/// Arguments of looking at a mesh.
+/// Arguments of `slicer mesh`.
 #[derive(Debug, Args)]
 #[command(after_help = "Exit codes: 0 the mesh is closed, or could be closed; 1 it cannot be; \
 2 wrong arguments;\n3 the file cannot be read or encloses nothing; 4 the output cannot be written.\n\
@@ -34,7 +34,7 @@ pub(crate) struct MeshArgs {
     /// Print JSON
     #[arg(long)]
     json: bool,
-    /// Unit of the model's numbers: sizes are told and gaps measured in mm
+    /// Unit of the model's numbers; sizes and gaps are reported in mm
     #[arg(long, default_value = "mm", value_parser = super::args::UNITS)]
     unit: String,
     /// Refuse a model with more triangles
@@ -42,21 +42,21 @@ pub(crate) struct MeshArgs {
     max_triangles: usize,
 }
 
-/// What is told of a mesh.
+/// What is reported about a mesh.
 #[derive(Debug, Serialize)]
-struct Told<'a> {
+struct Findings<'a> {
     schema: u32,
     slicer: &'static str,
     /// As in the report of slicing.
     #[serde(flatten)]
     report: &'a MeshReport,
-    /// What layers through the mended mesh enclose, mm³: what overlaps counts once.
+    /// The volume that layers through the mended mesh enclose, mm³; overlaps count once.
     solid_mm3: f64,
-    /// What the eye would see in the mended mesh, and is not mended.
+    /// Faults that are visible in the mended mesh, and that mending leaves.
     seen: &'a [Counted<Fault>],
 }
 
-/// Looks at a mesh and mends it.
+/// Inspects a mesh and mends it.
 ///
 /// # Errors
 /// A file that cannot be read, a model that encloses nothing, an output that cannot be written.
@@ -81,14 +81,14 @@ pub(super) fn run(args: &MeshArgs) -> Result<Outcome> {
     let mut model = read::from_path(&args.file, args.max_triangles)?;
     let part = part(&mut model, &placement, &Bed::ANY)?;
     let seen = inspect::faults(&part.mesh, &part.adjacency, &model.vertices);
-    let told = Told {
+    let findings = Findings {
         schema: SCHEMA,
         slicer: slicer::NAME,
         report: &model.report,
         solid_mm3: solid_mm3(&part.mesh, &part.adjacency),
         seen: &seen,
     };
-    let text = if args.json { output::json(&told, Path::new("-"))? } else { lines(&told) };
+    let text = if args.json { output::json(&findings, Path::new("-"))? } else { lines(&findings) };
     let code = u8::from(part.adjacency.unpaired > 0);
     if let Some((out, mut sink)) = sink {
         write::write(&mut sink, &model.vertices, &part.mesh.triangles)
@@ -102,25 +102,25 @@ pub(super) fn run(args: &MeshArgs) -> Result<Outcome> {
     Ok(Outcome { text, code })
 }
 
-/// For people.
-fn lines(told: &Told) -> String {
-    let MeshReport { file, format, triangles, shells, size_mm, volume_mm3, .. } = told.report;
+/// The report as text.
+fn lines(findings: &Findings) -> String {
+    let MeshReport { file, format, triangles, shells, size_mm, volume_mm3, .. } = findings.report;
     let [x, y, z] = size_mm;
     let mut text = format!(
         "{file}: {format} STL; mended: {}, {}, {x:.3} x {y:.3} x {z:.3} mm, {volume_mm3:.1} mm³ \
          (solid: {:.1} mm³)\n",
         plural(*triangles as u64, "triangle"),
         plural(*shells as u64, "shell"),
-        told.solid_mm3,
+        findings.solid_mm3,
     );
-    if told.report.trailing_bytes > 0 {
-        let bytes = plural(told.report.trailing_bytes, "byte");
+    if findings.report.trailing_bytes > 0 {
+        let bytes = plural(findings.report.trailing_bytes, "byte");
         text.push_str(&format!("found: {bytes} after the last triangle\n"));
     }
-    text.push_str(&list("found", &told.report.found));
-    text.push_str(&list("mended", &told.report.mended));
-    text.push_str(&list("left", &told.report.left));
-    text.push_str(&list("seen", told.seen));
+    text.push_str(&list("found", &findings.report.found));
+    text.push_str(&list("mended", &findings.report.mended));
+    text.push_str(&list("left", &findings.report.left));
+    text.push_str(&list("seen", findings.seen));
     if text.lines().count() == 1 {
         text.push_str("no faults\n");
     }

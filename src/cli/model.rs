@@ -1,4 +1,4 @@
-//! STL file -> PNG: the model itself, for `slicer preview`.
+//! STL file -> PNG: a picture of the model itself, for `slicer preview`.
 
 use slicer::error::{Error, Result};
 use slicer::mesh::{Bed, Placement, read};
@@ -7,21 +7,21 @@ use slicer::warning::Warning;
 use std::fs::File;
 use std::io::Read as _;
 
-/// Pixels of the longer side, at most: a larger picture takes much memory.
+/// Pixels of the longer side, at most: its pixels and colours take over 100 MB.
 const MOST: u32 = 3000;
 
 /// A picture of a model.
 pub(super) struct Drawn {
     /// The bytes of a PNG file.
     pub(super) png: Vec<u8>,
-    /// What is seen, for people.
+    /// The name, triangles and size of the model.
     pub(super) title: String,
     /// What was found in the mesh.
     pub(super) warnings: Vec<Warning>,
 }
 
-/// Whether a file is a model: by its name's ending, or else by how it begins. Standard
-/// input is none, since it cannot be read twice.
+/// Whether a file is a model: by the ending of its name, or else by how it begins. Standard input
+/// counts as none, since it cannot be read twice.
 pub(super) fn is_model(file: &str) -> bool {
     if file == "-" {
         return false;
@@ -30,7 +30,7 @@ pub(super) fn is_model(file: &str) -> bool {
         return true;
     }
     let Ok(source) = File::open(file) else { return false };
-    // Only a regular file can be looked at beforehand.
+    // Only a regular file can be read twice.
     let length = source.metadata().ok().filter(std::fs::Metadata::is_file).map(|data| data.len());
     let mut head = Vec::new();
     length.is_some_and(|length| {

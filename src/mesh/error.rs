@@ -3,6 +3,14 @@
 //! A program that embeds the library matches on the variants; each carries the numbers that its
 //! message is made of. The message is one line that names the file or the flag, the cause and
 //! what to do.
+//!
+//! Four groups of variants:
+//! - `Read`: a file is no usable model. [`ReadError`] says in which way: not there, empty, of
+//!   another format, cut off, contradicting itself, with numbers that are none, too large.
+//! - `Flat`, `Unmendable`, `Faulty`: the file was read, but its mesh is not good enough.
+//! - `TooLarge`, `OffBed`, `BedFull`, `TooManyTriangles`: the models do not fit.
+//! - `NoModel`, `Scale`, `NotFinite`, `NoCopies`: the request makes no sense, whatever the
+//!   models; [`Error::is_usage`] tells these from the others.
 
 use super::faults::{Counted, Fault, place_text};
 use super::place::GAP_MM;

@@ -1,20 +1,22 @@
-//! Pixels -> colours: hollows and edges darker than their surroundings, then tones as one colour's shades.
+//! Pixels -> colours: darkens hollows and edges, then turns tones into shades of one colour.
 
 use super::{Ground, Pixel};
 use std::collections::VecDeque;
 
-/// Shades from dark to bright, with the tones that they stand for. Saturated in the
-/// middle, so that no face is lost on a light or on a dark page.
+/// Colours for some tones, from dark to bright; tones between them are interpolated. Saturated in
+/// the middle, so that no face vanishes on a light or on a dark page. Chosen by eye.
 const SHADES: [(u32, [u32; 3]); 4] =
     [(0, [54, 30, 26]), (110, [176, 74, 28]), (190, [240, 132, 44]), (255, [255, 206, 128])];
 
-/// How far around a pixel the surroundings reach, as a part of the longer side.
+/// The surroundings of a pixel reach this part (1/40) of the longer side. Chosen by eye: wider ones blur the
+/// dark edge of a step, narrower ones leave only a thin line.
 const REACH: u32 = 40;
 
-/// Tones that a pixel loses for lying behind its surroundings by the models' whole depth.
+/// Tones that a pixel would lose if it lay behind its surroundings by the models' whole depth.
+/// Chosen by eye: a step of 1/100 of the depth loses 11 tones, and shows.
 const HOLLOW: f64 = 1100.0;
 
-/// Tones that are lost at most.
+/// Tones that a pixel loses at most, so that deep holes keep their colour.
 const DARKEST: f64 = 70.0;
 
 /// Red, green, blue and alpha of each pixel.
@@ -38,8 +40,8 @@ pub(super) fn tint(pixels: &[Pixel], size: [u32; 2], samples: u32, ground: Groun
     rgba
 }
 
-/// The tone of a pixel after it is compared with its surroundings: unsharp masking of the
-/// depth, after Luft, Colditz and Deussen 2006.
+/// The tone of a pixel, darkened if it lies behind its surroundings: unsharp masking of the depth
+/// buffer, after Luft, Colditz and Deussen, 2006.
 fn darkened(pixel: &Pixel, around: Sum) -> u8 {
     let around = around.near as f64 / around.count.max(1) as f64;
     let behind = (around - f64::from(pixel.near)) / 16_777_216.0;
@@ -56,12 +58,12 @@ fn shade(tone: u32) -> [u32; 3] {
     })
 }
 
-/// What some pixels have together.
+/// Sums over some pixels.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sum {
     /// Samples that show a model.
     count: u64,
-    /// The nearness of all of these.
+    /// Their nearness, summed.
     near: u64,
 }
 
@@ -90,7 +92,7 @@ fn surroundings(pixels: &[Pixel], size: [u32; 2]) -> impl Iterator<Item = Vec<Su
     Columns::new(Columns::new(rows, reach).map(across), reach).map(across)
 }
 
-/// Each of a row's sums becomes that of the ones within `reach` of it.
+/// For each place of a row the sum of the ones within `reach`.
 fn blurred_row(row: &[Sum], reach: usize) -> Vec<Sum> {
     let mut sum = Sum::default();
     row.iter().take(reach).for_each(|&one| sum.add(one));
@@ -107,13 +109,13 @@ fn blurred_row(row: &[Sum], reach: usize) -> Vec<Sum> {
     blurred.collect()
 }
 
-/// Rows whose sums become those of the rows within `reach` of them. No others are held.
+/// For each row the sums of the rows within `reach`, column by column. Only these rows are held.
 struct Columns<I> {
     rows: I,
     reach: usize,
-    /// The rows within reach of the next one to give, from the top.
+    /// The rows within reach of the next row, from the top.
     held: VecDeque<Vec<Sum>>,
-    /// How many of these are above it.
+    /// How many of these are above the next row.
     above: usize,
     /// Their sums, column by column.
     window: Vec<Sum>,

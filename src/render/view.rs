@@ -1,52 +1,56 @@
-//! Mesh + picture's size -> View: where each vertex is in the picture, and how near.
+//! Mesh + picture's size -> View: projects each vertex into the picture, with its nearness.
 
 use crate::mesh::Mesh;
 use crate::units::nearest;
 use rayon::prelude::*;
 
-/// Places between two samples, so that corners are whole numbers and edges exact.
+/// Steps from one sample to the next. Corners are whole numbers of steps, so that edges are exact
+/// and neighbouring faces leave no cracks. Fewer steps make the edges of thin faces uneven; more
+/// make no difference in 8 bits a channel.
 pub(super) const GRAIN: i32 = 256;
 
-/// The largest [`Corner::near`].
+/// The largest [`Corner::near`]: 24 bits, less one that rounding may add. A sample keeps nearness
+/// and tone in 32 bits.
 const NEAREST: f64 = 16_777_214.0;
 
-/// Part of the picture's shorter side that stays free at each side.
+/// Margin at each side, as a part of the picture's shorter side; chosen by eye.
 const MARGIN: f64 = 0.03;
 
-/// Towards the eye, times 17: the camera stands to the front (-y), half as far to the
-/// right, and looks down by 28°. Chosen so that all of it is whole numbers.
+/// Towards the eye, times 17: the camera stands to the front right and looks down by 28°. Chosen
+/// so that all three axes are whole numbers of one length.
 pub(super) const TO_EYE: [i64; 3] = [9, -12, 8];
 /// To the right in the picture, times 85.
 const RIGHT: [i64; 3] = [68, 51, 0];
 /// Upwards in the picture, times 85.
 const UP: [i64; 3] = [-24, 32, 75];
 
-/// A vertex as seen.
+/// A projected vertex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Corner {
-    /// From the picture's top left corner to the right and down, in samples over [`GRAIN`].
+    /// From the picture's top left corner to the right and down, in steps of 1/[`GRAIN`] sample.
     pub(super) at: [i32; 2],
-    /// From 1 at the far end of the models to 2²⁴ - 1 at the near end.
+    /// Nearness: from 1 at the far end of the models to 2²⁴ - 1 at the near end.
     pub(super) near: f32,
 }
 
-/// The camera: parallel rays, set so that the models fill the picture.
+/// The camera: parallel rays, scaled so that the models fill the picture.
 #[derive(Debug, Clone)]
 pub(super) struct View {
-    /// Samples over [`GRAIN`] for each unit of right and up.
+    /// Steps for each unit along [`RIGHT`] and [`UP`].
     scale: f64,
-    /// Middle of what is seen: right, up, times 2.
+    /// The middle of the models along [`RIGHT`] and [`UP`], times 2.
     middle: [i64; 2],
-    /// Middle of the picture, samples over [`GRAIN`].
+    /// The middle of the picture, in steps.
     centre: [f64; 2],
-    /// The far end, along [`TO_EYE`].
+    /// The far end of the models along [`TO_EYE`].
     far: i64,
     /// Nearness for each unit along [`TO_EYE`].
     depth: f64,
 }
 
 impl View {
-    /// A view of all of `mesh` in a picture of `size` pixels, `samples` along each side of one.
+    /// A view of all of `mesh` in a picture of `size` pixels, with `samples` along each side of a
+    /// pixel.
     pub(super) fn new(mesh: &Mesh, size: [u32; 2], samples: u32) -> Self {
         let [right, up, eye] = spans(mesh);
         let grains = f64::from(samples) * f64::from(GRAIN);
@@ -61,7 +65,7 @@ impl View {
         }
     }
 
-    /// Where a vertex is.
+    /// Projects a vertex.
     pub(super) fn corner(&self, vertex: [i32; 3]) -> Corner {
         let away = |axis: [i64; 3], middle: i64| {
             (2 * along(vertex, axis) - middle) as f64 / 2.0 * self.scale
@@ -76,8 +80,8 @@ impl View {
     }
 }
 
-/// How wide and high `mesh` is as seen, in no unit.
-pub(super) fn seen(mesh: &Mesh) -> [f64; 2] {
+/// Width and height of `mesh` in the picture; only their ratio has a meaning.
+pub(super) fn extents(mesh: &Mesh) -> [f64; 2] {
     let [right, up, _] = spans(mesh);
     [extent(right), extent(up)]
 }
@@ -90,7 +94,7 @@ fn along(vertex: [i32; 3], axis: [i64; 3]) -> i64 {
     (0..3).map(|k| i64::from(vertex[k]) * axis[k]).sum()
 }
 
-/// Lowest and highest along the three axes.
+/// The lowest and highest place of `mesh` along the three axes.
 fn spans(mesh: &Mesh) -> [[i64; 2]; 3] {
     let here = |vertex: &[i32; 3]| [RIGHT, UP, TO_EYE].map(|axis| [along(*vertex, axis); 2]);
     let both = |a: [[i64; 2]; 3], b: [[i64; 2]; 3]| {

@@ -1,4 +1,17 @@
-//! What stands in a file -> ReadError: why a file is no usable model, in one line that says where and what to do.
+//! What is in a file -> ReadError: why a file is no usable model, in one line that says where and what to do.
+//!
+//! The readers do not know the name of the file; `mesh::Error::Read` adds it.
+//!
+//! [`ReadError`] has a variant for each cause that a program may treat differently:
+//! - `NoName`, `Io`, `Directory`: there is nothing to read.
+//! - `Empty`, `NotStl`: the file is something else.
+//! - `Truncated`: it ends too early, such as after a broken download.
+//! - `Damaged`: it contradicts itself.
+//! - `Coordinate`: a number is NaN, infinite or absurdly large.
+//! - `NoTriangles`, `OnlyDegenerate`: it is sound, but empty.
+//! - `TooManyTriangles`, `TooManyBytes`: it is larger than the caller allows.
+//!
+//! [`NotStl`], [`Truncated`] and [`Damaged`] have the details.
 
 use std::fmt;
 use std::io;
