@@ -91,7 +91,7 @@ pub fn fitting(mesh: &Mesh, longer: u32) -> [u32; 2] {
 /// Samples along each side of a pixel: the fewer pixels, the more samples. 2 x 2 look the same as 3 x 3 in
 /// pictures of 300 pixels and take less than half the time; icons of 32 need 8 x 8.
 fn samples(size: [u32; 2]) -> u32 {
-    /// Samples along the longer side, at least, if 8 x 8 for each pixel make so many.
+    /// Samples along the longer side, at least, if 8 x 8 for each pixel make that many.
     const WISHED: u32 = 600;
     (WISHED / size[0].max(size[1]).max(1)).clamp(2, 8)
 }

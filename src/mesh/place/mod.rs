@@ -38,7 +38,7 @@ pub const TINY_MM: f64 = 3.0;
 pub struct Placed {
     /// All models and copies; x and y from the middle of the layout, z from the bed.
     pub mesh: Mesh,
-    /// Which half-edges of `mesh` belong together.
+    /// Which half-edges of `mesh` are neighbours.
     pub adjacency: Adjacency,
     /// One for each model, in the order given; copies are not counted.
     pub reports: Vec<MeshReport>,

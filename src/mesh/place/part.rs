@@ -17,7 +17,7 @@ use rayon::prelude::*;
 pub struct Part {
     /// The triangles over the vertices of the [`RawMesh`], in the same order.
     pub mesh: Mesh,
-    /// Which half-edge of `mesh` continues which.
+    /// Which half-edges of `mesh` are neighbours.
     pub adjacency: Adjacency,
     /// Width, depth and height, grid units. Width and depth are even.
     pub(super) size: [i64; 3],
@@ -54,7 +54,7 @@ pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Par
         refuse_faults(model)?;
     }
     if !model.report.mended.is_empty() {
-        // The outermost triangles may have been dropped: then it has another middle and size.
+        // The outermost triangles may have been dropped: then the middle and size are others.
         keep_used(model, &mut points, &mut mesh);
         (mesh.vertices, size) = on_grid(&points);
         refuse_flat(&mesh, size, &model.report.file)?;

@@ -262,6 +262,37 @@ mod tests {
     }
 
     #[test]
+    fn a_program_can_match_on_what_is_wrong() {
+        let cause = |bytes: &[u8]| match from_bytes("x.stl", bytes, 9) {
+            Err(Error::Read { file, source }) if file == "x.stl" => source,
+            other => panic!("{other:?}"),
+        };
+        let good = tetrahedron(b"");
+        let cut = Truncated::Binary { announced: 4, bytes: 283, held: 3 };
+        assert!(matches!(cause(&good[..283]), ReadError::Truncated(why) if why == cut));
+        let text = b"solid\nfacet normal 0 0 1\nouter loop\n";
+        let cut = Truncated::Text { line: 4 };
+        assert!(matches!(cause(text), ReadError::Truncated(why) if why == cut));
+        assert!(matches!(cause(b"PK\x03\x04"), ReadError::NotStl(NotStl::Foreign(_))));
+        assert!(matches!(cause(b""), ReadError::Empty));
+        let mut many = good.clone();
+        many[80] = 10;
+        many.resize(HEADER + 10 * RECORD, 0);
+        let most = |bytes: &[u8]| match cause(bytes) {
+            ReadError::TooManyTriangles { announced, most } => (announced, most),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(most(&many), (Some(10), 9));
+        let mut wrong = good;
+        wrong[HEADER + 12..HEADER + 16].copy_from_slice(&f32::NAN.to_le_bytes());
+        let (place, number) = match cause(&wrong) {
+            ReadError::Coordinate { place, number } => (place, number),
+            other => panic!("{other:?}"),
+        };
+        assert!(place == Place::Triangle(1) && number.is_nan());
+    }
+
+    #[test]
     fn a_source_of_unknown_length_gives_what_its_bytes_give() {
         for bytes in [tetrahedron(b""), tetrahedron(b"solid")[..270].to_vec(), b"solid".to_vec()] {
             let whole = from_bytes("x.stl", &bytes, 9);
