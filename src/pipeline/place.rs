@@ -11,8 +11,7 @@ use crate::units::{to_mm, to_units};
 /// Reads models, `-` being standard input, and lays them on a bed.
 ///
 /// # Errors
-/// Those of reading and placing: [`Error::Input`](crate::error::Error::Input),
-/// [`Error::Usage`](crate::error::Error::Usage), [`Error::Unprintable`](crate::error::Error::Unprintable).
+/// Those of reading and placing: [`Error::Mesh`](crate::error::Error::Mesh).
 pub fn place(models: &[String], placement: &Placement, bed: &Bed) -> Result<Placed> {
     let load = |file: &String| mesh::read::from_path(file, placement.max_triangles);
     let models = models.iter().map(load).collect::<mesh::Result<_>>()?;
