@@ -281,3 +281,83 @@ fn length(from: &PathPoint, to: &PathPoint) -> f64 {
     let rise = i64::from(to.z) - i64::from(from.z);
     ((from.at.distance2(to.at) + rise * rise) as f64).sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fill::Shape;
+    use crate::gcode::times::Timer;
+    use crate::motion::Limits;
+    use crate::plan::{Head, PrintMove};
+    use crate::profile;
+
+    fn path(places: &[(Coord, Coord)], y: Coord) -> Path {
+        let point = |&(x, z): &(Coord, Coord)| PathPoint {
+            at: Point { x, y },
+            z,
+            width: 4_000,
+            height: 2_000 + z,
+        };
+        let points = places.iter().map(point).collect();
+        Path { role: Role::Skin, shape: Shape::Open, points, layers: 1, tool: 0 }
+    }
+
+    /// A path that rises by 0.3 mm over 0.4 mm and stays there, then one at the layer's own height.
+    fn hill(highest: Coord) -> Toolpath {
+        let rising = path(&[(0, 0), (4_000, 3_000), (100_000, 3_000)], 0);
+        let flat = path(&[(100_000, 0), (0, 0)], 50_000);
+        let moves = [rising, flat].map(|path| PrintMove { retract: false, path }).to_vec();
+        let from = Head { at: Some(Point { x: 0, y: 0 }), highest };
+        Toolpath { layer: 4, z: 10_000, height: 2_000, from, moves }
+    }
+
+    fn moves(toolpath: &Toolpath) -> (Moves, Settings) {
+        let settings = profile::load("generic-marlin", &[]).unwrap().settings;
+        (MoveParams::new(&settings, [0.0, 0.0]).moves(toolpath), settings)
+    }
+
+    #[test]
+    fn beads_rise_with_their_points_and_take_the_plastic_of_their_length_and_height() {
+        let (moves, settings) = moves(&hill(8_000));
+        let beads: Vec<&Move> =
+            moves.moves.iter().filter(|m| matches!(m.kind, Kind::Extrude(_))).collect();
+        assert_eq!(beads.iter().map(|m| m.z).collect::<Vec<_>>(), [13_000, 13_000, 10_000]);
+        // 3, 4, 5: the way up is as long as the slope, not as its shadow.
+        assert!((beads[0].length - 0.5).abs() < 1e-12);
+        let plastic = beads[0].filament * settings.filament_area();
+        assert!((plastic - 0.5 * 0.4 * 0.5).abs() < 1e-9, "{plastic}");
+        // A bead more than twice as high is laid more slowly where the hot end melts no more.
+        let flow = |m: &Move| f64::from(m.feed) / 60.0 * 0.4 * 0.5;
+        assert!(flow(beads[1]) <= settings.machine.max_volumetric_flow + 1e-9);
+    }
+
+    #[test]
+    fn travels_pass_over_what_stands_higher() {
+        let heights = |highest| -> Vec<(Kind, Coord)> {
+            let (moves, _) = moves(&hill(highest));
+            let way = moves.moves.iter().skip(moves.paths[1]);
+            let way = way.take_while(|m| !matches!(m.kind, Kind::Extrude(_)));
+            way.map(|m| (m.kind, m.z)).collect()
+        };
+        // From the hill's own height, which nothing exceeds, then down.
+        let down = (Kind::Z, 10_000);
+        assert_eq!(heights(8_000), [(Kind::Travel, 13_000), down]);
+        // Over what an earlier layer left standing.
+        assert_eq!(heights(15_000), [(Kind::Z, 15_000), (Kind::Travel, 15_000), down]);
+    }
+
+    #[test]
+    fn the_clock_times_the_way_up() {
+        let seconds = |toolpath: &Toolpath| {
+            let (moves, settings) = moves(toolpath);
+            let mut timer = Timer::new(Limits::new(&settings));
+            timer.layer(&moves);
+            timer.finish();
+            timer.times().total()
+        };
+        let mut level = hill(8_000);
+        level.moves.iter_mut().flat_map(|m| &mut m.path.points).for_each(|p| p.z = 0);
+        // 0.3 mm up and down again, at no more than the z axis's speed.
+        assert!(seconds(&hill(8_000)) > seconds(&level) + 0.03);
+    }
+}

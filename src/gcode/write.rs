@@ -320,6 +320,23 @@ G1 X150 E2.3 F3600
     }
 
     #[test]
+    fn a_path_that_rises_is_written_with_z_where_it_changes() {
+        let settings = profile::load("generic-klipper", &[]).unwrap().settings;
+        let mut hill = toolpath();
+        let points = &mut hill.moves[0].path.points;
+        points[1].z = 1_000;
+        points.push(PathPoint { at: Point { x: 200_000, y: 0 }, ..points[1] });
+        let moves = MoveParams::new(&settings, [0.0, 0.0]).moves(&hill);
+        let text = WriteParams::new(&settings).layer(&moves, 0.0).text;
+        let text = String::from_utf8(text).unwrap();
+        let beads: Vec<&str> = text.lines().filter(|l| l.contains(" E0.")).collect();
+        assert!(beads[0].starts_with("G1 X10 Z0.9 E"), "{text}");
+        assert!(beads[1].starts_with("G1 X20 E"), "{text}");
+        // Down again before the next path.
+        assert!(text.contains("G1 Z0.8 F"), "{text}");
+    }
+
+    #[test]
     fn usage_counts_what_is_written() {
         let settings = profile::load("zcube-dual", &[]).unwrap().settings;
         let usage = Usage::of(&MoveParams::new(&settings, [0.0, 0.0]).moves(&toolpath()));

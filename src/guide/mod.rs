@@ -1,0 +1,10 @@
+//! Source tree -> builder: the words, the reasons, and where to add what. No code, only texts.
+
+#[doc = include_str!("words.md")]
+pub mod words {}
+
+#[doc = include_str!("reasons.md")]
+pub mod reasons {}
+
+#[doc = include_str!("extending.md")]
+pub mod extending {}
