@@ -1,5 +1,6 @@
 //! Points with widths -> Polyline: a bead in the frame of a raster, before it is placed on the bed.
 
+use super::Point;
 use crate::units::Coord;
 
 /// A point of a bead's centre line, in the frame of its raster.
@@ -15,3 +16,10 @@ pub struct LinePoint {
 
 /// A bead in the frame of its raster.
 pub type Polyline = Vec<LinePoint>;
+
+/// The length of a polyline, grid units.
+#[must_use]
+pub fn length(polyline: &[LinePoint]) -> i64 {
+    let at = |p: &LinePoint| Point { x: p.u, y: p.v };
+    polyline.windows(2).map(|w| at(&w[0]).distance(at(&w[1])) as i64).sum()
+}

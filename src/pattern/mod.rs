@@ -15,7 +15,7 @@ pub mod zigzag;
 
 pub use lines::Lines;
 
-use crate::geom::polyline::Polyline;
+use crate::geom::polyline::{self, Polyline};
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
 use crate::profile::{self, Settings};
@@ -31,8 +31,11 @@ pub trait SparsePattern: Debug + Send + Sync {
     /// The raster whose rows tell this pattern where a region is.
     fn raster(&self) -> Raster;
 
-    /// The length of what is printed inside `region`, grid units.
-    fn length(&self, region: &Rows, least: Coord) -> i64;
+    /// The length of what is printed inside `region`, grid units. Joins between lines do not
+    /// count. As it stands here it is that of the strands; lines have a quicker way.
+    fn length(&self, region: &Rows, least: Coord) -> i64 {
+        self.strands(region, least, least).iter().map(|strand| polyline::length(strand)).sum()
+    }
 
     /// This pattern divided evenly into `count` patterns that together print what it prints.
     fn shares(&self, count: usize) -> Vec<Pattern>;
