@@ -58,14 +58,13 @@ impl Turns {
         if settings.infill <= 0.0 {
             return Self::default();
         }
-        // Directions in degrees from that of the skin: those printed together, for each turn.
-        let turns: &[&[f64]] = match settings.pattern {
-            profile::Pattern::Rectilinear => &[&[0.0], &[90.0]],
-            profile::Pattern::Aligned => &[&[0.0]],
-            profile::Pattern::Grid => &[&[0.0, 90.0]],
-            profile::Pattern::Triangles => &[&[0.0, 60.0, 120.0]],
-        };
-        Self(turns.iter().map(|directions| lines(settings, directions)).collect())
+        let lines = |directions| lines(settings, directions);
+        Self(match settings.pattern {
+            profile::Pattern::Rectilinear => vec![lines(&[0.0]), lines(&[90.0])],
+            profile::Pattern::Aligned => vec![lines(&[0.0])],
+            profile::Pattern::Grid => vec![lines(&[0.0, 90.0])],
+            profile::Pattern::Triangles => vec![lines(&[0.0, 60.0, 120.0])],
+        })
     }
 
     /// The patterns of turn `n`; none without infill.
@@ -89,7 +88,8 @@ impl Turns {
     }
 }
 
-/// Lines in several directions, printed on the same layers: together as dense as asked for.
+/// Lines in several directions, in degrees from that of the skin, that are printed on the same
+/// layers: together as dense as asked for.
 fn lines(settings: &Settings, directions: &[f64]) -> Vec<Pattern> {
     let spacing = settings.line_width * 100.0 / settings.infill * directions.len() as f64;
     let (spacing, width) = (to_units(spacing), to_units(settings.line_width));
