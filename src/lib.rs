@@ -37,7 +37,7 @@
 //! | [`geom`], [`units`] | plane geometry on the integer grid |
 //! | [`render`] | triangles -> a picture |
 //!
-//! The command line is the binary's own.
+//! The command line is the binary's own. [`guide`] has the words, the reasons, and where to add what.
 
 pub mod check;
 pub mod compare;
@@ -47,6 +47,7 @@ pub mod estimate;
 pub mod fill;
 pub mod gcode;
 pub mod geom;
+pub mod guide;
 pub mod job;
 pub mod mesh;
 pub mod motion;

@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 
 /// What each module of the library may use of the crate, beside itself.
 const MAY_USE: &[(&str, &[&str])] = &[
+    // Texts only.
+    ("guide", &[]),
     ("units", &[]),
     ("error", &["mesh"]),
     ("warning", &[]),
