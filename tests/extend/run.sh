@@ -23,7 +23,7 @@ for patch in "$here"/*.patch; do
     mkdir -p "$copy"
     git ls-files -z | xargs -0 cp --parents -t "$copy"
     cd "$copy"
-    patch -p1 --quiet <"$patch"
+    git apply "$patch"
     cargo build --quiet --locked
     # shellcheck disable=SC2046 # flags are words
     "$CARGO_TARGET_DIR/debug/slicer" -q $(head_line Slice "$patch") --check -o made.gcode
