@@ -23,6 +23,8 @@ for patch in "$here"/*.patch; do
     mkdir -p "$copy"
     git ls-files -z | xargs -0 cp --parents -t "$copy"
     cd "$copy"
+    # A repository of its own: within another one git would look for the files at its top.
+    git init --quiet
     git apply "$patch"
     cargo build --quiet --locked
     # shellcheck disable=SC2046 # flags are words
