@@ -1,7 +1,10 @@
-//! Source text -> verdict: the layout the modules promise: who imports whom, sizes, first lines, who may print.
+//! Source text -> verdict: the layout the modules promise: who imports whom, sizes, heads, who may print.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod imports;
+
+use imports::{Crate, circles};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -48,6 +51,79 @@ const MOST_LINES: usize = 500;
 
 /// Lines of a function.
 const MOST_LINES_OF_FUNCTION: usize = 60;
+
+/// Circles of imports that are there still. None is added: what two files need of each other goes
+/// into a third.
+const CIRCLES: &[&[&str]] = &[
+    &["cli/args.rs", "cli/mesh.rs", "cli/preview.rs"],
+    &["mesh/inspect/mod.rs", "mesh/place/part.rs"],
+    &["mesh/mend/bridge.rs", "mesh/mend/holes.rs"],
+    &["motion/block.rs", "motion/junction.rs"],
+    &["profile/check.rs", "profile/load.rs"],
+    &["region/thin.rs", "region/walls.rs"],
+];
+
+/// Lines from which a file has a head, and lines that the head has at least.
+const LONG: usize = 200;
+const LEAST_HEAD: usize = 8;
+
+/// Long files without a head. None is added.
+const WITHOUT_HEAD: &[&str] = &[
+    "check/against.rs",
+    "check/finding.rs",
+    "check/moves.rs",
+    "check/part.rs",
+    "check/raster.rs",
+    "check/stack.rs",
+    "check/surfaces.rs",
+    "cli/args.rs",
+    "cli/diff/text.rs",
+    "cli/output.rs",
+    "cli/preview.rs",
+    "diff/apart.rs",
+    "diff/codes.rs",
+    "diff/findings.rs",
+    "diff/line.rs",
+    "diff/mod.rs",
+    "diff/pair.rs",
+    "estimate.rs",
+    "gcode/moves.rs",
+    "gcode/times.rs",
+    "gcode/write.rs",
+    "geom/polygon.rs",
+    "geom/simple.rs",
+    "geom/spans.rs",
+    "mesh/edges.rs",
+    "mesh/geometry/crossings.rs",
+    "mesh/geometry/tree.rs",
+    "mesh/mend/bridge.rs",
+    "mesh/mend/fill.rs",
+    "mesh/mend/holes.rs",
+    "mesh/mend/shells.rs",
+    "mesh/place/mod.rs",
+    "mesh/read/mod.rs",
+    "mesh/read/stl_ascii.rs",
+    "motion/clock.rs",
+    "plan/link.rs",
+    "plan/mod.rs",
+    "plan/order.rs",
+    "plan/tour.rs",
+    "preview/cut.rs",
+    "preview/facts.rs",
+    "preview/page.rs",
+    "profile/keys.rs",
+    "profile/load.rs",
+    "profile/settings.rs",
+    "reader/print.rs",
+    "reader/state.rs",
+    "region/bend.rs",
+    "region/stations.rs",
+    "region/support.rs",
+    "region/window.rs",
+    "render/mod.rs",
+    "render/raster.rs",
+    "report.rs",
+];
 
 struct Source {
     /// From src/, with slashes.
@@ -287,4 +363,68 @@ fn the_text_of_literals_and_comments_is_no_code() {
     let found = functions(code);
     assert_eq!(found[0], ("one".to_owned(), 2, 3));
     assert_eq!(found[1].0, "two");
+}
+
+#[test]
+fn files_use_each_other_in_no_circle() {
+    let sources = sources();
+    let mut found = BTreeSet::new();
+    for (root, binary) in [("lib.rs", false), ("main.rs", true)] {
+        let mine = sources.iter().filter(|s| BINARY.contains(&s.module.as_str()) == binary);
+        let all = Crate::new(root, mine.map(|s| (s.path.as_str(), bare(&s.text))));
+        let uses = all.uses();
+        assert!(uses.values().map(BTreeSet::len).sum::<usize>() > 40, "{root}: hardly any imports");
+        found.extend(circles(&uses).into_iter().map(|files| files.join(" ")));
+    }
+    let known: BTreeSet<String> = CIRCLES.iter().map(|files| files.join(" ")).collect();
+    let new: Vec<_> = found.difference(&known).collect();
+    assert!(new.is_empty(), "these files of src use each other in a circle: {new:#?}");
+    let gone: Vec<_> = known.difference(&found).collect();
+    assert!(gone.is_empty(), "circles that are gone: take them out of CIRCLES: {gone:#?}");
+}
+
+#[test]
+fn long_sources_begin_with_their_words_and_their_algorithm() {
+    let sources = sources();
+    let short = |source: &&Source| {
+        let head = source.text.lines().take_while(|line| line.starts_with("//!")).count();
+        source.text.lines().count() > LONG && head < LEAST_HEAD
+    };
+    let found: BTreeSet<&str> = sources.iter().filter(short).map(|s| s.path.as_str()).collect();
+    let known = BTreeSet::from_iter(WITHOUT_HEAD.iter().copied());
+    let new: Vec<_> = found.difference(&known).collect();
+    assert!(
+        new.is_empty(),
+        "these files of src are over {LONG} lines; let them begin with {LEAST_HEAD} lines or more that \
+         define their words and say how they go about it: {new:#?}"
+    );
+    let gone: Vec<_> = known.difference(&found).collect();
+    assert!(gone.is_empty(), "they have a head, or need none: not in WITHOUT_HEAD: {gone:#?}");
+}
+
+#[test]
+fn imports_are_followed_to_the_file_that_has_the_name() {
+    let files = [
+        ("lib.rs", "mod a; mod b; pub use a::x::One;"),
+        ("a/mod.rs", "pub mod x; mod y; pub(crate) use y::*; use x::One;"),
+        ("a/x.rs", "use super::Two; use crate::b; fn f() { b::go(); }"),
+        ("a/y.rs", "pub struct Two; use crate::{One as Uno, b::{self, Three}}; use std::fmt;"),
+        (
+            "b.rs",
+            "fn f() -> self::Four { super::a::x::g(); fmt::x(); }\n#[cfg(test)]\nmod tests { use crate::a::y::Two; }",
+        ),
+    ];
+    let all = Crate::new("lib.rs", files.into_iter().map(|(file, code)| (file, code.to_owned())));
+    let uses = all.uses();
+    let expected = [
+        ("lib.rs", vec![]),
+        // A folder's head may use what is in the folder.
+        ("a/mod.rs", vec![]),
+        ("a/x.rs", vec!["a/y.rs", "b.rs"]),
+        ("a/y.rs", vec!["a/x.rs", "b.rs"]),
+        ("b.rs", vec!["a/x.rs"]),
+    ];
+    assert_eq!(uses, expected.map(|(file, used)| (file, used.into_iter().collect())).into());
+    let circle = vec!["a/x.rs", "a/y.rs", "b.rs"];
+    assert_eq!(circles(&uses), BTreeSet::from([circle]));
 }
