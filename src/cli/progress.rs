@@ -1,8 +1,7 @@
 //! Progress -> a bar on standard error, drawn by a thread of its own while the work runs.
 
-use indicatif::{ProgressBar, ProgressStyle};
 use slicer::progress::Progress;
-use std::io::IsTerminal as _;
+use std::io::{IsTerminal as _, Write as _};
 use std::sync::Arc;
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::JoinHandle;
@@ -10,6 +9,9 @@ use std::time::Duration;
 
 /// How often the bar is drawn.
 const INTERVAL: Duration = Duration::from_millis(100);
+
+/// Cells of the bar: with the count it fits on a line of 80.
+const CELLS: usize = 40;
 
 /// A running bar; it goes away when this is dropped.
 #[derive(Debug)]
@@ -28,19 +30,16 @@ impl Meter {
         let (stop, stopped) = mpsc::channel::<()>();
         let progress = Arc::clone(progress);
         let thread = std::thread::spawn(move || {
-            let bar = ProgressBar::no_length();
-            // No colours at all, so that NO_COLOR needs no thought.
-            if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} layers") {
-                bar.set_style(style);
-            }
+            let mut shown = 0;
             while stopped.recv_timeout(INTERVAL) == Err(RecvTimeoutError::Timeout) {
                 let (done, total) = progress.get();
                 if total > 0 {
-                    bar.set_length(total as u64);
-                    bar.set_position(done as u64);
+                    let bar = bar(done, total);
+                    shown = shown.max(bar.len());
+                    write(&format!("\r{bar:shown$}"));
                 }
             }
-            bar.finish_and_clear();
+            write(&format!("\r{:shown$}\r", ""));
         });
         Self { stop: Some(stop), thread: Some(thread) }
     }
@@ -53,5 +52,29 @@ impl Drop for Meter {
             // A bar that failed to draw is no reason to fail the work.
             let _ = thread.join();
         }
+    }
+}
+
+/// A bar of [`CELLS`] cells and the count. No colours at all, so that NO_COLOR needs no thought,
+/// and no escape codes, so that any terminal shows it.
+fn bar(done: usize, total: usize) -> String {
+    let full = CELLS * done.min(total) / total;
+    format!("{:#<full$}{:-<rest$} {done}/{total} layers", "", "", rest = CELLS - full)
+}
+
+/// A bar that cannot be drawn is no reason to fail the work.
+fn write(text: &str) {
+    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bar;
+
+    #[test]
+    fn the_bar_is_as_long_from_first_to_last() {
+        assert_eq!(bar(0, 7), format!("{} 0/7 layers", "-".repeat(40)));
+        assert_eq!(bar(3, 7), format!("{}{} 3/7 layers", "#".repeat(17), "-".repeat(23)));
+        assert_eq!(bar(7, 7), format!("{} 7/7 layers", "#".repeat(40)));
     }
 }

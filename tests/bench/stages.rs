@@ -4,10 +4,10 @@
 //! `SLICER_MODELS=folder` also the models named in [`LARGE`], as far as the folder
 //! holds them. Words behind `--` pick some, such as `-- femur` or `-- whole`.
 
-#![allow(missing_docs, reason = "criterion's macros make functions without docs")]
 #![allow(clippy::print_stderr, reason = "says what is not measured")]
 
-use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+mod stopwatch;
+
 use hashbrown::HashMap;
 use nalgebra::Vector3;
 use slicer::Job;
@@ -30,7 +30,7 @@ use slicer::slice::{Heights, Layer, Slicer};
 use slicer::units::to_units;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use stopwatch::Bench;
 
 /// Name in the results and file in the folder of large models.
 const LARGE: [(&str, &str); 4] = [
@@ -139,64 +139,42 @@ fn weld_and_sum(bytes: &[u8]) -> (usize, f64) {
 }
 
 /// Bytes to a welded mesh, to an oriented one on the bed, to contours.
-fn mesh_and_slice(c: &mut Criterion, model: &Model) {
-    let mut group = c.benchmark_group("mesh");
-    group.bench_function(BenchmarkId::new("yardstick", model.name), |b| {
-        b.iter(|| weld_and_sum(black_box(&model.bytes)));
+fn mesh_and_slice(bench: &Bench, model: &Model) {
+    let group = bench.group("mesh", model.name);
+    group.time("yardstick", || weld_and_sum(black_box(&model.bytes)));
+    group.time("parse and weld", || {
+        read::from_bytes(model.name, black_box(&model.bytes), read::DEFAULT_MAX_TRIANGLES)
     });
-    group.bench_function(BenchmarkId::new("parse and weld", model.name), |b| {
-        b.iter(|| {
-            read::from_bytes(model.name, black_box(&model.bytes), read::DEFAULT_MAX_TRIANGLES)
-        });
-    });
-    group.bench_function(BenchmarkId::new("parse and place", model.name), |b| {
-        b.iter(|| black_box(model).place());
-    });
-    group.finish();
+    group.time("parse and place", || black_box(model).place());
     let placed = model.place();
     let slicer = model.slicer(&placed);
-    let mut group = c.benchmark_group("slice");
-    group.bench_function(BenchmarkId::new("bucket triangles", model.name), |b| {
-        b.iter(|| model.slicer(black_box(&placed)));
-    });
-    group.bench_function(BenchmarkId::new("middle block", model.name), |b| {
-        b.iter(|| slicer.block(black_box(slicer.blocks() / 2)));
-    });
-    group.finish();
+    let group = bench.group("slice", model.name);
+    group.time("bucket triangles", || model.slicer(black_box(&placed)));
+    group.time("middle block", || slicer.block(black_box(slicer.blocks() / 2)));
 }
 
 /// All layers of a block, one after the other: what each part of the pass costs.
-fn region(c: &mut Criterion, model: &Model) {
+fn region(bench: &Bench, model: &Model) {
     let placed = model.place();
     let slicer = model.slicer(&placed);
     let layers: Vec<Layer> = slicer.block(slicer.blocks() / 2);
     let params = &model.params;
-    let mut group = c.benchmark_group("region, middle block");
-    group.bench_function(BenchmarkId::new("walls", model.name), |b| {
-        b.iter(|| {
-            layers
-                .iter()
-                .map(|l| walls::walls(&l.contours, false, &params.walls).len())
-                .sum::<usize>()
-        });
+    let group = bench.group("region, middle block", model.name);
+    group.time("walls", || {
+        layers.iter().map(|l| walls::walls(&l.contours, false, &params.walls).len()).sum::<usize>()
     });
-    group.bench_function(BenchmarkId::new("raster scan", model.name), |b| {
-        b.iter(|| layers.iter().map(|l| scan(l, params).inside().total()).sum::<i64>());
+    group.time("raster scan", || {
+        layers.iter().map(|l| scan(l, params).inside().total()).sum::<i64>()
     });
     let scans: Vec<Scan> = layers.iter().map(|l| scan(l, params)).collect();
-    group.bench_function(BenchmarkId::new("inset", model.name), |b| {
-        b.iter(|| scans.iter().map(|s| s.inset(params.insets.fill).total()).sum::<i64>());
-    });
+    group.time("inset", || scans.iter().map(|s| s.inset(params.insets.fill).total()).sum::<i64>());
     let rows: Vec<LayerRows> = layers.iter().map(|l| prepare(l.clone(), params).1).collect();
-    group.bench_function(BenchmarkId::new("classify", model.name), |b| {
-        let areas = |k: usize| {
-            let (fill, raster) = (&rows[k].skin(0).fill, params.rasters.skin(0));
-            let exposed = classify::exposed(k, raster, &|k| rows.get(k), &params.skins);
-            classify::areas(fill, &exposed, raster.pitch, &params.skins).skin.total()
-        };
-        b.iter(|| (0..rows.len()).map(areas).sum::<i64>());
-    });
-    group.finish();
+    let areas = |k: usize| {
+        let (fill, raster) = (&rows[k].skin(0).fill, params.rasters.skin(0));
+        let exposed = classify::exposed(k, raster, &|k| rows.get(k), &params.skins);
+        classify::areas(fill, &exposed, raster.pitch, &params.skins).skin.total()
+    };
+    group.time("classify", || (0..rows.len()).map(areas).sum::<i64>());
 }
 
 fn scan(layer: &Layer, params: &RegionParams) -> Scan {
@@ -209,29 +187,26 @@ fn fill_params(model: &Model) -> FillParams {
 }
 
 /// All regions of a print to paths, and to paths in order.
-fn fill_and_plan(c: &mut Criterion, model: &Model) {
+fn fill_and_plan(bench: &Bench, model: &Model) {
     let regions = model.regions();
     let (fill, plan) = (fill_params(model), PlanParams::new(&model.settings));
     let paths = || regions.iter().map(|r| fill::paths(r, &fill)).collect::<Vec<_>>();
-    let mut group = c.benchmark_group("plan");
-    group.bench_function(BenchmarkId::new("fill", model.name), |b| b.iter(paths));
-    group.bench_function(BenchmarkId::new("order", model.name), |b| {
-        let order = |all: Vec<Vec<fill::Path>>| {
-            let mut head = Head::default();
-            for (region, paths) in regions.iter().zip(all) {
-                let paths = Unordered::new(paths, &region.layer.contours);
-                let paths = order::order(paths, head.at.unwrap_or_default(), &plan);
-                head = head.after(&region.layer, &paths);
-            }
-            head
-        };
-        b.iter_batched(paths, order, BatchSize::LargeInput);
-    });
-    group.finish();
+    let group = bench.group("plan", model.name);
+    group.time("fill", paths);
+    let order = |all: Vec<Vec<fill::Path>>| {
+        let mut head = Head::default();
+        for (region, paths) in regions.iter().zip(all) {
+            let paths = Unordered::new(paths, &region.layer.contours);
+            let paths = order::order(paths, head.at.unwrap_or_default(), &plan);
+            head = head.after(&region.layer, &paths);
+        }
+        head
+    };
+    group.time_with("order", paths, order);
 }
 
 /// All toolpaths of a print to moves, to text and to times.
-fn gcode(c: &mut Criterion, model: &Model) {
+fn gcode(bench: &Bench, model: &Model) {
     let (fill, plan) = (fill_params(model), PlanParams::new(&model.settings));
     let mut head = Head::default();
     let toolpath = |region: &Region| {
@@ -243,29 +218,22 @@ fn gcode(c: &mut Criterion, model: &Model) {
     let toolpaths: Vec<Toolpath> = model.regions().iter().map(toolpath).collect();
     let params = MoveParams::new(&model.settings, [150.0; 2]);
     let moves = || toolpaths.iter().map(|layer| params.moves(layer)).collect::<Vec<_>>();
-    let mut group = c.benchmark_group("gcode");
-    group.bench_function(BenchmarkId::new("moves", model.name), |b| b.iter(moves));
+    let group = bench.group("gcode", model.name);
+    group.time("moves", moves);
     let layers: Vec<Moves> = moves();
     let params = WriteParams::new(&model.settings);
     let text = || layers.iter().map(|layer| params.layer(layer, 0.0).text.len()).sum::<usize>();
-    group.throughput(Throughput::Bytes(text() as u64));
-    group.bench_function(BenchmarkId::new("text", model.name), |b| b.iter(text));
-    group.throughput(Throughput::Elements(
-        layers.iter().map(|layer| layer.moves.len() as u64).sum(),
-    ));
-    group.bench_function(BenchmarkId::new("times", model.name), |b| {
-        b.iter(|| {
-            let mut timer = Timer::new(Limits::new(&model.settings));
-            layers.iter().for_each(|layer| timer.layer(layer));
-            timer.finish();
-            timer.times().total()
-        });
+    group.time("text", text);
+    group.time("times", || {
+        let mut timer = Timer::new(Limits::new(&model.settings));
+        layers.iter().for_each(|layer| timer.layer(layer));
+        timer.finish();
+        timer.times().total()
     });
-    group.finish();
 }
 
 /// From the file to G-code that nobody keeps, on all cores and on one.
-fn whole(c: &mut Criterion, model: &Model) {
+fn whole(bench: &Bench, model: &Model) {
     let job = Job {
         models: vec![model.file.to_string_lossy().into_owned()],
         placement: placement(),
@@ -274,31 +242,19 @@ fn whole(c: &mut Criterion, model: &Model) {
         output: PathBuf::from("-"),
     };
     let run = || slicer::slice(&job, &mut std::io::empty(), &Default::default());
-    let mut group = c.benchmark_group("whole");
-    group.bench_function(BenchmarkId::new("all cores", model.name), |b| b.iter(run));
+    let group = bench.group("whole", model.name);
+    group.time("all cores", run);
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
-    group.bench_function(BenchmarkId::new("one core", model.name), |b| {
-        one.install(|| b.iter(run));
-    });
-    group.finish();
+    one.install(|| group.time("one core", run));
 }
 
-fn all(c: &mut Criterion) {
+fn main() {
+    let bench = Bench::from_arguments();
     for model in models() {
-        mesh_and_slice(c, &model);
-        region(c, &model);
-        fill_and_plan(c, &model);
-        gcode(c, &model);
-        whole(c, &model);
+        mesh_and_slice(&bench, &model);
+        region(&bench, &model);
+        fill_and_plan(&bench, &model);
+        gcode(&bench, &model);
+        whole(&bench, &model);
     }
 }
-
-criterion_group! {
-    name = stages;
-    config = Criterion::default()
-        .sample_size(10)
-        .warm_up_time(Duration::from_millis(300))
-        .measurement_time(Duration::from_secs(1));
-    targets = all
-}
-criterion_main!(stages);
