@@ -60,7 +60,6 @@ const CIRCLES: &[&[&str]] = &[
     &["mesh/mend/bridge.rs", "mesh/mend/holes.rs"],
     &["motion/block.rs", "motion/junction.rs"],
     &["profile/check.rs", "profile/load.rs"],
-    &["region/thin.rs", "region/walls.rs"],
 ];
 
 /// Lines from which a file has a head, and lines that the head has at least.
@@ -87,6 +86,7 @@ const WITHOUT_HEAD: &[&str] = &[
     "diff/mod.rs",
     "diff/pair.rs",
     "estimate.rs",
+    "fill/variable_width.rs",
     "gcode/moves.rs",
     "gcode/times.rs",
     "gcode/write.rs",
@@ -104,8 +104,7 @@ const WITHOUT_HEAD: &[&str] = &[
     "mesh/read/mod.rs",
     "mesh/read/stl_ascii.rs",
     "motion/clock.rs",
-    "plan/link.rs",
-    "plan/mod.rs",
+    "pattern/lines.rs",
     "plan/order.rs",
     "plan/tour.rs",
     "preview/cut.rs",
@@ -116,10 +115,8 @@ const WITHOUT_HEAD: &[&str] = &[
     "profile/settings.rs",
     "reader/print.rs",
     "reader/state.rs",
-    "region/bend.rs",
-    "region/stations.rs",
     "region/support.rs",
-    "region/window.rs",
+    "region/wall_samples.rs",
     "render/mod.rs",
     "render/raster.rs",
     "report.rs",
