@@ -56,8 +56,6 @@ const MOST_LINES_OF_FUNCTION: usize = 60;
 /// into a third.
 const CIRCLES: &[&[&str]] = &[
     &["cli/args.rs", "cli/mesh.rs", "cli/preview.rs"],
-    &["mesh/inspect/mod.rs", "mesh/place/part.rs"],
-    &["mesh/mend/bridge.rs", "mesh/mend/holes.rs"],
     &["motion/block.rs", "motion/junction.rs"],
     &["profile/check.rs", "profile/load.rs"],
 ];
@@ -93,16 +91,6 @@ const WITHOUT_HEAD: &[&str] = &[
     "geom/polygon.rs",
     "geom/simple.rs",
     "geom/spans.rs",
-    "mesh/edges.rs",
-    "mesh/geometry/crossings.rs",
-    "mesh/geometry/tree.rs",
-    "mesh/mend/bridge.rs",
-    "mesh/mend/fill.rs",
-    "mesh/mend/holes.rs",
-    "mesh/mend/shells.rs",
-    "mesh/place/mod.rs",
-    "mesh/read/mod.rs",
-    "mesh/read/stl_ascii.rs",
     "motion/clock.rs",
     "pattern/lines.rs",
     "plan/order.rs",
@@ -117,8 +105,6 @@ const WITHOUT_HEAD: &[&str] = &[
     "reader/state.rs",
     "region/support.rs",
     "region/wall_samples.rs",
-    "render/mod.rs",
-    "render/raster.rs",
     "report.rs",
 ];
 
