@@ -13,7 +13,7 @@
 //!   models; [`Error::is_usage`] tells these from the others.
 
 use super::faults::{Counted, Fault, place_text};
-use super::place::GAP_MM;
+use super::place::shelves::GAP_MM;
 use super::read::ReadError;
 
 /// The result of everything in this stage that can fail.

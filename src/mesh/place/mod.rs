@@ -15,7 +15,7 @@ pub mod part;
 pub mod placement;
 
 mod fit;
-mod shelves;
+pub(super) mod shelves;
 
 use crate::mesh::edges::{self, Adjacency, MAX_TRIANGLES};
 use crate::mesh::faults;
