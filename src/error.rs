@@ -2,6 +2,8 @@
 //!
 //! Every message names the file, the place, the cause and what to do.
 
+use crate::progress;
+use crate::warning::plural;
 use std::path::{Path, PathBuf};
 
 /// A failure that ends the run. [`Error::exit_code`] gives the process exit code.
@@ -33,6 +35,14 @@ pub enum Error {
     #[error("{0}")]
     Unprintable(String),
 
+    /// The models can be read but not be printed (exit 3).
+    #[error(transparent)]
+    Refused(#[from] Refusal),
+
+    /// The run was told to stop: see [`Progress::cancel`](crate::progress::Progress::cancel).
+    #[error("the run was cancelled")]
+    Cancelled,
+
     /// An output that cannot be opened or written (exit 4).
     #[error("{}: {action}: {source}", shown(file))]
     Output {
@@ -51,15 +61,69 @@ impl Error {
         Self::Input { file: file.to_owned(), reason: reason.into() }
     }
 
-    /// The documented process exit code: 2 usage or configuration, 3 input, 4 output.
+    /// The documented process exit code: 2 usage or configuration, 3 input, 4 output; 130, as of
+    /// an interrupted program, if the run was cancelled.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Usage(_) | Self::Config(_) => 2,
             Self::Mesh(error) if error.is_usage() => 2,
-            Self::Input { .. } | Self::Mesh(_) | Self::Unprintable(_) => 3,
+            Self::Input { .. } | Self::Mesh(_) | Self::Unprintable(_) | Self::Refused(_) => 3,
             Self::Output { .. } => 4,
+            Self::Cancelled => 130,
         }
+    }
+}
+
+/// A contour that is open by more than this, mm, is refused unless the mesh is to be sliced as
+/// it is. A straight line across a longer gap would be a guess that shows on the print; one
+/// across a shorter gap is about as long as the lines are wide.
+pub const MOST_GAP_MM: f64 = 2.0;
+
+/// Why a model that can be read is not printed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// The models are lower than half a layer.
+    #[error(
+        "nothing to print: {height_mm:.3} mm is less than half a layer high; use thinner layers, \
+         --scale or --unit"
+    )]
+    TooLow {
+        /// Height of the highest model, mm.
+        height_mm: f64,
+    },
+    /// Contours are open by more than [`MOST_GAP_MM`].
+    #[error(
+        "{}: the mesh cannot be mended: contours are open on {}, most on layer {layer} by \
+         {gap_mm:.1} mm; mend the model, or slice it as it is with --mesh warn",
+        .models.join(", "),
+        plural(*.layers as u64, "layer")
+    )]
+    Open {
+        /// Names of the models.
+        models: Vec<String>,
+        /// Number of layers with open contours.
+        layers: usize,
+        /// Layer with the longest gap, counted from 1.
+        layer: usize,
+        /// The longest gap, mm.
+        gap_mm: f64,
+    },
+    /// No line fits anywhere.
+    #[error(
+        "nothing to print: everything is thinner than a line of {line_width_mm} mm; use a smaller \
+         --line-width, a larger --scale or another --unit"
+    )]
+    TooThin {
+        /// Width of a line, mm.
+        line_width_mm: f64,
+    },
+}
+
+impl From<progress::Cancelled> for Error {
+    fn from(_: progress::Cancelled) -> Self {
+        Self::Cancelled
     }
 }
 
@@ -69,4 +133,4 @@ fn shown(file: &Path) -> String {
 }
 
 /// The result of everything that can fail with an [`Error`].
-pub type Result<T> = std::result::Result<T, Error>;
+pub type Result<T, E = Error> = std::result::Result<T, E>;

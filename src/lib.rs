@@ -71,13 +71,15 @@ pub use pipeline::place::{bed, place};
 use error::{Error, Result};
 use pipeline::batches::{self, Setup};
 use pipeline::place::{bed_corners, print_facts};
+use pipeline::refuse;
 use pipeline::thumbnails::thumbnails;
 use units::to_units;
 
 /// Slices `job` and writes the G-code to `out`, which is empty yet.
 ///
 /// # Errors
-/// Every [`error::Error`]; what was written to `out` until then is no usable G-code.
+/// Every [`error::Error`]. A job that is refused is refused before anything is written. What a
+/// run that was cancelled, or that cannot write on, has written until then is no usable G-code.
 pub fn slice(
     job: &Job,
     out: &mut dyn gcode::Output,
@@ -98,13 +100,14 @@ pub fn slice_placed(
     progress: &progress::Progress,
 ) -> Result<report::Report> {
     // Mesh -> layers; each block of them is cut when the stages after it ask for it.
-    let heights = pipeline::heights(&job.settings, placed)?;
+    let heights = refuse::heights(&job.settings, placed)?;
     progress.set_total(heights.count());
     let tolerance = to_units(job.settings.tolerance);
     let (settings, slicer) = rayon::join(
         || pipeline::settle(&job.settings, &placed.mesh),
         || slice::Slicer::new(&placed.mesh, &placed.adjacency, heights.clone(), tolerance),
     );
+    refuse::gaps(job, placed, &slicer, progress)?;
 
     // Layers -> regions -> toolpaths, in batches. The thumbnails stand in the head of the file:
     // they are drawn while the first batches are planned.
@@ -122,8 +125,9 @@ pub fn slice_placed(
     let mut writer =
         gcode::Writer::new(out, &job.output, &settings, facts, placed.offset, &pictures)?;
     batches::write(&mut writer, planned, &mut planner, progress)?;
-    let sums = writer.finish()?;
+    // Nothing is written if nothing is extruded.
+    let sums = writer.finish()?.ok_or_else(|| refuse::thin(&settings))?;
 
     let (audits, tally) = planner.finish();
-    report::report(job, placed, &heights, &sums, &audits, &tally)
+    Ok(report::make::report(job, placed, &heights, &sums, &audits, &tally))
 }

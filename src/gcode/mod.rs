@@ -53,10 +53,12 @@ pub struct Writer<'a> {
     waiting: VecDeque<LayerText>,
     progress: Progress,
     usage: Usage,
+    /// The end block, filled in.
+    end: String,
 }
 
 impl<'a> Writer<'a> {
-    /// Writes the head of the file with the pictures, and the start block. `offset` is where
+    /// Begins with the head of the file, the pictures in it, and the start block. `offset` is where
     /// the layout's middle goes on the machine, mm; `file` is named in errors.
     ///
     /// # Errors
@@ -70,7 +72,7 @@ impl<'a> Writer<'a> {
         thumbnails: &[Thumbnail],
     ) -> Result<Self> {
         let mut writer = Self {
-            out: Places { out, file: file.to_owned(), written: 0 },
+            out: Places { out, file: file.to_owned(), written: 0, held: Some(Vec::new()) },
             settings,
             facts,
             moves: MoveParams::new(settings, offset),
@@ -79,7 +81,10 @@ impl<'a> Writer<'a> {
             waiting: VecDeque::new(),
             progress: Progress::new(settings.machine.dialect),
             usage: Usage::default(),
+            end: String::new(),
         };
+        // Both blocks at once: one that cannot be filled in is refused before anything is written.
+        writer.end = writer.block("machine.end", &settings.machine.end)?;
         let block = writer.block("machine.start", &settings.machine.start)?;
         let e_mode = if settings.machine.relative_e { "M83" } else { "M82" };
         let head = hosts::head(facts.layers, thumbnails);
@@ -120,20 +125,26 @@ impl<'a> Writer<'a> {
             },
         );
         self.waiting.extend(texts);
+        if self.usage.filament() > 0.0 {
+            self.out.release()?;
+        }
         self.write_ready()
     }
 
     /// Writes the end block and the settings, says what was used and fills in the progress.
+    /// `None` if nothing was extruded: then nothing is written at all.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn finish(mut self) -> Result<Sums> {
+    pub fn finish(mut self) -> Result<Option<Sums>> {
+        if self.usage.filament() <= 0.0 {
+            return Ok(None);
+        }
         self.timer.finish();
         self.write_ready()?;
-        let block = self.block("machine.end", &self.settings.machine.end)?;
         let mut tail = self.params.finish(&self.moves, self.usage.filament());
         tail.extend_from_slice(self.progress.done().as_bytes());
-        tail.extend_from_slice(format!(";TYPE:Custom\n{block}").as_bytes());
+        tail.extend_from_slice(format!(";TYPE:Custom\n{}", self.end).as_bytes());
         let sums = Sums { usage: self.usage, times: self.timer.times().clone() };
         tail.extend_from_slice(hosts::tail(self.facts.layers, &sums, self.settings).as_bytes());
         for (key, value) in dump(self.settings) {
@@ -141,7 +152,7 @@ impl<'a> Writer<'a> {
         }
         self.out.put(&tail)?;
         self.progress.fill_in(sums.times.total(), &mut self.out)?;
-        Ok(sums)
+        Ok(Some(sums))
     }
 
     /// Writes the layers whose times are known.
@@ -165,12 +176,29 @@ struct Places<'a> {
     file: PathBuf,
     /// Bytes so far.
     written: u64,
+    /// These bytes, until something is extruded: a job that extrudes nothing is refused, and
+    /// must not have written anything by then.
+    held: Option<Vec<u8>>,
 }
 
 impl Places<'_> {
     fn put(&mut self, bytes: &[u8]) -> Result<()> {
         self.written += bytes.len() as u64;
-        self.out.write_all(bytes).map_err(|source| self.failed(source))
+        match &mut self.held {
+            Some(held) => {
+                held.extend_from_slice(bytes);
+                Ok(())
+            }
+            None => self.out.write_all(bytes).map_err(|source| self.failed(source)),
+        }
+    }
+
+    /// From now on all bytes are written, those that were held first.
+    fn release(&mut self) -> Result<()> {
+        match self.held.take() {
+            Some(held) => self.out.write_all(&held).map_err(|source| self.failed(source)),
+            None => Ok(()),
+        }
     }
 
     /// Writes over what stands at this byte.

@@ -16,7 +16,7 @@ use crate::region::dual::groups::Grouping;
 use crate::region::support::{SupportParams, supports};
 use crate::region::window::{self, Window};
 use crate::region::{Region, RegionParams};
-use crate::report::Tally;
+use crate::report::tally::Tally;
 use crate::slice::{Heights, Slicer};
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -130,7 +130,7 @@ impl Orderer<'_> {
 /// Writes the batches that are planned, and the rest while it is planned.
 ///
 /// # Errors
-/// Those of writing.
+/// Those of writing; [`Error::Cancelled`](crate::error::Error::Cancelled).
 pub fn write(
     writer: &mut Writer<'_>,
     mut planned: VecDeque<Vec<Toolpath>>,
@@ -138,6 +138,7 @@ pub fn write(
     progress: &Progress,
 ) -> Result<()> {
     while let Some(toolpaths) = planned.pop_front() {
+        progress.go_on()?;
         // No more batches are planned than are needed to go on.
         let is_last = planned.is_empty();
         let (written, next) =

@@ -1,19 +1,16 @@
 //! Job + placed models -> stages: what the flow in `lib.rs` is put together from.
 //!
 //! Here is all code that names several stages at once: reading and placing ([`place`]), planning
-//! in batches ([`batches`]), the pictures ([`thumbnails`]).
+//! in batches ([`batches`]), the thumbnails ([`mod@thumbnails`]), and what is refused ([`refuse`]).
 
 pub mod batches;
 pub mod place;
+pub mod refuse;
 pub mod thumbnails;
 
-use crate::error::{Error, Result};
 use crate::mesh::Mesh;
-use crate::mesh::place::Placed;
 use crate::profile::{Angle, Settings};
 use crate::region::angle;
-use crate::slice::Heights;
-use crate::units::to_units;
 
 /// The settings with all that depends on the model decided.
 #[must_use]
@@ -23,21 +20,4 @@ pub fn settle(settings: &Settings, mesh: &Mesh) -> Settings {
         given => given,
     };
     Settings { angle, ..settings.clone() }
-}
-
-/// The layers that the models are cut into, at least one.
-///
-/// # Errors
-/// [`Error::Unprintable`] if the models are lower than half a layer.
-pub fn heights(settings: &Settings, placed: &Placed) -> Result<Heights> {
-    let (first, other) = (to_units(settings.first_layer_height), to_units(settings.layer_height));
-    let heights = Heights::even(first, other, placed.mesh.top());
-    if heights.count() > 0 {
-        return Ok(heights);
-    }
-    let height = placed.size_mm[2];
-    Err(Error::Unprintable(format!(
-        "nothing to print: {height:.3} mm is less than half a layer high; \
-         use thinner layers, --scale or --unit"
-    )))
 }

@@ -14,9 +14,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // Texts only.
     ("guide", &[]),
     ("units", &[]),
-    ("error", &["mesh"]),
     ("warning", &[]),
     ("progress", &[]),
+    ("error", &["mesh", "progress", "warning"]),
     ("geom", &["units"]),
     ("mesh", &["geom", "units", "warning"]),
     ("slice", &["geom", "mesh", "units"]),

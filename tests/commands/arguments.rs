@@ -230,15 +230,17 @@ fn the_product_is_the_same_on_stdout_and_on_any_number_of_threads() {
     }
 }
 
-/// A model that leaves nothing to print is found out when all layers are done.
+/// A model that leaves nothing to print is only found out when all layers are planned.
 #[test]
-fn a_run_that_fails_at_its_end_writes_nothing_to_a_pipe() {
+fn a_refused_job_writes_neither_to_a_pipe_nor_to_files() {
     let folder = folder();
     write_block(&folder.path().join("block.stl"));
     let words = ["block.stl", "--scale", "0.03", "-q", "-o"];
     let says = "everything is thinner than a line";
     fails(&folder, &[&words[..], &["-"]].concat(), 3, says);
     fails(&folder, &[&words[..], &["a.gcode"]].concat(), 3, says);
+    fails(&folder, &[&words[..], &["-", "--report", "a.json"]].concat(), 3, says);
+    fails(&folder, &[&words[..], &["a.gcode", "--report", "-"]].concat(), 3, says);
 }
 
 /// A run that is told to stop removes its unfinished file.

@@ -1,0 +1,71 @@
+//! Job + model -> Refusal: jobs that cannot be printed, found out before anything is written.
+//!
+//! There are three causes, and each is known at another time:
+//!
+//! - The model is lower than half a layer: known from its height.
+//! - The mesh is open, and a contour would have to be closed by a line that is too long. Contours
+//!   can only be open where a triangle has no neighbour. A mesh without such triangles, which is
+//!   nearly every mesh, is not looked at. Of any other mesh the open contours are cut once more,
+//!   block by block, and forgotten: this takes no memory that grows with the layers, and less
+//!   time than cutting whole layers does.
+//! - Everything is thinner than a line. This is only known when all layers are planned. So the
+//!   writer keeps what it has until the first line is extruded, which is in the first layer of
+//!   nearly every print. A layer without lines takes a few bytes until then.
+//!
+//! The other way, to write all and to take it back, needs an output that can be taken back.
+
+use crate::error::{MOST_GAP_MM, Refusal, Result};
+use crate::job::Job;
+use crate::mesh::Policy;
+use crate::mesh::place::Placed;
+use crate::profile::Settings;
+use crate::progress::Progress;
+use crate::slice::{Heights, Slicer};
+use crate::units::{Coord, to_mm, to_units};
+
+/// The layers that the models are cut into, at least one.
+///
+/// # Errors
+/// [`Refusal::TooLow`].
+pub fn heights(settings: &Settings, placed: &Placed) -> Result<Heights, Refusal> {
+    let (first, other) = (to_units(settings.first_layer_height), to_units(settings.layer_height));
+    let heights = Heights::even(first, other, placed.mesh.top());
+    if heights.count() > 0 {
+        Ok(heights)
+    } else {
+        Err(Refusal::TooLow { height_mm: placed.size_mm[2] })
+    }
+}
+
+/// Refuses layers whose contours are open too far. Nothing is looked at if the mesh is closed, or
+/// is to be sliced as it is.
+///
+/// # Errors
+/// [`Refusal::Open`].
+pub fn gaps(job: &Job, placed: &Placed, slicer: &Slicer<'_>, progress: &Progress) -> Result<()> {
+    if placed.adjacency.unpaired == 0 || job.placement.policy == Policy::Warn {
+        return Ok(());
+    }
+    // Number of layers with gaps; the longest gap and the first layer that has it.
+    let (mut layers, mut longest): (usize, (Coord, usize)) = (0, (0, 0));
+    for block in 0..slicer.blocks() {
+        progress.go_on()?;
+        for (layer, gap) in slicer.gaps(block) {
+            layers += usize::from(gap > 0);
+            if gap > longest.0 {
+                longest = (gap, layer + 1);
+            }
+        }
+    }
+    let (gap_mm, layer) = (to_mm(longest.0), longest.1);
+    if gap_mm <= MOST_GAP_MM {
+        return Ok(());
+    }
+    Err(Refusal::Open { models: job.models.clone(), layers, layer, gap_mm }.into())
+}
+
+/// The refusal of a job of which nothing was extruded.
+#[must_use]
+pub fn thin(settings: &Settings) -> Refusal {
+    Refusal::TooThin { line_width_mm: settings.line_width }
+}

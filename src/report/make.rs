@@ -1,0 +1,160 @@
+//! Sums, audits and tally -> Report: fills in the carriers.
+
+use super::tally::Tally;
+use super::{
+    ApartReport, BlockReport, DualReport, FilamentReport, FlowReport, LayerTimeReport,
+    LayersReport, Report, RoleReport, SCHEMA, TimeReport, TravelReport,
+};
+use crate::fill::Role;
+use crate::gcode::Sums;
+use crate::gcode::flow::Flows;
+use crate::gcode::times::{LayerTime, Times};
+use crate::gcode::usage::Material;
+use crate::job::{self, Job};
+use crate::mesh::place::Placed;
+use crate::profile::{DualMode, DualPart, Settings};
+use crate::region::dual::audit::{Apart, Audit};
+use crate::slice::Heights;
+use crate::units::{sum_mm, to_mm, to_units};
+use crate::warning::Warning;
+
+/// The report of a run that extruded something.
+#[must_use]
+pub fn report(
+    job: &Job,
+    placed: &Placed,
+    heights: &Heights,
+    sums: &Sums,
+    audits: &[Audit],
+    tally: &Tally,
+) -> Report {
+    let settings = &job.settings;
+    let Sums { usage, times } = sums;
+    let Material { mm, cm3, grams, cost } = Material::new(usage.filament(), settings);
+    Report {
+        schema: SCHEMA,
+        slicer: job::NAME.to_owned(),
+        profile: job.profile.clone(),
+        models: placed.reports.clone(),
+        size_mm: placed.size_mm,
+        solid_mm3: tally.solid_mm3(),
+        layers: LayersReport {
+            count: heights.count(),
+            first_height_mm: to_mm(heights.height(0)),
+            height_mm: to_mm(to_units(settings.layer_height)),
+            top_mm: to_mm(heights.top(heights.count() - 1)),
+        },
+        roles: roles(sums, settings),
+        travel: TravelReport {
+            count: usage.travels,
+            length_mm: usage.travel_length,
+            retractions: usage.retractions,
+            time_s: times.travel,
+            retraction_time_s: times.retraction,
+        },
+        filament: FilamentReport { length_mm: mm, volume_cm3: cm3, weight_g: grams, cost },
+        time: time(times),
+        flow: FlowReport {
+            largest_mm3_s: usage.flows.largest,
+            limit_mm3_s: settings.machine.max_volumetric_flow,
+        },
+        dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits)),
+        warnings: (placed.warnings.iter().cloned())
+            .chain(tally.warnings())
+            .chain(slowed_down(&usage.flows, settings))
+            .collect(),
+        check: None,
+    }
+}
+
+fn roles(sums: &Sums, settings: &Settings) -> Vec<RoleReport> {
+    let area = settings.filament_area();
+    let mut roles = Vec::new();
+    for (role, used) in sums.usage.roles.iter() {
+        for (thick, used) in used.iter().filter(|(thick, _)| !thick || role.facts().may_be_thick) {
+            roles.push(RoleReport {
+                role: role_name(role, thick),
+                length_mm: used.length,
+                filament_mm: used.filament,
+                volume_mm3: used.filament * area,
+                time_s: *sums.times.roles[role].of(thick),
+            });
+        }
+    }
+    roles
+}
+
+fn role_name(role: Role, thick: bool) -> String {
+    let name = role.facts().name;
+    if thick { format!("thick {name}") } else { name.to_owned() }
+}
+
+fn time(times: &Times) -> TimeReport {
+    let seconds = || times.layers.iter().map(|layer| layer.seconds);
+    let count = times.layers.len().max(1) as f64;
+    let mean = times.total() / count;
+    let variance = seconds().map(|s| (s - mean) * (s - mean)).sum::<f64>() / count;
+    let told = |layer: &LayerTime| LayerTimeReport { z_mm: to_mm(layer.z), time_s: layer.seconds };
+    TimeReport {
+        total_s: times.total(),
+        longest_layer_s: seconds().fold(0.0, f64::max),
+        shortest_layer_s: seconds().reduce(f64::min).unwrap_or_default(),
+        layer_spread: if mean > 0.0 { variance.sqrt() / mean } else { 0.0 },
+        layers: times.layers.iter().map(told).collect(),
+    }
+}
+
+/// Where the hot end cannot follow.
+fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    for (role, lowered) in flows.lowered.iter() {
+        for (thick, lowered) in lowered.iter() {
+            warnings.extend(lowered.map(|lowered| Warning::FlowLimited {
+                role: role_name(role, thick),
+                setting: (*role.facts().speed_keys.of(thick)).to_owned(),
+                asked_mm_min: lowered.asked,
+                lowest_mm_min: lowered.given,
+                limit_mm3_s: settings.machine.max_volumetric_flow,
+            }));
+        }
+    }
+    warnings
+}
+
+fn dual(settings: &Settings, audits: &[Audit]) -> DualReport {
+    let seen = || audits.iter().filter(|a| a.plain > 0);
+    let infill = || seen().filter(|a| a.part == DualPart::Infill);
+    let sum = |of: fn(&Audit) -> i64| seen().map(of).sum::<i64>();
+    DualReport {
+        ratio: settings.dual_ratio(),
+        blocks: infill().count(),
+        thick_blocks: infill().filter(|a| a.thick > 0).count(),
+        thick_length_mm: sum_mm(sum(|a| a.thick)),
+        thin_length_mm: sum_mm(sum(|a| a.thin)),
+        volume_ratio: ratio(sum(|a| a.material), sum(|a| a.plain)),
+        audit: seen().map(block).collect(),
+    }
+}
+
+fn block(audit: &Audit) -> BlockReport {
+    let Apart { bounds, skin, short, ends } = audit.kept_apart;
+    BlockReport {
+        part: audit.part,
+        first_layer: audit.first + 1,
+        layers: audit.layers,
+        thick_length_mm: sum_mm(audit.thick),
+        thin_length_mm: sum_mm(audit.thin),
+        volume_ratio: ratio(audit.material, audit.plain),
+        kept_apart: ApartReport {
+            bounds_mm: sum_mm(bounds),
+            skin_mm: sum_mm(skin),
+            short_mm: sum_mm(short),
+            ends_mm: sum_mm(ends),
+        },
+    }
+}
+
+/// `part` of `whole`; 1 if there is nothing.
+fn ratio(part: i64, whole: i64) -> f64 {
+    if whole == 0 { 1.0 } else { part as f64 / whole as f64 }
+}
