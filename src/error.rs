@@ -4,7 +4,7 @@
 
 use crate::progress;
 use crate::warning::plural;
-use std::path::{Path, PathBuf};
+use std::io;
 
 /// A failure that ends the run. [`Error::exit_code`] gives the process exit code.
 #[derive(Debug, thiserror::Error)]
@@ -43,16 +43,13 @@ pub enum Error {
     #[error("the run was cancelled")]
     Cancelled,
 
-    /// An output that cannot be opened or written (exit 4).
-    #[error("{}: {action}: {source}", shown(file))]
-    Output {
-        /// The output as the user named it.
-        file: PathBuf,
-        /// What was being done, such as `cannot write`.
-        action: &'static str,
-        /// The system's reason.
-        source: std::io::Error,
-    },
+    /// The output cannot be written (exit 4).
+    #[error("cannot write: {0}")]
+    Write(#[source] io::Error),
+
+    /// The thumbnails cannot be drawn (exit 4).
+    #[error("cannot draw the thumbnails: {0}")]
+    Thumbnails(#[source] io::Error),
 }
 
 impl Error {
@@ -69,7 +66,7 @@ impl Error {
             Self::Usage(_) | Self::Config(_) => 2,
             Self::Mesh(error) if error.is_usage() => 2,
             Self::Input { .. } | Self::Mesh(_) | Self::Unprintable(_) | Self::Refused(_) => 3,
-            Self::Output { .. } => 4,
+            Self::Write(_) | Self::Thumbnails(_) => 4,
             Self::Cancelled => 130,
         }
     }
@@ -125,11 +122,6 @@ impl From<progress::Cancelled> for Error {
     fn from(_: progress::Cancelled) -> Self {
         Self::Cancelled
     }
-}
-
-/// An output's name for people.
-fn shown(file: &Path) -> String {
-    if file.as_os_str() == "-" { "standard output".into() } else { file.display().to_string() }
 }
 
 /// The result of everything that can fail with an [`Error`].

@@ -65,7 +65,7 @@ pub mod slice;
 pub mod units;
 pub mod warning;
 
-pub use job::{Job, NAME};
+pub use job::{Job, Model, NAME};
 pub use pipeline::place::{bed, place};
 
 use error::{Error, Result};
@@ -85,7 +85,8 @@ pub fn slice(
     out: &mut dyn gcode::Output,
     progress: &progress::Progress,
 ) -> Result<report::Report> {
-    let placed = place(&job.models, &job.placement, &bed(&job.settings.machine))?;
+    let bed = bed(&job.settings.machine);
+    let placed = place(&job.models, &job.placement, &bed, progress)?;
     slice_placed(job, &placed, out, progress)
 }
 
@@ -115,15 +116,11 @@ pub fn slice_placed(
     let corners = bed_corners(&bed(&settings.machine), placed.offset);
     let mut planner = setup.planner(&slicer, corners);
     let (pictures, planned) = rayon::join(|| thumbnails(&settings, placed), || planner.ahead());
-    let pictures = pictures.map_err(|source| {
-        let action = "cannot draw the thumbnails";
-        Error::Output { file: job.output.clone(), action, source }
-    })?;
 
     // Toolpaths -> text, one batch while the next is planned.
+    let pictures = pictures.map_err(Error::Thumbnails)?;
     let facts = print_facts(placed, &heights);
-    let mut writer =
-        gcode::Writer::new(out, &job.output, &settings, facts, placed.offset, &pictures)?;
+    let mut writer = gcode::Writer::new(out, &settings, facts, placed.offset, &pictures)?;
     batches::write(&mut writer, planned, &mut planner, progress)?;
     // Nothing is written if nothing is extruded.
     let sums = writer.finish()?.ok_or_else(|| refuse::thin(&settings))?;

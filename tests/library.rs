@@ -5,13 +5,12 @@
 mod common;
 
 use common::{as_it_is, fixture, settings};
-use slicer::Job;
 use slicer::error::{Error, Refusal, Result};
 use slicer::mesh::{Placement, Policy};
 use slicer::progress::Progress;
 use slicer::report::Report;
+use slicer::{Job, Model};
 use std::io::{Cursor, Seek, SeekFrom, Write};
-use std::path::PathBuf;
 
 /// An output that knows what was done to it, and may cancel the run at its first byte.
 #[derive(Default)]
@@ -65,15 +64,11 @@ fn slice(
     out: &mut Watched<'_>,
     progress: &Progress,
 ) -> Result<Report> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("model.stl");
-    std::fs::write(&path, stl).unwrap();
     let job = Job {
-        models: vec![path.to_str().unwrap().to_owned()],
+        models: vec![Model::bytes("model.stl", stl)],
         placement: placement.clone(),
         settings: settings("generic-marlin", &[]),
         profile: "test".to_owned(),
-        output: PathBuf::from("test.gcode"),
     };
     slicer::slice(&job, out, progress)
 }
@@ -100,7 +95,7 @@ fn a_refused_job_writes_nothing() {
     let Refusal::Open { layers: 100, layer: 1, gap_mm: 20.0, models } = open else {
         panic!("{open:?}")
     };
-    assert!(models[0].ends_with("model.stl") && touched == 0, "{models:?}");
+    assert!(models == ["model.stl"] && touched == 0, "{models:?}");
 }
 
 #[test]

@@ -3,12 +3,14 @@
 use super::args::CheckArgs;
 use super::words;
 use super::{Outcome, input, output};
+use anyhow::Result;
 use slicer::check::finding::Code;
 use slicer::check::terms::Terms;
 use slicer::check::{self, Measures, Model, Verdict};
-use slicer::error::{Error, Result};
+use slicer::error::Error;
 use slicer::mesh::Bed;
 use slicer::profile::{self, Profile};
+use slicer::progress::Progress;
 use slicer::reader::Print;
 use slicer::warning::plural;
 use std::path::Path;
@@ -26,7 +28,7 @@ const MOST_SHOWN: usize = 5;
 pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let given = args.profile.as_deref().map(|name| {
         let overrides = words::set_overrides(&args.set)?;
-        profile::load(name, &overrides)
+        anyhow::Ok(profile::load(name, &overrides)?)
     });
     let given = given.transpose()?;
     let (name, mut source) = input::open(&args.file)?;
@@ -34,7 +36,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let print = Print::read(&mut source, diameter).map_err(|e| input::unreadable(name, &e))?;
     if print.layers.is_empty() {
         let why = "no move in it prints a line; give a G-code file that a slicer has written";
-        return Err(Error::input(name, why));
+        return Err(Error::input(name, why).into());
     }
     let told = profile::recorded(&print.values)?;
     let judge = given.as_ref().or(told.as_ref());
@@ -44,7 +46,8 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let placed = if args.against.is_empty() {
         None
     } else {
-        Some(slicer::place(&args.against, &args.place.placement(), &bed)?)
+        let models: Vec<slicer::Model> = args.against.iter().map(slicer::Model::path).collect();
+        Some(slicer::place(&models, &args.place.placement(), &bed, &Progress::default())?)
     };
     let model = placed.as_ref().map(|placed| Model { mesh: &placed.mesh, offset: placed.offset });
     let verdict = check::check(&print, &terms, model);

@@ -1,12 +1,12 @@
 //! `slicer compare` -> what plain printing and each way of dual injection take, as a table or as JSON.
 
 use super::args::CompareArgs;
-use super::{output, words};
-use slicer::Job;
+use super::{failure, output, words};
+use anyhow::Result;
 use slicer::compare::{self, Comparison, Way};
-use slicer::error::{Error, Result};
 use slicer::profile::{self, Override, Profile, ValueOrigin};
-use std::path::{Path, PathBuf};
+use slicer::{Job, Model};
+use std::path::Path;
 
 /// What standard output gets.
 ///
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 pub(super) fn run(args: &CompareArgs) -> Result<String> {
     if args.inputs.iter().any(|input| input == "-") {
         let why = "compare slices its models several times; give files, not standard input";
-        return Err(Error::Usage(why.to_owned()));
+        return Err(failure::usage(why));
     }
     let jobs: Vec<(String, Job)> =
         ways(args)?.into_iter().map(|(flags, profile)| (flags, job(args, profile))).collect();
@@ -30,11 +30,10 @@ fn job(args: &CompareArgs, mut profile: Profile) -> Job {
     // Nobody sees what is written.
     profile.settings.machine.thumbnails.clear();
     Job {
-        models: args.inputs.clone(),
+        models: args.inputs.iter().map(Model::path).collect(),
         placement: args.place.placement(),
         settings: profile.settings,
         profile: profile.name,
-        output: PathBuf::from("-"),
     }
 }
 
@@ -72,7 +71,7 @@ fn load(args: &CompareArgs, more: &[(&str, &str)]) -> Result<Profile> {
         value: (*value).to_owned(),
         origin: ValueOrigin::Set,
     }));
-    profile::load(&args.profile, &overrides)
+    Ok(profile::load(&args.profile, &overrides)?)
 }
 
 /// For people.

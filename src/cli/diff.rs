@@ -2,11 +2,11 @@
 
 mod text;
 
-use super::{Outcome, input, output, words};
+use super::{Outcome, failure, input, output, words};
+use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
 use slicer::diff::{Difference, Side, Tolerances, diff};
-use slicer::error::{Error, Result};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::profile::{self, Profile};
@@ -81,7 +81,7 @@ const SOME_DIAMETER: f64 = 1.75;
 pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
     if args.a == "-" && args.b == "-" {
         let why = "`-` is given twice; standard input holds one file";
-        return Err(Error::Usage(why.to_owned()));
+        return Err(failure::usage(why));
     }
     let (a, b) = (input::read(&args.a)?, input::read(&args.b)?);
     let (one, other) = rayon::join(|| print(&a), || print(&b));
@@ -98,8 +98,8 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
 }
 
 fn print((name, bytes): &(&str, Vec<u8>)) -> Result<Print> {
-    Print::read(&mut bytes.as_slice(), SOME_DIAMETER)
-        .map_err(|error| input::unreadable(name, &error))
+    let print = Print::read(&mut bytes.as_slice(), SOME_DIAMETER);
+    Ok(print.map_err(|error| input::unreadable(name, &error))?)
 }
 
 fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Result<Side> {

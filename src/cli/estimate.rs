@@ -2,7 +2,7 @@
 
 use super::args::EstimateArgs;
 use super::{input, output, words};
-use slicer::error::Result;
+use anyhow::Result;
 use slicer::estimate::{self, Estimate, LayerTime, NotCounted, Options};
 use slicer::motion::Limits;
 use slicer::profile;

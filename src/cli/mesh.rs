@@ -2,9 +2,9 @@
 
 use super::output::{self, Sink};
 use super::{Outcome, interrupt, usage};
+use anyhow::{Context as _, Result};
 use clap::Args;
 use serde::Serialize;
-use slicer::error::Result;
 use slicer::mesh::faults::{Counted, Fault, place_text};
 use slicer::mesh::place::part::part;
 use slicer::mesh::{Bed, MeshReport, Placement, inspect, read, write};
@@ -92,7 +92,7 @@ pub(super) fn run(args: &MeshArgs) -> Result<Outcome> {
     let code = u8::from(part.adjacency.unpaired > 0);
     if let Some((out, mut sink)) = sink {
         write::write(&mut sink, &model.vertices, &part.mesh.triangles)
-            .map_err(|source| output::failed(out, "cannot write", source))?;
+            .with_context(|| output::writing(out))?;
         sink.commit()?;
         if output::is_stdout(out) {
             super::say(&text);

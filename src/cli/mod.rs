@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod diff;
 mod estimate;
+mod failure;
 mod input;
 mod interrupt;
 mod mesh;
@@ -18,9 +19,9 @@ mod usage;
 mod viewer;
 mod words;
 
+use anyhow::{Context as _, Result};
 use args::{Arguments, Command, ProfileCommand};
 use clap::{CommandFactory as _, Parser as _};
-use slicer::error::Result;
 use slicer::profile;
 use std::ffi::OsString;
 use std::io::Write as _;
@@ -36,7 +37,7 @@ impl Outcome {
     /// Prints the text and gives the exit code, which holds even if nobody reads the text.
     ///
     /// # Errors
-    /// [`Error::Output`] if standard output cannot be written.
+    /// [`failure::Output`] if standard output cannot be written.
     fn tell(self) -> Result<u8> {
         match output::print(&self.text) {
             Err(error) if !output::is_closed_stdout(&error) => Err(error),
@@ -70,8 +71,8 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
         if output::is_closed_stdout(&error) {
             return 0;
         }
-        say(&format!("error: {error}\n"));
-        error.exit_code()
+        say(&format!("error: {}\n", failure::line(&error)));
+        failure::exit_code(&error)
     })
 }
 
@@ -87,7 +88,7 @@ fn refused(error: &clap::Error, first: Option<&str>) -> u8 {
         DisplayHelp | DisplayVersion => match output::print(&text.to_string()) {
             Ok(()) => 0,
             Err(error) if output::is_closed_stdout(&error) => 0,
-            Err(error) => error.exit_code(),
+            Err(error) => failure::exit_code(&error),
         },
         DisplayHelpOnMissingArgumentOrSubcommand => {
             say(&text.to_string());
@@ -140,7 +141,7 @@ fn other(command: &Command) -> Result<Outcome> {
             let mut text = Vec::new();
             clap_mangen::Man::new(Arguments::command())
                 .render(&mut text)
-                .map_err(|source| output::failed(Path::new("-"), "cannot write", source))?;
+                .with_context(|| output::writing(Path::new("-")))?;
             String::from_utf8_lossy(&text).into_owned()
         }
     };

@@ -1,7 +1,10 @@
 //! STL file -> PNG: a picture of the model itself, for `slicer preview`.
 
-use slicer::error::{Error, Result};
+use super::failure::{Input, usage};
+use anyhow::{Context as _, Result};
+use slicer::Model;
 use slicer::mesh::{Bed, Placement, read};
+use slicer::progress::Progress;
 use slicer::render::{self, Faces, Ground};
 use slicer::warning::Warning;
 use std::fs::File;
@@ -46,13 +49,13 @@ pub(super) fn is_model(file: &str) -> bool {
 pub(super) fn draw(file: &str, size: u32, max_triangles: usize) -> Result<Drawn> {
     if size > MOST {
         let why = format!("--size {size}: a model is drawn with at most {MOST} pixels; use fewer");
-        return Err(Error::Usage(why));
+        return Err(usage(why));
     }
     let placement = Placement { max_triangles, ..Placement::default() };
-    let placed = slicer::place(&[file.to_owned()], &placement, &Bed::ANY)?;
+    let placed = slicer::place(&[Model::path(file)], &placement, &Bed::ANY, &Progress::default())?;
     let (faces, size) = (Faces::of(placed.is_sound), render::fitting(&placed.mesh, size));
     let picture = render::draw(&placed.mesh, faces, size, Ground::White);
-    let png = picture.png().map_err(|error| Error::input(file, error.to_string()))?;
+    let png = picture.png().with_context(|| Input(file.to_owned()))?;
     let [x, y, z] = placed.size_mm;
     let count = placed.mesh.triangles.len();
     let title = format!("{file}: {count} triangles, {x:.1} x {y:.1} x {z:.1} mm");

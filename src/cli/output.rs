@@ -1,9 +1,10 @@
 //! Path -> Sink: a file that is there whole or not at all, a device, or standard output.
 
+use super::failure::Output;
 use super::input::BUFFER;
 use super::interrupt;
+use anyhow::{Context as _, Result};
 use serde::Serialize;
-use slicer::error::{Error, Result};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead, BufReader, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -13,10 +14,10 @@ use tempfile::{NamedTempFile, TempPath};
 /// for the message.
 ///
 /// # Errors
-/// [`Error::Output`] if it cannot be written as JSON.
+/// [`Output`] if it cannot be written as JSON.
 pub(super) fn json(value: &impl Serialize, to: &Path) -> Result<String> {
     let text = serde_json::to_string_pretty(value);
-    text.map(|text| text + "\n").map_err(|error| failed(to, "cannot write", error.into()))
+    text.map(|text| text + "\n").with_context(|| writing(to))
 }
 
 /// Where a product goes. Opened before the long work, so that a wrong path
@@ -60,26 +61,26 @@ impl Sink {
     /// written to, anything else becomes a file; all of it on [`Sink::commit`].
     ///
     /// # Errors
-    /// [`Error::Output`] if it cannot be opened for writing.
+    /// [`Output`] if it cannot be opened for writing.
     pub(crate) fn open(name: &Path) -> Result<Self> {
         let target = if is_stdout(name) { unnamed(End::Stdout) } else { open_target(name) };
-        let target = target.map_err(|source| failed(name, "cannot open for writing", source))?;
+        let action = "cannot open for writing";
+        let target = target.with_context(|| Output { file: name.to_owned(), action })?;
         Ok(Self { name: name.to_owned(), target })
     }
 
     /// Ends writing, for [`commit_all`].
     ///
     /// # Errors
-    /// [`Error::Output`] if the rest cannot be written, or it goes to no file.
+    /// [`Output`] if the rest cannot be written, or it goes to no file.
     pub(crate) fn close(self) -> Result<Closed> {
         let name = self.name;
         let Target::Temporary(out, path) = self.target else {
-            return Err(failed(&name, "cannot write", told("it is no file; choose another name")));
+            return Err(told("it is no file; choose another name")).with_context(|| writing(&name));
         };
-        match out.into_inner() {
-            Ok(file) => Ok(Closed { name, file: file.into_temp_path(), path }),
-            Err(error) => Err(failed(&name, "cannot write", error.into_error())),
-        }
+        let file = out.into_inner().map_err(io::IntoInnerError::into_error);
+        let file = file.with_context(|| writing(&name))?.into_temp_path();
+        Ok(Closed { name, file, path })
     }
 
     /// What was written so far, from its beginning. Nothing is to be written afterwards.
@@ -99,7 +100,7 @@ impl Sink {
     /// Makes what was written the output.
     ///
     /// # Errors
-    /// [`Error::Output`] if the rest cannot be written or the file not be put in place.
+    /// [`Output`] if the rest cannot be written or the file not be put in place.
     pub(crate) fn commit(self) -> Result<()> {
         let name = self.name;
         let done = match self.target {
@@ -115,7 +116,7 @@ impl Sink {
                 })
                 .map(drop),
         };
-        done.map_err(|source| failed(&name, "cannot write", source))
+        done.with_context(|| writing(&name))
     }
 }
 
@@ -143,7 +144,7 @@ impl Closed {
         let temporary = self.file.to_path_buf();
         let done = self.file.persist(self.path).map_err(|error| error.error);
         interrupt::done(&temporary);
-        done.map_err(|source| failed(&self.name, "cannot write", source))
+        done.with_context(|| writing(&self.name))
     }
 }
 
@@ -178,24 +179,25 @@ pub(crate) fn is_stdout(name: &Path) -> bool {
 }
 
 /// Whether the failure is that nobody reads standard output any more.
-pub(crate) fn is_closed_stdout(error: &Error) -> bool {
-    matches!(error, Error::Output { file, source, .. }
-        if is_stdout(file) && source.kind() == io::ErrorKind::BrokenPipe)
+pub(crate) fn is_closed_stdout(error: &anyhow::Error) -> bool {
+    let is_stdout = error.downcast_ref().is_some_and(|to: &Output| is_stdout(&to.file));
+    let closed = |error: &io::Error| error.kind() == io::ErrorKind::BrokenPipe;
+    is_stdout && error.root_cause().downcast_ref().is_some_and(closed)
 }
 
 /// Writes a whole text to standard output.
 ///
 /// # Errors
-/// [`Error::Output`].
+/// [`Output`].
 pub(crate) fn print(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     let done = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    done.map_err(|source| failed(Path::new("-"), "cannot write", source))
+    done.with_context(|| writing(Path::new("-")))
 }
 
-/// An output's failure, `action` being what was tried.
-pub(crate) fn failed(name: &Path, action: &'static str, source: io::Error) -> Error {
-    Error::Output { file: name.to_owned(), action, source }
+/// Context of what fails while an output is written.
+pub(crate) fn writing(name: &Path) -> Output {
+    Output { file: name.to_owned(), action: "cannot write" }
 }
 
 fn open_target(name: &Path) -> io::Result<Target> {
@@ -282,6 +284,7 @@ fn told(why: &str) -> io::Error {
 
 #[cfg(test)]
 mod tests {
+    use super::super::failure::line;
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {
@@ -319,9 +322,9 @@ mod tests {
     #[test]
     fn directories_and_missing_folders_are_refused() {
         let folder = tempfile::tempdir().unwrap();
-        let error = Sink::open(folder.path()).unwrap_err().to_string();
+        let error = line(&Sink::open(folder.path()).unwrap_err());
         assert!(error.ends_with("it is a directory; name a file in it"), "{error}");
-        let error = Sink::open(&folder.path().join("no/a.gcode")).unwrap_err().to_string();
+        let error = line(&Sink::open(&folder.path().join("no/a.gcode")).unwrap_err());
         assert!(error.contains("there is no directory"), "{error}");
     }
 

@@ -1,10 +1,11 @@
 //! `slicer preview` -> pictures of what a G-code file prints, a page to look through it, or a picture of a model.
 
 use super::output::{self, Sink};
-use super::{args, input, interrupt, model, say, usage, viewer, words};
+use super::{args, failure, input, interrupt, model, say, usage, viewer, words};
+use anyhow::{Context as _, Result};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
-use slicer::error::{Error, Result};
+use slicer::error::Error;
 use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
 use slicer::preview::cut::{Axis, Cut, Plane};
 use slicer::preview::drawing::{Drawing, Frame};
@@ -112,7 +113,7 @@ pub(super) fn run(args: &PreviewArgs) -> Result<()> {
     let format = format(args)?;
     if args.all && output::is_stdout(&args.output) {
         let why = "--all writes a file for each layer; name OUT, such as -o layers.svg";
-        return Err(Error::Usage(why.to_owned()));
+        return Err(failure::usage(why));
     }
     usage::replaces(&args.output, &args.file)?;
     interrupt::watch();
@@ -156,7 +157,7 @@ fn format(args: &PreviewArgs) -> Result<Format> {
             Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
             None => String::new(),
         };
-        Error::Usage(format!(
+        failure::usage(format!(
             "-o {out}: the ending tells no format; use {endings}, or say --format"
         ))
     })
@@ -166,16 +167,16 @@ fn format(args: &PreviewArgs) -> Result<Format> {
 fn model_itself(args: &PreviewArgs, format: Format) -> Result<()> {
     let file = &args.file;
     if let Some(flag) = args.of_layers() {
-        return Err(Error::Usage(format!("{flag}: {file} is a model; slice it first")));
+        return Err(failure::usage(format!("{flag}: {file} is a model; slice it first")));
     }
     if format != Format::Png {
         let why = format!("{file} is a model, whose picture is a PNG; use .png or --format png");
-        return Err(Error::Usage(why));
+        return Err(failure::usage(why));
     }
     let mut sink = Sink::open(&args.output)?;
     let drawn = model::draw(file, args.size.unwrap_or(SIZE), args.max_triangles)?;
     let done = sink.write_all(&drawn.png).and_then(|()| sink.flush());
-    done.map_err(|source| output::failed(&args.output, "cannot write", source))?;
+    done.with_context(|| output::writing(&args.output))?;
     sink.commit()?;
     for warning in &drawn.warnings {
         say(&format!("warning: {warning}\n"));
@@ -194,7 +195,7 @@ fn read(args: &PreviewArgs) -> Result<(&str, Print)> {
         .map_err(|error| input::unreadable(name, &error))?;
     if layer::frame(&print, &print.layers).is_empty() {
         let why = "nothing is printed in it; give a G-code file that a slicer has written";
-        return Err(Error::input(name, why));
+        return Err(Error::input(name, why).into());
     }
     Ok((name, print))
 }
@@ -206,7 +207,7 @@ fn one(args: &PreviewArgs, name: &str, print: &Print) -> Result<Drawing> {
         let layers = slicer::warning::plural(count as u64, "layer");
         let range =
             if count == 1 { "there is only 1".to_owned() } else { format!("choose 1 to {count}") };
-        return Err(Error::Usage(format!("--layer {number}: {name} has {layers}; {range}")));
+        return Err(failure::usage(format!("--layer {number}: {name} has {layers}; {range}")));
     }
     let drawing = draw_layer(args, print, number - 1, frame(args, print));
     if drawing.scene.is_empty() {
@@ -221,7 +222,7 @@ fn cut(args: &PreviewArgs, name: &str, print: &Print, plane: Plane) -> Result<Dr
         let whole = layer::frame(print, &print.layers);
         let (axis, k) = (plane.axis.name(), usize::from(plane.axis == Axis::Y));
         let (at, low, high) = (plane.at, whole.min[k], whole.max[k]);
-        return Err(Error::Usage(format!(
+        return Err(failure::usage(format!(
             "--cut {axis}={at}: nothing is printed there; {name} prints between {axis} = {low:.1} and {high:.1} mm"
         )));
     }
@@ -268,9 +269,9 @@ fn frame(args: &PreviewArgs, print: &Print) -> Frame {
     args.crop.unwrap_or_else(|| layer::frame(print, &print.layers))
 }
 
-fn nothing_in_crop(name: &str, whole: Frame) -> Error {
+fn nothing_in_crop(name: &str, whole: Frame) -> anyhow::Error {
     let [[x, y], [to_x, to_y]] = [whole.min, whole.max];
-    Error::Usage(format!(
+    failure::usage(format!(
         "--crop: nothing of {name} is printed there; all of it lies within {x:.1},{y:.1},{to_x:.1},{to_y:.1}"
     ))
 }
@@ -286,13 +287,13 @@ fn finish(args: &PreviewArgs, encode: Encode, mut sink: Sink, drawing: &Drawing)
 
 fn write(encode: Encode, drawing: &Drawing, name: &Path, sink: &mut Sink) -> Result<()> {
     let done = encode(drawing).and_then(|bytes| sink.write_all(&bytes)).and_then(|()| sink.flush());
-    done.map_err(|source| output::failed(name, "cannot write", source))
+    done.with_context(|| output::writing(name))
 }
 
 /// The page with all layers in it, for which nothing can be chosen.
 fn page(args: &PreviewArgs) -> Result<()> {
     if let Some(flag) = args.size.map(|_| "--size").or(args.of_layers()) {
-        return Err(Error::Usage(format!(
+        return Err(failure::usage(format!(
             "{flag} is for pictures, and a page shows everything; leave it out, or write .svg or .png"
         )));
     }

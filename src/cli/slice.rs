@@ -1,18 +1,19 @@
 //! Arguments of slicing -> G-code, report and exit code: the program's main job.
 
 use super::args::SliceArgs;
+use super::failure::Output;
 use super::output::{self, Sink};
 use super::words;
-use super::{check, interrupt, progress, say, summary, usage};
-use slicer::Job;
-use slicer::check::Model;
+use super::{check, failure, interrupt, progress, say, summary, usage};
+use anyhow::{Context as _, Result};
 use slicer::check::terms::Terms;
-use slicer::error::{Error, Result};
+use slicer::error::Error;
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
 use slicer::reader::Print;
 use slicer::report::Report;
 use slicer::warning::{Warning, plural};
+use slicer::{Job, Model};
 use std::io::Write as _;
 use std::path::Path;
 use std::sync::Arc;
@@ -29,7 +30,7 @@ pub(super) fn run(args: &SliceArgs) -> Result<u8> {
     let started = Instant::now();
     interrupt::watch();
     let Some(out) = args.output.as_deref() else {
-        return Err(Error::Usage("no output; give one with -o".to_owned()));
+        return Err(failure::usage("no output; give one with -o"));
     };
     no_file_twice(args, out)?;
     let profile = load(args)?;
@@ -81,7 +82,7 @@ pub(super) fn run(args: &SliceArgs) -> Result<u8> {
 /// Checks that no two arguments mean the same file.
 ///
 /// # Errors
-/// [`Error::Usage`].
+/// [`failure::Usage`].
 fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
     if args.inputs.iter().filter(|input| *input == "-").count() > 1 {
         return usage::refuse("`-` is given twice; standard input holds one model");
@@ -123,44 +124,50 @@ fn findings(strict: bool, warnings: usize) -> u8 {
 fn load(args: &SliceArgs) -> Result<Profile> {
     let mut overrides = words::set_overrides(&args.set)?;
     overrides.extend(args.settings.overrides());
-    profile::load(&args.profile, &overrides)
+    Ok(profile::load(&args.profile, &overrides)?)
 }
 
 /// The pipeline itself, in a pool of the threads asked for, under a progress bar.
 fn work(args: &SliceArgs, out: &Path, profile: Profile, sink: &mut Sink) -> Result<Report> {
     let job = Job {
-        models: args.inputs.clone(),
+        models: args.inputs.iter().map(Model::path).collect(),
         placement: args.place.placement(),
         settings: profile.settings,
         profile: profile.name,
-        output: out.to_owned(),
     };
     let progress = Arc::new(Progress::default());
     let _meter = progress::Meter::start(&progress, !args.quiet);
-    let mut slice = || slice_and_check(&job, args.check, sink, &progress);
+    let mut slice = || slice_and_check(&job, args.check, out, sink, &progress);
     let Some(threads) = args.threads else { return slice() };
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(usize::from(threads))
         .build()
-        .map_err(|error| Error::Usage(format!("--threads {threads}: {error}; use fewer")))?;
+        .map_err(|error| failure::usage(format!("--threads {threads}: {error}; use fewer")))?;
     pool.install(slice)
 }
 
 /// Slices; with `check` reads the product back and holds it against the models.
-fn slice_and_check(job: &Job, check: bool, sink: &mut Sink, progress: &Progress) -> Result<Report> {
+fn slice_and_check(
+    job: &Job,
+    check: bool,
+    out: &Path,
+    sink: &mut Sink,
+    progress: &Progress,
+) -> Result<Report> {
     let settings = &job.settings;
-    let placed = slicer::place(&job.models, &job.placement, &slicer::bed(&settings.machine))?;
-    let mut report = slicer::slice_placed(job, &placed, sink, progress)?;
+    let bed = slicer::bed(&settings.machine);
+    let placed = slicer::place(&job.models, &job.placement, &bed, progress)?;
+    let mut report =
+        slicer::slice_placed(job, &placed, sink, progress).map_err(|e| named(e, out))?;
     if !check {
         return Ok(report);
     }
-    let failed = |source| output::failed(&job.output, "cannot read back", source);
     let print = sink
         .read_back()
         .and_then(|mut source| Print::read(&mut source, settings.filament.diameter))
-        .map_err(failed)?;
+        .with_context(|| Output { file: out.to_owned(), action: "cannot read back" })?;
     let terms = Terms::new(Some(settings), Some(settings), &print);
-    let model = Model { mesh: &placed.mesh, offset: placed.offset };
+    let model = slicer::check::Model { mesh: &placed.mesh, offset: placed.offset };
     let verdict = slicer::check::check(&print, &terms, Some(model));
     let length_mm = verdict.measures.part_hangs_mm;
     if length_mm > 0.0 {
@@ -170,9 +177,17 @@ fn slice_and_check(job: &Job, check: bool, sink: &mut Sink, progress: &Progress)
     Ok(report)
 }
 
+/// The library does not know what the output is called.
+fn named(error: Error, out: &Path) -> anyhow::Error {
+    let is_of_output = matches!(error, Error::Write(_) | Error::Thumbnails(_));
+    let error = anyhow::Error::from(error);
+    if is_of_output { error.context(Output { file: out.to_owned(), action: "" }) } else { error }
+}
+
 fn write_report(path: &Path, mut sink: Sink, report: &Report) -> Result<Sink> {
-    let failed = |source| output::failed(path, "cannot write", source);
     let text = output::json(report, path)?;
-    sink.write_all(text.as_bytes()).and_then(|()| sink.flush()).map_err(failed)?;
+    sink.write_all(text.as_bytes())
+        .and_then(|()| sink.flush())
+        .with_context(|| output::writing(path))?;
     Ok(sink)
 }

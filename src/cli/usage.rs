@@ -1,14 +1,15 @@
 //! Arguments -> verdict: files that are named twice, words that were meant, and clap's errors on one line.
 
+use super::failure;
 use super::output::is_stdout;
-use slicer::error::{Error, Result};
+use anyhow::Result;
 use slicer::profile::suggest;
 use std::path::{Path, PathBuf};
 
 /// Checks that a product does not replace the file that it is made from.
 ///
 /// # Errors
-/// [`Error::Usage`].
+/// [`failure::Usage`].
 pub(super) fn replaces(product: &Path, input: &str) -> Result<()> {
     if input != "-" && !is_stdout(product) && is_same_file(product, Path::new(input)) {
         return refuse(&format!("the output would replace {input}; choose another name for it"));
@@ -27,7 +28,7 @@ pub(super) fn meant(word: &str, commands: &clap::Command) -> Option<String> {
 
 /// A refusal.
 pub(super) fn refuse(why: &str) -> Result<()> {
-    Err(Error::Usage(why.to_owned()))
+    Err(failure::usage(why))
 }
 
 /// Devices may well be named twice, only files are compared; files that are

@@ -2,7 +2,7 @@
 
 use super::input;
 use super::output::{self, Sink};
-use slicer::error::Result;
+use anyhow::{Context as _, Result};
 use slicer::estimate::{self, Options};
 use slicer::motion::Limits;
 use slicer::preview::html;
@@ -29,7 +29,7 @@ pub(super) fn write(file: &str, out: &Path, settings: &Settings) -> Result<Strin
     let base = Path::new(name).file_name().map_or(name.into(), |base| base.to_string_lossy());
     html::write(&print, &estimate, &base, diameter, &mut sink)
         .and_then(|()| sink.flush())
-        .map_err(|source| output::failed(out, "cannot write", source))?;
+        .with_context(|| output::writing(out))?;
     sink.commit()?;
     let layers = plural(print.layers.len() as u64, "layer");
     Ok(format!("{layers}, {}\n", plural(print.moves.len() as u64, "move")))

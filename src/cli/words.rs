@@ -1,18 +1,19 @@
 //! Words of flags -> values: settings after `--set`, lists of numbers, and names that stand for others.
 
-use slicer::error::{Error, Result};
+use super::failure::usage;
+use anyhow::Result;
 use slicer::profile::keys::{self, Kind};
 use slicer::profile::{Override, ValueOrigin};
 
 /// The overrides that `--set` gives.
 ///
 /// # Errors
-/// [`Error::Usage`] for a word without `=`.
+/// [`Usage`](super::failure::Usage) for a word without `=`.
 pub(super) fn set_overrides(words: &[String]) -> Result<Vec<Override>> {
     let one = |word: &String| {
         let (key, value) = word.split_once('=').ok_or_else(|| {
             let word = word.escape_debug();
-            Error::Usage(format!("--set {word}: there is no `=`; write --set KEY=VALUE"))
+            usage(format!("--set {word}: there is no `=`; write --set KEY=VALUE"))
         })?;
         Ok(Override {
             key: key.trim().to_owned(),

@@ -21,7 +21,6 @@ use progress::Progress;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::io::{Seek, Write};
-use std::path::{Path, PathBuf};
 use times::{Timer, Times};
 use usage::Usage;
 use write::{LayerText, WriteParams};
@@ -59,20 +58,19 @@ pub struct Writer<'a> {
 
 impl<'a> Writer<'a> {
     /// Begins with the head of the file, the pictures in it, and the start block. `offset` is where
-    /// the layout's middle goes on the machine, mm; `file` is named in errors.
+    /// the layout's middle goes on the machine, mm.
     ///
     /// # Errors
-    /// [`Error::Config`] for an unknown placeholder, [`Error::Output`] if writing fails.
+    /// [`Error::Config`] for an unknown placeholder, [`Error::Write`] if writing fails.
     pub fn new(
         out: &'a mut dyn Output,
-        file: &Path,
         settings: &'a Settings,
         facts: PrintFacts,
         offset: [f64; 2],
         thumbnails: &[Thumbnail],
     ) -> Result<Self> {
         let mut writer = Self {
-            out: Places { out, file: file.to_owned(), written: 0, held: Some(Vec::new()) },
+            out: Places { out, written: 0, held: Some(Vec::new()) },
             settings,
             facts,
             moves: MoveParams::new(settings, offset),
@@ -96,7 +94,7 @@ impl<'a> Writer<'a> {
     /// Writes the next layers; formatted and timed side by side, written in order.
     ///
     /// # Errors
-    /// [`Error::Output`] if writing fails.
+    /// [`Error::Write`] if writing fails.
     pub fn layers(&mut self, layers: &[Toolpath]) -> Result<()> {
         // Moves and text take more memory than the layers themselves.
         let at_once = rayon::current_num_threads().max(4);
@@ -173,7 +171,6 @@ impl<'a> Writer<'a> {
 /// An output that knows where it is.
 struct Places<'a> {
     out: &'a mut dyn Output,
-    file: PathBuf,
     /// Bytes so far.
     written: u64,
     /// These bytes, until something is extruded: a job that extrudes nothing is refused, and
@@ -189,14 +186,14 @@ impl Places<'_> {
                 held.extend_from_slice(bytes);
                 Ok(())
             }
-            None => self.out.write_all(bytes).map_err(|source| self.failed(source)),
+            None => self.out.write_all(bytes).map_err(Error::Write),
         }
     }
 
     /// From now on all bytes are written, those that were held first.
     fn release(&mut self) -> Result<()> {
         match self.held.take() {
-            Some(held) => self.out.write_all(&held).map_err(|source| self.failed(source)),
+            Some(held) => self.out.write_all(&held).map_err(Error::Write),
             None => Ok(()),
         }
     }
@@ -204,10 +201,6 @@ impl Places<'_> {
     /// Writes over what stands at this byte.
     fn put_at(&mut self, place: u64, bytes: &[u8]) -> Result<()> {
         let seek = self.out.seek(std::io::SeekFrom::Start(place));
-        seek.and_then(|_| self.out.write_all(bytes)).map_err(|source| self.failed(source))
-    }
-
-    fn failed(&self, source: std::io::Error) -> Error {
-        Error::Output { file: self.file.clone(), action: "cannot write", source }
+        seek.and_then(|_| self.out.write_all(bytes)).map_err(Error::Write)
     }
 }

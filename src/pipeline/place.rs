@@ -2,19 +2,36 @@
 
 use crate::error::Result;
 use crate::geom::Point;
+use crate::job::Model;
 use crate::mesh::{self, Bed, Placement, place::Placed};
 use crate::profile::template::PrintFacts;
 use crate::profile::{Machine, Origin};
+use crate::progress::Progress;
 use crate::slice::Heights;
 use crate::units::{to_mm, to_units};
 
-/// Reads models, `-` being standard input, and lays them on a bed.
+/// Reads models and lays them on a bed. Only `progress` of a longer run is of use here: the
+/// reading stops once that is cancelled.
 ///
 /// # Errors
-/// Those of reading and placing: [`Error::Mesh`](crate::error::Error::Mesh).
-pub fn place(models: &[String], placement: &Placement, bed: &Bed) -> Result<Placed> {
-    let load = |file: &String| mesh::read::from_path(file, placement.max_triangles);
-    let models = models.iter().map(load).collect::<mesh::Result<_>>()?;
+/// Those of reading and placing: [`Error::Mesh`](crate::error::Error::Mesh);
+/// [`Error::Cancelled`](crate::error::Error::Cancelled).
+pub fn place(
+    models: &[Model],
+    placement: &Placement,
+    bed: &Bed,
+    progress: &Progress,
+) -> Result<Placed> {
+    let most = placement.max_triangles;
+    let load = |model: &Model| {
+        progress.go_on()?;
+        match model {
+            Model::Path(path) => Ok(mesh::read::from_path(path, most)?),
+            Model::Bytes { name, bytes } => Ok(mesh::read::from_bytes(name, bytes, most)?),
+        }
+    };
+    let models = models.iter().map(load).collect::<Result<_>>()?;
+    progress.go_on()?;
     Ok(mesh::place::place(models, placement, bed)?)
 }
 

@@ -61,7 +61,13 @@ pub fn gaps(job: &Job, placed: &Placed, slicer: &Slicer<'_>, progress: &Progress
     if gap_mm <= MOST_GAP_MM {
         return Ok(());
     }
-    Err(Refusal::Open { models: job.models.clone(), layers, layer, gap_mm }.into())
+    Err(Refusal::Open {
+        models: job.models.iter().map(|model| model.name().to_owned()).collect(),
+        layers,
+        layer,
+        gap_mm,
+    }
+    .into())
 }
 
 /// The refusal of a job of which nothing was extruded.

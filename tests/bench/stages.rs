@@ -235,11 +235,10 @@ fn gcode(bench: &Bench, model: &Model) {
 /// From the file to G-code that nobody keeps, on all cores and on one.
 fn whole(bench: &Bench, model: &Model) {
     let job = Job {
-        models: vec![model.file.to_string_lossy().into_owned()],
+        models: vec![slicer::Model::path(model.file.to_string_lossy())],
         placement: placement(),
         settings: model.settings.clone(),
         profile: "generic-marlin".to_owned(),
-        output: PathBuf::from("-"),
     };
     let run = || slicer::slice(&job, &mut std::io::empty(), &Default::default());
     let group = bench.group("whole", model.name);

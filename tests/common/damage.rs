@@ -73,7 +73,13 @@ pub(crate) fn judge(text: &str, stl: &str, placement: &Placement) -> Verdict {
     let settings = &told.unwrap().settings;
     let terms = Terms::new(Some(settings), Some(settings), &print);
     let path = fixtures().join(stl).to_str().unwrap().to_owned();
-    let placed = slicer::place(&[path], placement, &slicer::bed(&settings.machine)).unwrap();
+    let placed = slicer::place(
+        &[slicer::Model::path(path)],
+        placement,
+        &slicer::bed(&settings.machine),
+        &Default::default(),
+    )
+    .unwrap();
     check::check(&print, &terms, Some(Model { mesh: &placed.mesh, offset: placed.offset }))
 }
 

@@ -12,12 +12,12 @@ pub(crate) mod section;
 pub(crate) mod solid;
 pub(crate) mod stack;
 
-use slicer::Job;
 use slicer::error::Result;
 use slicer::mesh::Placement;
 use slicer::profile::{Override, Settings, ValueOrigin, load};
 use slicer::progress::Progress;
 use slicer::report::Report;
+use slicer::{Job, Model};
 use std::path::{Path, PathBuf};
 
 pub(crate) use gcode::{Kind, Move, Print};
@@ -70,11 +70,10 @@ pub(crate) fn slice_file(
     placement: &Placement,
 ) -> Result<(String, Report)> {
     let job = Job {
-        models: vec![path.to_str().unwrap().to_owned()],
+        models: vec![Model::path(path.to_str().unwrap())],
         placement: placement.clone(),
         settings: settings.clone(),
         profile: "test".to_owned(),
-        output: PathBuf::from("test.gcode"),
     };
     let mut out = std::io::Cursor::new(Vec::new());
     let report = slicer::slice(&job, &mut out, &Progress::default())?;

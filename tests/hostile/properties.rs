@@ -15,7 +15,6 @@ use slicer::profile::{self, Override, Settings, ValueOrigin};
 use slicer::progress::Progress;
 use slicer::reader::Print;
 use slicer::slice::{Heights, Slicer};
-use std::path::PathBuf;
 
 /// Triangles and layers, at most, so that a case is quick.
 const MOST_TRIANGLES: usize = 3_000;
@@ -58,11 +57,10 @@ pub(crate) fn stl(bytes: &[u8]) {
         return;
     }
     let job = Job {
-        models: vec!["x.stl".to_owned()],
+        models: vec![slicer::Model::path("x.stl")],
         placement,
         settings,
         profile: "generic-marlin".to_owned(),
-        output: PathBuf::from("x.gcode"),
     };
     let mut out = std::io::Cursor::new(Vec::new());
     match slicer::slice_placed(&job, &placed, &mut out, &Progress::default()) {
