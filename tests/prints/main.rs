@@ -6,6 +6,7 @@ mod common;
 mod fixtures;
 mod golden;
 mod gpx;
+mod library;
 mod metamorphic;
 mod models;
 mod tables;

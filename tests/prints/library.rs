@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::{as_it_is, fixture, settings};
+use crate::common::{as_it_is, fixture, settings};
 use slicer::error::{Error, Refusal, Result};
 use slicer::mesh::{Placement, Policy};
 use slicer::progress::Progress;
