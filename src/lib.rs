@@ -2,7 +2,11 @@
 //! and skins at the fine layer height, sparse infill on one layer of each pair
 //! with twice the material.
 //!
-//! The modules in the order of the flow; [`slice_placed`] shows it in one function:
+#![doc = include_str!("docs/embedding.md")]
+//!
+//! # Modules
+//!
+//! In the order of the flow, which [`slice_placed`] shows in one function:
 //!
 //! | module | in -> out |
 //! |---|---|
@@ -67,6 +71,7 @@ pub mod warning;
 
 pub use job::{Job, Model, NAME};
 pub use pipeline::place::{bed, place};
+pub use pipeline::spool::slice_to;
 
 use error::{Error, Result};
 use pipeline::batches::{self, Setup};

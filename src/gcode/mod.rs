@@ -25,8 +25,14 @@ use times::{Timer, Times};
 use usage::Usage;
 use write::{LayerText, WriteParams};
 
-/// What a G-code file is written to, at its beginning. The progress is filled in at
-/// the end.
+/// What a G-code file is written to, at its beginning.
+///
+/// - [`Seek`], since `M73` tells the printer which share of the print is done: the time of the
+///   whole print is known at its end only, and the lines are filled in then.
+/// - [`Send`], since a batch of layers is written by another thread than the one that plans the
+///   next.
+///
+/// Any other output: [`slice_to`](crate::slice_to).
 pub trait Output: Write + Seek + Send {}
 
 impl<T: Write + Seek + Send> Output for T {}

@@ -39,7 +39,7 @@ impl Blame<'_> {
     fn error(&self, keys: &[&str], why: &str) -> Error {
         let rank = |origin: &&ValueOrigin| match origin {
             ValueOrigin::Flag(_) => 0,
-            ValueOrigin::Set => 1,
+            ValueOrigin::Set | ValueOrigin::Program => 1,
             ValueOrigin::File { .. } | ValueOrigin::Recorded => 2,
         };
         let origin = keys.iter().filter_map(|key| self.origins.get(*key)).min_by_key(rank);

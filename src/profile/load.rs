@@ -55,6 +55,8 @@ pub enum ValueOrigin {
     Flag(&'static str),
     /// The comments of a G-code file.
     Recorded,
+    /// The program that embeds the library.
+    Program,
 }
 
 impl fmt::Display for ValueOrigin {
@@ -64,6 +66,7 @@ impl fmt::Display for ValueOrigin {
             Self::Set => f.write_str("--set"),
             Self::Flag(flag) => f.write_str(flag),
             Self::Recorded => f.write_str("the file's own settings"),
+            Self::Program => f.write_str("the program"),
         }
     }
 }

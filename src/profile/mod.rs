@@ -1,5 +1,6 @@
 //! Profile names, files and overrides -> Settings, each value with its origin.
 
+mod builder;
 mod check;
 mod derived;
 pub mod keys;
@@ -12,6 +13,7 @@ mod sizes;
 pub mod suggest;
 pub mod template;
 
+pub use builder::Builder;
 pub use load::{DEFAULT, Override, Profile, ValueOrigin, builtin_names, load};
 pub use recorded::recorded;
 pub use settings::*;
