@@ -2,7 +2,7 @@
 //! and skins at the fine layer height, sparse infill on one layer of each pair
 //! with twice the material.
 //!
-#![doc = include_str!("docs/embedding.md")]
+#![doc = include_str!("guide/embedding.md")]
 //!
 //! # Modules
 //!
@@ -106,7 +106,7 @@ pub fn slice_placed(
     progress: &progress::Progress,
 ) -> Result<report::Report> {
     // Mesh -> layers; each block of them is cut when the stages after it ask for it.
-    let heights = refuse::heights(&job.settings, placed)?;
+    let heights = pipeline::heights(&job.settings, placed)?;
     progress.set_total(heights.count());
     let tolerance = to_units(job.settings.tolerance);
     let (settings, slicer) = rayon::join(

@@ -10,9 +10,13 @@ pub mod refuse;
 pub mod spool;
 pub mod thumbnails;
 
+use crate::error::Refusal;
 use crate::mesh::Mesh;
+use crate::mesh::place::Placed;
 use crate::profile::{Angle, Settings};
 use crate::region::angle;
+use crate::slice::Heights;
+use crate::units::to_units;
 
 /// The settings with all that depends on the model decided.
 #[must_use]
@@ -22,4 +26,18 @@ pub fn settle(settings: &Settings, mesh: &Mesh) -> Settings {
         given => given,
     };
     Settings { angle, ..settings.clone() }
+}
+
+/// The layers that the models are cut into, at least one.
+///
+/// # Errors
+/// [`Refusal::TooLow`].
+pub fn heights(settings: &Settings, placed: &Placed) -> Result<Heights, Refusal> {
+    let (first, other) = (to_units(settings.first_layer_height), to_units(settings.layer_height));
+    let heights = Heights::even(first, other, placed.mesh.top());
+    if heights.count() > 0 {
+        Ok(heights)
+    } else {
+        Err(Refusal::TooLow { height_mm: placed.size_mm[2] })
+    }
 }

@@ -2,7 +2,7 @@
 //!
 //! There are three causes, and each is known at another time:
 //!
-//! - The model is lower than half a layer: known from its height.
+//! - The model is lower than half a layer: known from its height, see [`heights`](super::heights).
 //! - The mesh is open, and a contour would have to be closed by a line that is too long. Contours
 //!   can only be open where a triangle has no neighbour. A mesh without such triangles, which is
 //!   nearly every mesh, is not looked at. Of any other mesh the open contours are cut once more,
@@ -20,22 +20,8 @@ use crate::mesh::Policy;
 use crate::mesh::place::Placed;
 use crate::profile::Settings;
 use crate::progress::Progress;
-use crate::slice::{Heights, Slicer};
-use crate::units::{Coord, to_mm, to_units};
-
-/// The layers that the models are cut into, at least one.
-///
-/// # Errors
-/// [`Refusal::TooLow`].
-pub fn heights(settings: &Settings, placed: &Placed) -> Result<Heights, Refusal> {
-    let (first, other) = (to_units(settings.first_layer_height), to_units(settings.layer_height));
-    let heights = Heights::even(first, other, placed.mesh.top());
-    if heights.count() > 0 {
-        Ok(heights)
-    } else {
-        Err(Refusal::TooLow { height_mm: placed.size_mm[2] })
-    }
-}
+use crate::slice::Slicer;
+use crate::units::{Coord, to_mm};
 
 /// Refuses layers whose contours are open too far. Nothing is looked at if the mesh is closed, or
 /// is to be sliced as it is.
