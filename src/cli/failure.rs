@@ -8,7 +8,6 @@
 //! The line is the context, from the outermost on, and then the error itself, with colons
 //! between them. It ends with the library's error: its line holds what its causes say.
 
-use super::output::is_stdout;
 use slicer::error::Error;
 use slicer::mesh;
 use std::error::Error as StdError;
@@ -58,6 +57,11 @@ impl fmt::Display for Input {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
     }
+}
+
+/// Whether this name means standard output.
+pub(crate) fn is_stdout(name: &Path) -> bool {
+    name.as_os_str() == "-"
 }
 
 /// An output's name for people.

@@ -1,5 +1,7 @@
 //! Path -> Sink: a file that is there whole or not at all, a device, or standard output.
 
+pub(crate) use super::failure::is_stdout;
+
 use super::failure::Output;
 use super::input::BUFFER;
 use super::interrupt;
@@ -171,11 +173,6 @@ impl Seek for Sink {
             Target::Temporary(out, _) => out.seek(to),
         }
     }
-}
-
-/// Whether this name means standard output.
-pub(crate) fn is_stdout(name: &Path) -> bool {
-    name.as_os_str() == "-"
 }
 
 /// Whether the failure is that nobody reads standard output any more.

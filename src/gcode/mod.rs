@@ -1,4 +1,12 @@
 //! Toolpaths -> text: a G-code file, written layer by layer.
+//!
+//! A layer's paths become *moves* ([`moves`]): where each ends, its feed and its filament. Text
+//! ([`write`]), sums ([`usage`]) and the clock ([`times`]) all read the same moves, so that the times
+//! are those of what is written. Moves and text of several layers are made on all threads; the
+//! clock goes from layer to layer, and layers are written in order.
+//!
+//! A layer waits until its times are known, since *progress* (`M73`) stands within its text. The time
+//! in all is known at the end only: progress lines have a fixed length and are filled in then.
 
 pub mod dialect;
 pub mod flow;
