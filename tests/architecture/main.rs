@@ -105,7 +105,6 @@ const WITHOUT_HEAD: &[&str] = &[
     "reader/state.rs",
     "region/support.rs",
     "region/wall_samples.rs",
-    "report.rs",
 ];
 
 struct Source {
