@@ -1,11 +1,11 @@
 //! Words of the command line -> Arguments: every flag, its help, and the settings it stands for.
 
 use super::preview::PreviewArgs;
-use super::words::{factor, numbers, parts, words};
-use clap::builder::{PossibleValuesParser, RangedU64ValueParser};
+use super::words::{UNITS, factor, numbers, parts, triangles, unit, words};
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
-use slicer::mesh::{Placement, Policy, Unit};
+use slicer::mesh::{Placement, Policy};
 use slicer::profile::{DEFAULT, Override, ValueOrigin};
 use std::path::PathBuf;
 
@@ -298,24 +298,6 @@ pub(crate) struct PlaceArgs {
     /// What to do about faults of a mesh: mend it, slice it as it is, or refuse it
     #[arg(long, value_name = "POLICY", default_value = "repair", value_parser = ["repair", "warn", "strict"])]
     mesh: String,
-}
-
-/// Units that a model's numbers may have.
-pub(super) const UNITS: [&str; 4] = ["mm", "cm", "m", "inch"];
-
-/// One of [`UNITS`].
-pub(super) fn unit(name: &str) -> Unit {
-    match name {
-        "cm" => Unit::Cm,
-        "m" => Unit::M,
-        "inch" => Unit::Inch,
-        _ => Unit::Mm,
-    }
-}
-
-/// A number of triangles that a mesh can have.
-pub(super) fn triangles() -> RangedU64ValueParser<usize> {
-    RangedU64ValueParser::new().range(1..1 << 30)
 }
 
 impl PlaceArgs {

@@ -1,7 +1,7 @@
 //! `slicer mesh` -> what is wrong with a model, as text or JSON, and the mended mesh as STL.
 
 use super::output::{self, Sink};
-use super::{Outcome, interrupt, usage};
+use super::{Outcome, interrupt, usage, words};
 use anyhow::{Context as _, Result};
 use clap::Args;
 use serde::Serialize;
@@ -35,10 +35,10 @@ pub(crate) struct MeshArgs {
     #[arg(long)]
     json: bool,
     /// Unit of the model's numbers; sizes and gaps are reported in mm
-    #[arg(long, default_value = "mm", value_parser = super::args::UNITS)]
+    #[arg(long, default_value = "mm", value_parser = words::UNITS)]
     unit: String,
     /// Refuse a model with more triangles
-    #[arg(long, value_name = "N", default_value_t = read::DEFAULT_MAX_TRIANGLES, value_parser = super::args::triangles())]
+    #[arg(long, value_name = "N", default_value_t = read::DEFAULT_MAX_TRIANGLES, value_parser = words::triangles())]
     max_triangles: usize,
 }
 
@@ -74,7 +74,7 @@ pub(super) fn run(args: &MeshArgs) -> Result<Outcome> {
     let sink =
         args.output.as_deref().map(|out| Sink::open(out).map(|sink| (out, sink))).transpose()?;
     let placement = Placement {
-        unit: super::args::unit(&args.unit),
+        unit: words::unit(&args.unit),
         max_triangles: args.max_triangles,
         ..Placement::default()
     };

@@ -1,7 +1,7 @@
 //! `slicer preview` -> pictures of what a G-code file prints, a page to look through it, or a picture of a model.
 
 use super::output::{self, Sink};
-use super::{args, failure, input, interrupt, model, say, usage, viewer, words};
+use super::{failure, input, interrupt, model, say, usage, viewer, words};
 use anyhow::{Context as _, Result};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
@@ -70,7 +70,7 @@ pub(crate) struct PreviewArgs {
     #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
     set: Vec<String>,
     /// Refuse a model with more triangles
-    #[arg(long, value_name = "N", default_value_t = DEFAULT_MAX_TRIANGLES, value_parser = args::triangles(), help_heading = "Model")]
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_MAX_TRIANGLES, value_parser = words::triangles(), help_heading = "Model")]
     max_triangles: usize,
     /// Do not say which layer is drawn
     #[arg(short, long, help_heading = "Running")]

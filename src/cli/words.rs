@@ -1,7 +1,9 @@
-//! Words of flags -> values: settings after `--set`, lists of numbers, and names that stand for others.
+//! Words of flags -> values: settings after `--set`, lists of numbers, units, and names that stand for others.
 
 use super::failure::usage;
 use anyhow::Result;
+use clap::builder::RangedU64ValueParser;
+use slicer::mesh::Unit;
 use slicer::profile::keys::{self, Kind};
 use slicer::profile::{Override, ValueOrigin};
 
@@ -57,4 +59,22 @@ pub(super) fn numbers<const N: usize>(text: &str) -> std::result::Result<[f64; N
         .collect::<Option<_>>()
         .ok_or_else(wrong)?;
     parsed.try_into().map_err(|_| wrong())
+}
+
+/// Units that a model's numbers may have.
+pub(super) const UNITS: [&str; 4] = ["mm", "cm", "m", "inch"];
+
+/// One of [`UNITS`].
+pub(super) fn unit(name: &str) -> Unit {
+    match name {
+        "cm" => Unit::Cm,
+        "m" => Unit::M,
+        "inch" => Unit::Inch,
+        _ => Unit::Mm,
+    }
+}
+
+/// A number of triangles that a mesh can have.
+pub(super) fn triangles() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..1 << 30)
 }

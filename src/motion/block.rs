@@ -1,6 +1,5 @@
 //! Move + Rates -> Block: a move's length, speed and acceleration, and how fast it may begin.
 
-use super::junction;
 use super::limits::{Rates, moves_nozzle};
 use super::{Junction, Move};
 use crate::units::Bounded as _;
@@ -39,7 +38,7 @@ impl Course {
         let per_mm = 1.0 / distance;
         let direction = given.delta.map(|length| length * per_mm);
         let rest = match rates.limits.junction {
-            Junction::Jerk(_) => junction::from_rest(&direction, cruise, &rates.jerk_inverse),
+            Junction::Jerk(_) => from_rest(&direction, cruise, &rates.jerk_inverse),
             _ => 0.0,
         };
         Some(Self {
@@ -53,6 +52,15 @@ impl Course {
             deviation: rates.deviation,
         })
     }
+}
+
+/// The speed that no axis minds as a sudden start from rest, mm/s. `inverse` is 1 / jerk.
+fn from_rest(direction: &[f64; 4], cruise: f64, inverse: &[f64; 4]) -> f64 {
+    let mut worst = 0.0_f64;
+    for (direction, inverse) in direction.iter().zip(inverse) {
+        worst = worst.at_least(direction.abs() * inverse);
+    }
+    cruise.at_most(1.0 / worst)
 }
 
 /// A move in the planner. Speeds are squared, mm²/s²: at constant acceleration

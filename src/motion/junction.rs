@@ -15,15 +15,6 @@ const SHORT: f64 = 1.0;
 /// Marlin: cosine of 135°, from which on two short moves are taken as pieces of an arc.
 const ARC: f64 = -std::f64::consts::FRAC_1_SQRT_2;
 
-/// The speed that no axis minds as a sudden start from rest, mm/s. `inverse` is 1 / jerk.
-pub(super) fn from_rest(direction: &[f64; 4], cruise: f64, inverse: &[f64; 4]) -> f64 {
-    let mut worst = 0.0_f64;
-    for (direction, inverse) in direction.iter().zip(inverse) {
-        worst = worst.at_least(direction.abs() * inverse);
-    }
-    cruise.at_most(1.0 / worst)
-}
-
 /// Marlin's classic jerk, mm/s: the speed at which no axis changes its own by more than
 /// its jerk. `inverse` is 1 / jerk.
 pub(super) fn jerk(before: &Course, after: &Course, inverse: &[f64; 4]) -> f64 {
