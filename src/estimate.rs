@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::motion::{Clock, Junction, Limits, Move, Timed};
-use crate::reader::{self, Change, Event, Motion, Role, Summary, Wait};
+use crate::reader::{self, Change, Event, Heights, Motion, Role, Summary, Wait};
 use serde::Serialize;
 use std::f64::consts::PI;
 use std::io::BufRead;
@@ -66,7 +66,7 @@ pub struct RoleTime {
 /// What one layer takes.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct LayerTime {
-    /// Height of its first line, mm.
+    /// Height at which most of its lines lie, mm.
     pub z_mm: f64,
     /// Its time with the way to it, s.
     pub seconds: f64,
@@ -122,11 +122,11 @@ struct Tag {
 }
 
 /// A layer while it is measured.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 struct Layer {
     seconds: f64,
-    /// Of its first line.
-    z: Option<f64>,
+    /// Of its lines.
+    heights: Heights,
 }
 
 /// Sums up.
@@ -213,8 +213,7 @@ impl Meter {
         if motion.filament > 0.0 && (x != 0.0 || y != 0.0) {
             let diameter = self.options.filament_diameter;
             area = motion.filament * PI * diameter * diameter / 4.0 / length;
-            let z = &mut self.layers[layer].z;
-            *z = z.or(Some(motion.to[2]));
+            self.layers[layer].heights.add([motion.from[2], motion.to[2]], length);
         }
         let tag = Tag { layer, role: Some(motion.role), area };
         self.clock.push(Move { delta: [x, y, z, motion.filament], feed: motion.feed, tag });
@@ -240,7 +239,7 @@ impl Meter {
         let mut start_seconds: f64 = start.iter().map(|layer| layer.seconds).sum();
         let mut layers: Vec<LayerTime> = Vec::new();
         for layer in marked {
-            match (layer.z, layers.last_mut()) {
+            match (layer.heights.height(), layers.last_mut()) {
                 (Some(z_mm), _) => layers.push(LayerTime { z_mm, seconds: layer.seconds }),
                 // A layer without a line is none: its moves count with what lies before.
                 (None, Some(last)) => last.seconds += layer.seconds,

@@ -71,8 +71,10 @@ pub(super) struct Judge<'a> {
     pub(super) grid: Grid,
     /// Usual width of a wall, mm.
     pub(super) line_width: f64,
-    /// Height of the tallest line, mm.
-    pub(super) tallest: f64,
+    /// For each layer where it and all above it reach down to, mm.
+    pub(super) floors: &'a [f64],
+    /// For each layer the lines of other layers that lie at its height: places in the moves.
+    pub(super) strays: &'a [Vec<usize>],
     pub(super) terms: &'a Terms,
     /// Whether roles are told, so that lines of the part can be told from others.
     pub(super) has_roles: bool,
@@ -88,10 +90,7 @@ impl Judge<'_> {
     /// Judges layer `index`, whose cut and those below and above are given.
     pub(super) fn layer(&self, index: usize, [below, here, above]: [&Bits; 3]) -> Verdict {
         let layer = &self.print.layers[index];
-        let lines = || {
-            let steps = self.print.moves_of(layer).iter();
-            steps.filter(|step| is_of_part(step, self.has_roles))
-        };
+        let lines = || self.lines_at(index);
         let (mut solid, mut sparse) = (Bits::new(self.grid.size), Bits::new(self.grid.size));
         for step in lines() {
             let into = if step.role == Role::Infill { &mut sparse } else { &mut solid };
@@ -132,16 +131,30 @@ impl Judge<'_> {
         verdict
     }
 
-    /// What thick walls and skins of the layers above cover of this one.
+    /// The part's lines at the height of a layer: its own, and those of other layers that vary in
+    /// height so much that they lie here.
+    fn lines_at(&self, index: usize) -> impl Iterator<Item = &Step> {
+        let layer = &self.print.layers[index];
+        let own = self.print.moves_of(layer).iter().filter(|step| !is_stray(step, layer));
+        let strays = self.strays[index].iter().map(|&stray| &self.print.moves[stray]);
+        own.chain(strays).filter(|step| is_of_part(step, self.has_roles))
+    }
+
+    /// What walls and skins of the layers above cover of this one: thick ones, and those that vary
+    /// in height.
     fn reaching_down(&self, index: usize) -> Bits {
-        let z = self.print.layers[index].z;
+        let layer = &self.print.layers[index];
+        let (top, bottom) = (layer.z - SAME_HEIGHT, layer.z - layer.height + SAME_HEIGHT);
         let mut bits = Bits::new(self.grid.size);
-        let above = self.print.layers[index + 1..].iter();
-        for layer in above.take_while(|layer| layer.z - self.tallest < z - SAME_HEIGHT) {
+        for above in index + 1..self.print.layers.len() {
+            if self.floors[above] >= top {
+                break;
+            }
             let reaches = |step: &&Step| {
-                step.role != Role::Infill && layer.z - f64::from(step.height) < z - SAME_HEIGHT
+                let [low, high] = step.heights();
+                step.role != Role::Infill && low - f64::from(step.height) < top && high > bottom
             };
-            let steps = self.print.moves_of(layer).iter();
+            let steps = self.print.moves_of(&self.print.layers[above]).iter();
             steps
                 .filter(|step| is_of_part(step, self.has_roles))
                 .filter(reaches)
@@ -212,6 +225,42 @@ impl Judge<'_> {
             }
         }
     }
+}
+
+/// Whether a line lies so far from its layer's height that it is held against another layer.
+fn is_stray(step: &Step, layer: &Layer) -> bool {
+    let [low, high] = step.heights();
+    (0.5 * (low + high) - layer.z).abs() > layer.height + SAME_HEIGHT
+}
+
+/// For each layer the lines of other layers that lie at its height.
+pub(super) fn strays(print: &Print) -> Vec<Vec<usize>> {
+    let mut strays = vec![Vec::new(); print.layers.len()];
+    for layer in &print.layers {
+        for index in layer.moves.clone() {
+            let step = &print.moves[index];
+            if step.is_line() && is_stray(step, layer) {
+                let [low, high] = step.heights();
+                let at = print.layers.partition_point(|one| one.z < 0.5 * (low + high));
+                strays[at.min(print.layers.len() - 1)].push(index);
+            }
+        }
+    }
+    strays
+}
+
+/// For each layer where the lines of it and all above it reach down to, mm.
+pub(super) fn floors(print: &Print) -> Vec<f64> {
+    let mut floor = f64::INFINITY;
+    let mut floors: Vec<f64> = Vec::with_capacity(print.layers.len());
+    for layer in print.layers.iter().rev() {
+        let lines = print.moves_of(layer).iter().filter(|step| step.is_line());
+        let lows = lines.map(|step| step.heights()[0] - f64::from(step.height));
+        floor = lows.fold(floor, f64::min);
+        floors.push(floor);
+    }
+    floors.reverse();
+    floors
 }
 
 /// What part of a line lies in an area.

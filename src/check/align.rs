@@ -161,7 +161,8 @@ fn sizes(larger: [f64; 2], fits: f64, found: &mut Findings) {
 /// Whether the print is as high as what of the model can be printed.
 fn height(print: &Print, model: Model<'_>, part: &Part, found: &mut Findings) {
     let Some(last) = print.layers.last() else { return };
-    let lacks = part.height() - last.z;
+    let top = print.top();
+    let lacks = part.height() - top;
     let mut tell = |than: &str| {
         let text = format!("the print is {} mm {than} than the part", short(lacks.abs()));
         found.add(Finding::of(Code::WrongSize, lacks.abs(), "mm", text));
@@ -175,7 +176,7 @@ fn height(print: &Print, model: Model<'_>, part: &Part, found: &mut Findings) {
     // A tip that is thinner than a line is left out by right.
     let above = ((lacks / last.height).floor() as usize).min(MOST_ABOVE);
     let layers: Vec<(f64, f64)> =
-        (1..=above).map(|k| (last.z + k as f64 * last.height, last.height)).collect();
+        (1..=above).map(|k| (top + k as f64 * last.height, last.height)).collect();
     let Ok(rest) = Part::new(model.mesh, model.offset, &layers) else { return };
     let Some((low, high)) = rest.extent() else { return };
     let grid = Grid::over(low, high, 1.0, PIXELS.0, PIXELS.1);

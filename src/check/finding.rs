@@ -24,7 +24,7 @@ pub enum Code {
     UnpairedRetraction,
     /// A line takes far more or less plastic than others of its role and size.
     OddBead,
-    /// A line lies lower than what was printed before it.
+    /// A layer lies lower than one before it, or a line in what layers before have printed.
     FallingZ,
     /// Lines have nothing under them and hang on nothing.
     InTheAir,

@@ -5,11 +5,11 @@ use super::finding::{Code, Finding, Findings, Place, short};
 use super::heat::Heat;
 use super::terms::{Machine, Terms};
 use crate::profile::DialectName;
+use crate::reader::Print;
 use crate::reader::print::{Step, What};
-use crate::reader::{Print, Role};
 
 /// Coordinates are rounded to this or less, mm.
-const ROUNDING: f64 = 0.01;
+pub(super) const ROUNDING: f64 = 0.01;
 
 /// Speeds may be over the limit by this factor: they are rounded, too.
 const SPEED_SLACK: f64 = 1.01;
@@ -111,10 +111,10 @@ struct Walk<'a> {
     pulled: f64,
     /// Whether the firmware has it pulled back.
     pulled_by_firmware: bool,
-    /// Highest line so far, mm.
-    printed_z: f64,
-    /// The layer whose falling was told last.
-    fallen: Option<usize>,
+    /// By how much the layer lies lower than one before it, mm, until that is reported.
+    fall: f64,
+    /// Height of the highest layer so far, mm.
+    highest: f64,
 }
 
 impl<'a> Walk<'a> {
@@ -132,8 +132,8 @@ impl<'a> Walk<'a> {
             is_cold_told: false,
             pulled: 0.0,
             pulled_by_firmware: false,
-            printed_z: 0.0,
-            fallen: None,
+            fall: 0.0,
+            highest: 0.0,
         }
     }
 
@@ -152,6 +152,9 @@ impl<'a> Walk<'a> {
         let next = self.layer.map_or(0, |layer| layer + 1);
         if self.print.layers.get(next).is_some_and(|layer| layer.moves.start <= index) {
             self.layer = Some(next);
+            let z = self.print.layers[next].z;
+            self.fall = self.highest - z;
+            self.highest = self.highest.max(z);
         }
         let before = found.len();
         self.retraction(index, step, found);
@@ -161,7 +164,7 @@ impl<'a> Walk<'a> {
             self.speed(step, found);
         }
         if step.is_line() && self.printing.contains(&index) {
-            self.falling(step, found);
+            self.falling(found);
         }
         // All of them lie where the move ends.
         let place = Place {
@@ -245,11 +248,12 @@ impl<'a> Walk<'a> {
     fn speed(&self, step: &Step, found: &mut Findings) {
         let Some(machine) = self.machine else { return };
         let length = step.length();
+        let rise = (f64::from(step.to[2]) - f64::from(step.from[2])).abs();
         // Firmwares hold moves in z and of the filament alone to their limits, as slicers count on.
-        if length < LEAST_LENGTH || step.from[2] != step.to[2] {
+        if length < LEAST_LENGTH || (rise > 0.0 && !step.is_line()) {
             return;
         }
-        let feed = f64::from(step.feed);
+        let feed = f64::from(step.feed).min(machine.speed[2] * length / rise);
         for axis in 0..2 {
             let way = f64::from(step.to[axis]) - f64::from(step.from[axis]);
             let speed = way.abs() / length * feed;
@@ -272,15 +276,18 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Skins may follow the surface up and down; all else goes up.
-    fn falling(&mut self, step: &Step, found: &mut Findings) {
-        let z = f64::from(step.from[2].min(step.to[2]));
-        let fall = self.printed_z - z;
-        if fall > ROUNDING && step.role != Role::Skin && self.fallen != self.layer {
-            self.fallen = self.layer;
-            let text = format!("{} mm lower than what is printed already", short(fall));
-            found.add(Finding::of(Code::FallingZ, fall, "mm", text));
+    /// Lines of a layer may go up and down, but layers go up. What a line runs into is looked for
+    /// where lines are piled up, see [`super::stack`].
+    fn falling(&mut self, found: &mut Findings) {
+        let fall = std::mem::take(&mut self.fall);
+        if fall > ROUNDING {
+            found.add(fallen(fall));
         }
-        self.printed_z = self.printed_z.max(f64::from(step.to[2]));
     }
+}
+
+/// A line that lies `fall` mm lower than what is printed already.
+pub(super) fn fallen(fall: f64) -> Finding {
+    let text = format!("{} mm lower than what is printed already", short(fall));
+    Finding::of(Code::FallingZ, fall, "mm", text)
 }

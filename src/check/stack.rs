@@ -9,6 +9,7 @@
 use super::beads::place;
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Findings, short};
+use super::moves::{ROUNDING, fallen};
 use super::part::Part;
 use super::raster::Grid;
 use super::samples::{Sample, Samples};
@@ -41,6 +42,9 @@ const LEAST_TWICE: f64 = 10.0;
 const LEAST_WHOLE: f64 = 2.0;
 const WHOLE: f64 = 0.8;
 
+/// Heights of lines that differ by less are the same, mm: positions are rounded to this or less.
+const SAME_HEIGHT: f32 = 0.01;
+
 /// So far behind the nozzle a line counts as one that the next may not run on, mm: turns are closer.
 const BEHIND: f64 = 1.5;
 
@@ -60,6 +64,7 @@ pub(super) struct Measured {
 pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) -> Measured {
     let mut measured = Measured::default();
     let Some(mut pile) = Pile::over(print) else { return measured };
+    let mut highest = 0.0_f64;
     for (layer, one) in print.layers.iter().enumerate() {
         gap(print, layer, found);
         pile.begin_layer();
@@ -71,6 +76,11 @@ pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) ->
             .collect();
         let judge = Judge { layer, part };
         judge.patches(&lines, &mut pile, found, &mut measured);
+        // A layer that falls as a whole is reported where moves are judged one by one.
+        if let Some((fall, step)) = pile.fall.take().filter(|_| one.z >= highest - ROUNDING) {
+            found.add(Finding { place: place(layer, &step), ..fallen(fall) });
+        }
+        highest = highest.max(one.z);
         steps.iter().filter(|step| step.is_line()).for_each(|step| pile.raise(step));
     }
     measured
@@ -179,6 +189,11 @@ struct Pile {
     owners_from: u32,
     /// For each line of the layer a line that it touches, and so on to the first of its patch.
     parents: Vec<usize>,
+    /// The highest line of the layers before, mm.
+    highest: f64,
+    /// How deep a line of this layer lies in what the layers before have printed, mm, and the line
+    /// that lies deepest.
+    fall: Option<(f64, Step)>,
 }
 
 impl Pile {
@@ -193,6 +208,8 @@ impl Pile {
             owners: vec![0; count],
             owners_from: 0,
             parents: Vec::new(),
+            highest: 0.0,
+            fall: None,
         })
     }
 
@@ -230,6 +247,7 @@ impl Pile {
             }
             for place in Samples::of(step, self.grid.pitch) {
                 length += place.length;
+                self.find_fall(step, &place);
                 twice.add(self.is_laid(step, place.at), place.length, step);
                 runs.add(self.is_carried(step, &place), place);
             }
@@ -265,7 +283,20 @@ impl Pile {
     /// Whether the middle of another line of this layer lies there.
     fn is_laid(&self, step: &Step, at: [f64; 2]) -> bool {
         let core = self.at(&self.cores, at).unwrap_or(0.0);
-        core > 0.0 && (core - step.to[2]).abs() < 0.01
+        core > 0.0 && (core - middle(step)).abs() < SAME_HEIGHT
+    }
+
+    /// Notes how far a place of a line lies below the nozzle's way there in a layer before. Flat
+    /// layers, which all lie above those before, need not be looked at.
+    fn find_fall(&mut self, step: &Step, place: &Sample) {
+        if place.z >= self.highest - ROUNDING {
+            return;
+        }
+        let is_of_layer = self.at(&self.owners, place.at).is_none_or(|one| one > self.owners_from);
+        let fall = f64::from(self.at(&self.cores, place.at).unwrap_or(0.0)) - place.z;
+        if !is_of_layer && fall > self.fall.map_or(ROUNDING, |(most, _)| most) {
+            self.fall = Some((fall, *step));
+        }
     }
 
     /// Lays a line down, and joins it to the lines of this layer that it touches.
@@ -303,6 +334,7 @@ impl Pile {
     fn raise(&mut self, step: &Step) {
         let extra = if step.role == Role::Support { SUPPORT_GAP as f32 } else { 0.0 };
         let top = step.from[2].max(step.to[2]) + extra;
+        self.highest = self.highest.max(step.heights()[1]);
         let (width, tops) = (self.grid.size[0], &mut self.tops);
         Capsule::of(step, 1.0).rows(&self.grid, |y, span| {
             for known in &mut tops[y * width..][span] {
@@ -312,9 +344,14 @@ impl Pile {
     }
 
     fn lay_core(&mut self, step: &Step) {
-        let (width, cores, z) = (self.grid.size[0], &mut self.cores, step.to[2]);
+        let (width, cores, z) = (self.grid.size[0], &mut self.cores, middle(step));
         Capsule::of(step, CORE).rows(&self.grid, |y, span| cores[y * width..][span].fill(z));
     }
+}
+
+/// Height of the nozzle in the middle of a line, mm.
+fn middle(step: &Step) -> f32 {
+    0.5 * (step.from[2] + step.to[2])
 }
 
 /// Stretches of a line that nothing carries.

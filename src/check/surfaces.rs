@@ -1,6 +1,6 @@
 //! Print + Part -> findings against the model, layer by layer, and the sums over all of them.
 
-use super::against::{Areas, Judge, SOME_WIDTH, Verdict, is_of_part};
+use super::against::{Areas, Judge, SOME_WIDTH, Verdict, floors, is_of_part, strays};
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::part::{Part, extent_of};
 use super::raster::{Bits, Grid};
@@ -61,12 +61,14 @@ pub(super) fn check(
     let both = [extent(lines), part.extent()];
     let corners = both.into_iter().flatten().flat_map(|(low, high)| [low, high]);
     let Some((low, high)) = extent_of(corners) else { return Sums::default() };
+    let (floors, strays) = (floors(print), strays(print));
     let judge = Judge {
         print,
         part,
         grid: Grid::over(low, high, 1.0, PITCH, MOST_PIXELS),
         line_width: line_width(print),
-        tallest: print.moves.iter().map(|step| f64::from(step.height)).fold(0.0, f64::max),
+        floors: &floors,
+        strays: &strays,
         terms,
         has_roles,
     };

@@ -18,7 +18,7 @@ const LEAST_TIME: f64 = 0.1;
 pub struct PairOfLayers {
     /// Which one, counted from 1; 0 is what comes before the first. `None` where a file has none.
     pub layer: Both<Option<usize>>,
-    /// Height of the nozzle at its first line, mm.
+    /// Height of the nozzle where most of its lines lie, mm.
     pub z_mm: Both<Option<f64>>,
     /// How far it lies above the layer below, mm.
     pub height_mm: Both<Option<f64>>,

@@ -66,7 +66,7 @@ pub struct RoleFacts {
 /// What is told of a layer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LayerFacts {
-    /// Height of its first line.
+    /// Height at which most of its lines lie.
     pub z: f64,
     /// Height above the layer below.
     pub height: f64,

@@ -7,6 +7,8 @@
 mod arc;
 mod change;
 mod heat;
+mod height;
+mod layers;
 mod lines;
 mod marks;
 pub mod print;
@@ -16,6 +18,7 @@ mod words;
 
 pub use change::Change;
 pub use heat::{Heater, Heating};
+pub(crate) use height::Heights;
 pub use print::Print;
 pub use role::Role;
 
@@ -32,7 +35,7 @@ pub enum Event {
     Wait(Wait),
     /// A layer begins.
     Layer {
-        /// Whether a comment says so; otherwise it is told from an extruding move at a new height.
+        /// Whether a comment marks it; otherwise it is found from the heights of lines.
         marked: bool,
     },
     /// The machine is told to hold itself to other limits.
@@ -106,10 +109,12 @@ pub struct Summary {
 /// Only what reading the bytes gives: no content is an error.
 pub fn read(source: &mut dyn BufRead, sink: &mut dyn FnMut(u64, Event)) -> io::Result<Summary> {
     let mut state = state::State::default();
+    let mut layers = layers::Layers::default();
     let mut number = 0;
     lines::each(source, &mut |line| {
         number += 1;
-        state.line(line, &mut |event| sink(number, event));
+        state.line(line, &mut |event| layers.event(number, event, sink));
     })?;
+    layers.finish(sink);
     Ok(state.summary)
 }

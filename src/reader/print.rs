@@ -1,6 +1,6 @@
 //! Events -> Print: a whole G-code file as layers of moves, held compactly.
 
-use super::{Event, Heating, Motion, Role, Summary};
+use super::{Event, Heating, Heights, Motion, Role, Summary};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::io::{self, BufRead};
@@ -61,7 +61,7 @@ pub struct Print {
 pub struct Layer {
     /// Its part of [`Print::moves`].
     pub moves: Range<usize>,
-    /// Height of the nozzle at its first line, mm.
+    /// Height of the nozzle where most of its lines lie, mm.
     pub z: f64,
     /// How far it lies above the layer below, or the bed, mm.
     pub height: f64,
@@ -121,6 +121,13 @@ impl Step {
         (way(0) * way(0) + way(1) * way(1) + way(2) * way(2)).sqrt()
     }
 
+    /// Lowest and highest height of the nozzle, mm.
+    #[must_use]
+    pub fn heights(&self) -> [f64; 2] {
+        let [from, to] = [self.from[2], self.to[2]].map(f64::from);
+        if from < to { [from, to] } else { [to, from] }
+    }
+
     /// Whether it lays down a line: it goes sideways and pushes filament.
     #[must_use]
     pub fn is_line(&self) -> bool {
@@ -150,6 +157,12 @@ impl Print {
     pub fn lines(&self) -> impl Iterator<Item = &Step> {
         let steps = self.layers.iter().flat_map(|layer| self.moves_of(layer));
         steps.filter(|step| step.is_line())
+    }
+
+    /// Height of the nozzle at the highest line of all layers, mm; 0 without one.
+    #[must_use]
+    pub fn top(&self) -> f64 {
+        self.lines().map(|step| step.heights()[1]).fold(0.0, f64::max)
     }
 
     /// The last of the values with this key.
@@ -255,14 +268,16 @@ impl Builder {
         let mut below = 0.0;
         for (k, &first) in begins.iter().enumerate() {
             let end = begins.get(k + 1).copied().unwrap_or(print.moves.len());
-            let line = print.moves[first..end].iter().find(|step| step.is_line());
-            let (Some(line), last) = (line, print.layers.last_mut()) else {
+            let mut heights = Heights::default();
+            for line in print.moves[first..end].iter().filter(|step| step.is_line()) {
+                heights.add([line.from[2], line.to[2]].map(f64::from), line.length());
+            }
+            let (Some(z), last) = (heights.height(), print.layers.last_mut()) else {
                 if let Some(last) = print.layers.last_mut() {
                     last.moves.end = end;
                 }
                 continue;
             };
-            let z = f64::from(line.to[2]);
             let height = match (z - below, last) {
                 (rise, _) if rise > SAME_HEIGHT => rise,
                 // Beside the layer before, or a part of its own.

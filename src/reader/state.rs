@@ -9,9 +9,6 @@ use super::{Change, Event, Motion, Role, Summary, Wait};
 /// Feed before the file names one, mm/s: Marlin's.
 const FIRST_FEED: f64 = 25.0;
 
-/// Heights that differ by less are the same, mm.
-const SAME_HEIGHT: f64 = 1e-4;
-
 /// Millimetres in an inch.
 const INCH: f64 = 25.4;
 
@@ -40,10 +37,6 @@ pub(super) struct State {
     role: Role,
     width: Option<f64>,
     height: Option<f64>,
-    /// Whether comments say where layers begin.
-    marked: bool,
-    /// Height of the last layer told from a move, mm.
-    layer_height: Option<f64>,
     pub(super) summary: Summary,
 }
 
@@ -60,8 +53,6 @@ impl Default for State {
             role: Role::Other,
             width: None,
             height: None,
-            marked: false,
-            layer_height: None,
             summary: Summary::default(),
         }
     }
@@ -89,10 +80,7 @@ impl State {
             Some(Mark::Role(role)) => self.role = role,
             Some(Mark::Width(width)) => self.width = Some(width),
             Some(Mark::Height(height)) => self.height = Some(height),
-            Some(Mark::Layer) => {
-                self.marked = true;
-                sink(Event::Layer { marked: true });
-            }
+            Some(Mark::Layer) => sink(Event::Layer { marked: true }),
             None => sink(Event::Comment(comment.to_vec())),
         }
     }
@@ -242,20 +230,12 @@ impl State {
         // From a place that only the printer knows, the way is not known either: none is counted.
         let to = to.map(Option::unwrap_or_default);
         let from: [f64; 3] = std::array::from_fn(|axis| from[axis].unwrap_or(to[axis]));
-        let sideways = from[0] != to[0] || from[1] != to[1];
         let role = match (from != to, filament > 0.0) {
             (true, true) => self.role,
             (true, false) => Role::Travel,
             (false, _) if filament != 0.0 => Role::Retraction,
             (false, _) => return,
         };
-        if sideways && filament > 0.0 && !self.marked && from[2] == to[2] {
-            let same = |height: f64| (height - to[2]).abs() < SAME_HEIGHT;
-            if !self.layer_height.is_some_and(same) {
-                self.layer_height = Some(to[2]);
-                sink(Event::Layer { marked: false });
-            }
-        }
         let (width, height) = (self.width, self.height);
         let feed = self.feed * self.feed_factor;
         sink(Event::Move(Motion { from, to, filament, feed, role, width, height }));
