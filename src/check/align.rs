@@ -6,8 +6,10 @@ use super::finding::{Code, Finding, Findings, short};
 use super::part::Part;
 use super::raster::Grid;
 use super::{extent, median};
+use crate::geom::segment;
 use crate::reader::print::{Layer, Step};
 use crate::reader::{Print, Role};
+use nalgebra::Vector2;
 
 /// A model may lie so far from where it is expected and be taken as lying there, mm.
 const MOST_OFF: f64 = 0.3;
@@ -39,8 +41,8 @@ const LEAST_AREA: f64 = 1.0;
 /// How the lines of a layer lie to the model's cut: middle to middle, and larger in x and y, mm.
 #[derive(Debug, Clone, Copy)]
 struct Off {
-    middle: [f64; 2],
-    size: [f64; 2],
+    middle: Vector2<f64>,
+    size: Vector2<f64>,
 }
 
 /// The model cut at the print's layers, where the lines lie. `None` if the two cannot be held
@@ -69,8 +71,9 @@ pub(super) fn place(
         .filter_map(|(index, layer)| off(print, layer, part.extent_of(index)?, has_roles))
         .collect();
     let mut fits = fit(print, &part, has_roles);
-    let usual = |of: fn(&Off) -> [f64; 2]| {
-        [0, 1].map(|axis| median(offs.iter().map(|off| of(off)[axis]).collect()).unwrap_or(0.0))
+    let usual = |of: fn(&Off) -> Vector2<f64>| {
+        let axis = |axis: usize| median(offs.iter().map(|off| of(off)[axis]).collect());
+        [axis(0).unwrap_or(0.0), axis(1).unwrap_or(0.0)]
     };
     let by = usual(|off| off.middle);
     if fits < 1.0 && by.iter().any(|by| by.abs() > MOST_OFF) {
@@ -78,7 +81,7 @@ pub(super) fn place(
         let shifted = fit(print, &part, has_roles);
         if shifted > fits {
             fits = shifted;
-            let [x, y] = [0, 1].map(|axis| short(model.offset[axis] + by[axis]));
+            let [x, y] = segment::along(model.offset, 1.0, by).map(short);
             notes.push(format!("where on the bed the part lies: its middle is at x {x} y {y}"));
         } else {
             part.shift(by.map(|by| -by));
@@ -134,10 +137,8 @@ fn off(
     let any = |step: &&Step| is_of_part(step, has_roles);
     let walls = extent(steps.iter().filter(outlines));
     let (from, to) = walls.or_else(|| extent(steps.iter().filter(any)))?;
-    Some(Off {
-        middle: [0, 1].map(|axis| (from[axis] + to[axis] - low[axis] - high[axis]) / 2.0),
-        size: [0, 1].map(|axis| (to[axis] - from[axis]) - (high[axis] - low[axis])),
-    })
+    let [from, to, low, high] = [from, to, low, high].map(Vector2::from);
+    Some(Off { middle: (from + to - low - high) / 2.0, size: (to - from) - (high - low) })
 }
 
 /// Tells what of the size is wrong, or else that the shape is.

@@ -2,6 +2,7 @@
 
 use super::raster::{Bits, Grid};
 use crate::reader::print::Step;
+use nalgebra::Vector2;
 
 /// All places within `radius` of the stretch from `from` to `to`, mm.
 #[derive(Debug, Clone, Copy)]
@@ -21,9 +22,9 @@ impl Capsule {
 
     /// Lowest and highest x and y.
     pub(super) fn extent(&self) -> ([f64; 2], [f64; 2]) {
-        let low = [0, 1].map(|axis| self.from[axis].min(self.to[axis]) - self.radius);
-        let high = [0, 1].map(|axis| self.from[axis].max(self.to[axis]) + self.radius);
-        (low, high)
+        let (from, to) = (Vector2::from(self.from), Vector2::from(self.to));
+        let (low, high) = from.inf_sup(&to);
+        (low.add_scalar(-self.radius).into(), high.add_scalar(self.radius).into())
     }
 
     /// Hands each row's pixels to `sink`.
@@ -94,6 +95,7 @@ fn limits(slope: f64, rest: f64, low: f64, high: f64) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::segment;
     use proptest::prelude::*;
 
     proptest! {
@@ -106,19 +108,10 @@ mod tests {
             let grid = Grid::over([0.0; 2], [8.0; 2], 1.5, 0.1, 1e9);
             let mut bits = Bits::new(grid.size);
             Capsule { from, to, radius }.draw(&grid, &mut bits);
-            let way = [to[0] - from[0], to[1] - from[1]];
-            let square = way[0] * way[0] + way[1] * way[1];
             for y in 0..grid.size[1] {
                 for x in 0..grid.size[0] {
                     let at = grid.middle(x, y);
-                    let rel = [at[0] - from[0], at[1] - from[1]];
-                    let t = if square > 0.0 {
-                        ((rel[0] * way[0] + rel[1] * way[1]) / square).clamp(0.0, 1.0)
-                    } else {
-                        0.0
-                    };
-                    let off = [rel[0] - t * way[0], rel[1] - t * way[1]];
-                    let distance = (off[0] * off[0] + off[1] * off[1]).sqrt();
+                    let distance = segment::distance2(at, [from, to]).sqrt();
                     if (distance - radius).abs() > 1e-6 {
                         prop_assert_eq!(bits.has(x, y), distance < radius);
                     }

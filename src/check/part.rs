@@ -6,6 +6,8 @@
 //! row counts as above it.
 
 use super::raster::{Bits, Grid};
+use crate::geom::cells::Cells;
+use crate::geom::segment;
 use crate::mesh::Mesh;
 use crate::units::{UNITS_PER_MM, to_mm};
 
@@ -20,9 +22,8 @@ pub(super) struct Part {
     triangles: Vec<[u32; 3]>,
     /// Height of each layer's cut, mm, rising.
     planes: Vec<f64>,
-    /// Triangles that each plane cuts: those of layer k are `cut[starts[k]..starts[k + 1]]`.
-    starts: Vec<usize>,
-    cut: Vec<u32>,
+    /// Triangles that each plane cuts.
+    cut: Cells<u32>,
     /// Heights of level faces, mm, rising.
     levels: Vec<f64>,
 }
@@ -52,17 +53,10 @@ impl Part {
             .iter()
             .map(|&[x, y, z]| [to_mm(x) + offset[0], to_mm(y) + offset[1], to_mm(z)])
             .collect();
-        let mut part = Self {
-            vertices,
-            triangles: mesh.triangles.clone(),
-            starts: vec![0; planes.len() + 1],
-            planes,
-            cut: Vec::new(),
-            levels: Vec::new(),
-        };
-        part.levels = part.find_levels();
-        part.sort();
-        Ok(part)
+        let triangles = mesh.triangles.clone();
+        let cut = cut(&vertices, &triangles, &planes);
+        let levels = levels(&vertices, &triangles);
+        Ok(Self { vertices, triangles, planes, cut, levels })
     }
 
     /// Moves it, mm.
@@ -71,44 +65,6 @@ impl Part {
             vertex[0] += by[0];
             vertex[1] += by[1];
         }
-    }
-
-    /// Finds the triangles of each plane.
-    fn sort(&mut self) {
-        let spans: Vec<std::ops::Range<usize>> = self
-            .triangles
-            .iter()
-            .map(|corners| {
-                let z = corners.map(|corner| self.vertices[corner as usize][2]);
-                let (low, high) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
-                let beyond = |height: f64| self.planes.partition_point(|plane| *plane <= height);
-                beyond(low)..beyond(high)
-            })
-            .collect();
-        let mut counts = vec![0_usize; self.planes.len() + 1];
-        spans.iter().flat_map(Clone::clone).for_each(|plane| counts[plane + 1] += 1);
-        for k in 1..counts.len() {
-            counts[k] += counts[k - 1];
-        }
-        self.starts.clone_from(&counts);
-        self.cut = vec![0; self.starts.last().copied().unwrap_or(0)];
-        for (triangle, span) in (0_u32..).zip(&spans) {
-            for plane in span.clone() {
-                self.cut[counts[plane]] = triangle;
-                counts[plane] += 1;
-            }
-        }
-    }
-
-    fn find_levels(&self) -> Vec<f64> {
-        let level = |corners: &[u32; 3]| {
-            let [a, b, c] = corners.map(|corner| self.vertices[corner as usize][2]);
-            (a == b && b == c).then_some(a)
-        };
-        let mut levels: Vec<f64> = self.triangles.iter().filter_map(level).collect();
-        levels.sort_unstable_by(f64::total_cmp);
-        levels.dedup();
-        levels
     }
 
     /// Whether a layer is cut along a level face, where other slicers' rules may differ.
@@ -141,7 +97,7 @@ impl Part {
     /// The outline of a layer's cut.
     fn segments(&self, layer: usize) -> impl Iterator<Item = Segment> {
         let plane = self.planes[layer];
-        let cut = &self.cut[self.starts[layer]..self.starts[layer + 1]];
+        let cut = self.cut.of(layer..layer + 1);
         cut.iter().filter_map(move |&triangle| self.segment(triangle, plane))
     }
 
@@ -165,7 +121,8 @@ impl Part {
     fn crossing(&self, below: u32, above: u32, plane: f64) -> [f64; 2] {
         let (low, high) = (self.vertices[below as usize], self.vertices[above as usize]);
         let part = (plane - low[2]) / (high[2] - low[2]);
-        [0, 1].map(|axis| low[axis] + part * (high[axis] - low[axis]))
+        let [x, y, _] = segment::along(low, part, segment::way(low, high));
+        [x, y]
     }
 
     /// What of the bed the model covers at a layer, nothing beyond the last; and whether its
@@ -216,6 +173,29 @@ impl Part {
         }
         winding == 0
     }
+}
+
+/// The triangles that each plane cuts.
+fn cut(vertices: &[[f64; 3]], triangles: &[[u32; 3]], planes: &[f64]) -> Cells<u32> {
+    let reach = |triangle: u32| {
+        let z = triangles[triangle as usize].map(|corner| vertices[corner as usize][2]);
+        let (low, high) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
+        let beyond = |height: f64| planes.partition_point(|plane| *plane <= height);
+        beyond(low)..beyond(high)
+    };
+    Cells::new(planes.len(), || (0_u32..).take(triangles.len()), reach)
+}
+
+/// Heights of level faces, mm, rising.
+fn levels(vertices: &[[f64; 3]], triangles: &[[u32; 3]]) -> Vec<f64> {
+    let level = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|corner| vertices[corner as usize][2]);
+        (a == b && b == c).then_some(a)
+    };
+    let mut levels: Vec<f64> = triangles.iter().filter_map(level).collect();
+    levels.sort_unstable_by(f64::total_cmp);
+    levels.dedup();
+    levels
 }
 
 /// Lowest and highest x and y of some places.

@@ -1,5 +1,7 @@
 //! Grid and Bits: an area of the bed as rows of bits, one a pixel, for booleans, growing and shrinking.
 
+use crate::geom::segment;
+
 /// Where the pixels lie.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grid {
@@ -15,7 +17,7 @@ impl Grid {
     /// One that covers a rectangle and `margin` mm more, with pixels of `pitch` mm, or larger
     /// ones if these were more than `most`.
     pub(super) fn over(low: [f64; 2], high: [f64; 2], margin: f64, pitch: f64, most: f64) -> Self {
-        let sides = [0, 1].map(|axis| (high[axis] - low[axis]).max(0.0) + 2.0 * margin);
+        let sides = segment::way(low, high).map(|side| side.max(0.0) + 2.0 * margin);
         let pitch = pitch.max((sides[0] * sides[1] / most).sqrt());
         Self {
             low: low.map(|low| low - margin),
@@ -26,7 +28,7 @@ impl Grid {
 
     /// Middle of a pixel, mm.
     pub(super) fn middle(&self, x: usize, y: usize) -> [f64; 2] {
-        [(x, 0), (y, 1)].map(|(at, axis)| self.low[axis] + (at as f64 + 0.5) * self.pitch)
+        segment::along(self.low, self.pitch, [x as f64 + 0.5, y as f64 + 0.5])
     }
 
     /// The pixel that a place lies in.

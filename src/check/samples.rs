@@ -1,5 +1,6 @@
 //! A line -> Samples: its short pieces, one after the other.
 
+use crate::geom::segment;
 use crate::reader::print::Step;
 
 /// A short piece of a line.
@@ -28,7 +29,7 @@ impl Samples {
     /// Of about `pitch` mm each.
     pub(super) fn of(step: &Step, pitch: f64) -> Self {
         let from = step.from.map(f64::from);
-        let way = [0, 1, 2].map(|axis| f64::from(step.to[axis]) - from[axis]);
+        let way = segment::way(from, step.to.map(f64::from));
         let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
         let count = (length / pitch).ceil().max(1.0) as usize;
         Self { from, way, length, count, next: 0 }
@@ -44,9 +45,10 @@ impl Iterator for Samples {
         }
         let part = (self.next as f64 + 0.5) / self.count as f64;
         self.next += 1;
+        let [x, y, z] = segment::along(self.from, part, self.way);
         Some(Sample {
-            at: [0, 1].map(|axis| self.from[axis] + part * self.way[axis]),
-            z: self.from[2] + part * self.way[2],
+            at: [x, y],
+            z,
             across: [-self.way[1] / self.length, self.way[0] / self.length],
             length: self.length / self.count as f64,
         })

@@ -1,6 +1,7 @@
 //! Lines -> Grid: which lines are near a line or a place, without looking at all of them.
 
 use super::line::{Line, Point};
+use crate::geom::cells::Cells;
 
 /// Side of a cell at least, mm.
 const LEAST_CELL: f64 = 1.0;
@@ -11,13 +12,18 @@ const CELLS_OF_A_LINE: f64 = 4.0;
 /// Lines by the square cells of the plane that they go through.
 pub(super) struct Grid<'a> {
     pub(super) lines: &'a [Line],
+    area: Area,
+    /// The lines of each cell.
+    members: Cells<u32>,
+}
+
+/// Where the cells lie.
+#[derive(Debug, Clone, Copy)]
+struct Area {
     low: [f64; 2],
     cell: f64,
     /// Number of cells in x and in y.
     size: [i64; 2],
-    /// Where each cell's lines begin in `members`; one more for the end.
-    starts: Vec<u32>,
-    members: Vec<u32>,
 }
 
 impl<'a> Grid<'a> {
@@ -46,51 +52,37 @@ impl<'a> Grid<'a> {
         ];
         let cell = cell.into_iter().fold(LEAST_CELL, f64::max);
         let size = sides.map(|side| (side / cell) as i64 + 1);
-        let mut grid = Self { lines, low, cell, size, starts: Vec::new(), members: Vec::new() };
-        grid.fill();
-        grid
-    }
-
-    /// Counts each cell's lines, then puts them in.
-    fn fill(&mut self) {
-        let mut counts = vec![0_u32; (self.size[0] * self.size[1]) as usize + 1];
-        for line in self.lines {
-            self.cells(line, 0.0, &mut |cell| counts[cell + 1] += 1);
-        }
-        for k in 1..counts.len() {
-            counts[k] += counts[k - 1];
-        }
-        let mut next = counts.clone();
-        let mut members = vec![0; counts.last().copied().unwrap_or_default() as usize];
-        for (index, line) in (0_u32..).zip(self.lines) {
-            self.cells(line, 0.0, &mut |cell| {
-                members[next[cell] as usize] = index;
-                next[cell] += 1;
-            });
-        }
-        (self.starts, self.members) = (counts, members);
+        let area = Area { low, cell, size };
+        let cells = (size[0] * size[1]) as usize;
+        let members = Cells::new(
+            cells,
+            || (0..lines.len()).map(|index| index as u32),
+            |index| area.cells(&lines[index as usize], 0.0),
+        );
+        Self { lines, area, members }
     }
 
     /// Hands on every line that may come nearer than `reach` to `line`, some more than once.
     pub(super) fn near(&self, line: &Line, reach: f64, sink: &mut dyn FnMut(usize)) {
-        self.cells(line, reach, &mut |cell| {
-            self.members(cell).iter().for_each(|&index| sink(index as usize));
-        });
+        for cell in self.area.cells(line, reach) {
+            self.members.of(cell..cell + 1).iter().for_each(|&index| sink(index as usize));
+        }
     }
 
     /// The line that is nearest to `point`, and its distance, mm; of equals any, but always the same.
     pub(super) fn nearest(&self, point: Point) -> (f64, usize) {
-        let at = [self.place(point[0], 0), self.place(point[1], 1)];
+        let Area { cell, size, .. } = self.area;
+        let at = [self.area.place(point[0], 0), self.area.place(point[1], 1)];
         // Rings of cells around that of the point, from the first that has cells of the grid.
-        let beyond = |axis: usize| (-at[axis]).max(at[axis] - self.size[axis] + 1).max(0);
-        let last = (0..2).map(|axis| at[axis].abs().max((self.size[axis] - at[axis]).abs())).max();
+        let beyond = |axis: usize| (-at[axis]).max(at[axis] - size[axis] + 1).max(0);
+        let last = (0..2).map(|axis| at[axis].abs().max((size[axis] - at[axis]).abs())).max();
         let mut best = (f64::INFINITY, 0);
         for ring in beyond(0).max(beyond(1))..=last.unwrap_or(0) {
-            if best.0 <= (ring - 1) as f64 * self.cell {
+            if best.0 <= (ring - 1) as f64 * cell {
                 break;
             }
-            self.ring(at, ring, &mut |cell| {
-                for &index in self.members(cell) {
+            self.area.ring(at, ring, &mut |cell| {
+                for &index in self.members.of(cell..cell + 1) {
                     let distance = self.lines[index as usize].distance(point);
                     if distance < best.0 {
                         best = (distance, index as usize);
@@ -100,7 +92,9 @@ impl<'a> Grid<'a> {
         }
         best
     }
+}
 
+impl Area {
     /// The cells of the grid that are `ring` cells away from the one at `at`.
     fn ring(&self, at: [i64; 2], ring: i64, sink: &mut dyn FnMut(usize)) {
         let rows = (at[1] - ring).max(0)..=(at[1] + ring).min(self.size[1] - 1);
@@ -120,34 +114,29 @@ impl<'a> Grid<'a> {
     }
 
     /// The cells of the grid that come nearer than `reach` to `line`, and some beside them.
-    fn cells(&self, line: &Line, reach: f64, sink: &mut dyn FnMut(usize)) {
+    fn cells(&self, line: &Line, reach: f64) -> impl Iterator<Item = usize> + use<> {
+        let area = *self;
         let (a, b) =
             if line.from[1] <= line.to[1] { (line.from, line.to) } else { (line.to, line.from) };
-        let inside = |place: i64, axis: usize| place.clamp(0, self.size[axis] - 1);
-        let first = self.place(a[1] - reach, 1).max(0);
-        let last = self.place(b[1] + reach, 1).min(self.size[1] - 1);
+        let inside = move |place: i64, axis: usize| place.clamp(0, area.size[axis] - 1);
+        let first = area.place(a[1] - reach, 1).max(0);
+        let last = area.place(b[1] + reach, 1).min(area.size[1] - 1);
         let slope = (b[0] - a[0]) / (b[1] - a[1]);
         // The stretch of the line in a row of cells, with a little more for rounding.
-        let margin = reach + 1e-6 * self.cell;
-        for row in first..=last {
-            let bottom = self.low[1] + row as f64 * self.cell;
+        let margin = reach + 1e-6 * area.cell;
+        (first..=last).flat_map(move |row| {
+            let bottom = area.low[1] + row as f64 * area.cell;
             let x = |y: f64| {
                 if a[1] == b[1] { None } else { Some(a[0] + slope * (y.clamp(a[1], b[1]) - a[1])) }
             };
-            let ends = [x(bottom - margin), x(bottom + self.cell + margin)];
+            let ends = [x(bottom - margin), x(bottom + area.cell + margin)];
             let [one, two] = [ends[0].unwrap_or(a[0]), ends[1].unwrap_or(b[0])];
             let (left, right) = (one.min(two) - margin, one.max(two) + margin);
-            if self.place(right, 0) < 0 || self.place(left, 0) >= self.size[0] {
-                continue;
-            }
-            for column in inside(self.place(left, 0), 0)..=inside(self.place(right, 0), 0) {
-                sink((row * self.size[0] + column) as usize);
-            }
-        }
-    }
-
-    fn members(&self, cell: usize) -> &[u32] {
-        &self.members[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+            let is_beside = area.place(right, 0) < 0 || area.place(left, 0) >= area.size[0];
+            let columns = inside(area.place(left, 0), 0)..=inside(area.place(right, 0), 0);
+            let columns = (!is_beside).then_some(columns).into_iter().flatten();
+            columns.map(move |column| (row * area.size[0] + column) as usize)
+        })
     }
 
     /// Column or row of a coordinate, which may lie outside the grid.

@@ -1,5 +1,6 @@
 //! Moves -> Line: a straight line of plastic in space, and how far it lies from points and other lines.
 
+use crate::geom::segment::{self, along, dot, way};
 use crate::reader::print::Step;
 
 /// A place, mm.
@@ -49,17 +50,12 @@ impl Line {
 
     /// The place at `t`, from 0 to 1.
     pub(super) fn at(&self, t: f64) -> Point {
-        plus(self.from, t, minus(self.to, self.from))
+        along(self.from, t, way(self.from, self.to))
     }
 
     /// How far `point` is from the nearest place of this line, mm.
     pub(super) fn distance(&self, point: Point) -> f64 {
-        let along = minus(self.to, self.from);
-        let arm = minus(point, self.from);
-        let square = dot(along, along);
-        let t = if square > 0.0 { (dot(arm, along) / square).clamp(0.0, 1.0) } else { 0.0 };
-        let across = plus(arm, -t, along);
-        dot(across, across).sqrt()
+        segment::distance2(point, [self.from, self.to]).sqrt()
     }
 
     /// The part of this line that is no farther than `reach` from `other`. It is one part,
@@ -68,9 +64,9 @@ impl Line {
         if self.is_far_from(other, reach) {
             return None;
         }
-        let (u, v) = (minus(self.to, self.from), minus(other.to, other.from));
-        let w = minus(self.from, other.from);
-        let ends = joined(within(w, u, reach), within(minus(w, v), u, reach));
+        let (u, v) = (way(self.from, self.to), way(other.from, other.to));
+        let w = way(other.from, self.from);
+        let ends = joined(within(w, u, reach), within(way(v, w), u, reach));
         joined(ends, part_beside(w, u, v, reach))
     }
 
@@ -99,7 +95,7 @@ impl Line {
 fn within(w: Point, u: Point, reach: f64) -> Option<Part> {
     let square = dot(u, u);
     let middle = if square > 0.0 { -dot(w, u) / square } else { 0.0 };
-    let nearest = plus(w, middle, u);
+    let nearest = along(w, middle, u);
     let room = reach * reach - dot(nearest, nearest);
     if room < 0.0 {
         return None;
@@ -124,8 +120,8 @@ fn part_beside(w: Point, u: Point, v: Point, reach: f64) -> Option<Part> {
         let (a, b) = (-first / rise, (1.0 - first) / rise);
         clipped([a.min(b), a.max(b)])?
     };
-    let across_w = plus(w, -first, v);
-    let mut across_u = plus(u, -rise, v);
+    let across_w = along(w, -first, v);
+    let mut across_u = along(u, -rise, v);
     if dot(across_u, across_u) <= PARALLEL * dot(u, u) {
         across_u = [0.0; 3];
     }
@@ -142,24 +138,6 @@ fn joined(a: Option<Part>, b: Option<Part>) -> Option<Part> {
 
 fn clipped([low, high]: Part) -> Option<Part> {
     (low <= 1.0 && high >= 0.0).then_some([low.max(0.0), high.min(1.0)])
-}
-
-// Written out: these are nearly all of the work.
-
-#[inline]
-fn minus(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-/// `a` + `t` · `b`.
-#[inline]
-fn plus(a: Point, t: f64, b: Point) -> Point {
-    [a[0] + t * b[0], a[1] + t * b[1], a[2] + t * b[2]]
-}
-
-#[inline]
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 #[cfg(test)]

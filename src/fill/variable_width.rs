@@ -1,5 +1,6 @@
 //! Line with open strips beside it -> points: the line moved and widened to fill them.
 
+use crate::geom::decimate::{decimate, most_missed};
 use crate::geom::polyline::LinePoint;
 use crate::geom::spans::Span;
 use crate::profile::Settings;
@@ -201,31 +202,15 @@ fn filled(row: i32, sample: Sample, line_width: Coord) -> LinePoint {
 
 /// The samples without those between which everything changes evenly.
 fn bends(samples: &[Sample]) -> Vec<Sample> {
-    let mut kept = Vec::with_capacity(samples.len());
-    kept.push(0);
-    keep_bends(samples, 0, samples.len() - 1, &mut kept);
-    kept.push(samples.len() - 1);
+    let kept = decimate(samples.len(), |a, b| {
+        let (first, last) = (samples[a], samples[b]);
+        let run = f64::from(last.u - first.u).max(1.0);
+        most_missed(a, b, LEAST_BEND, |k| {
+            let t = f64::from(samples[k].u - first.u) / run;
+            let above = first.above + t * (last.above - first.above) - samples[k].above;
+            let below = first.below + t * (last.below - first.below) - samples[k].below;
+            above.abs().max(below.abs())
+        })
+    });
     kept.into_iter().map(|k| samples[k]).collect()
-}
-
-/// Between samples `a` and `b`, keeps those that a straight change from `a` to `b`
-/// would miss (Ramer 1972, Douglas and Peucker 1973).
-fn keep_bends(samples: &[Sample], a: usize, b: usize, kept: &mut Vec<usize>) {
-    let (first, last) = (samples[a], samples[b]);
-    let run = f64::from(last.u - first.u).max(1.0);
-    let miss = |k: usize| {
-        let t = f64::from(samples[k].u - first.u) / run;
-        let above = first.above + t * (last.above - first.above) - samples[k].above;
-        let below = first.below + t * (last.below - first.below) - samples[k].below;
-        above.abs().max(below.abs())
-    };
-    let worst = (a + 1..b)
-        .map(|k| (miss(k), k))
-        .max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1)))
-        .filter(|(miss, _)| *miss > LEAST_BEND);
-    if let Some((_, k)) = worst {
-        keep_bends(samples, a, k, kept);
-        kept.push(k);
-        keep_bends(samples, k, b, kept);
-    }
 }

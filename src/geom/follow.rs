@@ -1,6 +1,6 @@
 //! Two closed polygons -> verdict: whether each runs along the other.
 
-use super::{Contour, Point, edges};
+use super::{Contour, Point, edges, segment};
 use crate::units::Coord;
 
 /// Whether every corner of `a` is at most `far` from `b`, and every corner of `b` from `a`.
@@ -36,11 +36,8 @@ fn runs_along(a: &Contour, b: &Contour, far: Coord) -> bool {
 
 /// The squared distance from `p` to an edge, grid units².
 fn distance2(p: Point, (a, b): (Point, Point)) -> f64 {
-    let vector = |to: Point| (f64::from(to.x) - f64::from(a.x), f64::from(to.y) - f64::from(a.y));
-    let ((px, py), (bx, by)) = (vector(p), vector(b));
-    let t = ((px * bx + py * by) / (bx * bx + by * by).max(1.0)).clamp(0.0, 1.0);
-    let (dx, dy) = (px - t * bx, py - t * by);
-    dx * dx + dy * dy
+    let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
+    segment::distance2(float(p), [float(a), float(b)])
 }
 
 #[cfg(test)]

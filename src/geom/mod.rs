@@ -1,12 +1,14 @@
 //! Plane geometry on the integer grid: points, contours, spans, rasters and polygon offsets.
 
 pub mod cells;
+pub mod decimate;
 pub mod follow;
 pub mod frame;
 pub mod parallel;
 pub mod polygon;
 pub mod polyline;
 pub mod raster;
+pub mod segment;
 pub mod simple;
 pub mod spans;
 

@@ -6,6 +6,7 @@
 
 use super::zigzag::{self, Side};
 use super::{Pattern, SparsePattern};
+use crate::geom::decimate::{decimate, most_missed};
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span};
@@ -133,40 +134,27 @@ impl Edges<'_> {
         // Along a flatter edge a join would be longer than a travel is worth.
         let step = FLATTEST_STEP * self.pitch;
         let mut at = u;
-        let mut points = Vec::new();
+        let point = |u, row| LinePoint { u, v: row * self.pitch, width: self.width };
+        let mut points = vec![point(u, a)];
         for j in a + 1..b {
             let ends = self.region.row(j).iter().map(|&s| side.of(s));
             at = ends.filter(|u| (u - at).abs() <= step).min_by_key(|u| ((u - at).abs(), *u))?;
-            points.push(LinePoint { u: at, v: j * self.pitch, width: self.width });
+            points.push(point(at, j));
         }
-        ((to - at).abs() <= step).then(|| {
-            let end = |u, row| LinePoint { u, v: row * self.pitch, width: self.width };
-            let mut kept = Vec::new();
-            keep_bends(&points, end(u, a), end(to, b), f64::from(self.width) * BEND, &mut kept);
-            kept
-        })
+        points.push(point(to, b));
+        ((to - at).abs() <= step).then(|| bends(&points, f64::from(self.width) * BEND))
     }
 }
 
-/// Of `points` between `a` and `b`, keeps those that straight lines between the kept ones would
-/// miss by more than `least` (Ramer 1972, Douglas and Peucker 1973).
-fn keep_bends(
-    points: &[LinePoint],
-    a: LinePoint,
-    b: LinePoint,
-    least: f64,
-    kept: &mut Vec<LinePoint>,
-) {
-    let at = |p: LinePoint| Point { x: p.u, y: p.v };
-    let length = at(a).distance(at(b)).at_least(1.0);
-    let miss = |p: LinePoint| side(at(a), at(b), at(p)).abs() as f64 / length;
-    let worst = (0..points.len())
-        .max_by(|&k, &l| miss(points[k]).total_cmp(&miss(points[l])).then(l.cmp(&k)));
-    if let Some(k) = worst.filter(|&k| miss(points[k]) > least) {
-        keep_bends(&points[..k], a, points[k], least, kept);
-        kept.push(points[k]);
-        keep_bends(&points[k + 1..], points[k], b, least, kept);
-    }
+/// Of `points`, without the first and the last, those that straight lines between the kept ones
+/// would miss by more than `least`.
+fn bends(points: &[LinePoint], least: f64) -> Vec<LinePoint> {
+    let at = |k: usize| Point { x: points[k].u, y: points[k].v };
+    let kept = decimate(points.len(), |a, b| {
+        let length = at(a).distance(at(b)).at_least(1.0);
+        most_missed(a, b, least, |k| side(at(a), at(b), at(k)).abs() as f64 / length)
+    });
+    kept[1..kept.len() - 1].iter().map(|&k| points[k]).collect()
 }
 
 #[cfg(test)]

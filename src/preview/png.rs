@@ -3,6 +3,7 @@
 use super::colours::{Colour, INK, PAPER};
 use super::drawing::{Anchor, Drawing, Kind, Mark, Stroke};
 use super::text::TextSize;
+use nalgebra::Vector2;
 use std::io;
 use tiny_skia::{
     LineCap, LineJoin, Paint, PathBuilder, Pixmap, Rect, Stroke as Pen, StrokeDash, Transform,
@@ -61,10 +62,10 @@ fn strokes(drawing: &Drawing, group: &[Stroke], pixels: &mut Pixmap) {
 fn line(from: [f64; 2], to: [f64; 2], width: f64, colour: Colour, pixels: &mut Pixmap) {
     // Lines of the page lie along the axes: as a rectangle on whole pixels they are sharp.
     let half = width / 2.0;
-    let low = [0, 1].map(|axis| (from[axis].min(to[axis]) - half).round());
-    let high = [0, 1].map(|axis| (from[axis].max(to[axis]) + half).round());
-    let size = [0, 1].map(|axis| (high[axis] - low[axis]).max(1.0));
-    rectangle(low, size, colour, pixels);
+    let (low, high) = Vector2::from(from).inf_sup(&to.into());
+    let low = low.add_scalar(-half).map(f64::round);
+    let size = (high.add_scalar(half).map(f64::round) - low).map(|side| side.max(1.0));
+    rectangle(low.into(), size.into(), colour, pixels);
 }
 
 fn rectangle(at: [f64; 2], size: [f64; 2], colour: Colour, pixels: &mut Pixmap) {

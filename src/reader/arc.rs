@@ -1,5 +1,6 @@
 //! G2 and G3 -> points on the arc, about a millimetre apart.
 
+use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::TAU;
 
 /// Length of the straight pieces, mm: what Marlin takes.
@@ -26,27 +27,24 @@ impl Arc {
         radius: f64,
         clockwise: bool,
     ) -> Option<Self> {
-        let chord = [to[0] - from[0], to[1] - from[1]];
-        let square = chord[0] * chord[0] + chord[1] * chord[1];
+        let (start, end) = (Vector2::from(from), Vector2::from(to));
+        let chord = end - start;
+        let square = chord.norm_squared();
         let beside = radius * radius / square - 0.25;
         if !(square > 0.0 && beside >= 0.0) {
             return None;
         }
         let side = if clockwise == (radius > 0.0) { -beside.sqrt() } else { beside.sqrt() };
-        let middle =
-            [0.5 * (from[0] + to[0]) - chord[1] * side, 0.5 * (from[1] + to[1]) + chord[0] * side];
+        let middle = (0.5 * (start + end) + side * Vector2::new(-chord.y, chord.x)).into();
         Some(Self { from, to, middle, clockwise })
     }
 
     /// The ends of its pieces; the last one is `to`, exactly. Ends that are the same make a full circle.
     pub(super) fn points(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
         let arc = *self;
-        let arm = |point: [f64; 2]| [point[0] - arc.middle[0], point[1] - arc.middle[1]];
-        let (start, end) = (arm(arc.from), arm(arc.to));
-        let mut turn = libm::atan2(
-            start[0] * end[1] - start[1] * end[0],
-            start[0] * end[0] + start[1] * end[1],
-        );
+        let middle = Vector2::from(arc.middle);
+        let (start, end) = (Vector2::from(arc.from) - middle, Vector2::from(arc.to) - middle);
+        let mut turn = libm::atan2(start.perp(&end), start.dot(&end));
         if arc.from == arc.to {
             turn = 0.0;
         }
@@ -55,7 +53,7 @@ impl Arc {
         } else if !arc.clockwise && turn <= 0.0 {
             turn += TAU;
         }
-        let radius = (start[0] * start[0] + start[1] * start[1]).sqrt();
+        let radius = start.norm();
         let pieces = (turn.abs() * radius / PIECE_MM).ceil().clamp(1.0, MOST_PIECES);
         let count = pieces as u32;
         (1..=count).map(move |k| {
@@ -63,8 +61,7 @@ impl Arc {
                 return arc.to;
             }
             let (sin, cos) = libm::sincos(turn * f64::from(k) / f64::from(count));
-            let x = arc.middle[0] + start[0] * cos - start[1] * sin;
-            [x, arc.middle[1] + start[0] * sin + start[1] * cos]
+            (middle + Matrix2::new(cos, -sin, sin, cos) * start).into()
         })
     }
 }

@@ -16,6 +16,7 @@
 
 use super::height::Heights;
 use super::{Event, Motion};
+use nalgebra::Vector3;
 
 /// Heights that differ by less are the same, mm. Positions in files have at least three decimals;
 /// a larger step would join layers of the finest prints with ramps in them.
@@ -104,8 +105,8 @@ impl Layers {
         });
         run.range = run.range.and(own);
         run.is_open |= leaves && self.held.is_empty();
-        let way = [0, 1].map(|axis| motion.to[axis] - motion.from[axis]);
-        run.heights.add(ends, (way[0] * way[0] + way[1] * way[1]).sqrt());
+        let way = Vector3::from(motion.to) - Vector3::from(motion.from);
+        run.heights.add(ends, way.norm());
     }
 
     /// Whether a line at these heights may belong to a new layer.

@@ -1,7 +1,7 @@
 //! Walls -> Near: whether a place keeps its distance from all of them.
 
 use crate::geom::cells::Cells;
-use crate::geom::{Contour, Point, edges};
+use crate::geom::{Contour, Point, edges, segment};
 use crate::units::Bounded as _;
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -89,7 +89,7 @@ impl Near {
     pub(super) fn nearest(&self, p: [f64; 2], distance: f64) -> Option<Edge> {
         let square = distance * distance;
         let near = self.around(&[p], distance).flatten().filter(|edge| is_nearer(p, edge, square));
-        let nearest = near.map(|edge| (distance2(p, edge), edge));
+        let nearest = near.map(|edge| (segment::distance2(p, *edge), edge));
         let order =
             |a: &(f64, &Edge), b: &(f64, &Edge)| a.partial_cmp(b).unwrap_or(Ordering::Equal);
         nearest.min_by(order).map(|(_, edge)| *edge)
@@ -131,16 +131,6 @@ fn is_nearer(p: [f64; 2], [a, b]: &Edge, square: f64) -> bool {
         let aside = from[0] * along[1] - from[1] * along[0];
         aside * aside < square * length2
     }
-}
-
-/// The squared distance from `p` to an edge.
-fn distance2(p: [f64; 2], [a, b]: &Edge) -> f64 {
-    let along = [b[0] - a[0], b[1] - a[1]];
-    let from = [p[0] - a[0], p[1] - a[1]];
-    let square = (along[0] * along[0] + along[1] * along[1]).at_least(1.0);
-    let t = ((from[0] * along[0] + from[1] * along[1]) / square).clamp(0.0, 1.0);
-    let off = [from[0] - t * along[0], from[1] - t * along[1]];
-    off[0] * off[0] + off[1] * off[1]
 }
 
 #[cfg(test)]

@@ -12,9 +12,11 @@ use super::near::Near;
 use super::params::BeadParams;
 use super::scan::around;
 use super::wall_samples::{MOST_BEADS, NARROWEST, SHORT, WallSample, samples};
+use crate::geom::decimate::{decimate, most_missed};
 use crate::geom::frame::Frame;
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::raster::Raster;
+use crate::geom::segment::{along, dot, way};
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
 use crate::units::{Bounded as _, Coord, nearest};
@@ -151,10 +153,7 @@ fn length(arc: &[Place]) -> f64 {
 
 /// The points of a bead, only those where it bends or changes its width.
 fn bead(arc: &[Place]) -> Polyline {
-    let mut kept = Vec::with_capacity(arc.len());
-    kept.push(0);
-    keep_bends(arc, 0, arc.len() - 1, &mut kept);
-    kept.push(arc.len() - 1);
+    let kept = decimate(arc.len(), |a, b| bend(arc, a, b));
     let mut before = arc[0].width;
     kept.into_iter()
         .map(|k| {
@@ -170,32 +169,20 @@ fn bead(arc: &[Place]) -> Polyline {
         .collect()
 }
 
-/// Between places `a` and `b`, keeps those that a straight bead from `a` to `b` would
-/// miss (Ramer 1972, Douglas and Peucker 1973).
-fn keep_bends(arc: &[Place], a: usize, b: usize, kept: &mut Vec<usize>) {
+/// The place between `a` and `b` that a straight bead from one to the other would miss.
+fn bend(arc: &[Place], a: usize, b: usize) -> Option<usize> {
     let (first, last) = (arc[a], arc[b]);
-    let chord = [0, 1].map(|k| last.at[k] - first.at[k]);
-    let square = chord[0] * chord[0] + chord[1] * chord[1];
-    let miss = |k: usize| {
-        let from = [0, 1].map(|i| arc[k].at[i] - first.at[i]);
-        let t = (from[0] * chord[0] + from[1] * chord[1]) / square.at_least(1.0);
-        let t = t.clamp(0.0, 1.0);
-        let foot = [0, 1].map(|i| first.at[i] + t * chord[i]);
+    let chord = way(first.at, last.at);
+    let square = dot(chord, chord).at_least(1.0);
+    let worst = most_missed(a, b, LEAST_BEND, |k| {
+        let t = (dot(way(first.at, arc[k].at), chord) / square).clamp(0.0, 1.0);
         let width = first.width + t * (last.width - first.width);
+        let foot = along(first.at, t, chord);
         distance(foot, arc[k].at).at_least((width - arc[k].width).abs() / WIDTH_TO_PLACE)
-    };
-    let worst = (a + 1..b)
-        .map(|k| (miss(k), k))
-        .max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1)))
-        .filter(|(miss, _)| *miss > LEAST_BEND)
-        .map(|(_, k)| k);
+    });
     // Between two points a bead has one width: a long taper needs steps.
     let tapers = (first.width - last.width).abs() > MOST_STEP && b - a > 1;
-    if let Some(k) = worst.or_else(|| tapers.then_some(usize::midpoint(a, b))) {
-        keep_bends(arc, a, k, kept);
-        kept.push(k);
-        keep_bends(arc, k, b, kept);
-    }
+    worst.or_else(|| tapers.then_some(usize::midpoint(a, b)))
 }
 
 #[cfg(test)]

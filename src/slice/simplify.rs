@@ -123,6 +123,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::segment;
     use proptest::prelude::*;
 
     fn points(list: &[(i32, i32)]) -> Contour {
@@ -131,10 +132,8 @@ mod tests {
 
     /// Distance of `p` from the segment a–b.
     fn distance(p: Point, a: Point, b: Point) -> f64 {
-        let (d, e) = (difference(a, b), difference(a, p));
-        let t = if dot(d, d) > 0.0 { (dot(d, e) / dot(d, d)).clamp(0.0, 1.0) } else { 0.0 };
-        let off = [e[0] - t * d[0], e[1] - t * d[1]];
-        dot(off, off).sqrt()
+        let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
+        segment::distance2(float(p), [float(a), float(b)]).sqrt()
     }
 
     #[test]

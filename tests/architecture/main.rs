@@ -31,14 +31,24 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("job", &["mesh", "profile"]),
     ("profile", &["error"]),
     ("motion", &["profile", "units"]),
-    // A witness of its own: it shares nothing with the code that writes.
+    // A witness of its own: it shares nothing with the code that slices, plans or writes.
     ("reader", &[]),
     ("estimate", &["reader", "motion", "error"]),
-    // An independent witness: nothing of slice, region, plan or gcode.
-    ("check", &["reader", "mesh", "profile", "units"]),
+    // Independent witnesses: nothing of slice, region, plan or gcode. Of `geom` they use only what
+    // knows no contour, raster or offset: see WITNESSES.
+    ("check", &["reader", "mesh", "profile", "units", "geom"]),
     ("preview", &["reader", "estimate"]),
-    ("diff", &["reader", "estimate"]),
+    ("diff", &["reader", "estimate", "geom"]),
 ];
+
+/// Modules that judge what the others have made.
+const WITNESSES: &[&str] = &["reader", "estimate", "check", "diff"];
+
+/// What witnesses may use of `geom`: distances to segments, and sorting by counting. Neither knows
+/// what is sliced or printed, both are tested on their own, and a second version of them would
+/// only be another place for the same slip. Contours, spans, offsets and rasters have a part in
+/// what is judged; of these a witness has its own.
+const SHARED_GEOMETRY: &[&str] = &["segment", "cells"];
 
 /// Modules that may use all others: the flow itself, and what tells of it.
 const MAY_USE_ALL: &[&str] = &["lib", "pipeline", "report", "compare"];
@@ -241,6 +251,16 @@ fn modules_use_only_what_lies_before_them() {
         for used in uses(&bare(&source.text), "crate::") {
             let fits = used == module || allowed.contains(&used.as_str());
             assert!(fits, "src/{} uses {used}, which {module} may not", source.path);
+        }
+    }
+}
+
+#[test]
+fn witnesses_share_no_geometry_with_what_they_judge() {
+    for source in sources().iter().filter(|s| WITNESSES.contains(&s.module.as_str())) {
+        for used in uses(&bare(&source.text), "geom::") {
+            let fits = SHARED_GEOMETRY.contains(&used.as_str());
+            assert!(fits, "src/{} uses geom::{used}", source.path);
         }
     }
 }
