@@ -31,6 +31,10 @@ pub enum Error {
     #[error(transparent)]
     Mesh(#[from] crate::mesh::Error),
 
+    /// A G-code file that cannot be read or prints nothing (exit 3).
+    #[error(transparent)]
+    Gcode(#[from] crate::reader::Error),
+
     /// The models are readable but do not fit the printer or leave nothing to print (exit 3).
     #[error("{0}")]
     Unprintable(String),
@@ -65,7 +69,11 @@ impl Error {
         match self {
             Self::Usage(_) | Self::Config(_) => 2,
             Self::Mesh(error) if error.is_usage() => 2,
-            Self::Input { .. } | Self::Mesh(_) | Self::Unprintable(_) | Self::Refused(_) => 3,
+            Self::Input { .. }
+            | Self::Mesh(_)
+            | Self::Gcode(_)
+            | Self::Unprintable(_)
+            | Self::Refused(_) => 3,
             Self::Write(_) | Self::Thumbnails(_) => 4,
             Self::Cancelled => 130,
         }

@@ -1,8 +1,7 @@
 //! G-code + Limits -> Estimate: how long a print takes, by role and by layer.
 
-use crate::error::{Error, Result};
 use crate::motion::{Clock, Junction, Limits, Move, Timed};
-use crate::reader::{self, Change, Event, Heights, Motion, Role, Summary, Wait};
+use crate::reader::{self, Cause, Change, Event, Heights, Motion, Role, Summary, Wait};
 use serde::Serialize;
 use std::f64::consts::PI;
 use std::io::BufRead;
@@ -91,21 +90,20 @@ pub struct NotCounted {
 /// `file` is its name for messages.
 ///
 /// # Errors
-/// [`Error::Input`] if it cannot be read or holds no move.
+/// [`Cause::Unreadable`], or [`Cause::NoMove`] for a file that is no G-code.
 pub fn estimate(
     source: &mut dyn BufRead,
     file: &str,
     limits: &Limits,
     options: Options,
-) -> Result<Estimate> {
+) -> Result<Estimate, reader::Error> {
     let mut meter = Meter::new(limits, options);
     let summary = reader::read(source, &mut |_, event| meter.event(event))
-        .map_err(|error| Error::input(file, format!("cannot read: {error}; check the path")))?;
+        .map_err(|error| Cause::Unreadable(error).of(file))?;
     meter.clock.finish();
     meter.collect();
     if meter.moves == 0 {
-        let why = "there is no move in it; give a G-code file that a slicer has written";
-        return Err(Error::input(file, why));
+        return Err(Cause::NoMove.of(file));
     }
     Ok(meter.estimate(summary))
 }

@@ -11,7 +11,7 @@ use slicer::error::Error;
 use slicer::mesh::Bed;
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
-use slicer::reader::Print;
+use slicer::reader::{Cause, Print};
 use slicer::warning::plural;
 use std::path::Path;
 
@@ -33,10 +33,9 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let given = given.transpose()?;
     let (name, mut source) = input::open(&args.file)?;
     let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
-    let print = Print::read(&mut source, diameter).map_err(|e| input::unreadable(name, &e))?;
+    let print = Print::read(&mut source, diameter).map_err(|e| Cause::Unreadable(e).of(name))?;
     if print.layers.is_empty() {
-        let why = "no move in it prints a line; give a G-code file that a slicer has written";
-        return Err(Error::input(name, why).into());
+        return Err(Error::from(Cause::NoLine.of(name)).into());
     }
     let told = profile::recorded(&print.values)?;
     let judge = given.as_ref().or(told.as_ref());

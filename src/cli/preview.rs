@@ -11,7 +11,7 @@ use slicer::preview::cut::{Axis, Cut, Plane};
 use slicer::preview::drawing::{Drawing, Frame};
 use slicer::preview::{layer, png, svg};
 use slicer::profile;
-use slicer::reader::Print;
+use slicer::reader::{Cause, Print};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -192,10 +192,9 @@ fn read(args: &PreviewArgs) -> Result<(&str, Print)> {
     let profile = profile::load(&args.profile, &words::set_overrides(&args.set)?)?;
     let (name, mut source) = input::open(&args.file)?;
     let print = Print::read(&mut source, profile.settings.filament.diameter)
-        .map_err(|error| input::unreadable(name, &error))?;
+        .map_err(|error| Cause::Unreadable(error).of(name))?;
     if layer::frame(&print, &print.layers).is_empty() {
-        let why = "nothing is printed in it; give a G-code file that a slicer has written";
-        return Err(Error::input(name, why).into());
+        return Err(Error::from(Cause::NothingToDraw.of(name)).into());
     }
     Ok((name, print))
 }

@@ -7,7 +7,7 @@ use slicer::estimate::{self, Options};
 use slicer::motion::Limits;
 use slicer::preview::html;
 use slicer::profile::Settings;
-use slicer::reader::Print;
+use slicer::reader::{Cause, Print};
 use slicer::warning::plural;
 use std::io::Write as _;
 use std::path::Path;
@@ -22,8 +22,8 @@ pub(super) fn write(file: &str, out: &Path, settings: &Settings) -> Result<Strin
     let diameter = settings.filament.diameter;
     let options = Options { filament_diameter: diameter, fixed_limits: false };
     let estimate = estimate::estimate(&mut &bytes[..], name, &Limits::new(settings), options)?;
-    let print =
-        Print::read(&mut &bytes[..], diameter).map_err(|error| input::unreadable(name, &error))?;
+    let print = Print::read(&mut &bytes[..], diameter)
+        .map_err(|error| Cause::Unreadable(error).of(name))?;
     // The file is not needed any more, and may be large.
     drop(bytes);
     let base = Path::new(name).file_name().map_or(name.into(), |base| base.to_string_lossy());

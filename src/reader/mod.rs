@@ -6,6 +6,7 @@
 
 mod arc;
 mod change;
+mod error;
 mod heat;
 mod height;
 mod layers;
@@ -17,6 +18,7 @@ mod state;
 mod words;
 
 pub use change::Change;
+pub use error::{Cause, Error};
 pub use heat::{Heater, Heating};
 pub(crate) use height::Heights;
 pub use print::Print;

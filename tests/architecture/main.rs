@@ -16,7 +16,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("warning", &[]),
     ("progress", &[]),
-    ("error", &["mesh", "progress", "warning"]),
+    // Composes what the stages report of their failures.
+    ("error", &["mesh", "progress", "reader", "warning"]),
     ("geom", &["units"]),
     ("mesh", &["geom", "units", "warning"]),
     ("slice", &["geom", "mesh", "units"]),
@@ -33,7 +34,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("motion", &["profile", "units"]),
     // A witness of its own: it shares nothing with the code that slices, plans or writes.
     ("reader", &[]),
-    ("estimate", &["reader", "motion", "error"]),
+    ("estimate", &["reader", "motion"]),
     // Independent witnesses: nothing of slice, region, plan or gcode. Of `geom` they use only what
     // knows no contour, raster or offset: see WITNESSES.
     ("check", &["reader", "mesh", "profile", "units", "geom"]),

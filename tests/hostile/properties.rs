@@ -114,7 +114,9 @@ pub(crate) fn gcode(bytes: &[u8]) {
     let time = || estimate(&mut &*bytes, "x.gcode", &Limits::new(&settings), options);
     let (a, b) = match (time(), time()) {
         (Ok(a), Ok(b)) => (a, b),
-        (Err(error), _) | (_, Err(error)) => return is_good_refusal(&error, 3, "x.gcode"),
+        (Err(error), _) | (_, Err(error)) => {
+            return is_good_refusal(&error.into(), 3, "x.gcode");
+        }
     };
     assert!(a.seconds.is_finite() && a.seconds >= 0.0, "{}", a.seconds);
     let index = layer::middle(&print);
