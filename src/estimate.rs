@@ -1,4 +1,16 @@
 //! G-code + Limits -> Estimate: how long a print takes, by role and by layer.
+//!
+//! The reader's events go one by one to a [`Clock`], which plans the moves as the printer does. Each
+//! move carries a tag (its layer, its role, its plastic per mm); the clock returns the tag with the
+//! move's time as soon as it is final, and the time is added where the tag points. So a file of any
+//! length is timed in the memory of a few hundred moves, besides a record for each layer.
+//!
+//! - Limits that the file sets (M201, M203, M204, M205, SET_VELOCITY_LIMIT) hold from there on,
+//!   unless the caller wants the same limits for several files.
+//! - A layer without a line is no layer: its time counts for the one before, or for the start.
+//! - Heating and homing take a time that is not in the file: they are counted, not timed. The
+//!   nozzle stops for them.
+//! - Dwells (G4) are timed, and belong to no role.
 
 use crate::motion::{Clock, Junction, Limits, Move, Timed};
 use crate::reader::{self, Cause, Change, Event, Heights, Motion, Role, Summary, Wait};
@@ -14,7 +26,7 @@ pub const SCHEMA: u32 = 1;
 pub struct Options {
     /// Diameter of the filament, mm.
     pub filament_diameter: f64,
-    /// Whether what the file says of limits is left out, so that files can be compared.
+    /// Whether the file's own limits are ignored, so that files can be compared.
     pub fixed_limits: bool,
 }
 
@@ -80,13 +92,13 @@ pub struct NotCounted {
     pub homing: u64,
     /// Retractions whose length only the printer knows (G10, G11).
     pub firmware_retractions: u64,
-    /// Lines of code that mean nothing to the reader.
+    /// Lines of code that the reader does not know.
     pub unknown_lines: u64,
     /// The first of them, from 1; 0 if there is none.
     pub first_unknown_line: u64,
 }
 
-/// Reads G-code from `source` and tells how long it takes on a machine of these limits.
+/// Reads G-code from `source` and estimates how long it takes on a machine of these limits.
 /// `file` is its name for messages.
 ///
 /// # Errors
@@ -189,7 +201,7 @@ impl Meter {
                 apply(&change, &mut limits);
                 self.clock.set_limits(limits);
             }
-            // Telling a heater takes no time; waiting for it is counted above.
+            // Setting a heater takes no time; waiting for it is counted above.
             Event::Change(_) | Event::Heating(_) | Event::Command { .. } | Event::Comment(_) => {}
             // Both are in the reader's summary.
             Event::FirmwareRetraction { .. } | Event::Unknown(_) => {}
@@ -239,7 +251,7 @@ impl Meter {
         for layer in marked {
             match (layer.heights.height(), layers.last_mut()) {
                 (Some(z_mm), _) => layers.push(LayerTime { z_mm, seconds: layer.seconds }),
-                // A layer without a line is none: its moves count with what lies before.
+                // Without a line: its moves count with what lies before.
                 (None, Some(last)) => last.seconds += layer.seconds,
                 (None, None) => start_seconds += layer.seconds,
             }

@@ -38,6 +38,26 @@ pub fn nearest(value: f64) -> i64 {
     (value + 0.5_f64.copysign(value)) as i64
 }
 
+/// A speed in mm/s, as all speeds are that stages hand to each other.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
+pub struct MmPerS(pub f64);
+
+/// A speed in mm/min, as the F word of G-code has it.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
+pub struct MmPerMin(pub f64);
+
+impl From<MmPerMin> for MmPerS {
+    fn from(speed: MmPerMin) -> Self {
+        Self(speed.0 / 60.0)
+    }
+}
+
+impl From<MmPerS> for MmPerMin {
+    fn from(speed: MmPerS) -> Self {
+        Self(speed.0 * 60.0)
+    }
+}
+
 /// Bounds for numbers that are never NaN: an instruction each. [`f64::min`] and [`f64::max`]
 /// take five, for what they promise of NaN.
 pub trait Bounded {

@@ -1,4 +1,18 @@
-//! Print + Part -> findings of a layer: outline, top and bottom surfaces, lines beside the part.
+//! Print + Part -> findings of a layer: outline, top and bottom surfaces, lines outside the part.
+//!
+//! Words used here: a layer's *cut* is the model's section at the middle of the layer; its *rim* is
+//! what of the cut lies near the outline; *exposed* is what of the cut has nothing of the model
+//! above it or below it; *closed* is what walls and skins cover; a *stray* is a line so far from its
+//! layer's height that it is judged with the layer it lies at.
+//!
+//! Everything is drawn into bit maps of the bed with a twentieth of a mm a pixel, one set for each
+//! layer, and compared there:
+//! - rim less what is printed, in patches that are wide and large enough: an open outline;
+//! - exposed less closed, away from the rim: an open surface;
+//! - lines less the cut, grown by what lines may stick out: lines outside the part.
+//!
+//! Only places that are wide enough for a line count. Thick lines, and lines that vary in height,
+//! also cover the layers that they reach down into. Volumes of plastic are summed up on the way.
 
 use super::blobs::blobs;
 use super::capsule::Capsule;
@@ -10,25 +24,28 @@ use super::terms::Terms;
 use crate::reader::print::{Layer, Step};
 use crate::reader::{Print, Role};
 
-/// The outline's inside that must be printed, mm.
+/// Width of the rim that must be printed, mm: three quarters of a usual line. A wider one would ask
+/// for walls where sparse infill is right.
 const RIM: f64 = 0.3;
 
-/// How far lines may reach out of the part, mm.
+/// How far lines may stick out of the part, mm: three quarters of a usual line, for coarse contours
+/// and round corners of other slicers. More hides layers that are shifted.
 const MOST_OUT: f64 = 0.3;
 
-/// Open places narrower than twice this are none, mm.
+/// Open places narrower than twice this are ignored, mm: gaps between neighbouring round lines.
 const NARROW: f64 = 0.1;
 
-/// Smaller patches are the rounding of corners and ends, mm².
+/// Smaller patches are ignored, mm²: corners and ends of lines are round. A missing line of 2 mm is
+/// larger.
 const LEAST_AREA: f64 = 0.6;
 
-/// Places narrower than this many line widths cannot be printed.
+/// Places narrower than this many line widths count as too narrow to print.
 pub(super) const PRINTABLE: f64 = 1.2;
 
-/// Width of a line where no wall tells one, mm.
+/// Width of a line where no wall gives one, mm.
 pub(super) const SOME_WIDTH: f64 = 0.4;
 
-/// How far from walls and skins sparse infill is measured, mm, …
+/// How far from walls and skins sparse infill is measured, mm: its lines end in them, …
 const FROM_WALLS: f64 = 0.5;
 
 /// … and how wide a place must be for its lines to show their density, mm.
@@ -37,10 +54,10 @@ const LEAST_WIDE: f64 = 6.0;
 /// Heights that differ by less are the same, mm.
 const SAME_HEIGHT: f64 = 1e-3;
 
-/// Pieces that lines are measured in, mm.
+/// Length of the pieces in which lines are sampled, mm: half of a line's width.
 const PIECE: f64 = 0.2;
 
-/// What is found and measured on one layer.
+/// Findings and measures of one layer.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Verdict {
     pub(super) findings: Vec<Finding>,
@@ -76,7 +93,7 @@ pub(super) struct Judge<'a> {
     /// For each layer the lines of other layers that lie at its height: places in the moves.
     pub(super) strays: &'a [Vec<usize>],
     pub(super) terms: &'a Terms,
-    /// Whether roles are told, so that lines of the part can be told from others.
+    /// Whether the file gives roles, so that the part's lines differ from others.
     pub(super) has_roles: bool,
 }
 
@@ -113,7 +130,7 @@ impl Judge<'_> {
         let exposed = here.clone().minus(above).or(&here.clone().minus(below)).and(&printable);
         let open = exposed.clone().minus(&closed);
         verdict.areas.surface = self.shares(&exposed, &open);
-        // What the outline lacks has been told.
+        // What the outline lacks is reported already.
         let open = open.minus(&rim);
         let patches = self.patches(&open, index, layer, Code::OpenSurface, |area| {
             format!("{area} mm² of a top or bottom surface are not closed")
@@ -227,7 +244,7 @@ impl Judge<'_> {
     }
 }
 
-/// Whether a line lies so far from its layer's height that it is held against another layer.
+/// Whether a line lies so far from its layer's height that it is judged with another layer.
 fn is_stray(step: &Step, layer: &Layer) -> bool {
     let [low, high] = step.heights();
     (0.5 * (low + high) - layer.z).abs() > layer.height + SAME_HEIGHT

@@ -11,28 +11,30 @@ use crate::reader::print::{Layer, Step};
 use crate::reader::{Print, Role};
 use nalgebra::Vector2;
 
-/// A model may lie so far from where it is expected and be taken as lying there, mm.
+/// A model that lies within this of where it is expected is not moved, mm.
 const MOST_OFF: f64 = 0.3;
 
-/// Where walls are looked for, from the outline outwards and inwards, mm.
+/// Band around the outline in which outer walls must lie, outwards and inwards, mm: a usual wall's
+/// middle lies 0.2 mm inside.
 const BAND: [f64; 2] = [0.3, 0.6];
 
-/// So much of the walls must lie there for the print to be one of this model.
+/// Share of the outer walls that must lie in that band; below it the print is taken for one of
+/// another model.
 const LEAST_FIT: f64 = 0.75;
 
-/// Layers on which that is looked at.
+/// Layers on which that is measured, spread over the print.
 const LAYERS_LOOKED_AT: usize = 16;
 
 /// Side of a pixel for that, mm, and pixels at most.
 const PIXELS: (f64, f64) = (0.1, 4e6);
 
-/// Sizes that differ by less are the same, mm.
+/// Sizes that differ by less are the same, mm: a line and a half.
 const SIZE_SLACK: f64 = 0.6;
 
-/// Layers above the print that the model may have by rounding.
+/// Layers by which print and model may differ in height: one, by rounding.
 const HEIGHT_SLACK: f64 = 1.01;
 
-/// Layers above the last that are looked at.
+/// Layers above the last that are searched for something that should be printed.
 const MOST_ABOVE: usize = 200;
 
 /// Patches of a cut that are too small to print, mm².
@@ -45,8 +47,8 @@ struct Off {
     size: Vector2<f64>,
 }
 
-/// The model cut at the print's layers, where the lines lie. `None` if the two cannot be held
-/// against each other; a finding or note says why.
+/// The model cut at the print's layers, moved to where the lines lie. `None` if the two cannot be
+/// compared; a finding or note gives the reason.
 pub(super) fn place(
     print: &Print,
     model: Model<'_>,
@@ -87,7 +89,8 @@ pub(super) fn place(
             part.shift(by.map(|by| -by));
         }
     }
-    // Smaller may be by right, where places are too thin to print: what lacks is told with the outline.
+    // A smaller print can be right where the part is too thin to print; real gaps are found with
+    // the outline.
     let larger = usual(|off| off.size);
     if fits < LEAST_FIT || larger.iter().any(|by| *by > SIZE_SLACK) {
         sizes(larger, fits, found);
@@ -141,7 +144,7 @@ fn off(
     Some(Off { middle: (from + to - low - high) / 2.0, size: (to - from) - (high - low) })
 }
 
-/// Tells what of the size is wrong, or else that the shape is.
+/// Reports which size is wrong, or else that the shape is.
 fn sizes(larger: [f64; 2], fits: f64, found: &mut Findings) {
     let before = found.len();
     for (larger, name) in larger.into_iter().zip(["x", "y"]) {
@@ -164,17 +167,17 @@ fn height(print: &Print, model: Model<'_>, part: &Part, found: &mut Findings) {
     let Some(last) = print.layers.last() else { return };
     let top = print.top();
     let lacks = part.height() - top;
-    let mut tell = |than: &str| {
+    let mut report = |than: &str| {
         let text = format!("the print is {} mm {than} than the part", short(lacks.abs()));
         found.add(Finding::of(Code::WrongSize, lacks.abs(), "mm", text));
     };
     if lacks < -HEIGHT_SLACK * last.height {
-        tell("higher");
+        report("higher");
     }
     if lacks <= HEIGHT_SLACK * last.height {
         return;
     }
-    // A tip that is thinner than a line is left out by right.
+    // A tip that is thinner than a line is rightly left out.
     let above = ((lacks / last.height).floor() as usize).min(MOST_ABOVE);
     let layers: Vec<(f64, f64)> =
         (1..=above).map(|k| (top + k as f64 * last.height, last.height)).collect();
@@ -184,6 +187,6 @@ fn height(print: &Print, model: Model<'_>, part: &Part, found: &mut Findings) {
     let line = grid.pixels(SOME_WIDTH * PRINTABLE / 2.0);
     let area = |layer| rest.section(layer, &grid).0.opened(line).count() as f64 * grid.area();
     if (0..above).any(|layer| area(layer) >= LEAST_AREA) {
-        tell("lower");
+        report("lower");
     }
 }

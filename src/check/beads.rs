@@ -1,4 +1,4 @@
-//! Print + Terms -> findings of amounts: lines with odd amounts of plastic, and sums that the file itself tells.
+//! Print + Terms -> findings of amounts: lines with odd amounts of plastic, and the file's own sums.
 
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::median;
@@ -6,22 +6,24 @@ use super::terms::Terms;
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};
 
-/// Shorter lines are mostly rounding, mm.
+/// Shorter lines are not judged, mm: their plastic is mostly rounding.
 const LEAST_LENGTH: f64 = 0.5;
 
-/// A line may take this many times the plastic of its role's usual line of that size …
+/// A line may take this many times the plastic of its role's usual line of that size:
+/// well below a line that is printed twice, well above what flow factors make of one, …
 const MOST: f64 = 1.6;
 
-/// … or this.
+/// … or this: above a line that got half of its plastic.
 const LEAST: f64 = 0.55;
 
-/// The same where no comment tells how wide lines are.
-const MOST_UNTOLD: f64 = 4.0;
+/// The most where no comment gives widths: there a wide line of the role takes several times a thin
+/// one's plastic.
+const MOST_WITHOUT_WIDTH: f64 = 4.0;
 
-/// Lines of a role that tell what is usual.
+/// Least number of lines of a role: of fewer none is usual.
 const LEAST_LINES: usize = 20;
 
-/// How far sums may be from what they sum up: a part of 1, and mm.
+/// How far the file's own sums may be off: a part of 1, and mm. Some count primed filament.
 const SUM_SLACK: (f64, f64) = (0.01, 1.0);
 
 /// Lines whose plastic does not fit their size.
@@ -43,10 +45,10 @@ pub(super) fn odd(print: &Print, terms: &Terms, found: &mut Findings) {
         let Some(usual) = median(ratios) else { continue };
         for (layer, step) in lines(role) {
             let times = ratio(step) / usual;
-            let is_odd = if print.tells_width {
+            let is_odd = if print.has_widths {
                 !(LEAST..=MOST).contains(&times)
             } else {
-                times > MOST_UNTOLD
+                times > MOST_WITHOUT_WIDTH
             };
             if is_odd {
                 let text = format!(
@@ -66,9 +68,10 @@ fn is_judged(step: &Step, role: Role) -> bool {
     step.role == role && step.is_line() && step.length() >= LEAST_LENGTH
 }
 
-/// What a line's plastic is held against, mm³: its length times its width, if that is told, and height.
+/// The room that a line's plastic is compared with, mm³: its length times its height and, if the
+/// file gives it, its width.
 fn room(print: &Print, step: &Step) -> f64 {
-    let width = if print.tells_width { f64::from(step.width) } else { 1.0 };
+    let width = if print.has_widths { f64::from(step.width) } else { 1.0 };
     step.length() * width * f64::from(step.height)
 }
 
@@ -83,35 +86,35 @@ pub(super) fn place(layer: usize, step: &Step) -> Place {
     }
 }
 
-/// Filament and layers as the file's comments tell them.
+/// Compares filament and layers with the sums in the file's comments.
 pub(super) fn sums(print: &Print, found: &mut Findings) {
-    let told = |keys: &[&str]| {
+    let sum_of = |keys: &[&str]| {
         let text = keys.iter().find_map(|key| print.value(key))?;
         let parts: Option<Vec<f64>> = text.split(',').map(|one| one.trim().parse().ok()).collect();
         parts.map(|parts| parts.iter().sum::<f64>()).filter(|sum| sum.is_finite())
     };
-    if let Some(told) = told(&["filament used [mm]"]) {
+    if let Some(stated) = sum_of(&["filament used [mm]"]) {
         let sum = |steps: &[Step]| steps.iter().map(|step| f64::from(step.filament)).sum::<f64>();
         let last = print.moves.iter().rposition(Step::is_line).map_or(0, |index| index + 1);
         // Some slicers count the start block, some do not.
         let sums = [sum(&print.moves[..last]), sum(&print.moves[print.start.end.min(last)..last])];
-        let fits = |sum: &f64| (sum - told).abs() <= SUM_SLACK.0 * told + SUM_SLACK.1;
+        let fits = |sum: &f64| (sum - stated).abs() <= SUM_SLACK.0 * stated + SUM_SLACK.1;
         if !sums.iter().any(fits) {
             let text = format!(
                 "the file says that it uses {} mm of filament, but uses {}",
-                short(told),
+                short(stated),
                 short(sums[1])
             );
-            let measure = (sums[1] - told).abs();
+            let measure = (sums[1] - stated).abs();
             found.add(Finding::of(Code::WrongSums, measure, "mm", text));
         }
     }
-    if let Some(told) = told(&["total layers count", "layers"]) {
+    if let Some(stated) = sum_of(&["total layers count", "layers"]) {
         // A layer may have nothing to print.
         let count = print.begun as f64;
-        if count != told {
-            let text = format!("the file says that it has {told} layers, but has {count}");
-            found.add(Finding::of(Code::WrongSums, (count - told).abs(), "layers", text));
+        if count != stated {
+            let text = format!("the file says that it has {stated} layers, but has {count}");
+            found.add(Finding::of(Code::WrongSums, (count - stated).abs(), "layers", text));
         }
     }
 }

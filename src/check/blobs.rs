@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn patches_are_told_apart() {
+    fn patches_are_separated() {
         let mut bits = Bits::new([40, 4]);
         // A U, and a dot beside it that touches nothing.
         bits.set(0, 0..3);

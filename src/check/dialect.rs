@@ -6,8 +6,8 @@ use crate::profile::DialectName;
 const GPX_G: &[u32] =
     &[0, 1, 4, 10, 15, 21, 28, 53, 54, 55, 56, 57, 58, 59, 71, 90, 91, 92, 130, 161, 162];
 
-/// M-codes of GPX 2.6 for Sailfish. Those that become queries of a host, which a print
-/// from a card waits on for ever (M105, M114, M115 …), are none.
+/// M-codes of GPX 2.6 for Sailfish. Missing on purpose: those that become queries of a host (M105,
+/// M114, M115 …), on which a print from a card waits for ever.
 const GPX_M: &[u32] = &[
     0, 2, 6, 17, 18, 22, 31, 70, 71, 72, 73, 82, 83, 84, 101, 102, 103, 104, 106, 107, 108, 109,
     110, 111, 116, 126, 127, 131, 132, 133, 134, 135, 136, 137, 140, 190, 220, 221, 300, 320, 321,
@@ -42,11 +42,10 @@ const MARLIN_M: &[u32] = &[
     554, 569, 575, 592, 593, 600, 603, 605, 665, 666, 672,
 ];
 
-/// Marlin's M-codes from here on are rare ones (M700 and more), all taken for known.
+/// Marlin's M-codes from here on are rare ones (M700 and more), which all count as known.
 const MARLIN_RARE: u32 = 700;
 
-/// Whether the firmware does what `letter` and `number` say, or at least takes it without
-/// a complaint.
+/// Whether the firmware knows the command, or at least accepts it without a complaint.
 pub(super) fn knows(dialect: DialectName, letter: u8, number: u32) -> bool {
     let (g, m) = match dialect {
         DialectName::Makerbot => (GPX_G, GPX_M),

@@ -1,9 +1,17 @@
 //! Finding: what is wrong with a file, where, and by how much.
+//!
+//! Each finding has a code, a place as far as it is known, a measure with its unit, and a text. Of each
+//! code the findings with the largest measures are listed, at most [`MOST_LISTED`], and all are
+//! counted: a wrong file has thousands, and the first hundred show what is wrong.
+//!
+//! Codes, their names and the JSON fields are stable: scripts match on them. A new code is a line in
+//! [`Code`], in [`Code::ALL`] and in [`Code::name`], in the order of severity: what harms the machine
+//! first, then what spoils the print, then what is wrong with the shape.
 
 use serde::Serialize;
 use std::fmt;
 
-/// Findings of a kind that are listed; the rest are counted.
+/// Findings of a kind that are listed; the rest are only counted.
 pub const MOST_LISTED: usize = 100;
 
 /// Kinds of findings. Their names are stable.
@@ -14,7 +22,7 @@ pub enum Code {
     UnknownCode,
     /// A line or travel leaves the space that the machine has.
     OutsideVolume,
-    /// Plastic is pushed out before the nozzle has been told to get hot and waited for.
+    /// Plastic is pushed out before the nozzle is set to a temperature and waited for.
     ColdExtrusion,
     /// A move is faster than the machine's axes.
     TooFast,
@@ -30,7 +38,7 @@ pub enum Code {
     InTheAir,
     /// A line lies on a line of the same layer.
     PrintedTwice,
-    /// The file says it uses another amount of filament than it does.
+    /// The file's own sums of filament or layers are wrong.
     WrongSums,
     /// The print is larger or smaller than the part.
     WrongSize,
@@ -38,7 +46,7 @@ pub enum Code {
     OpenOutline,
     /// Something of a top or bottom surface is not printed.
     OpenSurface,
-    /// Lines of the part lie beside it.
+    /// Lines of the part lie outside it.
     OutsidePart,
     /// The sparse infill is denser or thinner than asked for, or missing.
     WrongInfill,
@@ -178,7 +186,7 @@ impl Findings {
         self.found.len()
     }
 
-    /// Says where all findings from `first` on are.
+    /// Sets the place of all findings from `first` on.
     pub(super) fn place(&mut self, first: usize, place: Place) {
         self.found[first..].iter_mut().for_each(|finding| finding.place = place);
     }
@@ -235,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn places_are_told_as_far_as_they_are_known() {
+    fn places_are_written_as_far_as_they_are_known() {
         let place = Place { line: Some(7), layer: Some(3), z_mm: Some(0.6), at_mm: None };
         assert_eq!(place.to_string(), "line 7, layer 3 at 0.6 mm: ");
         let place = Place { at_mm: Some([-0.001, 10.126]), ..Place::default() };

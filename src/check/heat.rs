@@ -1,11 +1,11 @@
-//! Heaters as a file tells them -> whether the nozzle is hot.
+//! Commands for heaters -> whether the nozzle is hot.
 
 use crate::reader::{Heater, Heating};
 
 /// Nothing melts below this, °C.
 const COLDEST: f64 = 60.0;
 
-/// What the nozzles have been told.
+/// The nozzles' temperatures so far.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Heat {
     /// By tool (`None` is the one in use), °C.
@@ -14,8 +14,8 @@ pub(super) struct Heat {
 }
 
 impl Heat {
-    /// A heater is told something.
-    pub(super) fn tell(&mut self, heating: &Heating) {
+    /// A command for a heater.
+    pub(super) fn set(&mut self, heating: &Heating) {
         if heating.heater == Heater::Bed {
             return;
         }
@@ -27,7 +27,7 @@ impl Heat {
         self.hot = wanted && (self.hot || heating.waits);
     }
 
-    /// Whether some nozzle is told to melt plastic.
+    /// Whether some nozzle is set to melt plastic.
     pub(super) fn is_wanted(&self) -> bool {
         self.targets.iter().any(|(_, celsius)| *celsius >= COLDEST)
     }
@@ -43,20 +43,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hot_is_what_was_told_and_waited_for() {
+    fn hot_is_what_was_set_and_waited_for() {
         let nozzle =
             |tool, celsius, waits| Heating { heater: Heater::Nozzle(tool), celsius, waits };
         let mut heat = Heat::default();
-        heat.tell(&nozzle(Some(1), Some(200.0), false));
+        heat.set(&nozzle(Some(1), Some(200.0), false));
         assert!(heat.is_wanted() && !heat.is_hot());
-        heat.tell(&Heating { heater: Heater::Bed, celsius: Some(60.0), waits: true });
+        heat.set(&Heating { heater: Heater::Bed, celsius: Some(60.0), waits: true });
         assert!(!heat.is_hot());
-        heat.tell(&Heating { heater: Heater::All, celsius: None, waits: true });
+        heat.set(&Heating { heater: Heater::All, celsius: None, waits: true });
         assert!(heat.is_hot());
         // Another temperature later keeps it hot, none does not.
-        heat.tell(&nozzle(Some(1), Some(190.0), false));
+        heat.set(&nozzle(Some(1), Some(190.0), false));
         assert!(heat.is_hot());
-        heat.tell(&nozzle(Some(1), Some(0.0), false));
+        heat.set(&nozzle(Some(1), Some(0.0), false));
         assert!(!heat.is_hot());
     }
 }

@@ -1,8 +1,8 @@
 //! Print + Terms + model -> Verdict: an independent witness of what a G-code file prints.
 //!
-//! It reads the finished text and shares no code with what slices, plans or writes, so that a
-//! fault made there is not made again here. It works on any slicer's files; what a file does
-//! not tell is listed as not judged.
+//! It reads the finished text and shares no code with what slices, plans or writes, so that it does
+//! not repeat their faults. It works on any slicer's files; what a file gives no means to judge is
+//! listed as not judged.
 
 mod against;
 mod align;
@@ -30,7 +30,7 @@ use terms::Terms;
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
 pub const SCHEMA: u32 = 1;
 
-/// No print is wider or deeper, mm.
+/// No print is wider or deeper, mm: larger than any machine's bed.
 const WIDEST: f64 = 10_000.0;
 
 /// What was meant to be printed.
@@ -38,11 +38,11 @@ const WIDEST: f64 = 10_000.0;
 pub struct Model<'a> {
     /// As it lies on the bed, but for `offset`.
     pub mesh: &'a Mesh,
-    /// Where its middle was put, in the machine's coordinates, mm. A file may have it elsewhere.
+    /// Where its middle is expected, in the machine's coordinates, mm. A file may have it elsewhere.
     pub offset: [f64; 2],
 }
 
-/// What is to be said of a file.
+/// The report on a file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Verdict {
     /// [`SCHEMA`].
@@ -94,7 +94,7 @@ pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict 
     moves::check(print, terms, &mut found, &mut not_judged);
     beads::odd(print, terms, &mut found);
     beads::sums(print, &mut found);
-    // What is as wide as no machine is not looked at place by place.
+    // A print wider than any machine is not checked place by place: its map would fill the memory.
     let absurd = is_absurd(print, &mut found);
     let part = model.filter(|_| !absurd).and_then(|model| {
         let say = (&mut found, &mut not_judged);
@@ -148,7 +148,7 @@ fn is_absurd(print: &Print, found: &mut Findings) -> bool {
     true
 }
 
-/// What the file, or who asks, does not tell.
+/// What cannot be judged because the file or the caller does not give it.
 fn what_is_missing(
     print: &Print,
     terms: &Terms,
@@ -166,7 +166,7 @@ fn what_is_missing(
     if !has_roles {
         say("what lines are for: no comment of the file tells it");
     }
-    if !print.tells_width {
+    if !print.has_widths {
         say("the plastic of single lines: no comment tells how wide they are");
     }
 }

@@ -1,4 +1,17 @@
 //! Print + Terms -> findings of single moves: codes, volume, heat, feeds, flow, retractions, heights.
+//!
+//! One pass over the moves in the file's order, with what is known so far: how hot the nozzle is, how
+//! much filament is pulled back, which layer it is. Each move is checked for:
+//! - plastic pushed out before the nozzle was set and waited for (once a file);
+//! - filament that is still pulled back when a line begins, or pushed out more than was pulled back;
+//! - places outside the machine's volume;
+//! - speeds in x and y beyond the machine's, and more plastic per second than the hot end melts.
+//!   Speeds in z and of the filament alone are not judged: firmwares cap them, and slicers rely on
+//!   that. A line that rises is as slow as the cap on z makes it;
+//! - layers that lie lower than one before them.
+//!
+//! Commands are judged once each, by a list of what the firmware knows. Klipper's macros cannot be
+//! judged, and are listed as such.
 
 use super::dialect;
 use super::finding::{Code, Finding, Findings, Place, short};
@@ -8,25 +21,25 @@ use crate::profile::DialectName;
 use crate::reader::Print;
 use crate::reader::print::{Step, What};
 
-/// Coordinates are rounded to this or less, mm.
+/// Coordinates are rounded to this or less, mm; a smaller value would report files with two decimals.
 pub(super) const ROUNDING: f64 = 0.01;
 
-/// Speeds may be over the limit by this factor: they are rounded, too.
+/// Factor by which speeds may exceed the limit: they are rounded, too.
 const SPEED_SLACK: f64 = 1.01;
 
-/// Flow may be over the limit by this factor: what one line melts is not known to better.
+/// Factor by which flow may exceed the limit: E has few decimals.
 const FLOW_SLACK: f64 = 1.05;
 
-/// Flow is judged on lines of this length: shorter ones are mostly rounding, mm.
+/// Shorter moves are not judged, mm: their speed and flow are mostly rounding.
 const LEAST_LENGTH: f64 = 0.2;
 
 /// Digits of a command's number.
 const MOST_DIGITS: usize = 6;
 
-/// Filament that may be missing or too much at a restore, mm.
+/// Filament that may be missing or too much at a restore, mm: room for what slicers add to prime.
 const FILAMENT_SLACK: f64 = 0.3;
 
-/// Judges the moves one by one, in the file's order. What cannot be judged is told in `notes`.
+/// Judges the moves one by one, in the file's order. What cannot be judged goes to `notes`.
 pub(super) fn check(print: &Print, terms: &Terms, found: &mut Findings, notes: &mut Vec<String>) {
     codes(print, terms, found, notes);
     let mut walk = Walk::new(print, terms.machine.as_ref(), terms.filament_area);
@@ -85,7 +98,7 @@ fn codes(print: &Print, terms: &Terms, found: &mut Findings, notes: &mut Vec<Str
     }
 }
 
-/// Whether the word is a letter and a number that is none beyond reason: those are judged as commands.
+/// Whether the word is a letter and a number of at most [`MOST_DIGITS`]: those are judged as commands.
 fn is_numbered(word: &str) -> bool {
     let Some(number) = word.strip_prefix(|c: char| c.is_ascii_alphabetic()) else { return false };
     let digits = number.chars().take_while(char::is_ascii_digit).count();
@@ -102,11 +115,11 @@ struct Walk<'a> {
     /// The moves from the first layer's to the last line.
     printing: std::ops::Range<usize>,
     heat: Heat,
-    /// A word that may heat the nozzle, called before it was hot.
+    /// The first command that the reader does not know: a macro that may heat the nozzle.
     stranger: Option<String>,
-    /// That word, once plastic has been pushed out on its word.
+    /// That command, once plastic is pushed out without any other that heats.
     heated_by_macro: Option<String>,
-    is_cold_told: bool,
+    is_cold_reported: bool,
     /// Filament that is pulled back, mm.
     pulled: f64,
     /// Whether the firmware has it pulled back.
@@ -129,7 +142,7 @@ impl<'a> Walk<'a> {
             heat: Heat::default(),
             stranger: None,
             heated_by_macro: None,
-            is_cold_told: false,
+            is_cold_reported: false,
             pulled: 0.0,
             pulled_by_firmware: false,
             fall: 0.0,
@@ -139,7 +152,7 @@ impl<'a> Walk<'a> {
 
     fn note(&mut self, what: &What) {
         match what {
-            What::Heating(heating) => self.heat.tell(heating),
+            What::Heating(heating) => self.heat.set(heating),
             What::FirmwareRetraction { back } => self.pulled_by_firmware = *back,
             What::Unknown(code) => {
                 let word = code.split_whitespace().next().map(str::to_owned);
@@ -209,11 +222,11 @@ impl<'a> Walk<'a> {
     }
 
     fn cold(&mut self, step: &Step, found: &mut Findings) {
-        if step.filament <= 0.0 || self.heat.is_hot() || self.is_cold_told {
+        if step.filament <= 0.0 || self.heat.is_hot() || self.is_cold_reported {
             return;
         }
-        // Once is enough: all that follows is as cold.
-        self.is_cold_told = true;
+        // Once is enough: everything after it is as cold.
+        self.is_cold_reported = true;
         if let Some(word) = self.stranger.clone().filter(|_| !self.heat.is_wanted()) {
             self.heated_by_macro = Some(word);
             return;
@@ -276,8 +289,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Lines of a layer may go up and down, but layers go up. What a line runs into is looked for
-    /// where lines are piled up, see [`super::stack`].
+    /// Lines of a layer may go up and down, but layers go up. Lines that run into what is printed
+    /// are found where lines are piled up, see [`super::stack`].
     fn falling(&mut self, found: &mut Findings) {
         let fall = std::mem::take(&mut self.fall);
         if fall > ROUNDING {

@@ -1,9 +1,17 @@
 //! Mesh + heights -> Part: the model cut at the middle of each layer, as pixels.
 //!
-//! A cut of its own, so that a fault of the slicer's is not repeated here: triangles to
-//! segments, segments to signed crossings with each row of pixels, and inside is where the
-//! crossings before do not cancel out (the winding number is not 0). What lies on a plane or
-//! row counts as above it.
+//! Words used here: a *plane* is the height of a layer's cut; a *crossing* is where an outline crosses
+//! a row of pixels; a *level* is the height of a face that lies flat.
+//!
+//! A cut of its own, so that a fault of the slicer is not repeated here:
+//! 1. Triangles are sorted by the planes that they cross.
+//! 2. A plane cuts a triangle in a segment, directed so that the solid lies on the same side of all.
+//! 3. Segments cross rows of pixels; each crossing is +1 or -1 by the segment's direction.
+//! 4. Along a row, inside is where the sum of the crossings so far is not 0 (the winding number).
+//!
+//! What lies on a plane or row counts as above it, so that each outline closes and no corner counts
+//! twice. An outline that does not close (the sum at the end of a row is not 0) makes the layer
+//! unsure.
 
 use super::raster::{Bits, Grid};
 use crate::geom::cells::Cells;
@@ -11,8 +19,8 @@ use crate::geom::segment;
 use crate::mesh::Mesh;
 use crate::units::{UNITS_PER_MM, to_mm};
 
-/// Planes lie on a grid of so many steps a mm: half of the mesh's units. A whole number over it
-/// is the same number as the mesh's for the same height.
+/// Planes lie on a grid with this many steps a mm: half of the mesh's units, so that a plane at a
+/// vertex's height is exactly the same number.
 const PLANE_STEPS: f64 = 2.0 * UNITS_PER_MM;
 
 /// The model where it was printed.
@@ -28,15 +36,16 @@ pub(super) struct Part {
     levels: Vec<f64>,
 }
 
-/// Slicers may take a face that lies so near to a cut for above or below it, mm.
+/// Slicers may count a face that lies this near to a cut to either side, mm: they round heights to
+/// a thousandth.
 const NEAR_LEVEL: f64 = 1.5e-3;
 
 /// A stretch of an outline; the solid lies on the same side of all of them.
 type Segment = [[f64; 2]; 2];
 
 impl Part {
-    /// Cuts `mesh`, moved by `offset` mm, in the middle of each of the layers, told by their tops
-    /// and heights, mm.
+    /// Cuts `mesh`, moved by `offset` mm, in the middle of each layer; `layers` are their tops and
+    /// heights, mm.
     ///
     /// # Errors
     /// The layer, from 0, that does not lie above the one before.

@@ -1,4 +1,16 @@
 //! Grid and Bits: an area of the bed as rows of bits, one a pixel, for booleans, growing and shrinking.
+//!
+//! Words used here: a *pixel* is a square of the bed; a *stretch* is set pixels side by side in a row;
+//! to *grow* an area is to set all pixels near a set one, to *shrink* it is to keep those whose
+//! surroundings are all set, to *open* it is both: what is narrower disappears.
+//!
+//! A row is an array of 64-bit words, so that booleans take one instruction for 64 pixels. Growing by
+//! a disc works by stretches: the disc's rows are stretches that get wider towards its middle, and a
+//! row shifted and joined with itself doubles its reach with each step. A disc of radius r costs
+//! about 2 r row operations instead of r². Squares, for which rows and columns separate, cost
+//! log r.
+//!
+//! Pixels cover what their middles cover. Beyond the edge nothing is set.
 
 use crate::geom::segment;
 

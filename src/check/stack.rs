@@ -1,10 +1,21 @@
 //! Print -> findings of how lines lie on each other: in the air, or printed twice.
 //!
-//! A map of the bed holds how high plastic stands; lines are laid on it in the file's order. A
-//! place of a line is carried if plastic or the bed reaches up to its lower side there. Lines of
-//! a layer that touch hold on to one another: such a patch is in the air if none of its lines is
-//! carried anywhere. Within a patch, a stretch that is not carried is a bridge if both its ends
-//! are, and else an end that hangs out; both are measured.
+//! Words used here: *tops* is a map of how high plastic stands at each place of the bed, *cores* one
+//! of the height at which the middle of the last line there was laid; a *chain* is lines one after the
+//! other without a break; a *patch* is all lines of a layer that touch; a place of a line is
+//! *carried* if plastic or the bed reaches up to its lower side there.
+//!
+//! Lines are laid on the maps in the file's order, layer by layer:
+//! - a patch of which no line is carried anywhere is in the air, unless the model itself has
+//!   nothing below there. Within other patches a stretch that is not carried is a bridge if both
+//!   its ends are, else an end that hangs; both are measured;
+//! - a line whose core runs along another core of its layer is printed twice;
+//! - a line that lies lower than a core of a layer before it falls: it runs into what is printed.
+//!   This is possible only for lines below the highest line so far, so flat files do not pay for it;
+//! - a layer whose walls are less high than it lies above the one below misses a layer between.
+//!
+//! A layer's lines raise the tops only when the layer is done: lines beside each other do not carry
+//! each other.
 
 use super::beads::place;
 use super::capsule::Capsule;
@@ -16,28 +27,31 @@ use super::samples::{Sample, Samples};
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};
 
-/// Side of a pixel, mm.
+/// Side of a pixel, mm: a quarter of a usual line. Larger ones miss lines between the samples.
 const PITCH: f64 = 0.1;
 
 /// Pixels of the map at most; larger beds get larger pixels.
 const MOST_PIXELS: f64 = 2e7;
 
-/// Plastic may be missing under a line by this part of its height.
+/// Part of a line's height that may be missing under it: less makes findings of rounded heights,
+/// more hides a missing layer under a thick line.
 const GAP: f64 = 0.5;
 
-/// A layer may lie higher than its walls are by this part of their height.
+/// Part of its walls' height by which a layer may lie too high: variable heights are rounded,
+/// a missing layer is a whole height.
 const LEAST_GAP: f64 = 0.4;
 
-/// Support may end so far below the part, mm: it is to come off.
+/// Gap that may be between support and part, mm: it must come off. Two layers of 0.2 mm, and rounding.
 const SUPPORT_GAP: f64 = 0.45;
 
-/// A patch with shorter lines in all is no more than a blob, mm.
+/// A patch with shorter lines in all is ignored as a blob, mm.
 const LEAST_PATCH: f64 = 4.0;
 
-/// A line runs on another where their middles, so wide as a part of their widths, meet …
+/// A line runs on another where their cores meet, which are this part of their widths: neighbours
+/// overlap by less, turns of a zigzag by more, …
 const CORE: f64 = 0.4;
 
-/// … over so many mm, or over nearly all of a line that is longer than the second.
+/// … over this many mm; or over the share `WHOLE` of a line that is longer than `LEAST_WHOLE`.
 const LEAST_TWICE: f64 = 10.0;
 const LEAST_WHOLE: f64 = 2.0;
 const WHOLE: f64 = 0.8;
@@ -45,7 +59,7 @@ const WHOLE: f64 = 0.8;
 /// Heights of lines that differ by less are the same, mm: positions are rounded to this or less.
 const SAME_HEIGHT: f32 = 0.01;
 
-/// So far behind the nozzle a line counts as one that the next may not run on, mm: turns are closer.
+/// Length behind the nozzle that does not count as laid, mm: a line may turn back within it.
 const BEHIND: f64 = 1.5;
 
 /// What was measured.
@@ -60,7 +74,7 @@ pub(super) struct Measured {
 }
 
 /// Lays all lines of the layers down. Where `part` itself has nothing below, a hanging line is
-/// the part's fault, and only measured.
+/// only measured, and no finding.
 pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) -> Measured {
     let mut measured = Measured::default();
     let Some(mut pile) = Pile::over(print) else { return measured };
@@ -86,19 +100,19 @@ pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) ->
     measured
 }
 
-/// A layer whose walls are not as high as it lies above the one below, since one between is
-/// missing. Told by the walls: infill may be as thick as several layers.
+/// Reports a layer whose walls are less high than it lies above the one below: a layer between is
+/// missing. Only walls are compared, since infill may be as thick as several layers.
 fn gap(print: &Print, layer: usize, found: &mut Findings) {
     let walls = |layer: usize| {
         let steps = print.moves_of(&print.layers[layer]).iter();
         steps.filter(|step| step.is_line() && step.role == Role::OuterWall)
     };
-    let Some(below) = layer.checked_sub(1).filter(|_| print.tells_height) else { return };
+    let Some(below) = layer.checked_sub(1).filter(|_| print.has_heights) else { return };
     // A raft or support below ends lower on purpose.
     let (Some(first), Some(_)) = (walls(layer).next(), walls(below).next()) else { return };
-    let told = walls(layer).map(|step| f64::from(step.height)).fold(0.0, f64::max);
-    let missing = print.layers[layer].height - told;
-    if missing > LEAST_GAP * told {
+    let height = walls(layer).map(|step| f64::from(step.height)).fold(0.0, f64::max);
+    let missing = print.layers[layer].height - height;
+    if missing > LEAST_GAP * height {
         let text = format!("the layer lies {} mm too high above the one before", short(missing));
         let finding = Finding::of(Code::InTheAir, missing, "mm", text);
         found.add(Finding { place: place(layer, first), ..finding });
@@ -142,7 +156,7 @@ impl Judge<'_> {
         for (k, (line, &root)) in lines.iter().zip(&roots).enumerate() {
             measured.longest_bridge = measured.longest_bridge.max(line.longest_bridge);
             if carried[root] {
-                // Skins begin and end somewhere above sparse infill: that is no fault.
+                // Skins may begin and end between two lines of sparse infill.
                 let longest = line.ends.iter().map(|end| length_of(end)).fold(0.0, f64::max);
                 measured.longest_end = measured.longest_end.max(longest);
             } else if k == root && lengths[root] >= LEAST_PATCH {
@@ -153,7 +167,7 @@ impl Judge<'_> {
         }
     }
 
-    /// Tells of a patch that hangs, unless the part does.
+    /// Reports a patch that hangs, unless the part does.
     fn hangs(&self, line: &Line, places: &[Sample], found: &mut Findings, measured: &mut Measured) {
         let (by_part, own): (Vec<Sample>, Vec<Sample>) = places
             .iter()
@@ -287,7 +301,7 @@ impl Pile {
     }
 
     /// Notes how far a place of a line lies below the nozzle's way there in a layer before. Flat
-    /// layers, which all lie above those before, need not be looked at.
+    /// layers, which all lie above those before, need no search.
     fn find_fall(&mut self, step: &Step, place: &Sample) {
         if place.z >= self.highest - ROUNDING {
             return;

@@ -1,4 +1,14 @@
 //! Print + Part -> findings against the model, layer by layer, and the sums over all of them.
+//!
+//! Layers are cut and judged in batches, side by side on all threads, so that few cuts are held at a
+//! time. A layer is unsure, and not judged, if a cut does not close, or if it runs along a face of the
+//! model: then another slicer may rightly count the face to the other side.
+//!
+//! Sums over all layers are judged at the end:
+//! - plastic of walls and skins for the room that they cover;
+//! - density of the sparse infill, plastic per room, where there is enough room away from walls: for
+//!   the whole print against what the file asks for, and for blocks of layers against the whole
+//!   print. Thick lines fill several layers, so that a single layer has no density.
 
 use super::against::{Areas, Judge, SOME_WIDTH, Verdict, floors, is_of_part, strays};
 use super::finding::{Code, Finding, Findings, Place, short};
@@ -18,26 +28,29 @@ const MOST_PIXELS: f64 = 3e7;
 /// Layers that are cut at a time, so that few are held.
 const BATCH: usize = 32;
 
-/// Layers over which infill is measured together: several of the largest groups.
+/// Layers over which infill is measured together: three of the largest usual groups of thick infill.
 const BLOCK: usize = 12;
 
-/// Less room for infill tells nothing of its density, mm³.
+/// Least room for infill by which a block is judged, mm³: in less, single lines make the density.
 const LEAST_ROOM: f64 = 150.0;
 
-/// A layer with less room for infill has none, mm², and a block with fewer layers tells nothing.
+/// A layer with less room for infill does not count, mm², and a block with fewer layers that do is
+/// not judged.
 const LEAST_CORE: f64 = 20.0;
 const LEAST_LAYERS: usize = 5;
 
-/// Infill of a block may be this part of what is asked for …
+/// Density of a block over the print's: rows of a wide grid fall in or out of a block, …
 const BLOCK_SLACK: [f64; 2] = [0.5, 1.7];
 
-/// … and that of the whole print this.
+/// … and of the whole print over what is asked for, which slicers reckon in different ways. Infill
+/// that is missing on a few layers shows in a block, not here.
 const INFILL_SLACK: [f64; 2] = [0.65, 1.4];
 
-/// Room for infill that tells the whole print's density, mm³.
+/// Least room for infill by which the whole print is judged, mm³.
 const ENOUGH_ROOM: f64 = 1000.0;
 
-/// Walls and skins may take this part of the room that they cover.
+/// Plastic of walls and skins over the room that they cover: overlaps count for the higher bound,
+/// gaps that the map closes for the lower.
 const SOLID_SLACK: [f64; 2] = [0.8, 1.25];
 
 /// Sums over all layers.
@@ -49,7 +62,7 @@ pub(super) struct Sums {
     pub(super) density: Option<f64>,
 }
 
-/// Holds all layers against the part.
+/// Judges all layers by the part.
 pub(super) fn check(
     print: &Print,
     part: &Part,
@@ -117,7 +130,7 @@ fn batch(judge: &Judge<'_>, layers: std::ops::Range<usize>) -> Vec<Verdict> {
     judged.collect()
 }
 
-/// The usual width of the walls that are seen, mm.
+/// The usual width of outer walls, mm.
 fn line_width(print: &Print) -> f64 {
     let walls = print.lines().filter(|step| step.role == Role::OuterWall);
     median(walls.map(|step| f64::from(step.width)).collect()).unwrap_or(SOME_WIDTH)
@@ -145,7 +158,7 @@ fn sums(
         }
     }
     let [room, plastic] = sums.total.solid;
-    if room > 0.0 && print.tells_width && !is_within(plastic / room, SOLID_SLACK) {
+    if room > 0.0 && print.has_widths && !is_within(plastic / room, SOLID_SLACK) {
         let percent = short(100.0 * plastic / room);
         let text =
             format!("walls and skins take {percent} % of the plastic that they have room for");
@@ -177,7 +190,7 @@ fn infill(print: &Print, terms: &Terms, areas: &[Areas], sums: &Sums, found: &mu
         return;
     }
     let Some(usual) = sums.density.filter(|density| *density > 0.0) else { return };
-    // Thick lines fill layers below their own: a last block of a few layers would tell little.
+    // Thick lines fill layers below their own: a last block must not be of a few layers only.
     for k in 0..(areas.len() / BLOCK).max(1) {
         let first = k * BLOCK;
         let rest = areas.len() - first;
@@ -187,7 +200,7 @@ fn infill(print: &Print, terms: &Terms, areas: &[Areas], sums: &Sums, found: &mu
             room += areas[index].sparse[0] * print.layers[index].height;
             plastic += areas[index].sparse[1];
         }
-        // A thick line fills layers of the block before: of few layers that tells nothing.
+        // A thick line may fill layers of the block before: few layers have no density.
         let layers = block.clone().filter(|k| areas[*k].sparse[0] >= LEAST_CORE).count();
         if layers < LEAST_LAYERS
             || room < LEAST_ROOM

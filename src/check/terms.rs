@@ -1,11 +1,11 @@
-//! Settings and a file's own comments -> Terms: what a file is held against.
+//! Settings and a file's own comments -> Terms: what a file is judged by.
 
 use crate::profile::{DialectName, ExtrusionModel, Origin, Settings};
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};
 use std::f64::consts::PI;
 
-/// What a file is held against.
+/// What a file is judged by.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Terms {
     /// The machine, if one is known.
@@ -40,8 +40,8 @@ pub struct Machine {
 const DENSITY_KEYS: &[&str] = &["infill", "fill_density", "sparse_infill_density"];
 
 impl Terms {
-    /// What the machine of `settings` can do, what the file was made with (`own`, if it is one of
-    /// this program's), and what it says of itself otherwise.
+    /// The machine of `settings`, the settings that the file was made with (`own`, if it is one of
+    /// this program's), and else what the file's comments hold.
     #[must_use]
     pub fn new(settings: Option<&Settings>, own: Option<&Settings>, print: &Print) -> Self {
         let diameter = print.filament_diameter;

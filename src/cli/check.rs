@@ -15,7 +15,7 @@ use slicer::reader::{Cause, Print};
 use slicer::warning::plural;
 use std::path::Path;
 
-/// Diameter of the filament where neither file nor profile tells it, mm.
+/// Diameter of the filament where neither file nor profile gives it, mm: the most usual one.
 const DIAMETER: f64 = 1.75;
 
 /// Findings of a kind that people get to read.
@@ -37,10 +37,10 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     if print.layers.is_empty() {
         return Err(Error::from(Cause::NoLine.of(name)).into());
     }
-    let told = profile::recorded(&print.values)?;
-    let judge = given.as_ref().or(told.as_ref());
+    let own = profile::recorded(&print.values)?;
+    let judge = given.as_ref().or(own.as_ref());
     let machine = judge.map(|profile| &profile.settings);
-    let terms = Terms::new(machine, told.as_ref().map(|profile| &profile.settings), &print);
+    let terms = Terms::new(machine, own.as_ref().map(|profile| &profile.settings), &print);
     let bed = judge.map_or(Bed::ANY, |profile| slicer::bed(&profile.settings.machine));
     let placed = if args.against.is_empty() {
         None
@@ -54,15 +54,15 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let text = if args.json {
         output::json(&verdict, Path::new("-"))?
     } else {
-        let by = judged_by(given.as_ref(), told.as_ref(), &args.against);
+        let by = judged_by(given.as_ref(), own.as_ref(), &args.against);
         let (headline, findings) = (headline(&verdict), findings(&verdict));
         format!("{name}: {headline}, {by}\n{findings}{}", notes(&verdict))
     };
     Ok(Outcome { text, code })
 }
 
-fn judged_by(given: Option<&Profile>, told: Option<&Profile>, models: &[String]) -> String {
-    let by = match (given, told) {
+fn judged_by(given: Option<&Profile>, own: Option<&Profile>, models: &[String]) -> String {
+    let by = match (given, own) {
         (Some(profile), _) => format!("judged by the profile {}", profile.name),
         (None, Some(_)) => "judged by its own settings".to_owned(),
         (None, None) => "judged without a profile".to_owned(),

@@ -116,11 +116,11 @@ fn clock(args: &DiffArgs, a: &Print, b: &Print) -> Result<(Profile, String)> {
     let name = args.profile.as_deref();
     let asked = profile::load(name.unwrap_or(profile::DEFAULT), &overrides)?;
     if name.is_some() {
-        let told = format!("profile {}", asked.name);
-        return Ok((asked, told));
+        let origin = format!("profile {}", asked.name);
+        return Ok((asked, origin));
     }
     for (print, file) in [(a, "A"), (b, "B")] {
-        // A file of another version may hold settings that are none any more.
+        // A file of another version may hold settings that do not exist any more.
         if !matches!(profile::recorded(&print.values), Ok(Some(_))) {
             continue;
         }
@@ -130,19 +130,19 @@ fn clock(args: &DiffArgs, a: &Print, b: &Print) -> Result<(Profile, String)> {
             return Ok((recorded, format!("the settings in {file}")));
         }
     }
-    let told = format!("profile {}", asked.name);
-    Ok((asked, told))
+    let origin = format!("profile {}", asked.name);
+    Ok((asked, origin))
 }
 
 fn json(found: &Difference, limits: &str) -> Result<String> {
     #[derive(Serialize)]
-    struct Told<'a> {
+    struct Product<'a> {
         #[serde(flatten)]
         difference: &'a Difference,
         /// Where the limits are from that both files are timed with.
         limits: &'a str,
     }
-    output::json(&Told { difference: found, limits }, Path::new("-"))
+    output::json(&Product { difference: found, limits }, Path::new("-"))
 }
 
 fn tolerance(text: &str) -> std::result::Result<f64, String> {

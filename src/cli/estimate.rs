@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_told_as_on_a_clock() {
+    fn times_are_written_as_on_a_clock() {
         assert_eq!(clock(0.4), "0:00:00");
         assert_eq!(clock(59.6), "0:01:00");
         assert_eq!(clock(360_061.0), "100:01:01");

@@ -1,4 +1,14 @@
 //! `slicer preview` -> pictures of what a G-code file prints, a page to look through it, or a picture of a model.
+//!
+//! What is made depends on the file and on the output's format:
+//! - a model (STL) becomes one picture, a PNG, whatever else is asked;
+//! - `.html` becomes the viewer's page with all layers, for which nothing can be chosen;
+//! - `.svg` and `.png` show one layer, an upright cut (`--cut`), or with `--all` each layer in a
+//!   file of its own.
+//!
+//! All pictures of layers have the same frame, so that one can leaf through them, unless `--fit` fills
+//! each with its layer or `--crop` sets the frame. A layer, cut or crop without a line is an error
+//! that names what there is instead. Outputs are put in place only when all are written.
 
 use super::output::{self, Sink};
 use super::{failure, input, interrupt, model, say, usage, viewer, words};
@@ -297,9 +307,9 @@ fn page(args: &PreviewArgs) -> Result<()> {
         )));
     }
     let profile = profile::load(&args.profile, &words::set_overrides(&args.set)?)?;
-    let told = viewer::write(&args.file, &args.output, &profile.settings)?;
+    let summary = viewer::write(&args.file, &args.output, &profile.settings)?;
     if !args.quiet {
-        say(&told);
+        say(&summary);
     }
     Ok(())
 }

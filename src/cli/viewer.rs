@@ -12,7 +12,7 @@ use slicer::warning::plural;
 use std::io::Write as _;
 use std::path::Path;
 
-/// Writes the page of `file` to `out`; tells what is in it.
+/// Writes the page of `file` to `out`; returns a line on what is in it.
 ///
 /// # Errors
 /// A file that cannot be read or holds no move, an output that cannot be written.

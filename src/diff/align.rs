@@ -11,7 +11,8 @@ pub(super) struct Pair {
     pub(super) b: Option<usize>,
 }
 
-/// How far is looked for a layer of the same height, in layers.
+/// Layers that are searched for one of the same height: more than any part that is printed beside
+/// another has; without a limit the search takes quadratic time.
 const FARTHEST: usize = 1000;
 
 /// Heights that differ by less are the same at any tolerance, mm.
@@ -64,7 +65,7 @@ mod tests {
         heights.iter().map(|&z| Layer { moves: 0..0, z, height: 0.2 }).collect()
     }
 
-    fn told(a: &[f64], b: &[f64]) -> String {
+    fn pairs_of(a: &[f64], b: &[f64]) -> String {
         let place = |place: Option<usize>| place.map_or("-".to_owned(), |k| k.to_string());
         let pairs = align(&layers(a), &layers(b), 0.01).into_iter();
         pairs.map(|pair| place(pair.a) + &place(pair.b)).collect::<Vec<_>>().join(" ")
@@ -72,13 +73,13 @@ mod tests {
 
     #[test]
     fn layers_are_paired_by_height() {
-        assert_eq!(told(&[0.2, 0.4, 0.6], &[0.2, 0.4, 0.6]), "00 11 22");
-        assert_eq!(told(&[0.2, 0.4, 0.6], &[0.2, 0.6]), "00 1- 21");
-        assert_eq!(told(&[0.2, 0.4], &[0.1, 0.2, 0.3, 0.4]), "-0 01 -2 13");
+        assert_eq!(pairs_of(&[0.2, 0.4, 0.6], &[0.2, 0.4, 0.6]), "00 11 22");
+        assert_eq!(pairs_of(&[0.2, 0.4, 0.6], &[0.2, 0.6]), "00 1- 21");
+        assert_eq!(pairs_of(&[0.2, 0.4], &[0.1, 0.2, 0.3, 0.4]), "-0 01 -2 13");
         // Another height of the first layer lifts all of them.
-        assert_eq!(told(&[0.2, 0.4, 0.6], &[0.25, 0.45, 0.65, 0.85]), "00 11 22 -3");
+        assert_eq!(pairs_of(&[0.2, 0.4, 0.6], &[0.25, 0.45, 0.65, 0.85]), "00 11 22 -3");
         // A part of its own begins at the bed again.
-        assert_eq!(told(&[0.2, 0.4, 0.2, 0.4], &[0.2, 0.2, 0.4]), "00 1- 21 32");
-        assert_eq!(told(&[], &[0.2]), "-0");
+        assert_eq!(pairs_of(&[0.2, 0.4, 0.2, 0.4], &[0.2, 0.2, 0.4]), "00 1- 21 32");
+        assert_eq!(pairs_of(&[], &[0.2]), "-0");
     }
 }

@@ -1,4 +1,18 @@
 //! Lines of two files -> Apart: what of one's lines is not where the other has any, or not as thick.
+//!
+//! Words used here: *far* is what of a line is farther than the tolerance from all lines of the other
+//! file; *unlike* is what lies in the same place as others, but none of them with as much filament
+//! per mm; a *gap* is a range of a line that none of the others covers; the *ceiling* of a gap is a
+//! bound on how far any of its places is.
+//!
+//! 1. For each line the others nearby are found: first the neighbours of the last match, since files
+//!    often have their lines in the same or in the opposite order, then by a grid.
+//! 2. Each covers a part of the line. What no part covers is far; what only parts with another amount
+//!    of filament cover is unlike. Both are summed up exactly.
+//! 3. The farthest place of all is searched in the gaps by branch and bound: the gap with the
+//!    highest ceiling is halved and measured in the middle, until no ceiling exceeds the farthest
+//!    place known. A ceiling follows from the ends: a distance grows no faster than the way, and to a
+//!    convex line it is convex.
 
 use super::grid::Grid;
 use super::line::{Line, Part, Point};
@@ -6,13 +20,13 @@ use std::cell::OnceCell;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// A file's decimals are not exact in binary: what is that far beyond a tolerance is within it, mm.
+/// Distance beyond a tolerance that is still within it, mm: a file's decimals are not exact in binary.
 pub(super) const SLACK: f64 = 1e-4;
 
-/// Gaps between parts of a line that are only rounding, as shares of the line.
+/// Largest gap between parts of a line that is only rounding, as a share of the line.
 const NO_GAP: f64 = 1e-9;
 
-/// The largest distance is found to within this, mm.
+/// Accuracy of the largest distance, mm; halving it costs a step of the search for each gap.
 const EXACT: f64 = 1e-3;
 
 /// What of some lines has no counterpart among others.
@@ -60,7 +74,7 @@ impl Unlike {
     }
 }
 
-/// Holds `lines` against `others`: places by `reach` in mm, filament for each mm by `share`.
+/// Compares `lines` with `others`: places by `reach` in mm, filament for each mm by `share`.
 pub(super) fn apart<'a>(lines: &'a [Line], others: &'a [Line], reach: f64, share: f64) -> Apart {
     if others.is_empty() {
         let far = lines.iter().map(|line| line.length).fold(0.0, |sum, length| sum + length);
@@ -86,13 +100,13 @@ struct Search<'a> {
     others: &'a [Line],
     reach: f64,
     share: f64,
-    /// Only made when it is needed: files that are nearly the same do without.
+    /// Only made when it is needed: equal files do without.
     grid: OnceCell<Grid<'a>>,
     /// The last of the others that was a counterpart.
     last: usize,
     /// Others that may be near a line.
     near: Vec<usize>,
-    /// Parts that are too far from all others.
+    /// Gaps in which the farthest place is searched.
     open: Vec<Open<'a>>,
     found: Apart,
 }

@@ -1,4 +1,16 @@
-//! Bytes of a G-code file -> Codes: what is told the printer besides moves, layer by layer.
+//! Bytes of a G-code file -> Codes: commands besides moves, layer by layer.
+//!
+//! Words used here: a *code* is a command besides moves; *orders* are the codes of a layer, those for
+//! heaters and all others; commands that moves and times already show, or that only inform, are left
+//! out ([`SHOWN_ELSEWHERE`]).
+//!
+//! Files write the same command in different ways: with a line number and checksum, in lower case,
+//! with zeros. Each code is brought to one form: no comment, letters in upper case, numbers in their
+//! shortest form; commands for heaters as the reader understands them.
+//!
+//! Slicers do not agree on where the first layer begins and the last ends, so what comes before the
+//! first line of all and after the last one are places of their own. Within a layer the order of
+//! codes matters, their place between the lines does not.
 
 use super::sums::Both;
 use crate::reader::print::{Print, What};
@@ -6,9 +18,9 @@ use crate::reader::{Heater, Heating};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Commands that the moves and their times hold already, or that only talk: positions, units,
-/// dwells and retractions; progress, reports, messages and limits of the machine.
-const SEEN_ELSEWHERE: &[&str] = &[
+/// Commands that moves and their times already show (positions, units, dwells, retractions, limits)
+/// or that only inform (progress, reports, messages).
+const SHOWN_ELSEWHERE: &[&str] = &[
     "G0",
     "G1",
     "G2",
@@ -36,21 +48,21 @@ const SEEN_ELSEWHERE: &[&str] = &[
     "SET_VELOCITY_LIMIT",
 ];
 
-/// Something that is told the printer.
+/// A command besides moves.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Code {
     /// Line of the file, from 1.
     line: u64,
-    /// What, in the same words for all files.
+    /// In the same form for all files.
     text: String,
-    /// Whether a heater is told.
+    /// Whether it is for a heater.
     heats: bool,
 }
 
-/// What is told the printer in one layer of one file but not of the other.
+/// Commands in a layer of one file but not of the other.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct CodeDifference {
-    /// What only one of them says, in the file's order.
+    /// Those of only one file, in its order.
     pub only: Both<Vec<String>>,
     /// The first line of the file where that is, from 1.
     pub line: Both<Option<u64>>,
@@ -65,17 +77,16 @@ pub struct Setting {
     pub value: Both<Option<String>>,
 }
 
-/// What heaters, and the rest of the printer, are told differently in one place of both files.
+/// Commands that differ in one place of both files.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct Orders {
-    /// Heaters.
+    /// For heaters.
     pub heaters: Option<CodeDifference>,
-    /// Everything else but moves.
+    /// All others.
     pub commands: Option<CodeDifference>,
 }
 
-/// What a file tells the printer by layer, with what comes before the first line of all and
-/// after the last one at the ends: slicers do not agree where layers begin and end there.
+/// A file's codes by layer; first those before the first line of all, last those after the last.
 pub(super) fn by_layer(bytes: &[u8], print: &Print) -> Vec<Vec<Code>> {
     let mut codes = others(bytes, print);
     for note in &print.notes {
@@ -118,7 +129,7 @@ fn others(bytes: &[u8], print: &Print) -> Vec<Code> {
         }
         let Some(text) = plain(bytes) else { continue };
         let command = text.split(' ').next().unwrap_or_default();
-        if !SEEN_ELSEWHERE.contains(&command) && !heats(line) {
+        if !SHOWN_ELSEWHERE.contains(&command) && !heats(line) {
             codes.push(Code { line, text, heats: false });
         }
     }
@@ -182,13 +193,13 @@ fn heater(Heating { heater, celsius, waits }: Heating) -> String {
     celsius.map_or_else(|| format!("{name}{wait}"), |celsius| format!("{name} {celsius} °C{wait}"))
 }
 
-/// What differs between what both files tell the printer in one place.
+/// The commands that differ in one place of both files.
 pub(super) fn orders(codes: Both<&Vec<Code>>) -> Orders {
     Orders { heaters: difference(codes, true), commands: difference(codes, false) }
 }
 
-/// What differs between what a layer of either file tells heaters, or everything else.
-/// The same in another order differs, too: each file then says all of it.
+/// The codes of a layer that differ: for heaters, or all others. The same codes in another order
+/// differ, too: then all are listed.
 fn difference(codes: Both<&Vec<Code>>, heats: bool) -> Option<CodeDifference> {
     let codes = codes.map(|codes| codes.iter().filter(|code| code.heats == heats));
     let codes = codes.map(Iterator::collect::<Vec<&Code>>);
@@ -237,7 +248,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_are_told_in_the_same_words() {
+    fn codes_are_brought_to_one_form() {
         for (line, expected) in [
             ("M106 S255.0 ; fan", Some("M106 S255")),
             ("N7 m0106  S127.5*33", Some("M106 S127.5")),

@@ -1,4 +1,16 @@
 //! Difference -> Findings: what makes two files unequal, worst first.
+//!
+//! A cause is reported once, where it says most:
+//! - layers that only one file has, and roles that only one file has in a layer, are one finding for
+//!   all layers together, not one for each;
+//! - layers at other heights likewise, with the one that differs most;
+//! - lines that are far or unlike are a finding for each layer and role, with the worst place;
+//! - a sum of a layer is a finding only if no line of it is: lines that are drawn twice lie nowhere
+//!   else, and only their sum shows;
+//! - sums of the file come last.
+//!
+//! Findings are sorted by [`Kind`], in the order of what spoils a print most, and in a kind by how
+//! far, how much or how long. Their JSON form is stable.
 
 use super::codes::{CodeDifference, Orders, Setting};
 use super::pair::{Flow, PairOfLayers, Place, RoleOfPair};
@@ -36,7 +48,7 @@ pub enum Quantity {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Finding {
-    /// Layers that the other file has not.
+    /// Layers that the other file does not have.
     LayersOnlyIn {
         /// The file that has them.
         file: File,
@@ -54,14 +66,14 @@ pub enum Finding {
         /// Its height of the nozzle, mm.
         z_mm: Both<f64>,
     },
-    /// Heaters are told something else.
+    /// Commands for heaters differ.
     Heaters {
         /// In this layer; `None` is after the last line.
         layer: Option<Both<usize>>,
         /// What.
         difference: CodeDifference,
     },
-    /// The printer is told something else, besides moves and heaters.
+    /// Other commands differ.
     Commands {
         /// In this layer; `None` is after the last line.
         layer: Option<Both<usize>>,
@@ -103,7 +115,7 @@ pub enum Finding {
         /// The two that differ most.
         most_unlike: Flow,
     },
-    /// A sum that differs where nothing else says why.
+    /// A sum that differs where no other finding explains it.
     Sum {
         /// In this layer; `None` for the whole file.
         layer: Option<Both<usize>>,
@@ -278,7 +290,7 @@ fn of_orders(orders: &Orders, layer: Option<Both<usize>>, found: &mut Vec<Findin
 fn of_role(pair: &RoleOfPair, layer: Both<usize>, found: &mut Vec<Finding>) {
     let RoleOfPair { role, far_mm, farthest, unlike_mm, .. } = *pair;
     if far_mm.a + far_mm.b > 0.0 && farthest.is_none() {
-        // Told for all layers together.
+        // Reported for all layers together.
         return;
     }
     let before = found.len();
@@ -289,7 +301,7 @@ fn of_role(pair: &RoleOfPair, layer: Both<usize>, found: &mut Vec<Finding>) {
     if let Some(most_unlike) = pair.most_unlike {
         found.push(Finding::Flow { layer, role, unlike_mm, most_unlike });
     }
-    // Lines that are drawn twice lie nowhere else: only the sums tell.
+    // Lines that are drawn twice lie nowhere else: only the sums show it.
     if found.len() == before {
         for (quantity, sum) in [
             (Quantity::Length, pair.length_mm),

@@ -1,4 +1,12 @@
 //! Moves -> Line: a straight line of plastic in space, and how far it lies from points and other lines.
+//!
+//! Words used here: a line's places are numbered from 0 at its start to 1 at its end; a *part* is
+//! such a range; *reach* is the distance within which places count as the same.
+//!
+//! The part of a line that lies within reach of another line is one range, because the distance from
+//! a convex set is a convex function along a line. It is found exactly: the places within reach of
+//! the other's two ends (where a parabola is below reach²), and those that lie beside it, within
+//! reach of the endless line through it; the three ranges together make the part.
 
 use crate::geom::segment::{self, along, dot, way};
 use crate::reader::print::Step;
@@ -9,13 +17,14 @@ pub(super) type Point = [f64; 3];
 /// A part of a line: where it begins and ends, 0 being the line's start and 1 its end.
 pub(super) type Part = [f64; 2];
 
-/// A line is parallel to another if it leaves it by less than this share, squared.
+/// Squared share of its length by which a parallel line may leave another: rounding of floats. Without
+/// it nearly parallel lines divide by nearly 0.
 const PARALLEL: f64 = 1e-20;
 
-/// Decimals of a filament length that slicers write leave this much open, mm.
+/// Rounding of a filament length with five decimals, mm; two of them make a difference.
 const FILAMENT_ROUNDING: f64 = 2e-5;
 
-/// Decimals of a coordinate that slicers write leave this much open, mm.
+/// Rounding of a coordinate with three decimals, mm; two of them make a difference.
 const PLACE_ROUNDING: f64 = 1e-3;
 
 /// A straight line of plastic. Heights are above the layer.
@@ -80,7 +89,7 @@ impl Line {
         })
     }
 
-    /// Whether both have the same plastic for each mm, as far as the decimals of a file tell.
+    /// Whether both have the same plastic for each mm, within the decimals of a file.
     /// Ends may lie `reach` apart, which makes short lines longer or shorter.
     pub(super) fn is_as_thick(&self, other: &Self, share: f64, reach: f64) -> bool {
         let shorter = self.length.min(other.length);

@@ -1,9 +1,20 @@
 //! Two G-code files -> Difference: whether they print the same, and where and how much not.
 //!
-//! Bytes may differ where the print does not: lines in another order or direction, split
-//! otherwise, with other comments. What is compared is the plastic: where lines of each role
-//! lie, how thick they are, how long it takes, and what heaters and the rest of the printer
-//! are told. The files may be those of different slicers.
+//! Bytes may differ where the print does not: lines in another order or direction, divided
+//! otherwise, with other comments. What is compared is the plastic: where lines of each role lie,
+//! how thick they are, how long they take, and which commands the printer gets besides. The files may
+//! be from different slicers.
+//!
+//! 1. Layers are paired by their heights (`align`).
+//! 2. In each pair, lines of each role are compared with those of the same role (`apart`): what of
+//!    a line is farther than the tolerance from all lines of the other file is *far*; what lies in
+//!    the same place with another amount of filament per mm is *unlike*.
+//! 3. Commands besides moves are compared in their order (`codes`).
+//! 4. Sums of length, filament and time are compared, by layer and for the file (`sums`).
+//! 5. What differs becomes findings, the worst first (`findings`). Without findings the files are
+//!    equal.
+//!
+//! If one of the files gives no roles, all lines count as one role.
 
 mod align;
 mod apart;
@@ -30,13 +41,13 @@ use sums::{Measure, ROLES};
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
 pub const SCHEMA: u32 = 1;
 
-/// Filament that may differ in a sum beside the share, mm: decimals of a few lines.
+/// Filament that sums may differ by besides the share, mm: decimals of a few lines.
 const LEAST_FILAMENT: f64 = 0.01;
 
-/// Length that may differ in a sum beside the share, mm.
+/// Length that sums may differ by besides the share, mm.
 const LEAST_LENGTH: f64 = 0.1;
 
-/// Time of a print that may differ beside the share, s.
+/// Time that prints may differ by besides the share, s.
 const LEAST_TIME: f64 = 1.0;
 
 /// How far files may differ and be the same.
@@ -69,16 +80,16 @@ impl Side {
         Self { print, estimate, codes }
     }
 
-    /// Whether the file tells roles of lines.
-    fn tells_roles(&self) -> bool {
+    /// Whether the file gives roles of lines.
+    fn has_roles(&self) -> bool {
         let mut moves = self.print.moves.iter();
         moves.any(|step| !matches!(step.role, Role::Other | Role::Travel | Role::Retraction))
     }
 
     /// Time of a role in the whole file, s.
-    fn seconds(&self, role: Role, told: bool) -> f64 {
+    fn seconds(&self, role: Role, by_role: bool) -> f64 {
         let roles = self.estimate.roles.iter();
-        let own = roles.filter(|one| sums::role(one.role, told) == role);
+        let own = roles.filter(|one| sums::role(one.role, by_role) == role);
         own.fold(0.0, |sum, one| sum + one.seconds)
     }
 }
@@ -110,7 +121,7 @@ pub struct Difference {
     pub settings: Vec<Setting>,
     /// What makes the files unequal, worst first.
     pub findings: Vec<Finding>,
-    /// What the printer is told differently after the last line.
+    /// Commands that differ after the last line.
     pub end: Orders,
     /// What comes before the first layer, and each layer.
     pub pairs: Vec<PairOfLayers>,
@@ -119,7 +130,7 @@ pub struct Difference {
 /// What moves of one role add up to in either file.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct RoleOfFile {
-    /// The role; `other` is all that extrudes if one of the files tells no roles.
+    /// The role; `other` is all that extrudes if one of the files gives no roles.
     pub role: Role,
     /// Whether its length and filament have to be the same: those of travels and retractions
     /// need not, which leave no plastic. What they take is a part of the whole time.
@@ -137,11 +148,11 @@ pub struct RoleOfFile {
 /// Compares two files.
 #[must_use]
 pub fn diff(a: &Side, b: &Side, tolerances: &Tolerances) -> Difference {
-    let told = a.tells_roles() && b.tells_roles();
+    let by_role = a.has_roles() && b.has_roles();
     let layers = align::align(&a.print.layers, &b.print.layers, tolerances.place);
     // Before the layers comes what both draw before them.
     let pairs: Vec<Option<Pair>> = [None].into_iter().chain(layers.into_iter().map(Some)).collect();
-    let compared = pairs.par_iter().map(|pair| pair::compare(a, b, *pair, told, tolerances));
+    let compared = pairs.par_iter().map(|pair| pair::compare(a, b, *pair, by_role, tolerances));
     let (pairs, measures): (Vec<PairOfLayers>, Vec<Both<Measure>>) = compared.unzip();
     let mut all = Both { a: Measure::default(), b: Measure::default() };
     for measure in &measures {
@@ -157,7 +168,7 @@ pub fn diff(a: &Side, b: &Side, tolerances: &Tolerances) -> Difference {
         time_s: Sum::new(a.estimate.seconds, b.estimate.seconds, share, LEAST_TIME),
         filament_mm: filament(all.as_ref(), share),
         extent_mm: all.map(|measure| measure.extent),
-        roles: roles(a, b, all.as_ref(), told, share),
+        roles: roles(a, b, all.as_ref(), by_role, share),
         firmware_retractions: Both {
             a: a.print.summary.firmware_retractions,
             b: b.print.summary.firmware_retractions,
@@ -190,7 +201,7 @@ fn is_plastic(role: Role) -> bool {
     !matches!(role, Role::Travel | Role::Retraction)
 }
 
-fn roles(a: &Side, b: &Side, all: Both<&Measure>, told: bool, share: f64) -> Vec<RoleOfFile> {
+fn roles(a: &Side, b: &Side, all: Both<&Measure>, by_role: bool, share: f64) -> Vec<RoleOfFile> {
     let row = |index: usize| {
         let role = Role::ALL[index];
         let tally = all.map(|measure| measure.roles[index]);
@@ -200,7 +211,7 @@ fn roles(a: &Side, b: &Side, all: Both<&Measure>, told: bool, share: f64) -> Vec
             moves: tally.map(|tally| tally.moves),
             length_mm: Sum::new(tally.a.length, tally.b.length, share, LEAST_LENGTH),
             filament_mm: Sum::new(tally.a.filament, tally.b.filament, share, LEAST_FILAMENT),
-            time_s: Sum::new(a.seconds(role, told), b.seconds(role, told), share, LEAST_TIME),
+            time_s: Sum::new(a.seconds(role, by_role), b.seconds(role, by_role), share, LEAST_TIME),
         }
     };
     (0..ROLES).map(row).filter(|row| row.moves.a + row.moves.b > 0).collect()

@@ -1,4 +1,16 @@
 //! Two layers -> PairOfLayers: what they have and have not in common, role by role.
+//!
+//! Words used here: a *pair* is two layers of the same height, or a layer that only one file has, or
+//! the *start*, which is all before the first layer; a *half* is one file's part of a pair.
+//!
+//! Lines are compared with their heights above the layer, so that a file whose layers all lie a
+//! little higher differs once, in its heights, and not in every line. Distances are taken both ways:
+//! a line that only one file has is far from all of the other's, whichever file it is in. Of places
+//! and amounts the worst one is kept with its lines in both files, for people to look up.
+//!
+//! Time is compared twice. The time at the feeds asked for depends on the lines alone, and must be
+//! the same for each role. The time that the machine takes depends on the order of lines, too; it is
+//! reported for each layer, but must be the same only for the whole file.
 
 use super::align::Pair;
 use super::apart::{Apart, Farthest, Unlike, apart};
@@ -10,7 +22,7 @@ use crate::reader::Role;
 use crate::reader::print::{Layer, Step};
 use serde::Serialize;
 
-/// Time at the feeds asked for that may differ beside the share, s.
+/// Time at the feeds asked for that sums may differ by besides the share, s.
 const LEAST_TIME: f64 = 0.1;
 
 /// A layer that both files have, or one of them; or what comes before the first layer.
@@ -27,7 +39,7 @@ pub struct PairOfLayers {
     pub time_s: Both<f64>,
     /// Box around its lines.
     pub extent_mm: Both<Option<Extent>>,
-    /// What the printer is told differently. Before the first layer: until its first line.
+    /// Commands that differ. Before the first layer: until its first line.
     pub orders: Orders,
     /// By role, those that leave plastic.
     pub roles: Vec<RoleOfPair>,
@@ -36,7 +48,7 @@ pub struct PairOfLayers {
 /// The lines of one role in both layers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RoleOfPair {
-    /// The role; `other` is all that extrudes if one of the files tells no roles.
+    /// The role; `other` is all that extrudes if one of the files gives no roles.
     pub role: Role,
     /// Number of moves.
     pub moves: Both<u64>,
@@ -114,9 +126,9 @@ impl<'a> Half<'a> {
         self.layer.map_or(0.0, |layer| layer.z)
     }
 
-    fn lines(&self, role: Role, told: bool) -> Vec<Line> {
+    fn lines(&self, role: Role, by_role: bool) -> Vec<Line> {
         let steps = self.moves.iter();
-        let lines = steps.filter(|step| step.is_line() && sums::role(step.role, told) == role);
+        let lines = steps.filter(|step| step.is_line() && sums::role(step.role, by_role) == role);
         lines.map(|step| Line::new(step, self.z())).collect()
     }
 }
@@ -126,7 +138,7 @@ pub(super) fn compare(
     a: &Side,
     b: &Side,
     pair: Option<Pair>,
-    told: bool,
+    by_role: bool,
     tolerances: &Tolerances,
 ) -> (PairOfLayers, Both<Measure>) {
     let halves = match pair {
@@ -134,8 +146,8 @@ pub(super) fn compare(
         Some(pair) => Both { a: Half::layer(a, pair.a), b: Half::layer(b, pair.b) },
     };
     let halves = halves.as_ref();
-    let measures = halves.map(|half| Measure::new(half.moves, told));
-    let of_role = |index: usize| role(halves, measures.as_ref(), index, told, tolerances);
+    let measures = halves.map(|half| Measure::new(half.moves, by_role));
+    let of_role = |index: usize| role(halves, measures.as_ref(), index, by_role, tolerances);
     let plastic = (0..ROLES).filter(|&index| is_plastic(Role::ALL[index]));
     let roles = plastic.map(of_role).filter(|role| role.moves.a + role.moves.b > 0).collect();
     let numbers = halves.map(|half| half.number.unwrap_or(usize::MAX));
@@ -159,12 +171,12 @@ fn role(
     halves: Both<&Half<'_>>,
     measures: Both<&Measure>,
     index: usize,
-    told: bool,
+    by_role: bool,
     tolerances: &Tolerances,
 ) -> RoleOfPair {
     let role = Role::ALL[index];
     let tally = measures.map(|measure| measure.roles[index]);
-    let lines = halves.map(|half| half.lines(role, told));
+    let lines = halves.map(|half| half.lines(role, by_role));
     let Tolerances { place, share, .. } = *tolerances;
     let one = apart(&lines.a, &lines.b, place, share);
     let other = apart(&lines.b, &lines.a, place, share);

@@ -80,17 +80,17 @@ impl<T> Both<T> {
     }
 }
 
-/// Where a file tells no roles, all that extrudes is one.
-pub(super) fn role(role: Role, told: bool) -> Role {
-    if told || matches!(role, Role::Travel | Role::Retraction) { role } else { Role::Other }
+/// The role that is compared: all that extrudes is one if roles are not compared.
+pub(super) fn role(role: Role, by_role: bool) -> Role {
+    if by_role || matches!(role, Role::Travel | Role::Retraction) { role } else { Role::Other }
 }
 
 impl Measure {
-    /// Sums up these moves; `told` says whether roles are told apart.
-    pub(super) fn new(steps: &[Step], told: bool) -> Self {
+    /// Sums up these moves, by role if both files give roles.
+    pub(super) fn new(steps: &[Step], by_role: bool) -> Self {
         let mut measure = Self::default();
         for step in steps {
-            let tally = &mut measure.roles[role(step.role, told) as usize];
+            let tally = &mut measure.roles[role(step.role, by_role) as usize];
             tally.moves += 1;
             tally.length += step.length();
             tally.filament += f64::from(step.filament);

@@ -3,7 +3,7 @@
 use super::moves::{Kind, Move, Moves};
 use crate::fill::{Both, Role, RoleTable};
 use crate::motion::{self, Clock, Limits, Timed};
-use crate::units::{Coord, to_mm};
+use crate::units::{Coord, MmPerMin, to_mm};
 use std::collections::VecDeque;
 
 /// How long a print takes, without its start and end blocks.
@@ -152,7 +152,8 @@ impl Timer {
         };
         if delta != [0.0; 4] {
             self.given += 1;
-            self.clock.push(motion::Move { delta, feed: f64::from(step.feed) / 60.0, tag: part });
+            let feed = MmPerMin(f64::from(step.feed)).into();
+            self.clock.push(motion::Move { delta, feed, tag: part });
         }
     }
 

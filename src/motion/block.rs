@@ -26,7 +26,7 @@ pub(super) struct Course {
 }
 
 impl Course {
-    /// `None` for a move of no length, or of one that is no number.
+    /// `None` for a move whose length is 0 or not finite.
     pub(super) fn new<T>(given: &Move<T>, rates: &Rates) -> Option<Self> {
         let [x, y, z, e] = given.delta;
         let moves_nozzle = moves_nozzle(&given.delta);
@@ -34,7 +34,7 @@ impl Course {
         if !(distance > 0.0 && distance.is_finite() && e.is_finite()) {
             return None;
         }
-        let (cruise, acceleration) = rates.of_move(&given.delta, distance, given.feed);
+        let (cruise, acceleration) = rates.of_move(&given.delta, distance, given.feed.0);
         let per_mm = 1.0 / distance;
         let direction = given.delta.map(|length| length * per_mm);
         let rest = match rates.limits.junction {
@@ -54,7 +54,8 @@ impl Course {
     }
 }
 
-/// The speed that no axis minds as a sudden start from rest, mm/s. `inverse` is 1 / jerk.
+/// The speed at which a move may start from rest without exceeding any axis's jerk, mm/s.
+/// `inverse` is 1 / jerk.
 fn from_rest(direction: &[f64; 4], cruise: f64, inverse: &[f64; 4]) -> f64 {
     let mut worst = 0.0_f64;
     for (direction, inverse) in direction.iter().zip(inverse) {
@@ -87,7 +88,7 @@ pub(super) struct Block<T> {
     pub(super) entry: f64,
     /// [`Block::entry`] by the slow pass; squared.
     pub(super) smooth: f64,
-    /// Comes out again.
+    /// Returned with the move's time.
     pub(super) tag: T,
 }
 
@@ -112,7 +113,7 @@ impl<T> Block<T> {
         }
     }
 
-    /// A move of no length: it takes no time and holds nobody up.
+    /// A move of no length: it takes no time and limits no other move.
     pub(super) fn empty(before: Reach, tag: T) -> Self {
         Self {
             distance: 0.0,

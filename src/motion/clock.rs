@@ -1,4 +1,19 @@
 //! Moves, one after the other -> the time of each, in the same order.
+//!
+//! Words used here: a *block* is a move with the limits that hold for it; *entry* and *exit* are its
+//! speeds at its two ends; a *corner* is where two moves meet; a block is *settled* when its entry
+//! and exit are final and its time is known.
+//!
+//! A move that comes in gets the highest speed of the corner before it ([`super::junction`]). It
+//! waits in a queue until a pass back over the queue ([`plan`]) gives it an entry from which
+//! everything after it can still slow down in time. Then it is settled:
+//! - with a look-ahead of n moves, as Marlin and Sailfish have, the oldest is settled when n are
+//!   there, with the youngest ending at rest;
+//! - for a whole file the pass runs once a batch, and settles all blocks that no later move can
+//!   slow down any more. The batch grows with what is left over, so that each block is planned a
+//!   few times at most and the work stays linear.
+//!
+//! Speeds are kept squared: at constant acceleration the square changes evenly along the path.
 
 use super::block::{Block, Course, Reach};
 use super::limits::Rates;
@@ -8,8 +23,8 @@ use super::{Junction, Limits, Move, junction};
 use crate::units::Bounded as _;
 use std::vec::Drain;
 
-/// Blocks that are planned at once where the whole file is looked at: enough
-/// for the pass back to be seldom, few enough to stay in the cache.
+/// Blocks that are planned at once where the planner knows the whole file: enough
+/// for the pass back to be rare, few enough to stay in the cache. It changes no time.
 const BATCH: usize = 256;
 
 /// How long a move takes.
@@ -19,7 +34,7 @@ pub struct Timed<T> {
     pub seconds: f64,
     /// Highest speed that it reaches, mm/s; 0 for a dwell.
     pub peak: f64,
-    /// Of the move.
+    /// The tag that the move was pushed with.
     pub tag: T,
 }
 
@@ -28,6 +43,7 @@ pub struct Timed<T> {
 ///
 /// ```
 /// use slicer::motion::{Clock, Junction, Limits, Move};
+/// use slicer::units::MmPerS;
 /// let limits = Limits {
 ///     feed: [300.0; 4],
 ///     acceleration: [1000.0; 4],
@@ -39,7 +55,7 @@ pub struct Timed<T> {
 ///     minimum_speed: 0.0,
 /// };
 /// let mut clock = Clock::new(limits);
-/// clock.push(Move { delta: [100.0, 0.0, 0.0, 0.0], feed: 100.0, tag: "there" });
+/// clock.push(Move { delta: [100.0, 0.0, 0.0, 0.0], feed: MmPerS(100.0), tag: "there" });
 /// clock.finish();
 /// let seconds: f64 = clock.drain().map(|timed| timed.seconds).sum();
 /// // A tenth of a second longer than at full speed all the way.
@@ -75,7 +91,7 @@ impl<T: Copy> Clock<T> {
         self.rates = Rates::new(limits);
     }
 
-    /// The next move. One of no length, or with a number that is none, takes no time.
+    /// The next move. One whose length is 0 or not finite takes no time.
     pub fn push(&mut self, given: Move<T>) {
         let Some(mut course) = Course::new(&given, &self.rates) else {
             return self.push_empty(given.tag);
@@ -109,12 +125,12 @@ impl<T: Copy> Clock<T> {
         }
     }
 
-    /// The file is at its end; all moves' times can be had.
+    /// The file is at its end: all moves are settled.
     pub fn finish(&mut self) {
         self.stop();
     }
 
-    /// The moves whose time is known, in their order; each comes once.
+    /// The moves settled since the last call, in their order.
     pub fn drain(&mut self) -> Drain<'_, Timed<T>> {
         self.done.drain(..)
     }
@@ -157,11 +173,11 @@ impl<T: Copy> Clock<T> {
         };
         let cruise = before.cruise.at_most(course.cruise);
         let least = limits.minimum_speed;
-        // `max` drops what limits that are no numbers make of it.
+        // `max` replaces a NaN, which limits that are not finite can make.
         corner.max(least * least).at_most(cruise * cruise)
     }
 
-    /// Plans the pending blocks and lets go of those that are decided.
+    /// Plans the pending blocks and settles those whose plan is final.
     fn plan(&mut self) {
         let smooth = matches!(self.rates.limits.junction, Junction::SquareCorner { .. });
         if let (Some(most), false) = (self.rates.limits.look_ahead, smooth) {

@@ -3,16 +3,16 @@
 use super::block::Course;
 use crate::units::Bounded as _;
 
-/// Where two moves are in line or turn back, as far as rounding can tell: cosine of the angle between them.
+/// Cosine beyond which two moves turn back, within rounding: Marlin's own threshold.
 const STRAIGHT: f64 = 0.999_999;
 
-/// The share by which a shared speed must be better than stopping at the corner.
+/// Marlin: a corner is coasted through only if that is faster than this share of stopping there.
 const WORTH_COASTING: f64 = 0.99;
 
-/// Marlin: moves shorter than this are taken as pieces of an arc, mm.
+/// Marlin: moves shorter than this count as pieces of an arc, mm.
 const SHORT: f64 = 1.0;
 
-/// Marlin: cosine of 135°, from which on two short moves are taken as pieces of an arc.
+/// Marlin: cosine of 135°; two short moves at a wider angle count as pieces of an arc.
 const ARC: f64 = -std::f64::consts::FRAC_1_SQRT_2;
 
 /// Marlin's classic jerk, mm/s: the speed at which no axis changes its own by more than
@@ -56,7 +56,7 @@ pub(super) fn vector_jerk(before: &Course, after: &Course, inverse: &[f64; 4]) -
 
 /// Sailfish's "maximum speed change": the share of its speed at which the move after begins,
 /// so that no axis changes its own by more than this from what the move before began with.
-/// An axis that turns back or comes to a halt makes it nothing.
+/// It is 0 if an axis turns back or halts.
 pub(super) fn speed_change(before: &Course, after: &Course, most: &[f64; 4]) -> f64 {
     let smallest = most.iter().copied().fold(f64::INFINITY, f64::min);
     if after.cruise <= smallest {
@@ -153,7 +153,7 @@ fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
-/// The vector of length one in this direction; nothing stays nothing.
+/// The vector of length 1 in this direction; a zero vector stays zero.
 fn unit(vector: &[f64; 4]) -> [f64; 4] {
     let length = dot(vector, vector).sqrt();
     let inverse = 1.0 / length;

@@ -61,13 +61,13 @@ pub enum Junction {
     },
 }
 
-/// A limit of nothing would stop the clock: the least that is taken, mm/s or mm/s².
+/// Least limit that is used, mm/s or mm/s²: a limit of 0 would stop the clock.
 const LEAST: f64 = 1e-3;
 
-/// No jerk at all is this much, mm/s: nothing, but not for a division.
+/// Least jerk that is used, mm/s: no jerk at all would divide by 0.
 const LEAST_JERK: f64 = 1e-12;
 
-/// [`Limits`] with what every move needs of them worked out.
+/// [`Limits`] with what every move needs precomputed.
 #[derive(Debug, Clone)]
 pub(super) struct Rates {
     pub(super) limits: Limits,
@@ -172,7 +172,7 @@ impl Rates {
             slowest = slowest.at_least(length * self.feed_inverse[axis]);
             laziest = laziest.at_least(length * self.acceleration_inverse[axis]);
         }
-        // Where numbers come in, `max` drops what is none: behind it there are only numbers.
+        // `max` replaces a NaN where numbers come in: behind it all are numbers.
         let speed = feed.max(LEAST).at_most(distance / slowest);
         (speed, wanted.max(LEAST).at_most(distance / laziest))
     }

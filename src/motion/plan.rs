@@ -1,7 +1,7 @@
 //! Blocks in the planner -> how fast each begins: the pass from the last one back.
 //!
 //! How fast a block may begin by what lies before it is known when it comes in
-//! ([`Block::most_entry`]). The pass back says how fast it may begin so that all
+//! ([`Block::most_entry`]). The pass back gives how fast it may begin so that all
 //! after it can still slow down to rest at the end. A block that begins as fast as
 //! it ever may is decided for good, whatever follows, and all before it with it.
 

@@ -1,9 +1,9 @@
-//! Role of a line -> Colour: one palette for every picture, told apart by colour-blind people, too.
+//! Role of a line -> Colour: one palette for every picture, which colour-blind people can distinguish, too.
 
 use crate::reader::Role;
 use crate::reader::print::{Layer, Step};
 
-/// A line this many times as high as its layer is printed for more than one layer.
+/// A line this many times as high as its layer is printed for more than one layer: half-way to two.
 const THICK: f64 = 1.5;
 
 /// Red, green and blue, as on a screen (sRGB).

@@ -1,4 +1,16 @@
 //! Print and an upright plane -> Drawing: the beads that the plane cuts, each as its cross-section.
+//!
+//! Words used here: *across* is the axis that the plane stands on, *along* the other one; a *section*
+//! is the cross-section of a bead: a rectangle with round ends, as wide as the plane's way through
+//! the bead.
+//!
+//! From above a line is a stripe with round ends, and the plane a line through it: the section reaches
+//! from the stripe's one side to the other. Where the plane only grazes a bead's round side the
+//! section is lower than the bead. Its height above the bed is that of the nozzle where the plane
+//! crosses the line, so that lines that rise are cut right.
+//!
+//! A path of many short lines would show a section for each. Those of successive lines that touch,
+//! and are as high or hardly stick out, are drawn as one.
 
 use super::colours::{Colour, is_thick};
 use super::drawing::{Drawing, Frame, Kind, Look, Stroke};
@@ -7,7 +19,7 @@ use super::{Keys, MARGIN, measured, millimetres};
 use crate::reader::Print;
 use crate::reader::print::Step;
 
-/// Direction in which a plane is looked at.
+/// The axis that a plane stands across.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
     /// The plane has the same x everywhere; y is to the right.
@@ -118,8 +130,8 @@ impl Cut {
 }
 
 impl Section {
-    /// Whether another, of the same path, is to be seen as one with this: they touch, and
-    /// are as high, or the lower one hardly sticks out.
+    /// Whether another one of the same path is drawn as one with this: they touch, and are as
+    /// high, or the lower one hardly sticks out.
     fn meets(&self, other: &Self) -> bool {
         let (low, high) = if self.height < other.height { (self, other) } else { (other, self) };
         let beyond = (high.low - low.low).max(low.high - high.high);
@@ -154,7 +166,7 @@ impl Section {
     }
 }
 
-/// Where the plane cuts a line: seen from above, the line is a stripe with round ends.
+/// Where the plane cuts a line: from above, the line is a stripe with round ends.
 fn section(step: &Step, plane: Plane, colour: Colour) -> Option<Section> {
     let across = usize::from(plane.axis == Axis::Y);
     // Seen from above, with the plane through the origin: across it and along it.

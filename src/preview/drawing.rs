@@ -3,13 +3,14 @@
 use super::colours::Colour;
 use super::text::TextSize;
 
-/// Part of a bead's width that each of its two edges takes.
+/// Part of a bead's width that each of its two edges takes: enough to separate neighbours at 5
+/// pixels a bead.
 const EDGE: f64 = 0.09;
 
 /// How much darker an edge is than its bead.
 const EDGE_DARK: f64 = 0.38;
 
-/// Likewise, of a pale one.
+/// The same for a pale bead.
 const PALE_EDGE_DARK: f64 = 0.1;
 
 /// A picture. What lies later in a list is painted over what lies before.
@@ -72,9 +73,9 @@ pub struct Look {
 pub enum Kind {
     /// Plastic, with edges that are a little darker, within its width.
     Bead,
-    /// Likewise, in the background.
+    /// Plastic in the background.
     PaleBead,
-    /// Dashes as long as so many widths, and gaps likewise.
+    /// Dashes of this many widths, and gaps as long.
     Dashed(u8),
 }
 
@@ -107,7 +108,7 @@ pub enum Mark {
         at: [f64; 2],
         /// What of it is there.
         anchor: Anchor,
-        /// What it says; ASCII.
+        /// Its letters; ASCII.
         text: String,
     },
 }

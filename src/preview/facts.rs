@@ -1,4 +1,16 @@
-//! Print + Estimate -> Facts: what the viewer's page is told besides the moves.
+//! Print + Estimate -> Facts: what the viewer's page gets besides the moves.
+//!
+//! The page shows times, sums and settings, and colours lines by speed, flow, layer time, width or
+//! height. Moves come packed ([`super::packed`]); everything else is gathered here and written as
+//! JSON: names and colours of roles, layers with their heights and times, the box around all
+//! lines, the settings that the file's comments hold, and the ends of the scales.
+//!
+//! The ends of the scales are the least and most of all lines but the shortest: the flow of a line of
+//! 0.1 mm is mostly rounding, and one such line would stretch the scale for all others. A file of
+//! short lines only uses them all.
+//!
+//! Numbers are rounded to thousandths, so that the page stays small and equal files give equal pages.
+//! Times of layers are left out where the estimate divides the file into other layers.
 
 use super::colours::Colour;
 use crate::estimate::Estimate;
@@ -7,19 +19,19 @@ use crate::reader::print::{Layer, Print, Step};
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// Shorter lines do not count for the ends of scales, mm: the file's decimals tell
-/// their flow and width only roughly.
+/// Shorter lines do not count for the ends of scales, mm: with three decimals their flow is off by
+/// up to a hundredth.
 const SHORTEST: f64 = 0.2;
 
-/// Characters of a setting that are told.
+/// Characters of a setting that are shown.
 const LONGEST_VALUE: usize = 300;
 
-/// What the page is told as JSON; lengths in mm, times in s.
+/// What the page gets as JSON; lengths in mm, times in s.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Facts {
     /// The file's name.
     pub name: String,
-    /// The first of the file's first comments that says who generated it; empty without one.
+    /// The first of the file's first comments that names its generator; empty without one.
     pub head: String,
     /// The whole time, without heating and homing.
     pub seconds: f64,
@@ -42,14 +54,14 @@ pub struct Facts {
     pub layers: Vec<LayerFacts>,
     /// Ends of the scales.
     pub scales: Scales,
-    /// Settings that the file tells of itself, in its order.
+    /// Settings in the file's comments, in their order.
     pub settings: Vec<(String, String)>,
 }
 
-/// What is told of a role.
+/// A role on the page.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RoleFacts {
-    /// For people.
+    /// Its name for people.
     pub name: &'static str,
     /// `#rrggbb`.
     pub colour: String,
@@ -63,7 +75,7 @@ pub struct RoleFacts {
     pub moves: u64,
 }
 
-/// What is told of a layer.
+/// A layer on the page.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LayerFacts {
     /// Height at which most of its lines lie.
@@ -191,8 +203,8 @@ fn layers(print: &Print, estimate: &Estimate) -> Vec<LayerFacts> {
 }
 
 fn head(print: &Print) -> String {
-    let told = |line: &&String| line.to_lowercase().contains("generated");
-    print.head.iter().find(told).map_or_else(String::new, |line| shortened(line))
+    let names_it = |line: &&String| line.to_lowercase().contains("generated");
+    print.head.iter().find(names_it).map_or_else(String::new, |line| shortened(line))
 }
 
 fn settings(print: &Print) -> Vec<(String, String)> {

@@ -30,8 +30,8 @@ const SCRIPT: [&str; 9] = [
 
 /// Writes the viewer's page of a print.
 ///
-/// `name` stands in its title, `filament_diameter` in mm tells what volume a length of
-/// filament is. The moves are in the page as [`packed`], deflated and in base64.
+/// `name` stands in its title, `filament_diameter` in mm gives the volume of a length
+/// of filament. The moves are in the page as [`packed`], deflated and in base64.
 ///
 /// # Errors
 /// What `out` gives.

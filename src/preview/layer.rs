@@ -1,4 +1,4 @@
-//! Layer of a print -> Drawing: its lines as seen from above, in their true widths.
+//! Layer of a print -> Drawing: its lines from above, in their true widths.
 
 use super::colours::{Colour, PAPER, is_thick};
 use super::drawing::{Drawing, Frame, Kind, Look, Stroke};
@@ -29,8 +29,8 @@ pub struct Options {
     pub frame: Frame,
 }
 
-/// What holds all lines of these layers, mm on the bed, with a margin around it.
-/// Empty if there is none.
+/// The box around all lines of these layers, mm on the bed, with a margin around it.
+/// Empty without a line.
 #[must_use]
 pub fn frame(print: &Print, layers: &[Layer]) -> Frame {
     let mut frame = Frame::EMPTY;
@@ -110,7 +110,7 @@ impl Scene<'_> {
         for step in print.moves_of(layer) {
             if measured(step) {
                 let colour = Colour::of(step.role, is_thick(step, layer)).mixed(PAPER, pale);
-                // Hundredths of a mm: no eye sees less, and neighbours are alike.
+                // To hundredths of a mm, which nobody can see, so that more neighbours look alike.
                 let width = (f64::from(step.width) * 100.0).round() / 100.0;
                 let goes_on = last.is_some_and(|last| last.to == step.from);
                 self.add(step, Look { width, colour, kind }, goes_on);
@@ -151,7 +151,7 @@ impl Scene<'_> {
     }
 }
 
-/// As seen from above.
+/// From above.
 fn flat(at: [f32; 3]) -> [f64; 2] {
     [f64::from(at[0]), f64::from(at[1])]
 }

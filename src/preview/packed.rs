@@ -1,6 +1,6 @@
 //! Print -> packed bytes: all moves of a G-code file, layer by layer, in few bytes and quick to unpack.
 //!
-//! The bytes are one block for the moves before the first layer (with no moves if there are none) and
+//! The bytes are one block for the moves before the first layer (of no moves without a start) and
 //! one for each layer, from the bed up, with nothing before, between or after them. They are meant to
 //! be deflated.
 //!
@@ -32,6 +32,7 @@
 
 use super::colours::is_thick;
 use crate::reader::print::{Layer, Print, Step};
+use crate::units::{MmPerMin, MmPerS};
 use std::io::{self, Write};
 
 /// Added to a role for a line that is printed for more layers than its own.
@@ -75,7 +76,7 @@ fn block(moves: &[Step], layer: Option<&Layer>) -> Vec<u8> {
     for step in moves {
         put_signed(&mut block, whole(f64::from(step.filament) * 1e5));
     }
-    put_changes(&mut block, moves, |step| whole(f64::from(step.feed) * 60.0));
+    put_changes(&mut block, moves, |step| whole(MmPerMin::from(MmPerS(f64::from(step.feed))).0));
     put_changes(&mut block, moves, |step| whole(f64::from(step.width) * 1e3));
     put_changes(&mut block, moves, |step| whole(f64::from(step.height) * 1e3));
     put_changes(&mut block, moves, |step| i64::from(step.line));

@@ -1,4 +1,15 @@
 //! Frame of a scene, heading and legend -> Drawing: the page around a scene, with axes and a scale bar.
+//!
+//! From left to right: numbers of the upright axis, the scene in a frame, and a panel with heading,
+//! legend and scale bar; below the scene numbers of the other axis. The longer side of the picture is
+//! given, and the scene gets as large as the rest leaves room for; the shorter side follows.
+//!
+//! Everything around the scene is measured in letters and heights of text, whose size follows from
+//! the picture's: a picture of 400 pixels and one of 8000 look alike. Steps of axes and the scale bar
+//! are round lengths: 1, 2 or 5 times a power of ten.
+//!
+//! The scene may reach beyond its frame: white margins are painted over it, before the rest of the
+//! page, so that neither format needs to clip.
 
 use super::colours::{Colour, INK, PAPER};
 use super::drawing::{Anchor, Drawing, Frame, Mark, View};
@@ -19,7 +30,7 @@ const BAR: f64 = 7.0;
 /// The frame.
 const FRAME: Colour = Colour([150, 150, 150]);
 
-/// What there is to say around a scene.
+/// What is around a scene.
 #[derive(Debug, Clone)]
 pub(super) struct Page<'a> {
     /// Pixels of the longer side.

@@ -154,7 +154,7 @@ fn put(out: &mut String, text: std::fmt::Arguments) {
     let _ = out.write_fmt(text);
 }
 
-/// A number with so many decimals at most, and nothing that says nothing.
+/// A number with at most this many decimals, without zeros that mean nothing.
 fn short(number: f64, decimals: usize) -> String {
     let text = format!("{number:.decimals$}");
     let text =

@@ -10,7 +10,7 @@ const UNKNOWN: char = '?';
 pub struct TextSize(RasterHeight);
 
 impl TextSize {
-    /// The size that suits a picture whose longer side has so many pixels.
+    /// The size for a picture whose longer side has this many pixels.
     #[must_use]
     pub fn suiting(pixels: u32) -> Self {
         Self(match pixels {

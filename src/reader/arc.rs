@@ -3,10 +3,11 @@
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::TAU;
 
-/// Length of the straight pieces, mm: what Marlin takes.
+/// Length of the straight pieces, mm: Marlin's default. Longer ones would make times and checks
+/// see corners that the printer does not drive.
 const PIECE_MM: f64 = 1.0;
 
-/// An arc in 1 of so many pieces at most, whatever its radius.
+/// Most pieces of an arc, whatever its radius: a faulty file must not fill the memory.
 const MOST_PIECES: f64 = 100_000.0;
 
 /// An arc in the plane, from `from` to `to` around `middle`.

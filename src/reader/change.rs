@@ -28,7 +28,7 @@ pub struct Change {
 }
 
 impl Change {
-    /// What M201, M203, M204 or M205 says; `None` for any other number.
+    /// Reads the words of M201, M203, M204 or M205; `None` for any other number.
     pub(super) fn of_code(number: u32, words: Words<'_>) -> Option<Self> {
         let mut change = Self::default();
         // The old form of M204: S is for all moves, T for the filament alone.
@@ -59,7 +59,7 @@ impl Change {
         matches!(number, 201 | 203 | 204 | 205).then_some(change)
     }
 
-    /// What SET_VELOCITY_LIMIT says in `words` such as `ACCEL=3000`.
+    /// Reads the words of SET_VELOCITY_LIMIT, such as `ACCEL=3000`.
     pub(super) fn of_klipper(words: &[u8]) -> Self {
         let mut change = Self::default();
         for word in words.split(u8::is_ascii_whitespace) {

@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// A G-code file that cannot be read or holds nothing to look at.
+/// A G-code file that cannot be read or prints nothing.
 #[derive(Debug, thiserror::Error)]
 #[error("{file}: {source}")]
 pub struct Error {
@@ -16,7 +16,7 @@ pub struct Error {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Cause {
-    /// Its bytes cannot be had.
+    /// Its bytes cannot be read.
     #[error("cannot read: {0}; check the path")]
     Unreadable(#[from] io::Error),
     /// No move: it is no G-code.

@@ -1,4 +1,4 @@
-//! Code -> Heating: what is told how hot to be, and what is waited for.
+//! Code -> Heating: which heater is set to what temperature, and which is waited for.
 
 use super::words;
 
@@ -9,11 +9,11 @@ pub enum Heater {
     Nozzle(Option<u32>),
     /// The bed.
     Bed,
-    /// Whatever has been told to get hot.
+    /// All heaters that are on.
     All,
 }
 
-/// A heater is told something.
+/// A command for a heater.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Heating {
     /// Which one.
@@ -24,7 +24,7 @@ pub struct Heating {
     pub waits: bool,
 }
 
-/// What `code` tells a heater, in the words of Marlin, Sailfish or Klipper.
+/// The command for a heater that `code` is in Marlin, Sailfish or Klipper, if it is one.
 pub(super) fn heating(code: &[u8]) -> Option<Heating> {
     // Nearly all lines are moves.
     if code[0].eq_ignore_ascii_case(&b'G') {
@@ -42,17 +42,17 @@ pub(super) fn heating(code: &[u8]) -> Option<Heating> {
             _ => {}
         }
     }
-    let told = |heater, waits| Some(Heating { heater, celsius, waits });
+    let set = |heater, waits| Some(Heating { heater, celsius, waits });
     // M6, M116, M133 and M134 only wait.
-    let waited = |heater| Some(Heating { heater, celsius: None, waits: true });
+    let wait = |heater| Some(Heating { heater, celsius: None, waits: true });
     match command.number {
-        104 => told(Heater::Nozzle(tool), false),
-        109 => told(Heater::Nozzle(tool), true),
-        140 => told(Heater::Bed, false),
-        190 => told(Heater::Bed, true),
-        133 => waited(Heater::Nozzle(tool)),
-        134 => waited(Heater::Bed),
-        6 | 116 => waited(Heater::All),
+        104 => set(Heater::Nozzle(tool), false),
+        109 => set(Heater::Nozzle(tool), true),
+        140 => set(Heater::Bed, false),
+        190 => set(Heater::Bed, true),
+        133 => wait(Heater::Nozzle(tool)),
+        134 => wait(Heater::Bed),
+        6 | 116 => wait(Heater::All),
         _ => None,
     }
 }

@@ -40,7 +40,7 @@ struct Range {
 /// Finds layers.
 #[derive(Debug, Default)]
 pub(super) struct Layers {
-    /// Whether comments say where layers begin.
+    /// Whether comments mark where layers begin.
     marked: bool,
     /// Of the layer that is there; `None` before the first.
     layer: Option<Range>,

@@ -1,8 +1,8 @@
-//! Bytes -> lines without their ends; a line beyond all reason is cut short.
+//! Bytes -> lines without their ends; an endless line is cut short.
 
 use std::io::{self, BufRead};
 
-/// Bytes of a line that are looked at: far more than any printer takes, and little to hold.
+/// Bytes of a line that are read: far more than any printer takes, and little memory.
 const LONGEST: usize = 1 << 16;
 
 /// Hands each line to `sink`. `\n`, `\r\n` and `\r` end one.

@@ -3,7 +3,7 @@
 use super::role::Role;
 use super::words;
 
-/// What a comment says.
+/// The meaning of a comment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Mark {
     /// `;TYPE:`, `;FEATURE:`: what follows prints this.
@@ -16,9 +16,9 @@ pub(super) enum Mark {
     Height(f64),
 }
 
-/// What the comment says, without its `;`.
+/// The meaning of a comment, given without its `;`.
 pub(super) fn mark(comment: &[u8]) -> Option<Mark> {
-    // Nearly all comments are none of these.
+    // Most comments mark nothing: decide by the first letter.
     let comment = comment.trim_ascii();
     let after = |prefix: &[u8]| comment.strip_prefix(prefix).map(<[u8]>::trim_ascii);
     match comment.first()? {
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn marks_are_told_from_talk() {
+    fn marks_are_distinguished_from_talk() {
         assert_eq!(mark(b"TYPE:Perimeter"), Some(Mark::Role(Role::InnerWall)));
         assert_eq!(mark(b" FEATURE: Sparse infill"), Some(Mark::Role(Role::Infill)));
         assert_eq!(mark(b"LAYER:-2"), Some(Mark::Layer));

@@ -1,8 +1,8 @@
 //! G-code bytes -> events in their order: moves, waits, layers, and what changes a machine's limits.
 //!
-//! The reader takes the output of any slicer and never fails on what a file
-//! holds: a line that it does not know is counted. It shares nothing with the
-//! code that writes G-code, so that it is a witness of its own.
+//! The reader accepts the output of any slicer. No content of a file is an error: a line that it does
+//! not know is counted. It shares no code with what slices, plans and writes, so that `check` can
+//! rely on it as an independent witness.
 
 mod arc;
 mod change;
@@ -24,14 +24,15 @@ pub(crate) use height::Heights;
 pub use print::Print;
 pub use role::Role;
 
+use crate::units::MmPerS;
 use std::io::{self, BufRead};
 
-/// What a G-code file says, bit by bit.
+/// A piece of a G-code file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Event {
     /// A straight move.
     Move(Motion),
-    /// G4: the printer stands still for so many seconds.
+    /// G4: the printer stands still for this many seconds.
     Dwell(f64),
     /// The moves so far end before anything else happens.
     Wait(Wait),
@@ -40,25 +41,25 @@ pub enum Event {
         /// Whether a comment marks it; otherwise it is found from the heights of lines.
         marked: bool,
     },
-    /// The machine is told to hold itself to other limits.
+    /// The machine's limits change.
     Change(Change),
-    /// Something is told how hot to be, or waited for.
+    /// A heater is set, or waited for.
     Heating(Heating),
     /// G10 and G11: the filament is pulled back, or pushed out again, by the printer's own length.
     FirmwareRetraction {
         /// Whether it is pulled back.
         back: bool,
     },
-    /// A command that is no move.
+    /// A command other than a move.
     Command {
         /// `G`, `M` or `T`, mostly.
         letter: u8,
         /// What follows the letter, without its fraction.
         number: u32,
     },
-    /// A comment that marks nothing, without its `;`.
+    /// A comment without a mark, and without its `;`.
     Comment(Vec<u8>),
-    /// A line of code that means nothing to the reader.
+    /// A line of code that the reader does not know.
     Unknown(Vec<u8>),
 }
 
@@ -82,8 +83,8 @@ pub struct Motion {
     pub to: [f64; 3],
     /// Filament pushed out, mm; below 0 it is pulled back.
     pub filament: f64,
-    /// Feed asked for, mm/s.
-    pub feed: f64,
+    /// Feed asked for.
+    pub feed: MmPerS,
     /// What it prints, if anything.
     pub role: Role,
     /// Width of the line by the file's comments, mm.
@@ -97,11 +98,11 @@ pub struct Motion {
 pub struct Summary {
     /// Lines in all.
     pub lines: u64,
-    /// Lines with code that means nothing to the reader.
+    /// Lines of code that the reader does not know.
     pub unknown: u64,
     /// The first of them, from 1; 0 if there is none.
     pub first_unknown: u64,
-    /// Moves of the filament by the printer's own settings (G10, G11), whose length is not in the file.
+    /// Retractions by the printer's own settings (G10, G11), whose length is not in the file.
     pub firmware_retractions: u64,
 }
 

@@ -1,4 +1,18 @@
 //! Events -> Print: a whole G-code file as layers of moves, held compactly.
+//!
+//! Words used here: a *move* (or step) is a straight way of the nozzle; a *line* is a move that goes
+//! sideways and extrudes; the *start* is all moves before the first layer; a *note* is what happens
+//! between two moves; a *value* is `key = value` in a comment.
+//!
+//! Moves are collected as they come, with floats of 32 bits: files have millions, and positions with
+//! three decimals below 10 m survive that. At the end they are divided into layers:
+//! - by the file's comments if any marks a layer, else by the heights of lines (see `layers`);
+//! - a layer without a line is no layer: its moves belong to the one before;
+//! - a layer lies where most of its lines do (see `height`), and is as high as it lies above the
+//!   layer before.
+//!
+//! Then each line gets its width and height: from comments where the file has them, else the height
+//! of the layer, and the width that its plastic fills at that height.
 
 use super::{Event, Heating, Heights, Motion, Role, Summary};
 use std::collections::BTreeMap;
@@ -6,7 +20,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use std::io::{self, BufRead};
 use std::ops::Range;
 
-/// Bytes of a comment that are kept.
+/// Longest part of a comment that is kept, bytes: the longest settings are lists of a few hundred.
 const LONGEST_COMMENT: usize = 4096;
 
 /// Comments of a file that are kept: more than any slicer writes settings.
@@ -21,7 +35,7 @@ const DIAMETER_KEYS: &[&str] = &["filament.diameter", "filament_diameter"];
 /// Diameters that a filament may have, mm.
 const DIAMETERS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
-/// Height of a bead where nothing tells it, mm.
+/// Height of a line where neither a comment nor a layer below gives one, mm: the most usual one.
 const SOME_HEIGHT: f64 = 0.2;
 
 /// A whole G-code file.
@@ -42,15 +56,15 @@ pub struct Print {
     pub commands: BTreeMap<(u8, u32), u64>,
     /// The file's first comments, up to the first line that is something else.
     pub head: Vec<String>,
-    /// Whether comments say where layers begin.
+    /// Whether comments mark where layers begin.
     pub marked: bool,
     /// Layers that begin, those without a line included.
     pub begun: usize,
-    /// Whether comments tell widths of lines.
-    pub tells_width: bool,
-    /// Whether comments tell heights of lines.
-    pub tells_height: bool,
-    /// Diameter of the filament, mm: as the file tells it, else as whoever reads it thinks.
+    /// Whether comments give widths of lines.
+    pub has_widths: bool,
+    /// Whether comments give heights of lines.
+    pub has_heights: bool,
+    /// Diameter of the filament, mm: the file's own, else what the caller gave.
     pub filament_diameter: f64,
     /// What was read besides the moves.
     pub summary: Summary,
@@ -102,14 +116,14 @@ pub struct Note {
 /// See [`Note`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum What {
-    /// A heater is told something.
+    /// A command for a heater.
     Heating(Heating),
     /// G10 (back) or G11.
     FirmwareRetraction {
         /// Whether filament is pulled back.
         back: bool,
     },
-    /// Code that means nothing to the reader.
+    /// Code that the reader does not know.
     Unknown(String),
 }
 
@@ -136,8 +150,8 @@ impl Step {
 }
 
 impl Print {
-    /// Reads a whole file; `filament_diameter` in mm tells how wide lines are whose comments do
-    /// not, unless the file has one of its own.
+    /// Reads a whole file. `filament_diameter`, in mm, gives the widths of lines without a comment,
+    /// unless the file has a diameter of its own.
     ///
     /// # Errors
     /// Only what reading the bytes gives: no content is an error.
@@ -176,7 +190,7 @@ impl Print {
 #[derive(Default)]
 struct Builder {
     print: Print,
-    /// Where layers begin: place in the moves, and whether a comment says so.
+    /// Where layers begin: place in the moves, and whether a comment marks it.
     begins: Vec<(usize, bool)>,
     /// Whether the head goes on.
     past_head: bool,
@@ -207,14 +221,14 @@ impl Builder {
     }
 
     fn motion(&mut self, line: u64, motion: &Motion) {
-        self.print.tells_width |= motion.width.is_some();
-        self.print.tells_height |= motion.height.is_some();
+        self.print.has_widths |= motion.width.is_some();
+        self.print.has_heights |= motion.height.is_some();
         let narrow = |at: [f64; 3]| at.map(|at| at as f32);
         self.print.moves.push(Step {
             from: narrow(motion.from),
             to: narrow(motion.to),
             filament: motion.filament as f32,
-            feed: motion.feed as f32,
+            feed: motion.feed.0 as f32,
             width: motion.width.unwrap_or(0.0) as f32,
             height: motion.height.unwrap_or(0.0) as f32,
             role: motion.role,
@@ -239,8 +253,8 @@ impl Builder {
 
     fn print(mut self, summary: Summary, diameter: f64) -> Print {
         self.print.summary = summary;
-        let told = DIAMETER_KEYS.iter().find_map(|key| self.print.value(key)?.parse().ok());
-        let diameter = told.filter(|told| DIAMETERS.contains(told)).unwrap_or(diameter);
+        let own = DIAMETER_KEYS.iter().find_map(|key| self.print.value(key)?.parse().ok());
+        let diameter = own.filter(|own| DIAMETERS.contains(own)).unwrap_or(diameter);
         self.print.filament_diameter = diameter;
         self.divide();
         let area = PI * diameter * diameter / 4.0;
@@ -253,8 +267,8 @@ impl Builder {
         self.print
     }
 
-    /// Lays the moves out in layers. What comes before the first mark is no layer, and what
-    /// has no line belongs to the layer before.
+    /// Divides the moves into layers. What comes before the first mark is no layer; a layer
+    /// without a line belongs to the one before.
     fn divide(&mut self) {
         let print = &mut self.print;
         let marked = print.marked;
@@ -280,7 +294,7 @@ impl Builder {
             };
             let height = match (z - below, last) {
                 (rise, _) if rise > SAME_HEIGHT => rise,
-                // Beside the layer before, or a part of its own.
+                // At the height of the layer before, or the first layer of another part.
                 (_, Some(last)) => last.height,
                 (_, None) => SOME_HEIGHT,
             };
@@ -292,8 +306,8 @@ impl Builder {
 }
 
 impl Step {
-    /// Fills in what comments do not tell; `layer` is the layer's height, `area` the
-    /// filament's cross-section.
+    /// Fills in the width and height that comments do not give; `layer` is the layer's height,
+    /// `area` the filament's cross-section.
     fn measure(&mut self, layer: f64, area: f64) {
         if !self.is_line() {
             (self.width, self.height) = (0.0, 0.0);
@@ -331,7 +345,7 @@ mod tests {
         assert!((print.layers[1].height - 0.2).abs() < 1e-6);
         let line = print.moves[2];
         assert_eq!((line.width, line.height, line.role, line.line), (0.5, 0.3, Role::Skin, 9));
-        assert!(print.marked && print.tells_width && !print.tells_height);
+        assert!(print.marked && print.has_widths && !print.has_heights);
         assert_eq!(print.head, ["by hand", "a = 1"]);
         assert_eq!((print.value("a"), print.value("b")), (Some("1"), Some("2")));
         let notes: Vec<_> = print.notes.iter().map(|note| (note.at, note.line)).collect();

@@ -6,7 +6,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Role {
-    /// The wall that is seen.
+    /// The outermost wall.
     OuterWall,
     /// The walls inside it.
     InnerWall,
@@ -59,7 +59,7 @@ const NAMES: &[(&str, Role)] = &[
 ];
 
 impl Role {
-    /// All of them, in the order in which they are told.
+    /// All of them, in the order of reports.
     pub const ALL: [Self; 8] = [
         Self::OuterWall,
         Self::InnerWall,

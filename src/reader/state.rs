@@ -1,18 +1,32 @@
 //! Words -> where the nozzle goes: modes, units, positions and feeds as a firmware keeps them.
+//!
+//! The state of a printer after the lines so far, and the events that the next line makes of it:
+//! - positions are absolute (G90) or relative (G91), the filament's too (M82, M83), in mm (G21) or
+//!   inches (G20); G92 sets them without a move;
+//! - an axis that was sent to an end stop whose place only the printer knows is unknown (`None`)
+//!   until the file names one; the move there counts as one of no length;
+//! - F holds until the next F, times M220's factor;
+//! - role, width and height hold from one comment to the next;
+//! - arcs (G2, G3) become straight pieces.
+//!
+//! A command that changes none of these and waits for nothing is *harmless*; any other that is not
+//! listed here is unknown, which is counted and reported, and no error.
 
 use super::arc::Arc;
 use super::heat;
 use super::marks::{Mark, mark};
 use super::words::{self, Code, Words};
 use super::{Change, Event, Motion, Role, Summary, Wait};
+use crate::units::{MmPerMin, MmPerS};
 
-/// Feed before the file names one, mm/s: Marlin's.
-const FIRST_FEED: f64 = 25.0;
+/// Feed before the file names one: Marlin's.
+const FIRST_FEED: MmPerS = MmPerS(25.0);
 
 /// Millimetres in an inch.
 const INCH: f64 = 25.4;
 
-/// Commands that move nothing and wait for nothing.
+/// M-codes that neither move anything nor wait: of Marlin, Klipper, Sailfish and Prusa's and Bambu's
+/// firmwares. One that is missing here makes files look as if they had unknown lines.
 const HARMLESS: &[u32] = &[
     17, 18, 20, 21, 27, 31, 42, 70, 72, 73, 75, 76, 77, 82, 83, 84, 85, 92, 105, 106, 107, 108,
     110, 111, 113, 114, 115, 117, 118, 119, 120, 121, 126, 127, 130, 132, 136, 137, 141, 142, 150,
@@ -26,8 +40,7 @@ pub(super) struct State {
     at: [Option<f64>; 3],
     /// Where the filament is, mm.
     filament: f64,
-    /// mm/s.
-    feed: f64,
+    feed: MmPerS,
     /// M220, as a factor.
     feed_factor: f64,
     /// Millimetres in a unit of the file.
@@ -68,7 +81,7 @@ struct Target {
 }
 
 impl State {
-    /// Takes one line of the file.
+    /// Reads the next line of the file.
     pub(super) fn line(&mut self, line: &[u8], sink: &mut dyn FnMut(Event)) {
         self.summary.lines += 1;
         let (code, comment) = words::split(line);
@@ -139,7 +152,7 @@ impl State {
             (b'G', 17 | 54 | 130) | (b'T', _) => {}
             (b'M', 82) => self.relative_filament = false,
             (b'M', 83) => self.relative_filament = true,
-            // What the printer remembers of the end stops' places is not in the file.
+            // Only the printer knows where its end stops are.
             (b'M', 132) => self.forget(words, None),
             (b'M', 191 | 303) => sink(Event::Wait(Wait::Heating)),
             (b'M', 0 | 1 | 25 | 226 | 400 | 600 | 601) => sink(Event::Wait(Wait::Moves)),
@@ -199,7 +212,7 @@ impl State {
                 b'I' => target.arc[0] = Some(value),
                 b'J' => target.arc[1] = Some(value),
                 b'R' => target.arc[2] = Some(value),
-                b'F' if value > 0.0 => self.feed = value / 60.0,
+                b'F' if value > 0.0 => self.feed = MmPerMin(value).into(),
                 _ => {}
             }
         }
@@ -227,7 +240,7 @@ impl State {
 
     fn go(&mut self, to: [Option<f64>; 3], filament: f64, sink: &mut dyn FnMut(Event)) {
         let from = std::mem::replace(&mut self.at, to);
-        // From a place that only the printer knows, the way is not known either: none is counted.
+        // From an unknown place the way is unknown, too: none is counted.
         let to = to.map(Option::unwrap_or_default);
         let from: [f64; 3] = std::array::from_fn(|axis| from[axis].unwrap_or(to[axis]));
         let role = match (from != to, filament > 0.0) {
@@ -237,7 +250,7 @@ impl State {
             (false, _) => return,
         };
         let (width, height) = (self.width, self.height);
-        let feed = self.feed * self.feed_factor;
+        let feed = MmPerS(self.feed.0 * self.feed_factor);
         sink(Event::Move(Motion { from, to, filament, feed, role, width, height }));
     }
 

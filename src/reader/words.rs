@@ -52,7 +52,7 @@ pub(super) fn command(code: &[u8]) -> Option<(Code, Words<'_>)> {
 }
 
 impl Iterator for Words<'_> {
-    /// An upper-case letter, and its number if there is a sensible one.
+    /// An upper-case letter, and its number if there is a usable one.
     type Item = (u8, Option<f64>);
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -81,7 +81,7 @@ const POWERS: [f64; 20] = [
     1e17, 1e18, 1e19,
 ];
 
-/// Numbers beyond this are no length, speed or time of a printer.
+/// Larger numbers are no length, speed or time of a printer, and count as missing.
 const LARGEST: f64 = 1e9;
 
 /// The decimal number that `text` begins with, and what follows it. G-code knows no
@@ -102,7 +102,7 @@ pub(super) fn number(text: &[u8]) -> (Option<f64>, &[u8]) {
                 digits += 1;
             }
             b'0'..=b'9' if point => digits += 1,
-            // Longer than any number of use: the next check refuses it.
+            // Too long for any usable number: the check below rejects it.
             b'0'..=b'9' => digits += 1,
             b'.' if !point => point = true,
             _ => break,

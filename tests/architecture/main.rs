@@ -33,12 +33,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("profile", &["error"]),
     ("motion", &["profile", "units"]),
     // A witness of its own: it shares nothing with the code that slices, plans or writes.
-    ("reader", &[]),
+    ("reader", &["units"]),
     ("estimate", &["reader", "motion"]),
     // Independent witnesses: nothing of slice, region, plan or gcode. Of `geom` they use only what
     // knows no contour, raster or offset: see WITNESSES.
     ("check", &["reader", "mesh", "profile", "units", "geom"]),
-    ("preview", &["reader", "estimate"]),
+    ("preview", &["reader", "estimate", "units"]),
     ("diff", &["reader", "estimate", "geom"]),
 ];
 

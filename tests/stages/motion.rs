@@ -4,6 +4,7 @@
 
 use proptest::prelude::*;
 use slicer::motion::{Clock, Junction, Limits, Move};
+use slicer::units::MmPerS;
 
 /// 100 mm/s, 1000 mm/s² and no corner above rest, unless a test says otherwise.
 fn limits() -> Limits {
@@ -23,7 +24,7 @@ fn times(limits: &Limits, moves: &[([f64; 4], f64)]) -> Vec<f64> {
     let mut clock = Clock::new(limits.clone());
     let mut times = Vec::new();
     for (index, &(delta, feed)) in moves.iter().enumerate() {
-        clock.push(Move { delta, feed, tag: index });
+        clock.push(Move { delta, feed: MmPerS(feed), tag: index });
         times.extend(clock.drain());
     }
     clock.finish();
@@ -226,7 +227,7 @@ fn a_short_look_ahead_is_slower_on_short_pieces() {
 fn a_dwell_stops_and_counts() {
     let mut clock = Clock::new(limits());
     for tag in 0..2 {
-        clock.push(Move { delta: x(100.0), feed: 100.0, tag });
+        clock.push(Move { delta: x(100.0), feed: MmPerS(100.0), tag });
         clock.dwell(0.5, tag + 10);
     }
     let found: Vec<_> = clock.drain().map(|timed| (timed.tag, timed.seconds)).collect();

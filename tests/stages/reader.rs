@@ -43,8 +43,8 @@ fn positions_are_absolute_or_relative_in_inches_or_not() {
     assert_eq!(ends("G20\nG1 X1\nG21\ng01y1"), [[25.4, 0.0, 0.0], [25.4, 1.0, 0.0]]);
     assert_eq!(ends("G1 X5\nG92 X0\nG1 X1"), [[5.0, 0.0, 0.0], [1.0, 0.0, 0.0]]);
     let moved = moves("G20\nG1 X1 F60");
-    assert!((moved[0].feed - 25.4).abs() < 1e-9);
-    assert_eq!(moves("M220 S50\nG1 X1 F60")[0].feed, 0.5);
+    assert!((moved[0].feed.0 - 25.4).abs() < 1e-9);
+    assert_eq!(moves("M220 S50\nG1 X1 F60")[0].feed.0, 0.5);
 }
 
 #[test]
@@ -150,8 +150,8 @@ proptest! {
         for event in events {
             if let Event::Move(motion) = event {
                 let numbers = motion.from.iter().chain(&motion.to);
-                prop_assert!(numbers.chain([&motion.filament, &motion.feed]).all(|n| n.is_finite()));
-                prop_assert!(motion.feed > 0.0);
+                prop_assert!(numbers.chain([&motion.filament, &motion.feed.0]).all(|n| n.is_finite()));
+                prop_assert!(motion.feed.0 > 0.0);
             }
         }
     }

@@ -1,4 +1,14 @@
 //! Difference -> text for people: a verdict, the sums of both files, and the worst differences.
+//!
+//! First a verdict in one line, with the tolerances. Then a table: for each role, and for all together,
+//! length, filament and time in both files and how much more the second has, in percent; `!` marks
+//! what exceeds the tolerance and decides. Then the findings, the worst first: the worst of each kind,
+//! and as many more as fit into [`MOST_LISTED`] lines, since the first ten layers of the same fault
+//! would hide all others. Settings in comments come last: they are listed, but decide nothing
+//! unless `--settings` asks for it.
+//!
+//! Places are given with x, y, z and the line in both files, so that one can open both there. Layers
+//! in a row are written as a range.
 
 use slicer::diff::{
     Both, CodeDifference, Difference, File, Finding, Flow, Kind, Place, Quantity, Setting, Sum,
@@ -9,7 +19,7 @@ use slicer::warning::plural;
 /// Differences that are listed without `--all`.
 const MOST_LISTED: usize = 10;
 
-/// Settings that are named where they are only told.
+/// Settings that are named where they do not decide.
 const MOST_NAMED: usize = 5;
 
 /// For people.
@@ -150,10 +160,10 @@ fn line(finding: &Finding, tolerance: f64) -> String {
             format!("{count} at another height, most {}: z {a:.3} in A, {b:.3} in B", label(*layer))
         }
         Finding::Heaters { layer, difference } => {
-            format!("{}: heaters: {}", place(*layer), told(difference))
+            format!("{}: heaters: {}", place(*layer), codes(difference))
         }
         Finding::Commands { layer, difference } => {
-            format!("{}: commands: {}", place(*layer), told(difference))
+            format!("{}: commands: {}", place(*layer), codes(difference))
         }
         Finding::Lines { layer, role, length_mm, far_mm, farthest } => {
             let place = lines(*role, *length_mm, *far_mm, farthest, tolerance);
@@ -219,7 +229,7 @@ fn numbers(line: Both<u32>) -> String {
     format!("A:{} B:{}", line.a, line.b)
 }
 
-fn told(difference: &CodeDifference) -> String {
+fn codes(difference: &CodeDifference) -> String {
     let only = |codes: &[String]| {
         if codes.is_empty() { "nothing".to_owned() } else { codes.join(", ") }
     };
@@ -228,7 +238,7 @@ fn told(difference: &CodeDifference) -> String {
     format!("A {}{}, B {}{}", only(a), line(lines.a), only(b), line(lines.b))
 }
 
-/// Where something is told the printer.
+/// Where commands differ.
 fn place(layer: Option<Both<usize>>) -> String {
     match layer {
         Some(Both { a: 0, b: 0 }) => "before the first line".to_owned(),
@@ -256,17 +266,17 @@ fn name(file: File) -> &'static str {
 fn runs(numbers: &[usize]) -> String {
     const MOST: usize = 8;
     let runs: Vec<&[usize]> = numbers.chunk_by(|a, b| a + 1 == *b).collect();
-    let told = runs.iter().take(MOST).map(|run| match run {
+    let ranges = runs.iter().take(MOST).map(|run| match run {
         [0] => "before layer 1".to_owned(),
         [one] => one.to_string(),
         [first, .., last] => format!("{first}-{last}"),
         [] => String::new(),
     });
-    let told = told.collect::<Vec<_>>().join(", ");
+    let ranges = ranges.collect::<Vec<_>>().join(", ");
     match numbers.len() {
-        1 => format!("layer {told}"),
-        count if runs.len() > MOST => format!("{count} layers ({told}, ...)"),
-        _ => format!("layers {told}"),
+        1 => format!("layer {ranges}"),
+        count if runs.len() > MOST => format!("{count} layers ({ranges}, ...)"),
+        _ => format!("layers {ranges}"),
     }
 }
 
@@ -290,7 +300,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn layers_in_a_row_are_told_as_a_range() {
+    fn layers_in_a_row_are_a_range() {
         assert_eq!(runs(&[3, 5, 6, 7, 9]), "layers 3, 5-7, 9");
         assert_eq!(runs(&[4]), "layer 4");
         let many: Vec<usize> = (1..40).map(|k| 2 * k).collect();

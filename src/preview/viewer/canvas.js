@@ -72,7 +72,7 @@ class CanvasPainter {
     stroke();
   }
 
-  /** Lines have a darker edge, so that neighbours are told apart. */
+  /** Lines have a darker edge, so that neighbours can be distinguished. */
   strokePath(rgb, width, thin) {
     const { context } = this;
     const rings = thin ? [[rgb, width]] : [[mixed(rgb, [0, 0, 0], 0.2), width], [rgb, 0.75 * width]];

@@ -58,8 +58,8 @@ function showRoles(hidden, change) {
     const swatch = make("span", { className: "swatch" }, make("i"), make("i"));
     const share = FACTS.seconds > 0 ? `${((100 * role.seconds) / FACTS.seconds).toFixed(1)} %` : "";
     const title = `${clock(role.seconds)}, ${decimals(role.filament_mm / 1000, 2)} m of filament`;
-    const told = make("span", { className: "share", textContent: share });
-    byId("roles").append(make("label", { className: "switch", title }, box, swatch, role.name, told));
+    const shown = make("span", { className: "share", textContent: share });
+    byId("roles").append(make("label", { className: "switch", title }, box, swatch, role.name, shown));
   });
 }
 

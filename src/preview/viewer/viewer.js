@@ -199,7 +199,7 @@ function readAddress() {
   goToLayer(layer, numbers("move", 1)?.[0]);
 }
 
-/** Browsers refuse too many changes of the address: only where one rests is told. */
+/** Browsers refuse too many changes of the address: only where one rests is written. */
 const writeAddress = (() => {
   let timer = 0;
   return () => {

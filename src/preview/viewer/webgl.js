@@ -211,8 +211,8 @@ class WebglPainter {
 
 /** Whether a processor does the work of a graphics card: then canvas 2D is faster. */
 function isSoftware(gl) {
-  const told = gl.getExtension("WEBGL_debug_renderer_info");
-  const name = gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
   return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
