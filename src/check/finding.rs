@@ -4,6 +4,9 @@
 //! code the findings with the largest measures are listed, at most [`MOST_LISTED`], and all are
 //! counted: a wrong file has thousands, and the first hundred show what is wrong.
 //!
+//! A place has the line of the file and the layer, both from 1, and x, y and z in the machine's
+//! coordinates, so that one finds it in the file and in a preview.
+//!
 //! Codes, their names and the JSON fields are stable: scripts match on them. A new code is a line in
 //! [`Code`], in [`Code::ALL`] and in [`Code::name`], in the order of severity: what harms the machine
 //! first, then what spoils the print, then what is wrong with the shape.
