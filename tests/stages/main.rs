@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod bent;
 mod check;
 mod dual;
 mod laws;

@@ -8,9 +8,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-mod common;
-
-use common::damage::{kinds, largest, listed};
+use crate::common::damage::{kinds, largest, listed};
 use proptest::prelude::*;
 use slicer::check::finding::Code;
 use slicer::check::terms::Terms;
@@ -23,7 +21,7 @@ use slicer::preview::{drawing::Frame, layer};
 use slicer::profile;
 use slicer::reader::Print;
 
-const BENT: &str = include_str!("../fixtures/bent.gcode");
+const BENT: &str = include_str!("../../fixtures/bent.gcode");
 
 /// Its layers, each 0.3 mm high.
 const LAYERS: usize = 16;
@@ -52,7 +50,7 @@ fn judge(text: &str) -> Verdict {
     let print = read(text);
     let settings = profile::load("generic-marlin", &[]).unwrap().settings;
     let terms = Terms::new(Some(&settings), None, &print);
-    let path = common::fixtures().join("bracket.stl").to_str().unwrap().to_owned();
+    let path = crate::common::fixtures().join("bracket.stl").to_str().unwrap().to_owned();
     let placement = Placement { scale: 0.2, ..Placement::default() };
     let placed = slicer::place(&[path], &placement, &slicer::bed(&settings.machine)).unwrap();
     check::check(&print, &terms, Some(Model { mesh: &placed.mesh, offset: placed.offset }))
