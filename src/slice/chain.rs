@@ -10,6 +10,7 @@
 
 use super::simplify::{canonical, simplify};
 use super::{Heights, Layer};
+use crate::geom::cells::Cells;
 use crate::geom::{Contour, Point, polygon};
 use crate::mesh::Mesh;
 use crate::mesh::edges::{Adjacency, NONE, parts};
@@ -31,10 +32,8 @@ pub struct Slicer<'a> {
     tolerance: Coord,
     /// Layers in each block but the last.
     block: usize,
-    /// Where each block's triangles begin in `triangles`; one more than there are blocks.
-    starts: Vec<usize>,
     /// Triangles by the blocks they reach into.
-    triangles: Vec<u32>,
+    cells: Cells<u32>,
     /// How many planes lie at or below each vertex.
     below: Vec<u32>,
     /// Marks that no thread is using: a set for each triangle is too much to make for each layer.
@@ -80,25 +79,10 @@ impl<'a> Slicer<'a> {
                 layers.start / block..(layers.end - 1) / block + 1
             }
         };
-        let mut starts = vec![0; blocks + 1];
-        for t in &mesh.triangles {
-            for b in reach(t) {
-                starts[b + 1] += 1;
-            }
-        }
-        for b in 0..blocks {
-            starts[b + 1] += starts[b];
-        }
-        let mut next = starts.clone();
-        let mut triangles = vec![0; starts[blocks]];
-        for (index, t) in (0_u32..).zip(&mesh.triangles) {
-            for b in reach(t) {
-                triangles[next[b]] = index;
-                next[b] += 1;
-            }
-        }
+        let triangles = || (0_u32..).take(mesh.triangles.len());
+        let cells = Cells::new(blocks, triangles, |t| reach(&mesh.triangles[t as usize]));
         let free = Mutex::default();
-        Self { mesh, adjacency, heights, tolerance, block, starts, triangles, below, free }
+        Self { mesh, adjacency, heights, tolerance, block, cells, below, free }
     }
 
     /// The heights that the mesh is cut at.
@@ -110,7 +94,7 @@ impl<'a> Slicer<'a> {
     /// The number of blocks.
     #[must_use]
     pub fn blocks(&self) -> usize {
-        self.starts.len() - 1
+        self.cells.count()
     }
 
     /// The layers of block `b`, from the lowest to the highest.
@@ -137,7 +121,7 @@ impl<'a> Slicer<'a> {
     ) -> Vec<T> {
         let layers = b * self.block..((b + 1) * self.block).min(self.heights.count());
         let mut buckets = vec![Vec::new(); layers.len()];
-        for &t in &self.triangles[self.starts[b]..self.starts[b + 1]] {
+        for &t in self.cells.of(b..b + 1) {
             let crossed = crossed(&self.below, &self.mesh.triangles[t as usize]);
             for k in crossed.start.max(layers.start)..crossed.end.min(layers.end) {
                 buckets[k - layers.start].push(t);
