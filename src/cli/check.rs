@@ -7,7 +7,6 @@ use anyhow::Result;
 use slicer::check::finding::Code;
 use slicer::check::terms::Terms;
 use slicer::check::{self, Measures, Model, Verdict};
-use slicer::error::Error;
 use slicer::mesh::Bed;
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
@@ -35,7 +34,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
     let print = Print::read(&mut source, diameter).map_err(|e| Cause::Unreadable(e).of(name))?;
     if print.layers.is_empty() {
-        return Err(Error::from(Cause::NoLine.of(name)).into());
+        return Err(Cause::NoLine.of(name).into());
     }
     let own = profile::recorded(&print.values)?;
     let judge = given.as_ref().or(own.as_ref());

@@ -7,7 +7,6 @@ use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
 use slicer::diff::{Difference, Side, Tolerances, diff};
-use slicer::error::Error;
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::profile::{self, Profile};
@@ -100,7 +99,7 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
 
 fn print((name, bytes): &(&str, Vec<u8>)) -> Result<Print> {
     let print = Print::read(&mut bytes.as_slice(), SOME_DIAMETER);
-    Ok(print.map_err(|error| Error::from(Cause::Unreadable(error).of(name)))?)
+    print.map_err(|error| Cause::Unreadable(error).of(name).into())
 }
 
 fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Result<Side> {

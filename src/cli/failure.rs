@@ -9,7 +9,7 @@
 //! between them. It ends with the library's error: its line holds what its causes say.
 
 use slicer::error::Error;
-use slicer::mesh;
+use slicer::{mesh, reader};
 use std::error::Error as StdError;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -100,6 +100,9 @@ fn code_of(error: &(dyn StdError + 'static)) -> Option<u8> {
     // What is called within a stage fails with the stage's own error.
     if let Some(error) = error.downcast_ref::<mesh::Error>() {
         return Some(if error.is_usage() { USAGE } else { INPUT });
+    }
+    if error.is::<reader::Error>() {
+        return Some(INPUT);
     }
     error.downcast_ref().map(Error::exit_code)
 }

@@ -15,7 +15,6 @@ use super::{failure, input, interrupt, model, say, usage, viewer, words};
 use anyhow::{Context as _, Result};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
-use slicer::error::Error;
 use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
 use slicer::preview::cut::{Axis, Cut, Plane};
 use slicer::preview::drawing::{Drawing, Frame};
@@ -204,7 +203,7 @@ fn read(args: &PreviewArgs) -> Result<(&str, Print)> {
     let print = Print::read(&mut source, profile.settings.filament.diameter)
         .map_err(|error| Cause::Unreadable(error).of(name))?;
     if layer::frame(&print, &print.layers).is_empty() {
-        return Err(Error::from(Cause::NothingToDraw.of(name)).into());
+        return Err(Cause::NothingToDraw.of(name).into());
     }
     Ok((name, print))
 }

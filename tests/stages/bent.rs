@@ -52,7 +52,13 @@ fn judge(text: &str) -> Verdict {
     let terms = Terms::new(Some(&settings), None, &print);
     let path = crate::common::fixtures().join("bracket.stl").to_str().unwrap().to_owned();
     let placement = Placement { scale: 0.2, ..Placement::default() };
-    let placed = slicer::place(&[path], &placement, &slicer::bed(&settings.machine)).unwrap();
+    let placed = slicer::place(
+        &[slicer::Model::Path(path)],
+        &placement,
+        &slicer::bed(&settings.machine),
+        &Default::default(),
+    )
+    .unwrap();
     check::check(&print, &terms, Some(Model { mesh: &placed.mesh, offset: placed.offset }))
 }
 
