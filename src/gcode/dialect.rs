@@ -1,8 +1,8 @@
-//! Dialect -> words: where the G-code of printers differs.
+//! Dialect -> words: the commands in which the G-code of firmwares differs.
 
 use crate::profile::DialectName;
 
-/// The differences between dialects, as the writer needs them.
+/// What the writer needs to know about a dialect.
 #[derive(Debug, Clone, Copy)]
 pub struct Dialect {
     name: DialectName,
@@ -15,20 +15,20 @@ impl Dialect {
         Self { name }
     }
 
-    /// Whether E starts again from zero at every layer. Marlin keeps E as a
-    /// 32-bit float, which has no room for small moves after some metres. GPX
-    /// counts in doubles, and a Sailfish printer stops for every `G92`.
+    /// Whether E restarts from zero at every layer. Marlin keeps E as a 32-bit float, which
+    /// loses small moves after some metres of filament. GPX keeps E as a double, and a
+    /// Sailfish printer stops at every `G92`: there E never restarts.
     #[must_use]
     pub fn restarts_e(self) -> bool {
         self.name != DialectName::Makerbot
     }
 
-    /// What turns the part cooling fan to `percent`.
+    /// The command that sets the part cooling fan to `percent`.
     #[must_use]
     pub fn fan(self, percent: f64, tool: u32) -> String {
         let on = percent > 0.0;
         match self.name {
-            // Sailfish's fan is on or off.
+            // Sailfish can only switch its fan on or off.
             DialectName::Makerbot if on => format!("M126 T{tool}"),
             DialectName::Makerbot => format!("M127 T{tool}"),
             _ if on => format!("M106 S{}", (percent * 2.55).round() as u32),
@@ -36,24 +36,24 @@ impl Dialect {
         }
     }
 
-    /// What says that `percent` of the print is done and how many minutes are left.
-    /// Of the same length whatever the numbers are, so that it can be filled in later.
+    /// The command that reports `percent` of the print as done and how many minutes are left.
+    /// Its length does not depend on the numbers, so that it can be filled in later.
     #[must_use]
     pub fn progress(self, percent: u64, minutes: u64) -> String {
         let (percent, minutes) = (percent.min(100), minutes.min(99_999));
         match self.name {
             DialectName::Marlin => format!("{:<15}", format!("M73 P{percent} R{minutes}")),
-            // GPX wants no R, and Klipper makes nothing of it.
+            // GPX rejects R, and Klipper ignores it.
             DialectName::Makerbot | DialectName::Klipper => {
                 format!("{:<8}", format!("M73 P{percent}"))
             }
         }
     }
 
-    /// Whether the writer has to say that the print is done; MakerBot's end block
-    /// does, since a build ends with it.
+    /// Whether the writer has to report 100 %. For MakerBot machines the end block does, since
+    /// that command ends the build.
     #[must_use]
-    pub fn says_done(self) -> bool {
+    pub fn reports_done(self) -> bool {
         self.name != DialectName::Makerbot
     }
 }

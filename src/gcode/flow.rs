@@ -1,20 +1,23 @@
-//! Bead + feed asked for -> feed: no more filament than the hot end can melt.
+//! Bead + requested feed -> feed: lowers a feed that needs more plastic than the hot end can melt.
 
 use crate::fill::{Both, Role, RoleTable};
 use crate::profile::Settings;
 use crate::units::nearest;
 
-/// Part of the limit that is no more than rounding.
+/// Relative tolerance of the limit. A feed exactly at the limit may exceed it by the rounding of
+/// floats, about 1e-15; it must not be lowered for that. Anything far above that rounding and
+/// far below one mm/min in the fastest feed does.
 const SLACK: f64 = 1e-9;
 
-/// Lines differ in width by a few per cent: what is slowed down by less than this part is
-/// no news.
-const LEAST_TOLD: f64 = 0.05;
+/// Feeds lowered by a smaller part than this are not reported. Widths differ by a few per cent
+/// from line to line; without a threshold nearly every print near the limit warns. It changes
+/// the report only, never a feed.
+const REPORT_THRESHOLD: f64 = 0.05;
 
-/// What the hot end can melt.
+/// The limit of what the hot end can melt.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FlowLimit {
-    /// mm³/s.
+    /// The largest flow, mm³/s.
     most: f64,
     /// Cross-section of the filament, mm².
     area: f64,
@@ -25,8 +28,8 @@ impl FlowLimit {
         Self { most: settings.machine.max_volumetric_flow, area: settings.filament_area() }
     }
 
-    /// The feed (mm/min) of a bead that takes `filament` mm for each mm of path, and its
-    /// flow: the feed that is asked for, or the highest at which the filament melts.
+    /// The feed (mm/min) and the flow (mm³/s) of a bead that takes `filament` mm for each mm of
+    /// path: the feed `asked` for, clamped to the highest at which the filament melts.
     pub(super) fn feed(self, filament: f64, asked: f64) -> (u32, f64) {
         // mm³/s for each mm/min.
         let flow = filament * self.area / 60.0;
@@ -46,29 +49,29 @@ pub(super) fn whole_feed(feed: f64) -> u32 {
     nearest(feed).max(1) as u32
 }
 
-/// The feeds of a role that were lowered by more than a little.
+/// The feeds of a role that the flow limit lowered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Lowered {
-    /// The highest asked for, mm/min.
+    /// The highest requested feed, mm/min.
     pub asked: u32,
-    /// The lowest given, mm/min.
+    /// The lowest feed after the limit, mm/min.
     pub given: u32,
 }
 
-/// How fast filament is molten.
+/// The largest flow, and which roles the flow limit slowed down.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Flows {
     /// The largest flow, mm³/s.
     pub largest: f64,
-    /// What was lowered to the limit.
+    /// The feeds that were lowered, where that is worth a report.
     pub lowered: RoleTable<Both<Option<Lowered>>>,
 }
 
 impl Flows {
-    /// Notes a bead's flow, and whether it was slowed down for it.
+    /// Notes a bead's flow, and its feeds if the limit lowered them.
     pub(super) fn note(&mut self, role: Role, thick: bool, flow: f64, feeds: Lowered) {
         self.largest = self.largest.max(flow);
-        if f64::from(feeds.given) < (1.0 - LEAST_TOLD) * f64::from(feeds.asked) {
+        if f64::from(feeds.given) < (1.0 - REPORT_THRESHOLD) * f64::from(feeds.asked) {
             merge(self.lowered[role].of_mut(thick), Some(feeds));
         }
     }
@@ -98,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_feed_is_lowered_to_what_melts_and_no_further() {
+    fn a_feed_is_lowered_to_the_flow_limit_and_no_further() {
         // A square of 1 mm², so that a mm of filament is a mm³.
         let limit = FlowLimit { most: 10.0, area: 1.0 };
         assert_eq!(limit.feed(0.1, 6000.0), (6000, 10.0));
@@ -108,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn the_highest_asked_and_the_lowest_given_are_kept() {
+    fn the_highest_requested_and_the_lowest_final_feed_are_kept() {
         let mut flows = Flows::default();
         flows.note(Role::Infill, true, 5.0, Lowered { asked: 3600, given: 3000 });
         flows.note(Role::Infill, true, 4.0, Lowered { asked: 1800, given: 1800 });

@@ -1,12 +1,16 @@
-//! Toolpaths -> text: a G-code file, written layer by layer.
+//! Toolpaths -> text: writes a G-code file layer by layer.
 //!
-//! A layer's paths become *moves* ([`moves`]): where each ends, its feed and its filament. Text
-//! ([`write`]), sums ([`usage`]) and the clock ([`times`]) all read the same moves, so that the times
-//! are those of what is written. Moves and text of several layers are made on all threads; the
-//! clock goes from layer to layer, and layers are written in order.
+//! - *Moves* are the machine moves of one layer. Text, sums and the clock all read the same ones, so
+//!   that the times are those of what is written.
+//! - *Progress* lines (`M73`) tell the printer which part of the print is done.
 //!
-//! A layer waits until its times are known, since *progress* (`M73`) stands within its text. The time
-//! in all is known at the end only: progress lines have a fixed length and are filled in then.
+//! 1. [`moves`] turns a layer into machine moves; [`flow`] lowers feeds to the flow limit.
+//! 2. [`times`] runs the clock over these moves, layer by layer; [`usage`] sums their filament.
+//! 3. [`write`](mod@write) formats the moves in the printer's [`dialect`].
+//! 4. Layers go to the output in order as soon as their times are known, with placeholders for
+//!    progress lines. These have a fixed length and are filled in at the end, when the total time
+//!    is known.
+//! 5. [`hosts`] writes the comments that hosts read at the head and the end of the file.
 
 pub mod dialect;
 pub mod flow;
@@ -45,7 +49,7 @@ pub trait Output: Write + Seek + Send {}
 
 impl<T: Write + Seek + Send> Output for T {}
 
-/// What a file adds up to.
+/// Sums over a file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sums {
     /// Lengths and filament.
@@ -105,17 +109,17 @@ impl<'a> Writer<'a> {
         Ok(writer)
     }
 
-    /// Writes the next layers; formatted and timed side by side, written in order.
+    /// Writes the next layers. All threads make their moves and text; the output keeps their order.
     ///
     /// # Errors
     /// [`Error::Write`] if writing fails.
     pub fn layers(&mut self, layers: &[Toolpath]) -> Result<()> {
-        // Moves and text take more memory than the layers themselves.
+        // Few at once: moves and text take more memory than the layers themselves.
         let at_once = rayon::current_num_threads().max(4);
         layers.chunks(at_once).try_for_each(|layers| self.together(layers))
     }
 
-    /// Writes layers whose moves and text are all held at a time.
+    /// Writes layers, with the moves and the text of all of them in memory at once.
     fn together(&mut self, layers: &[Toolpath]) -> Result<()> {
         let (params, moves, timer) = (&self.params, &self.moves, &mut self.timer);
         let walk = |layer| {
@@ -128,7 +132,7 @@ impl<'a> Writer<'a> {
             starts.push(self.usage.filament());
             self.usage.add(usage);
         }
-        // The clock goes from layer to layer, the text of each stands alone.
+        // The clock must see the layers in order. Their texts are independent of each other.
         let ((), texts) = rayon::join(
             || walked.iter().for_each(|(_, moves)| timer.layer(moves)),
             || -> Vec<LayerText> {
@@ -176,7 +180,7 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    /// A block of the profile, filled in.
+    /// A block of the profile with its placeholders replaced.
     fn block(&self, name: &str, block: &str) -> Result<String> {
         template::render(name, block, &template::values(self.settings, &self.facts))
     }

@@ -1,7 +1,18 @@
-//! Toolpath -> Moves: what the machine does on one layer, move by move, as it will be written.
+//! Toolpath -> Moves: turns the paths of one layer into machine moves, as they will be written.
 //!
-//! The text, the sums and the clock all read these moves: a length, a feed and an
-//! amount of filament are worked out once, and the clock times what is written.
+//! The text, the sums and the clock all read these moves. So lengths, feeds and filament are
+//! computed once, and the clock times exactly what is written.
+//!
+//! - A *move* is one straight line with its feed and its filament.
+//! - The *approach* of a path is all moves before its first bead: retraction, lift, travel, descent
+//!   and the restored filament.
+//! - *Highest* is the greatest z printed so far. It is above the layer only after a path that rose.
+//!
+//! For each path, in order:
+//! 1. Retract if the plan says so, and lift by the z-hop.
+//! 2. Lift over everything that is printed, travel, and go down to the first point.
+//! 3. Write a move for each pair of points. Filament is length x width x height x rate of the role.
+//! 4. Where width or height change, compute the feed again, clamped to the flow limit.
 
 use super::flow::{FlowLimit, Flows, Lowered, whole_feed};
 use crate::fill::{Both, Path, PathPoint, Role, RoleTable};
@@ -10,7 +21,7 @@ use crate::plan::Toolpath;
 use crate::profile::{ExtrusionModel, Settings};
 use crate::units::{Coord, UNITS_PER_MM, to_mm, to_units};
 
-/// A straight move to a place.
+/// A straight move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Move {
     /// Where it ends in x and y on the machine, thousandths of a mm.
@@ -38,8 +49,8 @@ pub enum Kind {
     Retract,
     /// Pushes it forward again.
     Restore,
-    /// Lays a bead. A stretch shorter than the rounding ends where it began; its
-    /// filament counts all the same.
+    /// Lays a bead. A segment may end where it began, if it is shorter than the rounding of
+    /// coordinates; its filament still counts.
     Extrude(Bead),
 }
 
@@ -56,7 +67,7 @@ pub struct Bead {
     pub width: Coord,
 }
 
-/// All that the machine does on one layer.
+/// All machine moves of one layer.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Moves {
     /// The layer, counted from 0.
@@ -69,20 +80,20 @@ pub struct Moves {
     pub from: Option<[i32; 2]>,
     /// The moves, in order.
     pub moves: Vec<Move>,
-    /// For each path, the first move of the way to it.
+    /// For each path, the index of the first move of its approach.
     pub paths: Vec<usize>,
-    /// How fast its filament is molten.
+    /// Its plastic flow, and feeds that the flow limit lowered.
     pub flows: Flows,
 }
 
-/// The numbers that the moves are made by.
+/// The settings from which moves are made.
 #[derive(Debug, Clone)]
 pub struct MoveParams {
-    /// Where the layout's middle goes on the machine, grid units.
+    /// Machine coordinates of the layout's middle, grid units.
     offset: [i64; 2],
     /// mm of filament for each mm of path, mm of width and mm of height, by role.
     rates: RoleTable<f64>,
-    /// mm/min.
+    /// Requested feeds by role, mm/min.
     feeds: RoleTable<Both<f64>>,
     /// Factor on the feeds of the first layer.
     first_layer: f64,
@@ -95,7 +106,7 @@ pub struct MoveParams {
 }
 
 impl MoveParams {
-    /// The numbers that `settings` mean; `offset` is the layout's middle, mm.
+    /// Converts `settings`. `offset` holds the machine coordinates of the layout's middle, mm.
     #[must_use]
     pub fn new(settings: &Settings, offset: [f64; 2]) -> Self {
         let (x, s) = (&settings.extrusion, &settings.speed);
@@ -118,7 +129,7 @@ impl MoveParams {
         }
     }
 
-    /// Filament for this length of a bead, mm.
+    /// Filament for `length_mm` of a bead, mm.
     fn filament(&self, bead: &Bead, length_mm: f64) -> f64 {
         self.rates[bead.role] * length_mm * to_mm(bead.width) * to_mm(bead.height)
     }
@@ -136,30 +147,31 @@ impl MoveParams {
         walk.out
     }
 
-    /// How far the filament is pulled back once all is printed, mm, and how fast, mm/min.
+    /// The last retraction, after everything is printed: length, mm, and feed, mm/min.
     #[must_use]
     pub fn last_pull(&self) -> (f64, u32) {
         (self.retract, whole_feed(self.retract_feed))
     }
 
-    /// Where a point is on the machine, thousandths of a mm.
+    /// Machine coordinates of a point, thousandths of a mm.
     fn place(&self, p: Point) -> [i32; 2] {
         let [x, y] = self.offset;
-        // Ten units are a thousandth; half away from zero is not needed, only the same everywhere.
+        // A thousandth is ten units. Halves round upwards on both sides of zero, so that equal
+        // beads stay equal wherever they lie.
         [(i64::from(p.x) + x + 5).div_euclid(10), (i64::from(p.y) + y + 5).div_euclid(10)]
             .map(|thousandths| thousandths as i32)
     }
 }
 
-/// A layer's moves in the making.
+/// Builds the moves of a layer, and keeps track of the nozzle.
 struct Walk<'a> {
     params: &'a MoveParams,
     out: Moves,
-    /// Where the nozzle is, on the bed and on the machine.
+    /// Position of the nozzle: in the layout and on the machine.
     at: Option<(Point, [i32; 2])>,
-    /// Height of the nozzle where this layer has set it.
+    /// Height of the nozzle, once this layer has set it.
     z: Option<Coord>,
-    /// The highest place printed so far: a travel passes over it.
+    /// The greatest z printed so far. Travels pass over it.
     highest: Coord,
 }
 
@@ -167,7 +179,7 @@ impl<'a> Walk<'a> {
     fn new(params: &'a MoveParams, layer: &Toolpath) -> Self {
         let at = layer.from.at.map(|from| (from, params.place(from)));
         let points: usize = layer.moves.iter().map(|next| next.path.points.len()).sum();
-        // A path has a point more than segments; the rest is for the way to it.
+        // A path has one point more than segments. Its approach takes the rest.
         let most = points + 3 * layer.moves.len();
         let out = Moves {
             layer: layer.layer,
@@ -181,10 +193,10 @@ impl<'a> Walk<'a> {
         Self { params, out, at, z: None, highest: layer.from.highest }
     }
 
-    /// The way to the first point of a path.
+    /// Adds the approach to the first point of a path.
     fn approach(&mut self, to: &PathPoint, retract: bool) {
         let z = self.out.z + to.z;
-        // Over all that may stand in the way; on a flat layer that is the layer itself.
+        // The height of the travel. On a flat layer that is the layer's own.
         let over = z.max(self.highest);
         if retract {
             self.pull(-self.params.retract, Kind::Retract);
@@ -192,8 +204,8 @@ impl<'a> Walk<'a> {
                 self.lift(over + self.params.hop);
             }
         }
-        // Up before sideways. The first way of a print goes down at its end instead:
-        // the start block leaves the nozzle above its purge.
+        // Lift before the travel. The first approach of a print goes down after its travel
+        // instead, since the start block leaves the nozzle above its purge.
         let goes = self.at.is_some_and(|(at, _)| at != to.at);
         if self.at.is_some() && self.z.is_none_or(|now| now < over && goes) {
             self.lift(over);
@@ -227,7 +239,7 @@ impl<'a> Walk<'a> {
         self.push(self.params.retract_feed, 0.0, by, kind);
     }
 
-    /// A move to where the nozzle is now said to be.
+    /// Adds a move that ends at the nozzle's current position.
     fn push(&mut self, feed: f64, length: f64, filament: f64, kind: Kind) {
         let to = self.at.map_or([0, 0], |(_, place)| place);
         let z = self.z.unwrap_or(self.out.z);
@@ -238,7 +250,7 @@ impl<'a> Walk<'a> {
         let thick = path.is_thick();
         let slow = if self.out.layer == 0 { self.params.first_layer } else { 1.0 };
         let asked = self.params.feeds[path.role].of(thick) * slow;
-        // No bead has this width: the first one is looked at.
+        // No bead has a negative width, so that the first segment always computes its feed.
         let mut bead = Bead { role: path.role, thick, height: 0, width: -1 };
         let mut feed = 0;
         for ends in path.points.windows(2) {
@@ -264,7 +276,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// How fast a bead is laid, mm/min.
+    /// The feed of a bead, clamped to the flow limit, mm/min.
     fn feed(&mut self, bead: &Bead, asked: f64) -> u32 {
         let (given, flow) = self.params.limit.feed(self.params.filament(bead, 1.0), asked);
         let feeds = Lowered { asked: whole_feed(asked), given };

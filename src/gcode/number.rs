@@ -1,12 +1,12 @@
-//! Integers -> text: fixed-point numbers, never an exponent, no allocation.
+//! Integers -> text: writes fixed-point numbers, without exponents and without allocation.
 
 use crate::units::nearest;
 
-/// Room for the longest number: a sign, 20 digits, a point, 6 decimals, and what writing four
-/// bytes at a time needs.
+/// Bytes for the longest number: a sign, 20 digits, a point, 6 decimals, and the spare ones of
+/// the last write, since digits are written four bytes at a time.
 const ROOM: usize = 32;
 
-/// The numbers 0 to 999 in three digits: a third of the divisions that single digits need.
+/// The numbers 0 to 999 in three digits. Three digits at a time need a third of the divisions.
 static TRIPLES: [[u8; 4]; 1000] = {
     let mut triples = [[0; 4]; 1000];
     let mut k = 0;
@@ -34,13 +34,13 @@ pub fn push_fixed<const DECIMALS: u32>(out: &mut Vec<u8>, value: i64) {
         text.triples(part * 10_u64.pow(places - DECIMALS), places / 3);
         text.trim();
     }
-    // Always the same number of bytes: no call for so few.
+    // Copies a constant number of bytes: the compiler inlines that, a short copy is a call.
     let end = out.len() + text.end;
     out.extend_from_slice(&text.text);
     out.truncate(end);
 }
 
-/// A number in the making, from its first character to the last.
+/// Text of a number, written from its first character on.
 struct Digits {
     text: [u8; ROOM],
     end: usize,
@@ -52,14 +52,14 @@ impl Digits {
         self.end += 1;
     }
 
-    /// The last `count` digits of a number below 1000.
+    /// Appends the last `count` digits of a number below 1000.
     fn part(&mut self, value: u64, count: usize) {
         let triple = u32::from_le_bytes(TRIPLES[value as usize]) >> (8 * (3 - count));
         self.text[self.end..self.end + 4].copy_from_slice(&triple.to_le_bytes());
         self.end += count;
     }
 
-    /// The last `count` groups of three digits.
+    /// Appends the last `count` groups of three digits.
     fn triples(&mut self, value: u64, count: u32) {
         if count > 1 {
             self.triples(value / 1000, count - 1);
@@ -67,7 +67,7 @@ impl Digits {
         self.part(value % 1000, 3);
     }
 
-    /// All digits of `value`.
+    /// Appends all digits of `value`.
     fn integer(&mut self, value: u64) {
         match value {
             0..10 => self.part(value, 1),
@@ -80,7 +80,7 @@ impl Digits {
         }
     }
 
-    /// Takes zeros from the end; another digit comes before.
+    /// Removes zeros from the end. Some other digit must come before them.
     fn trim(&mut self) {
         while self.text[self.end - 1] == b'0' {
             self.end -= 1;

@@ -1,4 +1,4 @@
-//! Times + text -> `M73`: lines of one length, left open until the time in all is known.
+//! Times + text -> `M73`: progress lines of fixed length, filled in once the total time is known.
 
 use super::Places;
 use super::dialect::Dialect;
@@ -7,13 +7,14 @@ use super::write::LayerText;
 use crate::error::Result;
 use crate::profile::DialectName;
 
-/// At the latest after so long progress is told again, as far as paths end by then, s.
+/// Longest time between two progress lines, s, where a path ends in time. `M73` counts whole
+/// minutes: more lines would repeat the same number, fewer would let the display stand still.
 const INTERVAL: f64 = 60.0;
 
-/// Where progress is told, and what to say there.
+/// The progress lines written so far.
 pub(super) struct Progress {
     dialect: Dialect,
-    /// Byte of the line, and the time when it is read, s.
+    /// Where each line begins, bytes, and when the printer reaches it, s.
     lines: Vec<(u64, f64)>,
 }
 
@@ -22,8 +23,8 @@ impl Progress {
         Self { dialect: Dialect::new(dialect), lines: Vec::new() }
     }
 
-    /// Writes a layer, with open lines at its beginning and where the next path would
-    /// end too late for the next line.
+    /// Writes a layer with placeholder lines: one at its beginning, and one before each path
+    /// that would end more than [`INTERVAL`] after the last line.
     pub(super) fn layer(
         &mut self,
         layer: &LayerText,
@@ -45,16 +46,16 @@ impl Progress {
         out.put(&layer.text[done..])
     }
 
-    /// What says that the print is done, where the end block does not.
+    /// The line for 100 %, unless the end block has it.
     pub(super) fn done(&self) -> String {
-        if self.dialect.says_done() { self.line(100, 0) } else { String::new() }
+        if self.dialect.reports_done() { self.line(100, 0) } else { String::new() }
     }
 
-    /// Fills in all lines of a print that takes `total` seconds.
+    /// Overwrites all placeholder lines, for a print that takes `total` seconds.
     pub(super) fn fill_in(&self, total: f64, out: &mut Places<'_>) -> Result<()> {
         for &(place, at) in &self.lines {
             let percent = if total > 0.0 { 100.0 * at / total } else { 0.0 };
-            // 100 is for the end, and ends a build for GPX.
+            // 100 is for the end only: it makes GPX end the build.
             let percent = (percent as u64).min(99);
             let minutes = ((total - at) / 60.0).round().max(0.0) as u64;
             out.put_at(place, self.line(percent, minutes).as_bytes())?;

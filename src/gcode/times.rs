@@ -1,4 +1,16 @@
-//! Moves of all layers, in order -> Times: how long each role, each layer and the way to each path take.
+//! Moves of all layers, in order -> Times: times each role and layer, and schedules each path.
+//!
+//! - The [`Clock`] simulates the printer's planner. It holds moves back until later moves can no
+//!   longer change their speed, so that times arrive after a delay.
+//! - A *mark* says that a layer or a path begins with the move of a given number.
+//! - The *ledger* matches the clock's times with the marks.
+//!
+//! 1. Each move goes to the clock, tagged with what its time counts for.
+//! 2. A segment too short to be written is skipped. Its filament goes with the next one, as in the
+//!    text.
+//! 3. For each time that the clock returns, the ledger first passes all marks before that move and
+//!    then adds the time.
+//! 4. A layer is ready once the next one begins or the file ends.
 
 use super::moves::{Kind, Move, Moves};
 use crate::fill::{Both, Role, RoleTable};
@@ -9,45 +21,45 @@ use std::collections::VecDeque;
 /// How long a print takes, without its start and end blocks.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Times {
-    /// Beads, s.
+    /// Beads by role, s.
     pub roles: RoleTable<Both<f64>>,
     /// Travels and moves in z, s.
     pub travel: f64,
-    /// Filament pulled back and pushed forward, s.
+    /// Retractions and restored filament, s.
     pub retraction: f64,
     /// The layers, in order.
     pub layers: Vec<LayerTime>,
 }
 
 impl Times {
-    /// In all, s.
+    /// Total time, s.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.layers.iter().map(|layer| layer.seconds).sum()
     }
 }
 
-/// How long a layer takes.
+/// The time of one layer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LayerTime {
     /// Its top above the bed, grid units.
     pub z: Coord,
-    /// s.
+    /// Its time, s.
     pub seconds: f64,
 }
 
-/// When a layer is printed, in seconds from the first layer's beginning.
+/// When a layer and its paths are printed, in seconds from the beginning of the first layer.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Schedule {
     /// When it begins.
     pub start: f64,
-    /// When the way to each of its paths begins.
+    /// When the approach of each of its paths begins.
     pub paths: Vec<f64>,
     /// When it ends.
     pub end: f64,
 }
 
-/// What a move's time counts as.
+/// What the time of a move counts for.
 #[derive(Debug, Clone, Copy)]
 enum Part {
     Bead(Role, bool),
@@ -55,7 +67,7 @@ enum Part {
     Retraction,
 }
 
-/// Something that begins with the move of this number.
+/// A layer or a path that begins with the move of this number.
 #[derive(Debug, Clone, Copy)]
 struct Mark {
     at: usize,
@@ -69,29 +81,29 @@ enum Begins {
     Path,
 }
 
-/// Runs the clock over the moves as they are written.
+/// Runs the clock over the moves of a file.
 pub struct Timer {
     clock: Clock<Part>,
-    book: Book,
-    /// Where the nozzle is, thousandths of a mm, as far as known.
+    ledger: Ledger,
+    /// Position of the nozzle, thousandths of a mm, if known.
     at: Option<[i32; 2]>,
-    /// Its z, grid units, as far as known.
+    /// Its z, grid units, if known.
     z: Option<Coord>,
-    /// Filament of stretches too short to be written, mm: it goes with the next move.
+    /// Filament of segments too short to be written, mm. It goes with the next move.
     held: f64,
-    /// Moves given to the clock.
+    /// Number of moves given to the clock.
     given: usize,
 }
 
 impl Timer {
-    /// A timer for a machine that stands still somewhere.
+    /// A timer for a machine at rest at an unknown position.
     #[must_use]
     pub fn new(limits: Limits) -> Self {
         let clock = Clock::new(limits);
-        Self { clock, book: Book::default(), at: None, z: None, held: 0.0, given: 0 }
+        Self { clock, ledger: Ledger::default(), at: None, z: None, held: 0.0, given: 0 }
     }
 
-    /// The next layer.
+    /// Times the next layer.
     pub fn layer(&mut self, layer: &Moves) {
         self.mark(Begins::Layer(layer.z));
         let mut paths = layer.paths.iter().peekable();
@@ -102,34 +114,35 @@ impl Timer {
             self.step(step);
         }
         paths.for_each(|_| self.mark(Begins::Path));
-        self.book.read(self.clock.drain());
+        self.ledger.read(self.clock.drain());
     }
 
-    /// The next layer whose times are all known, if there is one. Each comes once.
+    /// The schedule of the next layer whose times are all known, if any. Returns each once.
     pub fn next_ready(&mut self) -> Option<Schedule> {
-        self.book.ready.pop_front()
+        self.ledger.ready.pop_front()
     }
 
-    /// The file is at its end: all layers are ready.
+    /// Ends the file. All layers are ready after this.
     pub fn finish(&mut self) {
         self.clock.finish();
-        self.book.read(self.clock.drain());
-        self.book.pass(usize::MAX);
-        self.book.close();
+        self.ledger.read(self.clock.drain());
+        self.ledger.pass(usize::MAX);
+        self.ledger.close();
     }
 
     /// The times so far.
     #[must_use]
     pub fn times(&self) -> &Times {
-        &self.book.times
+        &self.ledger.times
     }
 
     fn mark(&mut self, what: Begins) {
-        self.book.marks.push_back(Mark { at: self.given, what });
+        self.ledger.marks.push_back(Mark { at: self.given, what });
     }
 
     fn step(&mut self, step: &Move) {
-        // The way from where the start block leaves the nozzle belongs to that.
+        // The first travel starts where the start block ends, which is unknown here: it counts
+        // as part of that block.
         let at = self.at.unwrap_or(step.to);
         let [x, y] = [step.to[0] - at[0], step.to[1] - at[1]].map(|d| f64::from(d) / 1000.0);
         let (delta, part) = match step.kind {
@@ -157,29 +170,29 @@ impl Timer {
         }
     }
 
-    /// Moves the nozzle to `z`. Returns by how much it rises, mm; 0 where it is not known from where.
+    /// Moves the nozzle to `z`. Returns by how much it rises, mm; 0 if its height was unknown.
     fn rise_to(&mut self, z: Coord) -> f64 {
         self.z.replace(z).map_or(0.0, |from| to_mm(z - from))
     }
 }
 
-/// What the clock has reported so far.
+/// Assigns the times that the clock reports to layers, paths and roles.
 #[derive(Debug, Default)]
-struct Book {
-    /// What begins with moves that are still in the clock.
+struct Ledger {
+    /// Marks of moves that are still in the clock.
     marks: VecDeque<Mark>,
-    /// Moves whose times are known.
+    /// Number of moves whose times are known.
     done: usize,
-    /// Their time in all, s.
+    /// Their total time, s.
     now: f64,
     times: Times,
     /// The layer that is being timed.
     current: Option<Schedule>,
-    /// Layers whose times are known and that nobody asked for yet.
+    /// Layers whose times are known and that [`Timer::next_ready`] has not returned yet.
     ready: VecDeque<Schedule>,
 }
 
-impl Book {
+impl Ledger {
     fn read(&mut self, moves: impl Iterator<Item = Timed<Part>>) {
         for timed in moves {
             self.pass(self.done);
@@ -193,7 +206,7 @@ impl Book {
         }
     }
 
-    /// What begins with the move of this number, or before it, begins now.
+    /// Passes all marks up to the move of this number: what they mark begins now.
     fn pass(&mut self, number: usize) {
         while let Some(&Mark { at, what }) = self.marks.front() {
             if at > number {
@@ -213,7 +226,7 @@ impl Book {
         }
     }
 
-    /// The layer that is being timed ends now.
+    /// Ends the layer that is being timed.
     fn close(&mut self) {
         let Some(mut layer) = self.current.take() else { return };
         layer.end = self.now;
@@ -224,7 +237,7 @@ impl Book {
     }
 }
 
-/// A time as hosts read it, such as `1d 2h 3m 4s`.
+/// Formats a time as hosts read it, such as `1d 2h 3m 4s`.
 #[must_use]
 pub fn in_words(seconds: f64) -> String {
     let seconds = seconds.round().max(0.0) as u64;
@@ -243,9 +256,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn times_are_in_words_of_hosts() {
-        let said = [(0.4, "0s"), (59.5, "1m 0s"), (3_723.0, "1h 2m 3s"), (93_784.0, "1d 2h 3m 4s")];
-        for (seconds, words) in said {
+    fn times_have_the_form_that_hosts_read() {
+        let expected =
+            [(0.4, "0s"), (59.5, "1m 0s"), (3_723.0, "1h 2m 3s"), (93_784.0, "1d 2h 3m 4s")];
+        for (seconds, words) in expected {
             assert_eq!(in_words(seconds), words);
         }
     }

@@ -1,11 +1,11 @@
-//! Moves -> Usage: lengths and filament, and what filament is in other measures.
+//! Moves -> Usage: sums lengths and filament, and converts filament to volume, weight and price.
 
 use super::flow::Flows;
 use super::moves::{Kind, Moves};
 use crate::fill::{Both, RoleTable};
 use crate::profile::Settings;
 
-/// What was extruded in one role: path and filament, mm.
+/// Path and filament extruded for one role.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Used {
     /// Length of path, mm.
@@ -14,23 +14,23 @@ pub struct Used {
     pub filament: f64,
 }
 
-/// What a layer, or a print, moves and uses.
+/// Path, travels and filament of a layer or of a print.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Usage {
-    /// What was extruded.
+    /// What was extruded, by role.
     pub roles: RoleTable<Both<Used>>,
-    /// Travels.
+    /// Number of travels.
     pub travels: usize,
-    /// Their length, mm.
+    /// Length of all travels, mm.
     pub travel_length: f64,
-    /// How many of them retract.
+    /// Number of travels that retract.
     pub retractions: usize,
-    /// How fast filament is molten.
+    /// Plastic flow, and feeds that the flow limit lowered.
     pub flows: Flows,
 }
 
 impl Usage {
-    /// What a layer uses.
+    /// The usage of one layer.
     #[must_use]
     pub fn of(layer: &Moves) -> Self {
         let mut usage = Self { flows: layer.flows.clone(), ..Self::default() };
@@ -52,7 +52,7 @@ impl Usage {
         usage
     }
 
-    /// Filament in all, mm.
+    /// Total filament, mm.
     #[must_use]
     pub fn filament(&self) -> f64 {
         self.roles.iter().flat_map(|(_, both)| [both.thin.filament, both.thick.filament]).sum()
@@ -74,7 +74,7 @@ impl Usage {
     }
 }
 
-/// A length of filament in the measures that people buy it in.
+/// An amount of filament in the units in which it is sold.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Material {
     /// Length, mm.
@@ -83,12 +83,12 @@ pub struct Material {
     pub cm3: f64,
     /// Weight, g.
     pub grams: f64,
-    /// Price, in the money of `filament.cost`, if that is known.
+    /// Price, in the currency of `filament.cost`, if that is set.
     pub cost: Option<f64>,
 }
 
 impl Material {
-    /// What `mm` of the filament in `settings` are.
+    /// Converts `mm` of the filament in `settings`.
     #[must_use]
     pub fn new(mm: f64, settings: &Settings) -> Self {
         let cm3 = mm * settings.filament_area() / 1000.0;

@@ -1,4 +1,16 @@
-//! Moves -> text: the G-code of one layer, independent of all others but for where it begins.
+//! Moves -> text: formats the G-code of one layer, independent of all other layers.
+//!
+//! - *Annotations* are comments that viewers read: `;LAYER_CHANGE`, `;TYPE:`, `;WIDTH:`, `;HEIGHT:`.
+//! - A *cut* is a byte of the text where a progress line may be inserted.
+//! - A word of G-code stays in force until it is written again. So X, Y, Z and F are written only
+//!   where they change.
+//!
+//! Rules:
+//! - Each layer starts from its own position and from the filament used before it. No text depends on
+//!   another, so that all threads can format layers at once.
+//! - E is a rounded sum, or the difference of two rounded sums, so that rounding errors never add up.
+//! - A move that changes no coordinate is not written. Its filament goes with the next one.
+//! - Annotations come before the first move that they describe.
 
 use super::dialect::Dialect;
 use super::moves::{Bead, Kind, Move, MoveParams, Moves};
@@ -8,20 +20,22 @@ use crate::profile::Settings;
 use crate::units::{Coord, nearest, to_mm};
 use std::io::Write as _;
 
-/// Widths that differ by less are not worth an annotation (0.01 mm).
+/// The smallest change of width that is annotated: 0.01 mm. A trade-off: a smaller value
+/// makes the file longer, a larger one makes viewers and `check` work with wrong widths.
+/// The moves do not depend on it.
 const LEAST_WIDTH_CHANGE: Coord = 100;
 
 /// A layer's text.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct LayerText {
-    /// All of it but the progress.
+    /// The text without progress lines.
     pub text: Vec<u8>,
-    /// Where progress may be told: at the layer's beginning, then before the way to each
-    /// path; bytes.
+    /// Where progress lines may be inserted, bytes: at the layer's beginning, then before the
+    /// approach of each path.
     pub cuts: Vec<usize>,
 }
 
-/// What writing needs to know.
+/// The settings that formatting needs.
 #[derive(Debug, Clone)]
 pub struct WriteParams {
     dialect: Dialect,
@@ -32,7 +46,7 @@ pub struct WriteParams {
 }
 
 impl WriteParams {
-    /// What `settings` mean for writing.
+    /// Takes what formatting needs from `settings`.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         Self {
@@ -48,7 +62,7 @@ impl WriteParams {
     #[must_use]
     pub fn layer(&self, layer: &Moves, e: f64) -> LayerText {
         let mut text = Text::new(self, e);
-        // Half a screen line for a move.
+        // A move takes about 30 bytes.
         text.out.reserve(30 * layer.moves.len());
         let mut cuts = Vec::with_capacity(1 + layer.paths.len());
         text.annotations(layer);
@@ -64,7 +78,7 @@ impl WriteParams {
         LayerText { text: text.out, cuts }
     }
 
-    /// The last pull before the end block, at filament used `e`, mm.
+    /// The last retraction before the end block; `e` is the filament used so far, mm.
     #[must_use]
     pub fn finish(&self, moves: &MoveParams, e: f64) -> Vec<u8> {
         let mut text = Text::new(self, e);
@@ -77,17 +91,17 @@ impl WriteParams {
     }
 }
 
-/// A layer's text in the making, with the words that stay in force.
+/// The text of a layer so far, and the words in force.
 struct Text<'a> {
     params: &'a WriteParams,
     out: Vec<u8>,
-    /// Filament used, mm.
+    /// Filament used so far, mm.
     e: f64,
     /// E as last written, 10⁻⁵ mm.
     written_e: i64,
-    /// Where the nozzle is, thousandths of a mm.
+    /// Position of the nozzle, thousandths of a mm.
     at: Option<[i32; 2]>,
-    /// Its height, grid units.
+    /// Its z, grid units.
     z: Option<Coord>,
     feed: u32,
     role: Option<Role>,
@@ -112,18 +126,18 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// What viewers read at the beginning of a layer.
+    /// Writes what viewers read at the beginning of a layer.
     fn annotations(&mut self, layer: &Moves) {
         self.line(";LAYER_CHANGE");
         self.annotate(";Z:", layer.z);
         self.annotate(";HEIGHT:", layer.height);
-        // Hosts take the print's height from this.
+        // Hosts take the print's height from the line that follows this one.
         self.line(";BEFORE_LAYER_CHANGE");
         self.annotate(";", layer.z);
         self.height = layer.height;
     }
 
-    /// Fan and E at the beginning of a layer.
+    /// Writes the fan's speed and resets E at the beginning of a layer.
     fn begin(&mut self, layer: &Moves) {
         let from = self.params.fan_from_layer.max(1) - 1;
         let fan = self.params.fan;
@@ -135,7 +149,7 @@ impl<'a> Text<'a> {
         self.at = layer.from;
     }
 
-    /// Says that E counts from zero again, where it does.
+    /// Resets E to zero, in dialects that restart it.
     fn restart_e(&mut self) {
         if self.params.dialect.restarts_e() && !self.params.relative_e {
             self.line("G92 E0");
@@ -173,7 +187,7 @@ impl<'a> Text<'a> {
         self.end_move(feed);
     }
 
-    /// Says what of a bead differs from the one before.
+    /// Annotates what differs from the bead before.
     fn announce(&mut self, bead: &Bead) {
         if self.role != Some(bead.role) {
             self.role = Some(bead.role);
@@ -191,7 +205,7 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Begins a move to `to` and `z` with the words that change. Returns whether any did.
+    /// Begins a move to `to` and `z` with the words that change. Returns whether there are any.
     fn go(&mut self, to: [i32; 2], z: Option<Coord>) -> bool {
         if self.at == Some(to) && self.z == z {
             return false;
@@ -216,8 +230,8 @@ impl<'a> Text<'a> {
         push_fixed::<3>(&mut self.out, thousandths(to_mm(z)));
     }
 
-    /// Writes E so that roundings never add up: what is written is always the
-    /// rounded sum, or the difference of two rounded sums.
+    /// Writes E as a rounded sum, or as the difference of two rounded sums: so rounding errors
+    /// never add up.
     fn push_e(&mut self) {
         let now = ticks(self.e);
         let value = if self.params.relative_e { now - self.written_e } else { now };
@@ -226,7 +240,7 @@ impl<'a> Text<'a> {
         push_fixed::<5>(&mut self.out, value);
     }
 
-    /// Ends a move with its feed (mm/min), if that changes.
+    /// Ends a move, with its feed (mm/min) if that changes.
     fn end_move(&mut self, feed: u32) {
         if self.feed != feed {
             self.feed = feed;
