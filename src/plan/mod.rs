@@ -1,10 +1,12 @@
-//! Paths -> Toolpaths: in which order a layer's paths are printed, and how the nozzle gets to each.
+//! Paths -> Toolpaths: sorts a layer's paths for printing, and decides which travels retract.
 //!
-//! An *island* is one outer contour with all that is printed inside it. Paths are divided among
-//! islands ([`order::Unordered`]), put in an order ([`mod@order`]), and runs of them are reordered
-//! where that saves time ([`tour`]). Each then says whether the filament is pulled back on the
-//! way to it ([`travel`]). Nothing here depends on what a path is for beyond its role's
-//! [`Place`](crate::fill::Place).
+//! 1. [`order::Unordered`] divides paths among islands. An *island* is one outer contour with
+//!    everything that is printed inside it.
+//! 2. [`mod@order`] sorts the paths of each island, nearest first.
+//! 3. [`tour`] reorders runs of them where that saves time.
+//! 4. [`travel`] decides for each path whether the travel to it retracts.
+//!
+//! Of a path's role only its [`Place`](crate::fill::Place) matters here.
 //!
 //! Guaranteed to the next stage: every path comes once, in the order of printing.
 
@@ -20,16 +22,16 @@ use crate::geom::Point;
 use crate::slice::Layer;
 use crate::units::Coord;
 
-/// A path and how the nozzle gets to it.
+/// A path, and whether the travel to it retracts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PrintMove {
-    /// The filament is pulled back on the way.
+    /// The travel to the path retracts.
     pub retract: bool,
     /// The path.
     pub path: Path,
 }
 
-/// All that is printed on one layer, in order.
+/// The paths of one layer in the order of printing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Toolpath {
     /// The layer, counted from 0.
@@ -38,24 +40,24 @@ pub struct Toolpath {
     pub z: Coord,
     /// Height of the layer, grid units.
     pub height: Coord,
-    /// Where the head comes from.
+    /// The head before this layer.
     pub from: Head,
-    /// What is printed.
+    /// The paths.
     pub moves: Vec<PrintMove>,
 }
 
-/// Where the head is after some layers, and what it must not hit.
+/// The position of the head after some layers, and the height of what it must not hit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Head {
-    /// Where the nozzle is on the bed, if known.
+    /// Position of the nozzle, if known.
     pub at: Option<Point>,
-    /// The highest place that was printed so far above the bed, grid units. Lower than the
-    /// next layer unless a path rose above its own.
+    /// The greatest z printed so far, grid units above the bed. It is below the next layer unless
+    /// a path rose above its own layer.
     pub highest: Coord,
 }
 
 impl Head {
-    /// Where the head is once `paths` of `layer` are printed as well.
+    /// The head once `paths` of `layer` are printed as well.
     #[must_use]
     pub fn after(self, layer: &Layer, paths: &[Path]) -> Self {
         let risen = paths.iter().flat_map(|path| &path.points).map(|p| layer.z + p.z).max();

@@ -1,35 +1,44 @@
-//! Unordered paths -> ordered paths: island by island, walls first, nearest first from either end.
+//! Unordered paths -> ordered paths: sorts the paths of a layer island by island, nearest first.
 //!
-//! Within an island the order is walls, skin, infill; helpers such as support come last on
-//! the layer. The next path is always the one whose start or end is nearest; of equals the
-//! one that comes first in the list, so that the order is fixed.
-//! The last paths of a layer are also tried backwards from where the next one begins.
+//! - An *island* is an outer contour with everything that is printed inside it.
+//! - *Helpers* are paths that are not the part, such as support.
+//! - A *seam* is where a wall begins and ends.
+//!
+//! 1. Each path goes to the smallest outer contour around its start.
+//! 2. The island nearest to the nozzle is next. Its walls come first, then skin, then infill; the
+//!    next path is always the one with the nearest end. Helpers come after all islands.
+//! 3. Walls are sorted by depth, from outside or from inside as the settings say. Their seams are at
+//!    the vertex nearest to the nozzle, or at the rear.
+//! 4. With seams at the rear, the next layer begins near where this one began. So the last paths are
+//!    also sorted backwards from there, and the shorter order wins.
+//!
+//! Of equally near paths the first in the list wins, so that the order is always the same.
 
 use super::{PlanParams, tour};
 use crate::fill::{Path, PathPoint, Place, Role, Shape};
 use crate::geom::{Contour, Point, double_area, edges, encloses};
 
-/// The paths of one layer, divided but not yet in order.
+/// The paths of one layer, divided among islands but not sorted.
 #[derive(Debug, Default)]
 pub struct Unordered {
-    /// What is printed inside each outer contour.
+    /// The paths inside each outer contour.
     islands: Vec<Island>,
-    /// What is printed after all islands; which end comes first is still free.
+    /// Paths printed after all islands, in either direction.
     helpers: Vec<Path>,
 }
 
-/// What is printed inside one outer contour.
+/// The paths inside one outer contour.
 #[derive(Debug, Default)]
 struct Island {
-    /// Its walls; where they begin is still free.
+    /// Its walls, without a chosen seam.
     walls: Vec<Path>,
-    /// Its skin and infill; which end comes first is still free.
+    /// Its skin and infill, printed in either direction.
     inside: Vec<Path>,
 }
 
 impl Island {
-    /// The squared distance from `at` to the nearest vertex of its walls, else to the nearest end
-    /// of its other paths.
+    /// The squared distance from `at` to the nearest vertex of its walls. Without walls: to the
+    /// nearest end of its paths.
     fn distance2(&self, at: Point) -> i64 {
         let walls = self.walls.iter().flat_map(|w| &w.points).map(|p| p.at.distance2(at)).min();
         let ends = || self.inside.iter().flat_map(|c| [c.start(), c.end()]);
@@ -37,7 +46,7 @@ impl Island {
     }
 }
 
-/// Puts the paths of a layer in order, starting from `at`.
+/// Sorts the paths of a layer, starting from `at`.
 #[must_use]
 pub fn order(paths: Unordered, mut at: Point, params: &PlanParams) -> Vec<Path> {
     let Unordered { mut islands, helpers } = paths;
@@ -54,7 +63,7 @@ pub fn order(paths: Unordered, mut at: Point, params: &PlanParams) -> Vec<Path> 
     out
 }
 
-/// Orders paths role after role, those of one role nearest first.
+/// Sorts paths by role, and nearest first within a role.
 fn order_by_role(mut paths: Vec<Path>, place: Place, at: &mut Point, out: &mut Vec<Path>) {
     for role in Role::ALL.into_iter().filter(|role| role.facts().place == place) {
         order_open(paths.extract_if(.., |path| path.role == role).collect(), at, out);
@@ -75,10 +84,10 @@ impl Unordered {
 fn islands(paths: Vec<Path>, contours: &[Contour]) -> Vec<Island> {
     let outer: Vec<Outer<'_>> =
         contours.iter().filter(|c| double_area(c) > 0).map(Outer::new).collect();
-    // The last one takes what rounding leaves outside of all.
+    // One more than contours: the last takes paths that rounding left outside all of them.
     let mut islands: Vec<Island> = (0..=outer.len()).map(|_| Island::default()).collect();
-    // Of nested contours (an island in a hole) the one with the smallest box holds the piece.
-    let home = |p: Point| {
+    // Of nested contours (an island in a hole) the one with the smallest box is the path's own.
+    let island_of = |p: Point| {
         if outer.len() == 1 {
             return 0;
         }
@@ -86,7 +95,7 @@ fn islands(paths: Vec<Path>, contours: &[Contour]) -> Vec<Island> {
         holds.min_by_key(|(k, o)| (o.extent(), *k)).map_or(outer.len(), |(k, _)| k)
     };
     for path in paths {
-        let island = &mut islands[home(path.start())];
+        let island = &mut islands[island_of(path.start())];
         let is_wall = path.role.facts().place == Place::Walls;
         if is_wall { &mut island.walls } else { &mut island.inside }.push(path);
     }
@@ -124,12 +133,12 @@ impl<'a> Outer<'a> {
     }
 }
 
-/// The index of the smallest distance, the first of equals.
+/// The index of the smallest distance; of equal ones the first.
 fn nearest(distances: impl Iterator<Item = i64>) -> Option<usize> {
     distances.enumerate().min_by_key(|&(k, d)| (d, k)).map(|(k, _)| k)
 }
 
-/// Orders walls by depth as the settings ask, nearest first within a depth.
+/// Sorts walls by depth as the settings ask, and nearest first within a depth.
 fn order_walls(mut walls: Vec<Path>, at: &mut Point, params: &PlanParams, out: &mut Vec<Path>) {
     let depth = |wall: &Path| match wall.shape {
         Shape::Loop { depth } => depth,
@@ -164,20 +173,20 @@ fn order_walls(mut walls: Vec<Path>, at: &mut Point, params: &PlanParams, out: &
     }
 }
 
-/// Orders open paths nearest first from either end.
+/// Sorts open paths nearest first, entering each at its nearer end.
 fn order_open(paths: Vec<Path>, at: &mut Point, out: &mut Vec<Path>) {
     let first = out.len();
     out.extend(pick(paths, |ends| nearest_first(ends, *at)));
     *at = out[first..].last().map_or(*at, Path::end);
 }
 
-/// Where a path begins and ends.
+/// Start and end of a path.
 type Ends = (Point, Point);
 
-/// Which path is next, and whether it is printed the other way round.
+/// The index of the next path, and whether it is reversed.
 type Pick = (usize, bool);
 
-/// The paths in the order that `order` makes of their ends.
+/// Sorts paths as `order` says, which sees only their ends.
 fn pick(paths: Vec<Path>, order: impl FnOnce(&[Ends]) -> Vec<Pick>) -> Vec<Path> {
     let ends: Vec<Ends> = paths.iter().map(|c| (c.start(), c.end())).collect();
     let mut paths: Vec<Option<Path>> = paths.into_iter().map(Some).collect();
@@ -191,7 +200,7 @@ fn pick(paths: Vec<Path>, order: impl FnOnce(&[Ends]) -> Vec<Pick>) -> Vec<Path>
     order(&ends).into_iter().filter_map(take).collect()
 }
 
-/// The order that goes from `at` to the nearest end each time.
+/// The order that goes to the nearest end each time, from `at`.
 fn nearest_first(ends: &[Ends], mut at: Point) -> Vec<Pick> {
     let mut left: Vec<(usize, Ends)> = ends.iter().copied().enumerate().collect();
     let mut picks = Vec::with_capacity(left.len());
@@ -205,9 +214,8 @@ fn nearest_first(ends: &[Ends], mut at: Point) -> Vec<Pick> {
     picks
 }
 
-/// Orders the last paths of a layer nearest first backwards from where its first wall
-/// begins, if that is the shorter way: with all seams at the rear, that is near where the
-/// next layer begins.
+/// Sorts the last paths of a layer backwards, nearest first from where its first path begins, if
+/// that makes the travels shorter. With all seams at the rear the next layer begins near there.
 fn lead_back(paths: &mut Vec<Path>) {
     let kind = paths.last().and_then(tour::free);
     let first = paths.iter().rposition(|p| tour::free(p) != kind).map_or(0, |k| k + 1);
@@ -219,14 +227,15 @@ fn lead_back(paths: &mut Vec<Path>) {
         back.reverse();
         back.iter_mut().for_each(|(_, turned)| *turned = !*turned);
         let kept: Vec<Pick> = (0..ends.len()).map(|k| (k, false)).collect();
-        let shorter = way(&back, ends, (before, home)) < way(&kept, ends, (before, home));
+        let shorter =
+            travel_length(&back, ends, (before, home)) < travel_length(&kept, ends, (before, home));
         if shorter { back } else { kept }
     };
     paths.extend(pick(last, order));
 }
 
-/// The length of all travels between paths, from `before` and to `home`.
-fn way(picks: &[Pick], ends: &[Ends], (before, home): Ends) -> f64 {
+/// The length of all travels: from `before`, between the paths, and on to `home`.
+fn travel_length(picks: &[Pick], ends: &[Ends], (before, home): Ends) -> f64 {
     let mut at = before;
     let mut sum = 0.0;
     for &(k, turned) in picks {
@@ -257,17 +266,17 @@ mod tests {
     }
 
     #[test]
-    fn chains_come_nearest_first_each_of_them_once() {
+    fn open_paths_come_nearest_first_and_each_once() {
         let paths = [90, 20, 50, 10].map(|x| line(x * 1_000, Role::Infill)).to_vec();
         let (mut at, mut out) = (Point { x: 40_000, y: 10_000 }, Vec::new());
         order_open(paths, &mut at, &mut out);
         assert_eq!(places(&out), [50_000, 20_000, 10_000, 90_000]);
-        assert_eq!(out[0].start().y, 10_000, "entered at the nearer end");
+        assert_eq!(out[0].start().y, 10_000, "starts at the nearer end");
         assert_eq!(out.last().map(Path::end), Some(at));
     }
 
     #[test]
-    fn the_last_chains_lead_back_to_where_the_layer_began() {
+    fn the_last_paths_lead_back_to_where_the_layer_began() {
         let wall = line(0, Role::OuterWall);
         let out = |xs: [Coord; 4]| xs.map(|x| line(x, Role::Infill)).to_vec();
         let mut paths = vec![wall.clone()];
@@ -275,7 +284,7 @@ mod tests {
         paths[0].points.push(place(85_000, 0));
         lead_back(&mut paths);
         assert_eq!(places(&paths), [0, 90_000, 80_000, 30_000, 20_000]);
-        // Walls alone are left as they are.
+        // Walls alone keep their order.
         let mut walls = vec![wall.clone(), wall];
         lead_back(&mut walls);
         assert_eq!(places(&walls), [0, 0]);

@@ -1,27 +1,27 @@
-//! Settings -> PlanParams: the numbers of the plan stage.
+//! Settings -> PlanParams: converts the settings that the plan stage needs.
 
 use crate::profile::{RetractWhen, Seam, Settings, WallOrder};
 use crate::units::{Bounded as _, Coord, UNITS_PER_MM, to_units};
 
-/// The numbers that the plan stage needs.
+/// The settings that the plan stage needs.
 #[derive(Debug, Clone)]
 pub struct PlanParams {
-    /// The outer wall comes before the inner ones.
+    /// The outer wall is printed before the inner walls.
     pub(super) outer_first: bool,
-    /// Walls begin at their rearmost point, not at the nearest.
+    /// Seams are at the rearmost vertex of each wall, not at the nearest.
     pub(super) seam_rear: bool,
-    /// Every travel retracts that is long enough, not only those that leave the part.
+    /// All travels of at least `min_travel` retract, not only those that leave the part.
     pub(super) retract_always: bool,
-    /// Shorter travels never retract, grid units.
+    /// Travels shorter than this never retract, grid units.
     pub(super) min_travel: Coord,
-    /// Filament is pulled back at all.
+    /// The retraction length is above zero.
     pub(super) retracts: bool,
-    /// How long travels take.
+    /// For the time of travels.
     pub(super) times: Times,
 }
 
 impl PlanParams {
-    /// The numbers that `settings` mean for this stage.
+    /// Converts `settings`.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         Self {
@@ -39,19 +39,19 @@ impl PlanParams {
     }
 }
 
-/// How long travels take.
+/// Estimates the time of travels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Times {
     /// Feed, grid units per s.
     pub(super) feed: f64,
     /// Acceleration, grid units per s².
     pub(super) acceleration: f64,
-    /// Pulling the filament back and pushing it again, s.
+    /// Time of a retraction and of restoring the filament, s.
     pub(super) retraction: f64,
 }
 
 impl Times {
-    /// Time of a travel over `distance` grid units from stop to stop, s.
+    /// Time of a travel over `distance` grid units that starts and ends at rest, s.
     pub(super) fn travel(&self, distance: f64) -> f64 {
         let Self { feed, acceleration, .. } = *self;
         if distance * acceleration < feed * feed {
@@ -61,7 +61,7 @@ impl Times {
         }
     }
 
-    /// How far a travel of `time` s leads at most, grid units.
+    /// An upper bound for the length of a travel that takes `time` s, grid units.
     pub(super) fn reach(&self, time: f64) -> f64 {
         (self.acceleration * time * time / 4.0).at_most(self.feed * time)
     }

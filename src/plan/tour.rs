@@ -1,39 +1,52 @@
-//! Ordered paths -> ordered paths: runs of infill, skin or support in an order that takes less time.
+//! Ordered paths -> ordered paths: reorders runs of infill, skin or support to shorten their travels.
 //!
-//! Going to the nearest leaves behind what must be fetched later from far away. Here
-//! stretches of a run are turned round (Croes 1958) and short ones moved elsewhere
-//! (Or 1976) while that makes the travels quicker. Where a run comes from and where
-//! it leads stays, so that layers remain independent of each other.
+//! The nearest-first order leaves paths behind, and reaches them later by long travels.
+//!
+//! - A *run* is a row of paths whose order is free: skin and infill, or support. Walls stay.
+//! - A *stop* is a path in a run, with its direction.
+//! - A *leg* is the travel between two stops. Its cost is its time.
+//!
+//! Local search, for each run:
+//! 1. Reverse a stretch of the run if that saves time (2-opt, Croes 1958).
+//! 2. Move up to three stops elsewhere, reversed or not, if that saves time (Or-opt, Or 1976).
+//! 3. Repeat over the whole run until nothing improves, or for two rounds.
+//!
+//! Nearly all changes are rejected by a bound that needs no square root. Only the few others compute
+//! whether their legs retract. Where a run begins and ends stays, so that layers remain independent.
 
 use crate::fill::{Path, Place};
 use crate::geom::Point;
 use std::cell::LazyCell;
 use std::ops::Range;
 
-/// Stretches longer than this many paths are not turned, and paths moved no further:
-/// what is far apart in the order seldom is near in place, and time must not grow with the square.
+/// Longest stretch that is reversed, and greatest distance in the order by which stops are moved.
+/// Paths far apart in the order are seldom near in place. A trade-off: time grows in proportion
+/// to it, and without a limit with the square of the run; lower values miss improvements.
 const REACH: usize = 30;
 
-/// Paths moved at once, at most.
+/// Most stops moved at once. Three is usual for Or-opt. More cost time for each place tried; fewer
+/// leave small groups of paths behind.
 const LONGEST_MOVED: usize = 3;
 
-/// Rounds over a run, at most.
+/// Most rounds over a run. A trade-off: each round costs the same time, and later ones have less to
+/// improve.
 const MOST_ROUNDS: usize = 2;
 
-/// A change must save this much to be made, s: less is rounding.
+/// The least time that a change must save, s: far above the rounding of summed times and far below
+/// any real travel. At 0, rounding could make two changes undo each other.
 const LEAST_GAIN: f64 = 1e-6;
 
-/// What travels cost.
+/// The cost of travels.
 pub trait Cost {
-    /// Time of the travel, at least, s. Quickly said.
+    /// A lower bound for the time of a travel, s. Cheap to compute.
     fn least(&self, from: Point, to: Point) -> f64;
-    /// Time of the travel with what may come on top, s.
+    /// Time of a travel with its retraction, if it has one, s.
     fn whole(&self, from: Point, to: Point) -> f64;
-    /// How far a travel of `time` s leads at most, grid units.
+    /// An upper bound for the length of a travel that takes `time` s, grid units.
     fn reach(&self, time: f64) -> f64;
 }
 
-/// Improves the order of `paths`, which begins at `from`. The last path stays the last.
+/// Improves the order of `paths`, starting from `from`. The last path stays the last.
 #[must_use]
 pub fn improve(paths: Vec<Path>, from: Option<Point>, cost: &impl Cost) -> Vec<Path> {
     let runs = runs(&paths);
@@ -63,7 +76,7 @@ pub fn improve(paths: Vec<Path>, from: Option<Point>, cost: &impl Cost) -> Vec<P
     paths.into_iter().flatten().collect()
 }
 
-/// Which paths may change places with `path`: those of the same kind; none with walls.
+/// The group within which `path` may change places; `None` for walls, which stay.
 pub(super) fn free(path: &Path) -> Option<bool> {
     match path.role.facts().place {
         Place::Walls => None,
@@ -72,7 +85,7 @@ pub(super) fn free(path: &Path) -> Option<bool> {
     }
 }
 
-/// Runs of paths whose order is free, of two and more, without the layer's last path.
+/// Runs of at least two paths whose order is free. The layer's last path is in none.
 fn runs(paths: &[Path]) -> Vec<Range<usize>> {
     let mut runs = Vec::new();
     let mut start = 0;
@@ -86,12 +99,12 @@ fn runs(paths: &[Path]) -> Vec<Range<usize>> {
     runs
 }
 
-/// A path in a tour.
+/// A path of a run.
 #[derive(Debug, Clone, Copy)]
 struct Stop {
-    /// Its place in the order before.
+    /// Its index in the order before.
     index: usize,
-    /// Printed the other way round.
+    /// It is printed in reverse.
     turned: bool,
     start: Point,
     end: Point,
@@ -104,7 +117,7 @@ impl Stop {
     }
 }
 
-/// A travel: where it begins and ends.
+/// Start and end of a travel.
 type Leg = (Point, Point);
 
 /// The paths of a run, from `before` to `after`.
@@ -112,27 +125,27 @@ struct Tour<'a, C> {
     stops: Vec<Stop>,
     before: Point,
     after: Point,
-    /// Times of the travels to each stop, and of the last one.
+    /// Time of the travel to each stop, and to `after`.
     legs: Vec<f64>,
     cost: &'a C,
 }
 
 impl<C: Cost> Tour<'_, C> {
-    /// Where the travel to stop `k` begins.
+    /// Start of the travel to stop `k`.
     fn from(&self, k: usize) -> Point {
         k.checked_sub(1).map_or(self.before, |k| self.stops[k].end)
     }
 
-    /// Where the travel to stop `k` ends.
+    /// End of the travel to stop `k`.
     fn to(&self, k: usize) -> Point {
         self.stops.get(k).map_or(self.after, |s| s.start)
     }
 
-    /// Whether two new travels take less than `old` s, and less than that with what may
-    /// come on top of them and of a third, whose least is in `old` already: `third` says what
-    /// comes on top of that.
+    /// Whether a change saves time: it removes travels of `old` s and adds the two travels `new`.
+    /// A move of stops adds a third one. Its lower bound is subtracted from `old` already, and
+    /// `third` returns its retraction.
     ///
-    /// Nearly all changes are refused by the first line: one of the new travels alone takes longer.
+    /// The first lines reject nearly all changes: one new travel alone takes longer than `old`.
     #[inline]
     fn pays(&self, old: f64, new: [Leg; 2], third: impl Fn() -> f64) -> bool {
         let reach = self.cost.reach(old);
@@ -142,7 +155,7 @@ impl<C: Cost> Tour<'_, C> {
 
     fn saves(&self, old: f64, new: [Leg; 2], third: impl Fn() -> f64) -> bool {
         let least = new.map(|leg| self.cost.least(leg.0, leg.1)).iter().sum::<f64>();
-        // From what is quickly said to what is not.
+        // From the cheap bounds to the exact costs.
         old - least > LEAST_GAIN
             && old - third() - least > LEAST_GAIN
             && old - third() - new.map(|leg| self.cost.whole(leg.0, leg.1)).iter().sum::<f64>()
@@ -175,7 +188,7 @@ impl<C: Cost> Tour<'_, C> {
         }
     }
 
-    /// Turns round the stops from `a` to `b` if that pays.
+    /// Reverses the stops from `a` to `b` if that saves time.
     fn turn(&mut self, a: usize, b: usize) -> bool {
         let old = self.legs[a] + self.legs[b + 1];
         let new = [(self.from(a), self.stops[b].end), (self.stops[a].start, self.to(b + 1))];
@@ -188,11 +201,11 @@ impl<C: Cost> Tour<'_, C> {
         true
     }
 
-    /// Moves the stops from `a` up to `b` to where that pays, turned round or not.
+    /// Moves the stops `a..b` to the first place that saves time, reversed or not.
     fn shift(&mut self, a: usize, b: usize) -> bool {
         let (first, last) = (self.stops[a].start, self.stops[b - 1].end);
         let gap = (self.from(a), self.to(b));
-        // What it saves at most.
+        // An upper bound for the time saved by taking them out.
         let out = self.legs[a] + self.legs[b] - self.cost.least(gap.0, gap.1);
         if out <= LEAST_GAIN {
             return false;
@@ -212,7 +225,7 @@ impl<C: Cost> Tour<'_, C> {
         false
     }
 
-    /// Puts the stops of `range` before stop `k`, which is not one of them.
+    /// Moves the stops of `range` before stop `k`, which is not one of them.
     fn lift(&mut self, range: Range<usize>, k: usize, turned: bool) {
         if turned {
             self.stops[range.clone()].reverse();

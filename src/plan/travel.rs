@@ -1,8 +1,11 @@
-//! Ordered paths -> print moves: the order improved, and which travels pull the filament back.
+//! Ordered paths -> print moves: improves the order, and decides which travels retract.
 //!
-//! A travel inside the part may ooze unseen; one that crosses an outer wall
-//! draws a string on the outside. So travels that cross a contour of the layer,
-//! and those outside of it, retract.
+//! Plastic that oozes inside the part stays hidden. A travel that crosses an outer wall draws a
+//! string on the outside. So travels retract if they cross a contour of the layer or lie outside
+//! all of them.
+//!
+//! The edges of a layer are sorted into bands of y. A travel is tested only against the edges of the
+//! bands that it passes through.
 
 use super::tour::{self, Cost};
 use super::{Head, PlanParams, PrintMove, Toolpath};
@@ -12,7 +15,8 @@ use crate::geom::{Contour, Point, edges, encloses, side};
 use crate::slice::Layer;
 use crate::units::Coord;
 
-/// Bands that the edges of a layer are sorted into, at most.
+/// Most bands of a layer. A trade-off: with more bands a travel is tested against fewer edges, but a
+/// steep edge is stored in each band that it reaches into. The result does not depend on it.
 const MOST_BANDS: usize = 256;
 
 /// The travels of one layer.
@@ -22,7 +26,7 @@ struct Travels<'a> {
 }
 
 impl Travels<'_> {
-    /// Whether the filament is pulled back on the way.
+    /// Whether a travel retracts.
     fn retracts(&self, from: Point, to: Point) -> bool {
         let least = i64::from(self.params.min_travel).pow(2);
         self.params.retracts
@@ -47,15 +51,15 @@ impl Cost for Travels<'_> {
     }
 }
 
-/// The toolpath of a layer whose paths are in order; the head comes from `from`.
+/// The toolpath of a layer whose paths are sorted; `from` is the head before it.
 #[must_use]
 pub fn toolpath(layer: &Layer, paths: Vec<Path>, from: Head, params: &PlanParams) -> Toolpath {
     let moves = moves(paths, &layer.contours, from.at, params);
     Toolpath { layer: layer.index, z: layer.z, height: layer.height, from, moves }
 }
 
-/// Puts the paths in an order that takes less time, starting from `at`, and decides for each
-/// whether the travel to it retracts.
+/// Improves the order of the paths, starting from `at`, and decides for each whether the travel to
+/// it retracts.
 fn moves(
     paths: Vec<Path>,
     contours: &[Contour],
@@ -77,7 +81,7 @@ fn moves(
         .collect()
 }
 
-/// A layer's edges in bands of y, to find those that a travel may cross.
+/// A layer's edges in bands of y: finds those that a travel may cross.
 struct Crossings {
     low: Coord,
     /// Each band is 2 to the power of `shift` high.
@@ -99,7 +103,7 @@ impl Crossings {
         Self { low, shift, bands: Cells::new(band(high) + 1, edges, reach) }
     }
 
-    /// Whether the way from `a` to `b` crosses an edge or lies outside.
+    /// Whether the travel from `a` to `b` crosses an edge or lies outside the contours.
     fn leaves(&self, a: Point, b: Point) -> bool {
         let last = self.bands.count() - 1;
         let band = |y: Coord| (((y - self.low).max(0) >> self.shift) as usize).min(last);
@@ -143,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn ways_inside_stay_and_ways_across_leave() {
+    fn travels_leave_if_they_cross_a_contour_or_lie_outside() {
         let crossings = Crossings::new(&[square(0, 1000, false), square(400, 600, true)]);
         let p = |x, y| Point { x, y };
         for (a, b, leaves) in [
@@ -161,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn without_contours_every_way_is_outside() {
+    fn without_contours_every_travel_lies_outside() {
         let crossings = Crossings::new(&[]);
         assert!(crossings.leaves(Point { x: 1, y: 2 }, Point { x: 3, y: -4 }));
     }

@@ -1,9 +1,9 @@
-//! Layer heights -> Heights: where the layers of a print lie, as a list.
+//! Layer heights -> Heights: lists the top and the cutting plane of each layer.
 
 use crate::units::Coord;
 
-/// The layers of a print from the bed upwards: each lies on the one before. Their heights may
-/// all differ.
+/// The layers of a print from the bed upwards. Each stands on the one before; all heights may
+/// differ.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Heights {
     /// Top of each layer above the bed, grid units.
@@ -26,8 +26,8 @@ impl Heights {
         out
     }
 
-    /// Layers of one height but for the first, for a mesh `top` high: as many as have their
-    /// middle inside it.
+    /// Layers of height `other` on one of height `first`, for a mesh of height `top`. A layer is
+    /// counted if its middle is inside the mesh.
     #[must_use]
     pub fn even(first: Coord, other: Coord, top: Coord) -> Self {
         // Layer k > 0 has its middle at first + (k − ½)·other.
@@ -50,7 +50,7 @@ impl Heights {
         self.stack(k, 1)
     }
 
-    /// Height of the `count` layers up to layer `k` together.
+    /// Total height of `count` layers, of which layer `k` is the highest.
     #[must_use]
     pub fn stack(&self, k: usize, count: u32) -> Coord {
         let below = (k + 1).checked_sub(count as usize + 1).map_or(0, |below| self.tops[below]);
@@ -69,7 +69,7 @@ impl Heights {
         self.planes[k]
     }
 
-    /// How many planes lie at or below `z`. A triangle from `low` to `high` crosses those of
+    /// The number of planes at or below `z`. A triangle from `low` to `high` crosses the planes of
     /// layers `planes_up_to(low)..planes_up_to(high)`.
     #[must_use]
     pub fn planes_up_to(&self, z: Coord) -> usize {
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn even_layers_are_those_with_their_middle_inside() {
+    fn layers_are_counted_if_their_middle_is_inside() {
         let count = |first, other, top| Heights::even(first, other, top).count();
         assert_eq!(count(2000, 2000, 403_200), 202);
         assert_eq!(count(2000, 2000, 200_000), 100);
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_of_heights_crosses_the_planes_within_it() {
+    fn a_range_of_z_crosses_the_planes_within_it() {
         let lists = [
             Heights::even(2000, 2000, 50_000),
             Heights::even(3000, 2000, 50_000),

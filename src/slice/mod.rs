@@ -1,10 +1,11 @@
-//! Mesh -> Layers: where the planes of a print cut the mesh.
+//! Mesh -> Layers: cuts the mesh with one horizontal plane for each layer.
 //!
-//! Every layer is cut at half its height. A vertex on the plane counts as above
-//! it: then each triangle either crosses a plane or does not, each closed mesh
-//! gives closed contours, and no case is special. Guaranteed to the next stage:
-//! contours are closed, do not cross, run counter-clockwise around solid and
-//! clockwise around holes, and keep within the stated tolerance of the mesh.
+//! Every layer is cut at half its height. A vertex on the plane counts as above it. Then each triangle
+//! either crosses a plane or does not, a closed mesh always gives closed contours, and no case is
+//! special.
+//!
+//! Guaranteed to the next stage: contours are closed and do not cross. They run counter-clockwise
+//! around solid and clockwise around holes, and stay within the given tolerance of the mesh.
 
 mod chain;
 mod heights;
@@ -26,14 +27,14 @@ pub struct Layer {
     pub z: Coord,
     /// Height, grid units.
     pub height: Coord,
-    /// What the plane cuts out of the mesh.
+    /// The contours where the plane cuts the mesh.
     pub contours: Vec<Contour>,
-    /// The longest gap that had to be closed by a straight line, grid units; 0 if none.
+    /// The longest gap in a contour that was closed by a straight line, grid units; 0 if none.
     pub closed_gap: Coord,
 }
 
 impl Layer {
-    /// What the contours enclose over the layer's height, mm³.
+    /// The volume that the contours enclose over the layer's height, mm³.
     #[must_use]
     pub fn volume_mm3(&self) -> f64 {
         let area: i128 = self.contours.iter().map(|contour| double_area(contour)).sum();

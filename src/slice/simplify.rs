@@ -1,18 +1,16 @@
-//! Contour -> Contour: fewer vertices within a tolerance, from a canonical start.
+//! Contour -> Contour: removes vertices within a tolerance, from a canonical start.
 //!
-//! From each kept vertex a cone of directions is narrowed by every vertex that
-//! is passed: a line within the cone passes all of them within the tolerance.
-//! The first vertex outside the cone ends the line at the one before it. Linear
-//! in the vertices (Imai & Iri 1986 and Sklansky & Gonzalez 1980 describe cones
-//! of this kind).
+//! A cone of directions starts at each kept vertex. Every vertex that follows narrows the cone to the
+//! lines that pass it within the tolerance. The first vertex outside the cone ends the line: the
+//! vertex before it is kept. This takes linear time. Imai and Iri 1986 and Sklansky and Gonzalez 1980
+//! describe cones of this kind.
 
 use crate::geom::{Contour, Point};
 use crate::units::Coord;
 use std::cmp::Ordering;
 
-/// Turns `contour` so that it starts at its lexicographically smallest vertex
-/// (ties are decided by the vertices that follow), without repeated vertices:
-/// the same loop gives the same list wherever its tracing began.
+/// Rotates `contour` so that its list of vertices is the smallest in lexicographic order, and removes
+/// repeated vertices. So the same loop gives the same list wherever its tracing began.
 #[must_use]
 pub(super) fn canonical(mut contour: Contour) -> Contour {
     contour.dedup();
@@ -24,9 +22,10 @@ pub(super) fn canonical(mut contour: Contour) -> Contour {
     contour
 }
 
-/// Where the least of all turns of a loop begins: two candidates are compared, and where they
-/// differ after some vertices, so many starts of the greater one are none. Linear also for
-/// loops that repeat themselves (Shiloach 1981, "Fast canonization of circular strings").
+/// The start of the smallest rotation of a loop. Two candidates are compared vertex by vertex. If they
+/// differ after `same` equal vertices, the greater one is rejected, and with it the `same` starts
+/// that follow it. Linear even for loops that repeat themselves (Shiloach 1981, "Fast
+/// canonization of circular strings").
 fn least_start(contour: &[Point]) -> usize {
     let n = contour.len();
     let (mut a, mut b, mut same) = (0, 1, 0);
@@ -43,9 +42,8 @@ fn least_start(contour: &[Point]) -> usize {
     a.min(b).min(n.saturating_sub(1))
 }
 
-/// Leaves out vertices of a canonical contour so that no vertex lies further than
-/// `tolerance` (grid units) from the line that replaces it. Contours that collapse
-/// come back with fewer than three vertices.
+/// Removes vertices of a canonical contour. None of them lies further than `tolerance` (grid units)
+/// from the line that replaces it. Contours that collapse have fewer than three vertices left.
 #[must_use]
 pub(super) fn simplify(contour: &[Point], tolerance: Coord) -> Contour {
     let Some(&first) = contour.first() else { return Vec::new() };
@@ -65,10 +63,12 @@ pub(super) fn simplify(contour: &[Point], tolerance: Coord) -> Contour {
     kept
 }
 
-/// Directions from an anchor, between `right` and `left` (counter-clockwise); `None` is all.
+/// The allowed directions of a line from its first vertex, the anchor.
 struct Cone {
+    /// The rightmost and the leftmost direction; `None` allows all.
     bounds: Option<([f64; 2], [f64; 2])>,
-    /// How far out the vertices passed so far reach: a line must not turn back before them.
+    /// The largest squared distance of a passed vertex. A line that ended nearer would cut off a
+    /// spike.
     reach2: f64,
 }
 
@@ -77,7 +77,7 @@ impl Cone {
         Self { bounds: None, reach2: 0.0 }
     }
 
-    /// Whether a line from `anchor` to `p` passes all vertices so far.
+    /// Whether a line from `anchor` to `p` passes all vertices so far within the tolerance.
     fn admits(&self, anchor: Point, p: Point) -> bool {
         let d = difference(anchor, p);
         let within = self.bounds.is_none_or(|(right, left)| {
@@ -86,7 +86,7 @@ impl Cone {
         within && dot(d, d) >= self.reach2
     }
 
-    /// Keeps only the directions that pass `p` within `tolerance`.
+    /// Narrows the cone to directions that pass `p` within `tolerance`.
     fn narrow(&mut self, anchor: Point, p: Point, tolerance: f64) {
         let d = difference(anchor, p);
         let length2 = dot(d, d);
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_on_straight_edges_go() {
+    fn vertices_on_straight_edges_are_removed() {
         let square = points(&[(0, 0), (500, 0), (1000, 0), (1000, 1000), (400, 1000), (0, 1000)]);
         let simple = simplify(&square, 10);
         assert_eq!(simple, points(&[(0, 0), (1000, 0), (1000, 1000), (0, 1000)]));
@@ -151,14 +151,14 @@ mod tests {
 
     #[test]
     fn a_loop_that_repeats_itself_takes_no_longer() {
-        // A comparison of all starts would take minutes.
+        // Comparing all starts with each other would take minutes.
         let period = points(&[(0, 0), (5000, 0), (0, 5000)]);
         assert_eq!(canonical(period.repeat(200_000)).len(), 600_000);
     }
 
     proptest! {
         #[test]
-        fn no_vertex_is_further_away_than_the_tolerance(
+        fn no_removed_vertex_is_further_away_than_the_tolerance(
             list in prop::collection::vec((-2000i32..2000, -2000i32..2000), 3..40),
             tolerance in 1i32..400,
         ) {
@@ -173,7 +173,7 @@ mod tests {
         }
 
         #[test]
-        fn a_loop_starts_where_its_list_is_least(list in prop::collection::vec((0i32..2, 0i32..2), 1..12)) {
+        fn a_canonical_loop_is_its_smallest_rotation(list in prop::collection::vec((0i32..2, 0i32..2), 1..12)) {
             let contour = canonical(points(&list));
             for by in 0..contour.len() {
                 let mut turned = contour.clone();
@@ -183,7 +183,7 @@ mod tests {
         }
 
         #[test]
-        fn a_loop_is_the_same_wherever_it_starts(
+        fn a_canonical_loop_does_not_depend_on_its_start(
             list in prop::collection::vec((-9i32..9, -9i32..9), 3..12), turn in 0usize..12,
         ) {
             let mut turned = points(&list);
