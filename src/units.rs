@@ -1,10 +1,9 @@
-//! Units and the integer grid that every stage after placement works on.
+//! Millimetres -> grid units: the integer grid of every stage after placement, and its rounding.
 //!
 //! Lengths are millimetres (`f64`) in settings and reports, and grid units
-//! ([`Coord`]) in geometry. One unit is a tenth of a micrometre, so that a
-//! bed of one metre is 10⁷ units and a product of two differences, even when
-//! summed four times, stays below 2⁵⁰: no `i64` expression on coordinates can
-//! overflow.
+//! ([`Coord`]) in geometry. One unit is a tenth of a micrometre: far below what a printer can
+//! resolve, and a bed of one metre is only 10⁷ units. A product of two differences, even a sum of
+//! four of them, then stays below 2⁵⁰. So no `i64` expression on coordinates can overflow.
 
 /// A coordinate or length in grid units; see [`UNITS_PER_MM`].
 pub type Coord = i32;
@@ -29,9 +28,8 @@ pub fn to_mm(units: Coord) -> f64 {
 
 /// The whole number nearest to `value`, halves away from zero.
 ///
-/// Adding a half and cutting off is many times faster than [`f64::round`], which
-/// is a call on processors without SSE 4.1; it differs only for the last number
-/// below a half.
+/// Adding a half and truncating is many times faster than [`f64::round`], which is a call on
+/// processors without SSE 4.1. The results differ only for the largest number below a half.
 #[must_use]
 #[inline]
 pub fn nearest(value: f64) -> i64 {
@@ -58,8 +56,8 @@ impl From<MmPerS> for MmPerMin {
     }
 }
 
-/// Bounds for numbers that are never NaN: an instruction each. [`f64::min`] and [`f64::max`]
-/// take five, for what they promise of NaN.
+/// Minimum and maximum for numbers that are never NaN: one instruction each. [`f64::min`] and
+/// [`f64::max`] take five, since they handle NaN.
 pub trait Bounded {
     /// This number, or `most` if that is smaller.
     #[must_use]
@@ -81,7 +79,8 @@ impl Bounded for f64 {
     }
 }
 
-/// The value at `v`, `low_v <= v <= high_v`, of what goes evenly from `low` at `low_v` to `high` at `high_v`; rounded to the nearest unit, halves upwards.
+/// Interpolates linearly from `low` at `low_v` to `high` at `high_v`, for `low_v <= v <= high_v`.
+/// Rounds to the nearest unit, halves upwards.
 #[must_use]
 #[inline]
 pub fn between(low: Coord, high: Coord, (v, low_v, high_v): (Coord, Coord, Coord)) -> Coord {
@@ -91,8 +90,8 @@ pub fn between(low: Coord, high: Coord, (v, low_v, high_v): (Coord, Coord, Coord
     low + (2 * run * up + rise).div_euclid(2 * rise) as Coord
 }
 
-/// Sine and cosine of an angle in degrees: exact for quarter turns, and by `libm`
-/// otherwise, because the system's differ from one platform to the next.
+/// Sine and cosine of an angle in degrees. Exact for quarter turns; others come from `libm`, since
+/// the system's functions differ between platforms.
 #[must_use]
 pub fn sin_cos(degrees: f64) -> (f64, f64) {
     let turn = degrees.rem_euclid(360.0);
@@ -106,7 +105,7 @@ pub fn sin_cos(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// A sum of lengths in grid units as millimetres.
+/// Converts a sum of lengths in grid units to millimetres.
 #[must_use]
 pub fn sum_mm(units: i64) -> f64 {
     units as f64 / UNITS_PER_MM

@@ -1,26 +1,26 @@
-//! Items -> Cells: items sorted by counting into the cells that they reach into.
+//! Items -> Cells: sorts items into all cells that they reach into, by counting.
 
 use std::ops::Range;
 
-/// Items by cell, all in one list; an item is in each cell that it reaches into.
+/// Items by cell in one list. An item is in each cell that it reaches into.
 #[derive(Debug)]
 pub struct Cells<T> {
-    /// Where each cell begins in `items`, and where the last one ends.
+    /// Where each cell begins in `items`, and where the last cell ends.
     starts: Vec<u32>,
     items: Vec<T>,
 }
 
 impl<T: Copy + Default> Cells<T> {
-    /// Sorts `items` into `count` cells; `reach` gives the numbers of those that an item is in.
-    /// Items of a cell keep their order.
+    /// Sorts `items` into `count` cells. `reach` returns the cells that an item reaches into. The
+    /// items of a cell keep their order.
     #[must_use]
     pub fn new<I: Iterator<Item = T>, R: Iterator<Item = usize>>(
         count: usize,
         items: impl Fn() -> I,
         reach: impl Fn(T) -> R,
     ) -> Self {
-        // Where a cell begins stands one place further on, until its items have moved it to
-        // where the next one begins.
+        // `starts[cell + 1]` first holds where a cell begins. Each item placed in the cell moves it
+        // on, until it holds where the next cell begins.
         let mut starts = vec![0; count + 2];
         items().for_each(|item| reach(item).for_each(|cell| starts[cell + 2] += 1));
         let mut sum = 0;
@@ -45,13 +45,13 @@ impl<T: Copy + Default> Cells<T> {
         self.starts.len() - 1
     }
 
-    /// The items of a cell, to be sorted.
+    /// The items of a cell, for sorting them.
     #[must_use]
     pub fn of_mut(&mut self, cell: usize) -> &mut [T] {
         &mut self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// The items of some cells beside each other, one cell after the other.
+    /// The items of adjacent cells, one cell after the other.
     #[must_use]
     pub fn of(&self, cells: Range<usize>) -> &[T] {
         &self.items[self.starts[cells.start] as usize..self.starts[cells.end] as usize]

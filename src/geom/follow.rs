@@ -1,28 +1,28 @@
-//! Two closed polygons -> verdict: whether each runs along the other.
+//! Two closed polygons -> verdict: tests whether each runs along the other within a distance.
 
 use super::{Contour, Point, edges, segment};
 use crate::units::Coord;
 
-/// Whether every corner of `a` is at most `far` from `b`, and every corner of `b` from `a`.
-/// Both run the same way round. Takes time in proportion to their corners.
+/// Whether every corner of `a` is at most `far` from `b`, and every corner of `b` from `a`. Both
+/// polygons have the same orientation. Takes linear time.
 #[must_use]
 pub fn follow(a: &Contour, b: &Contour, far: Coord) -> bool {
     near_boxes(a, b, far) && runs_along(a, b, far) && runs_along(b, a, far)
 }
 
-/// Whether the boxes around `a` and `b` are alike, which most that do not follow are not.
+/// Whether the bounding boxes of `a` and `b` are alike. This rejects most pairs quickly.
 fn near_boxes(a: &Contour, b: &Contour, far: Coord) -> bool {
     let sides = |c: &Contour| {
         let xs = || c.iter().map(|p| p.x);
         let ys = || c.iter().map(|p| p.y);
         [xs().min(), xs().max(), ys().min(), ys().max()].map(Option::unwrap_or_default)
     };
-    // Corners of an offset may be cut off: twice as far there.
+    // An offset may cut off corners, so that boxes can differ by more: twice as much.
     sides(a).iter().zip(sides(b)).all(|(p, q)| (p - q).abs() <= 2 * far)
 }
 
-/// Whether every corner of `a` is near some edge of `b`. Both run the same way round, so
-/// that the search for the next edge goes on where the last one ended.
+/// Whether every corner of `a` is near some edge of `b`. Both have the same orientation, so that
+/// each search starts at the edge where the last one ended.
 fn runs_along(a: &Contour, b: &Contour, far: Coord) -> bool {
     let b: Vec<(Point, Point)> = edges(b).collect();
     let limit = f64::from(far) * f64::from(far);
@@ -50,7 +50,7 @@ mod tests {
     }
 
     #[test]
-    fn a_shift_is_followed_as_far_as_it_may() {
+    fn a_shifted_polygon_follows_within_the_distance() {
         let a = square(10_000, 0);
         assert!(follow(&a, &square(10_000, 0), 10));
         assert!(follow(&a, &square(10_000, 50), 71));
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn other_corners_and_another_beginning_make_no_difference() {
+    fn more_corners_and_another_first_corner_make_no_difference() {
         let a = square(10_000, 0);
         let mut b = square(10_000, 0);
         b.insert(1, Point { x: 3_000, y: 5 });
@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn a_notch_is_seen_from_either_side() {
+    fn a_notch_is_found_in_either_polygon() {
         let a = square(10_000, 0);
         let mut b = square(10_000, 0);
         let p = |x, y| Point { x, y };

@@ -1,9 +1,9 @@
-//! Point -> (u, v): the frame of a raster direction, in which raster lines run along u at constant v.
+//! Point -> (u, v): rotates points into the frame of a raster, whose lines run along u at constant v.
 
 use super::Point;
 use crate::units::{Coord, nearest, sin_cos};
 
-/// A turn of the plane that lays the raster lines level. Exact for multiples of 90°.
+/// A rotation that makes raster lines horizontal. Exact for multiples of 90°.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     cos: f64,
@@ -18,13 +18,14 @@ impl Frame {
         Self { cos, sin }
     }
 
-    /// From the bed to the frame: `u` along the lines, `v` across, both as a [`Point`].
+    /// Rotates from the bed into the frame. The point has `u`, along the lines, as x and `v`, across
+    /// them, as y.
     #[must_use]
     pub fn enter(&self, p: Point) -> Point {
         self.turn(p, -self.sin)
     }
 
-    /// From the frame to the bed.
+    /// Rotates from the frame back to the bed.
     #[must_use]
     pub fn leave(&self, p: Point) -> Point {
         self.turn(p, self.sin)
@@ -63,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_at_an_angle_become_level() {
+    fn lines_at_an_angle_become_horizontal() {
         let frame = Frame::new(45.0);
         let p = frame.enter(Point { x: 10_000, y: 10_000 });
         assert_eq!(p, Point { x: 14_142, y: 0 });

@@ -1,4 +1,4 @@
-//! Plane geometry on the integer grid: points, contours, spans, rasters and polygon offsets.
+//! Points -> contours, spans, rasters: plane geometry on the integer grid.
 
 pub mod cells;
 pub mod decimate;
@@ -39,12 +39,12 @@ impl Point {
     }
 }
 
-/// A closed polygon: counter-clockwise around solid, clockwise around a hole;
-/// the last point is joined to the first, which is not repeated.
+/// A closed polygon: counter-clockwise around solid, clockwise around a hole. The last point is joined
+/// to the first, which is not repeated.
 pub type Contour = Vec<Point>;
 
-/// Twice the signed area of a closed polygon, grid units²: positive where it
-/// runs counter-clockwise. Summed relative to its first point.
+/// Twice the signed area of a closed polygon, grid units²: positive if it runs counter-clockwise.
+/// Summed relative to its first point, so that the products are small.
 #[must_use]
 pub fn double_area(contour: &[Point]) -> i128 {
     let Some(o) = contour.first() else { return 0 };
@@ -64,7 +64,7 @@ pub fn edges(contour: &[Point]) -> impl Iterator<Item = (Point, Point)> {
     contour.windows(2).map(|w| (w[0], w[1])).chain(last)
 }
 
-/// Twice the area of the triangle a b c: positive if `c` is left of a–b.
+/// Twice the signed area of the triangle a b c: positive if `c` is left of a–b.
 #[must_use]
 pub fn side(a: Point, b: Point, c: Point) -> i64 {
     let (abx, aby) = (i64::from(b.x) - i64::from(a.x), i64::from(b.y) - i64::from(a.y));
@@ -72,8 +72,8 @@ pub fn side(a: Point, b: Point, c: Point) -> i64 {
     abx * acy - aby * acx
 }
 
-/// Whether `p` is inside the closed polygons that `edges` make, by counting the edges to
-/// the right of it. They must not overlap; a point on an edge may count either way.
+/// Whether `p` is inside the closed polygons formed by `edges`: counts the edges to the right of it.
+/// The polygons must not overlap. A point on an edge may count either way.
 #[must_use]
 pub fn encloses(edges: impl Iterator<Item = (Point, Point)>, p: Point) -> bool {
     let to_the_right = edges.filter(|&(a, b)| {

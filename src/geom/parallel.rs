@@ -1,35 +1,42 @@
-//! Contours -> Contours: the curves parallel to them, not yet freed of what crosses itself.
+//! Contour -> Contour: offsets each side of a contour; the curve may still cross itself.
 //!
-//! Where an offset's sides grow apart their corner is mitred. Where they cross, the library's
-//! own offset keeps both sides whole with a detour to the corner and leaves it to its union
-//! to cut off the loop: three points, and most of the union's work. Here the two sides are
-//! cut at their crossing, and a side that is too short for that vanishes; what is left whole
-//! in the library's way are sides whose neighbours do not meet. So most curves are free of
-//! crossings, and the others cross only where parts lie apart.
+//! - A *side* is an edge of the contour, moved to its right by the distance.
+//! - A corner is *mitred* where its sides move apart: both are extended until they meet.
+//! - A corner is *crossed* where its sides move towards each other.
+//! - A *cut* is where two neighbouring sides cross.
 //!
-//! Roundings are those of the library (Clipper2: offset points to the nearest unit, crossings
-//! cut off towards zero), so that it does not show which way a corner was made. Only between
-//! sides so nearly parallel that rounding leaves them no crossing the corner is at its mitre, where
-//! the library has several points around it.
+//! 1. Move each side, and classify each corner. A corner too sharp for a mitre is left to the library.
+//! 2. Cut the sides of each crossed corner at their crossing.
+//! 3. Remove each side that is too short for its cuts, and cut its neighbours off each other.
+//! 4. If two neighbours do not meet, keep both sides whole, with the corner of the contour between
+//!    them. The loop that this makes is left to the library's union.
+//!
+//! The library (Clipper2) does step 4 at every crossed corner. That makes three points and a loop,
+//! which is most of the work of its union. Cutting leaves most curves without crossings.
+//!
+//! Rounding is that of the library: offset points go to the nearest unit, crossings are truncated
+//! towards zero. So results agree. One exception: if rounding leaves nearly parallel sides without a
+//! crossing, the corner is at its mitre, where the library makes several points.
 
 use super::{Contour, Point, edges};
 use crate::units::{Coord, nearest};
 
-/// Cosine of turns that count as folding back (177°); their corners are none of ours.
+/// Cosine of the turn (177°) above which a corner folds back and is left to the library. The value is
+/// Clipper2's, as is [`STRAIGHT`]: with others the two would make different corners.
 const FOLDED: f64 = -0.999;
 
-/// Cosine of turns that count as straight (2.5°): mitred on either side.
+/// Cosine of the turn (2.5°) below which a corner is always mitred. Clipper2's value.
 const STRAIGHT: f64 = 0.999;
 
-/// `contour` moved by `distance` grid units to its right (outwards from what it runs around
-/// counter-clockwise; inwards if negative). Corners are mitred; none if one is so sharp that
-/// its mitre reaches further than `limit` distances, or folds back.
+/// Offsets `contour` by `distance` grid units to its right: outwards if it is counter-clockwise, and
+/// inwards if `distance` is negative. `None` if the mitre of a corner reaches further than `limit`
+/// distances, or if a corner folds back.
 #[must_use]
 pub fn parallel(contour: &[Point], distance: f64, limit: f64) -> Option<Contour> {
     parallel_and_lost(contour, distance, limit).map(|(curve, _)| curve)
 }
 
-/// As [`parallel`], and how long the sides of `contour` are that vanished in all, grid units.
+/// As [`parallel`], with the total length of the sides of `contour` that were removed, grid units.
 #[must_use]
 pub fn parallel_and_lost(contour: &[Point], distance: f64, limit: f64) -> Option<(Contour, f64)> {
     let n = contour.len();
@@ -51,12 +58,13 @@ pub fn parallel_and_lost(contour: &[Point], distance: f64, limit: f64) -> Option
     Some((sides.curve(&corners), lost))
 }
 
-/// The sides of a curve in a ring, without those that vanished.
+/// The sides of a curve in a ring, linked without those that were removed.
 struct Sides {
     sides: Vec<Side>,
-    /// Where each side is cut off the one before it that is left.
+    /// Where each side is cut off its neighbour before it.
     cuts: Vec<Option<Cut>>,
     before: Vec<usize>,
+    /// The neighbour after each side; a removed side has itself.
     after: Vec<usize>,
 }
 
@@ -72,8 +80,8 @@ impl Sides {
         }
     }
 
-    /// Cuts each side off the one before it. A side too short for its cuts vanishes: its
-    /// neighbours are cut off each other.
+    /// Cuts each side off the one before it. Removes a side that is too short for its cuts, and cuts
+    /// its neighbours off each other.
     fn cut_all(&mut self, corners: &[Corner]) {
         let n = corners.len();
         let cut = |k: usize| corners[k].cut(&self.sides[self.before[k]], &self.sides[k]);
@@ -92,11 +100,11 @@ impl Sides {
         }
     }
 
-    /// Whether the sides before and after this one cross it beyond its ends, or its cuts turn it
-    /// round.
+    /// Whether a side is too short: a neighbour crosses it beyond its other end, or its cuts would
+    /// reverse it.
     fn is_short(&self, k: usize, corners: &[Corner]) -> bool {
         let length = || self.sides[k].from.distance(self.sides[k].to);
-        // Where there is no cut it is still the side's own corner.
+        // Only a side's own corner has no cut: removing a neighbour always sets one.
         let is_beyond = |k: usize| {
             self.cuts[k].is_none() && corners[k].overlap().is_some_and(|o| o >= length())
         };
@@ -110,7 +118,7 @@ impl Sides {
         begin < end
     }
 
-    /// The curve: the cuts, or what the corners are where there are none.
+    /// The points of the curve: cuts, and where there are none the points of the corners.
     fn curve(&self, corners: &[Corner]) -> Contour {
         let n = corners.len();
         let mut out = Contour::with_capacity(n);
@@ -118,7 +126,7 @@ impl Sides {
             let before = self.before[k];
             match self.cuts[k].filter(|_| self.keeps(k) && self.keeps(before)) {
                 Some(cut) => out.push(cut.at),
-                // Sides that are left whole keep their loops.
+                // Whole sides keep the loop at their corner.
                 None => {
                     let mut corner = before;
                     while corner != k {
@@ -132,20 +140,20 @@ impl Sides {
     }
 }
 
-/// The direction to the right of the way from `a` to `b`, of length 1.
+/// The unit vector to the right of the direction from `a` to `b`.
 fn normal(a: Point, b: Point) -> Option<[f64; 2]> {
     let (x, y) = (f64::from(b.x) - f64::from(a.x), f64::from(b.y) - f64::from(a.y));
     let by = 1.0 / (x * x + y * y).sqrt();
     (a != b).then_some([y * by, -x * by])
 }
 
-/// What becomes of a corner.
+/// The corner between two moved sides.
 #[derive(Debug, Clone, Copy)]
 enum Corner {
-    /// Where the two sides moved apart meet.
+    /// The sides move apart, and meet here once extended.
     Mitred(Point),
-    /// The sides cross at the mitre, `overlap` from their ends: where the one before ends, the
-    /// corner itself, where the one after begins.
+    /// The sides cross at `mitre`, `overlap` from their ends. The side before ends at `before`, the
+    /// side after begins at `after`, and `corner` is the contour's own.
     Crossed { before: Point, corner: Point, after: Point, mitre: Point, overlap: f64 },
 }
 
@@ -166,7 +174,7 @@ impl Corner {
         reaches.then_some(Self::Mitred(mitre))
     }
 
-    /// How far from their ends its sides cross, if they do.
+    /// The distance from the ends of its sides to their crossing, if they cross.
     fn overlap(self) -> Option<f64> {
         match self {
             Self::Mitred(_) => None,
@@ -174,8 +182,8 @@ impl Corner {
         }
     }
 
-    /// Where its sides are cut off each other. If they are nearly parallel rounding may leave no
-    /// crossing: then at the mitre.
+    /// Where its sides are cut off each other. If they are nearly parallel, rounding may leave no
+    /// crossing; then they are cut at the mitre.
     fn cut(self, before: &Side, after: &Side) -> Option<Cut> {
         let Self::Crossed { mitre, overlap, .. } = self else { return None };
         before.cut(after).or_else(|| {
@@ -186,7 +194,7 @@ impl Corner {
         })
     }
 
-    /// Appends the points that both sides have whole.
+    /// Appends the points of the corner if both sides stay whole.
     fn push_to(self, curve: &mut Contour) {
         match self {
             Self::Mitred(at) => curve.push(at),
@@ -214,7 +222,7 @@ fn rounded(p: Point, by: [f64; 2]) -> Point {
     Point { x: at(p.x, by[0]), y: at(p.y, by[1]) }
 }
 
-/// A side of the contour, moved.
+/// A moved side of the contour.
 #[derive(Debug, Clone, Copy)]
 struct Side {
     from: Point,
@@ -225,9 +233,9 @@ struct Side {
 #[derive(Debug, Clone, Copy)]
 struct Cut {
     at: Point,
-    /// How far along the side before, 0 to 1.
+    /// Its place along the side before, 0 to 1.
     along_before: f64,
-    /// How far along the side after.
+    /// Its place along the side after, 0 to 1.
     along_after: f64,
 }
 
@@ -237,7 +245,7 @@ impl Side {
         [along(self.from.x, self.to.x), along(self.from.y, self.to.y)]
     }
 
-    /// Where it crosses `next` between the ends of both.
+    /// The crossing with `next`, if it is between the ends of both.
     fn cut(&self, next: &Self) -> Option<Cut> {
         let ([ax, ay], [bx, by]) = (self.vector(), next.vector());
         let [x, y] = Self { from: self.from, to: next.from }.vector();
@@ -252,8 +260,8 @@ impl Side {
         })
     }
 
-    /// The crossing with `next`, rounded as the library does: measured on the side that is
-    /// further left at greater y, from its end there.
+    /// The crossing with `next`, rounded as the library does: measured from the upper end of the side
+    /// that lies to the left above the crossing.
     fn at(&self, next: &Self) -> Point {
         let (a, b) = (self.downwards(), next.downwards());
         match (a.from.y == a.to.y, b.from.y == b.to.y) {
@@ -270,7 +278,7 @@ impl Side {
         Point { x: place(a.from.x, ax), y: place(a.from.y, ay) }
     }
 
-    /// Where a line at `y` crosses it, which is not level; from its end with the greater y.
+    /// Where it crosses the horizontal at `y`; it is not horizontal itself and starts at its upper end.
     fn at_height(&self, y: Coord) -> Point {
         let [run, rise] = self.vector();
         let along = f64::from(y) - f64::from(self.from.y);
@@ -278,7 +286,7 @@ impl Side {
         Point { x: self.from.x + by as Coord, y }
     }
 
-    /// From the end with the greater y to the other.
+    /// The side, starting at its upper end (greater y).
     fn downwards(&self) -> Self {
         if self.from.y >= self.to.y { *self } else { Self { from: self.to, to: self.from } }
     }

@@ -1,6 +1,18 @@
-//! Contours -> Contours: union, difference and offset of polygons, by the Clipper2 library.
+//! Contours -> Contours: unites, subtracts and offsets polygons, with the Clipper2 library if needed.
 //!
-//! The only place that knows the library, so that it can be exchanged.
+//! The *library* is Clipper2. Only this file uses it, so that it can be replaced.
+//!
+//! - *Curves* are closed polygons that may cross; *contours* neither cross nor overlap.
+//! - The *winding number* of a place is how often the curves run around it counter-clockwise.
+//!
+//! Nearly all unions and offsets have no crossings, and need no library:
+//! 1. For an offset, move each side ([`parallel`]). Corners that are too sharp go to the library.
+//! 2. Sweep over the curves once ([`windings`]). If no two sides cross, a curve belongs to the result
+//!    exactly if one side of it is inside and the other is not.
+//! 3. If sides cross, the library unites the curves.
+//! 4. An offset is cleaned: vertices close to the line between their neighbours are removed.
+//!
+//! Both ways give the same contours in the same order, from the same first vertex. Tests compare them.
 
 use super::parallel::{parallel, parallel_and_lost};
 use super::simple::windings;
@@ -13,20 +25,22 @@ use clipper2_rust::offset::{EndType, JoinType};
 use clipper2_rust::{difference_64, inflate_paths_64, union_subjects_64};
 use std::cmp::Reverse;
 
-/// Sharp corners of an offset are cut off where they would reach further than
-/// this many offsets. At 2 the corner of a square stays sharp and a needle does
-/// not throw a spike.
+/// Corners of an offset may reach this many distances from the contour; sharper ones are cut off. At 2
+/// that begins at 60°: the corner of a square stays sharp, and the tip of a needle grows no spike.
+/// Below √2 squares would lose their corners. Any change changes all walls with sharp corners.
 const MITER_LIMIT: f64 = 2.0;
 
-/// Vertices that an offset leaves closer than this to the line between their
-/// neighbours are removed (0.5 µm): offsets of offsets would otherwise pile them up.
+/// Vertices of an offset closer than this to the line between their neighbours are removed (0.5 µm).
+/// Without it, offsets of offsets collect vertices. Half the resolution of the written G-code, so
+/// that nothing visible is lost; larger values move walls.
 const CLEAN: f64 = 5.0;
 
-/// Contours with less area than this vanish (10⁻⁵ mm²): they are rounding, not shape.
+/// Contours with less area than this are dropped (10⁻⁵ mm², a square of 3 µm): they come from rounding.
+/// No bead fits into far larger ones, so that only shapes too small to print are lost.
 const LEAST_AREA: i128 = 1_000;
 
-/// The outline of everything with a winding number other than zero: contours
-/// that neither cross nor overlap, outside counter-clockwise, holes clockwise.
+/// The outline of everything with a winding number other than zero. The contours neither cross nor
+/// overlap; outer ones run counter-clockwise, holes clockwise.
 #[must_use]
 pub fn union(contours: &[Contour]) -> Vec<Contour> {
     disjoint(contours, |winding| winding != 0, 0.0).unwrap_or_else(|| {
@@ -34,20 +48,20 @@ pub fn union(contours: &[Contour]) -> Vec<Contour> {
     })
 }
 
-/// `contours` (as from [`union`]) shrunk by `distance` > 0, with mitred corners.
+/// Shrinks `contours` (as from [`union`]) by `distance` > 0, with mitred corners.
 #[must_use]
 pub fn inset(contours: &[Contour], distance: Coord) -> Vec<Contour> {
     offset(contours, -f64::from(distance))
 }
 
-/// `contours` (as from [`union`]) grown by `distance` > 0, with mitred corners.
+/// Grows `contours` (as from [`union`]) by `distance` > 0, with mitred corners.
 #[must_use]
 pub fn outset(contours: &[Contour], distance: Coord) -> Vec<Contour> {
     offset(contours, f64::from(distance))
 }
 
-/// Whether `contours` (as from [`union`]) keep their shape when they are shrunk by `distance`: none
-/// comes apart, meets another or vanishes, and none loses sides of more than `most` (grid units) in all.
+/// Whether `contours` (as from [`union`]) keep their shape when shrunk by `distance`: none splits, meets
+/// another or vanishes, and none loses sides with a total length above `most` (grid units).
 #[must_use]
 pub fn keep_shape(contours: &[Contour], distance: Coord, most: f64) -> bool {
     let distance = -f64::from(distance);
@@ -58,8 +72,8 @@ pub fn keep_shape(contours: &[Contour], distance: Coord, most: f64) -> bool {
     left.is_some_and(|left| left.len() == contours.len())
 }
 
-/// What of `contours` is outside of `others` (both as from [`union`]), simplified to
-/// `tolerance`: without the tiny edges that near coincidence leaves.
+/// Subtracts `others` from `contours` (both as from [`union`]). The result is simplified within
+/// `tolerance`, since contours that nearly coincide leave tiny edges.
 #[must_use]
 pub fn difference(contours: &[Contour], others: &[Contour], tolerance: Coord) -> Vec<Contour> {
     let (contours, others) = (to_library(contours), to_library(others));
@@ -73,7 +87,7 @@ fn offset(contours: &[Contour], distance: f64) -> Vec<Contour> {
     let moved = match sides {
         Some(sides) => disjoint(&sides, |winding| winding > 0, distance)
             .unwrap_or_else(|| from_library(&clean(&to_library(&sides)))),
-        // The library knows what to do about corners that are too sharp.
+        // Corners that are too sharp: the library cuts them off.
         None => {
             let (join, end) = (JoinType::Miter, EndType::Polygon);
             let contours = to_library(contours);
@@ -83,9 +97,9 @@ fn offset(contours: &[Contour], distance: f64) -> Vec<Contour> {
     moved.into_iter().map(cleaned).filter(is_shape).collect()
 }
 
-/// What a union of `curves` gives if none of them cross: those that part what is inside, by its
-/// winding number, from what is not. None if they do cross. They come as from the
-/// library, so that it does not show which way they went, if they are offset by `distance`.
+/// The union of `curves`, if no sides cross: the curves that separate inside from outside, where the
+/// winding number decides what is inside. `None` if sides cross. Order and first vertices are those
+/// of the library, for curves that are offset by `distance`.
 fn disjoint(
     curves: &[Contour],
     is_inside: impl Fn(i32) -> bool,
@@ -95,7 +109,7 @@ fn disjoint(
     let mut out = Vec::with_capacity(curves.len());
     for (curve, left) in curves.iter().zip(windings) {
         match (is_inside(left), is_inside(left - 1)) {
-            (true, false) => out.push(begun_last(curve, distance)?),
+            (true, false) => out.push(rotated_like_library(curve, distance)?),
             (false, true) => return None,
             _ => {}
         }
@@ -105,9 +119,10 @@ fn disjoint(
     Some(out)
 }
 
-/// A curve with its points in the library's order, which begins where its sweep from high to low
-/// y ends: behind the last of the lowest corners, or at a level side's if that was cut there.
-fn begun_last(curve: &Contour, distance: f64) -> Option<Contour> {
+/// Rotates a curve to the library's first vertex. The library sweeps from high to low y and begins a
+/// contour where its sweep ends: after the last of the lowest corners, or at that corner if it ends
+/// a horizontal side and was cut.
+fn rotated_like_library(curve: &Contour, distance: f64) -> Option<Contour> {
     let n = curve.len();
     let at = |k: usize| curve[k % n];
     let end = curve.iter().map(|p| p.y).min()?;
@@ -119,10 +134,10 @@ fn begun_last(curve: &Contour, distance: f64) -> Option<Contour> {
     Some([&curve[first..], &curve[..first]].concat())
 }
 
-/// `contour` without vertices that are close to the line between their neighbours.
+/// Removes vertices close to the line between their neighbours.
 fn cleaned(contour: Contour) -> Contour {
     let n = contour.len();
-    // A little more than would do, as the library may round otherwise.
+    // Slightly above the library's own threshold, as it may round differently.
     let least = 1.01 * CLEAN * CLEAN;
     let is_close = |k: usize| {
         let (before, after) = (contour[(k + n - 1) % n], contour[(k + 1) % n]);
@@ -136,12 +151,12 @@ fn cleaned(contour: Contour) -> Contour {
     cleaned.iter().map(point).collect()
 }
 
-/// Whether a contour is more than rounding.
+/// Whether a contour is a shape and not only rounding.
 fn is_shape(contour: &Contour) -> bool {
     contour.len() >= 3 && double_area(contour).abs() >= 2 * LEAST_AREA
 }
 
-/// Contours where offset curves wind around counter-clockwise.
+/// The library's union of offset curves: everything with a positive winding number.
 fn clean(curves: &Paths64) -> Paths64 {
     let mut clipper = Clipper64::new();
     clipper.set_preserve_collinear(false);
@@ -164,7 +179,7 @@ fn path(contour: &Contour) -> Path64 {
 }
 
 fn point(p: &Point64) -> Point {
-    // Coordinates come from contours shrunk, or grown no further than they were shrunk before: they fit.
+    // These contours were shrunk, or grown no further than they were shrunk before: they fit.
     Point { x: p.x as Coord, y: p.y as Coord }
 }
 
@@ -175,7 +190,7 @@ mod tests {
     use crate::units::{nearest, sin_cos};
     use proptest::prelude::*;
 
-    /// A contour around the origin, as far from it as `radii` say; no side of it is level.
+    /// A star around the origin with its corners at `radii`. No side of it is horizontal.
     fn star(radii: &[f64]) -> Contour {
         let corner = |(k, r): (usize, &f64)| {
             let (sin, cos) = sin_cos(0.1 + 360.0 * k as f64 / radii.len() as f64);
@@ -202,14 +217,14 @@ mod tests {
             let theirs =
                 inflate_paths_64(&to_library(&star), distance, join, end, MITER_LIMIT, 0.0);
             let theirs = from_library(&theirs);
-            // A micrometre all around.
+            // They may differ by a micrometre along the whole outline.
             let round = edges(&star[0]).map(|(p, q)| p.distance(q)).sum::<f64>();
             let apart = (area(&ours) - area(&theirs)).abs();
             prop_assert!(apart <= 10.0 * round, "{apart} of {}", area(&theirs));
         }
     }
 
-    /// Stars with corners on a coarse grid: many sides are level, many corners at one height.
+    /// Stars with corners on a coarse grid: many horizontal sides, many corners of equal y.
     fn stars() -> impl Strategy<Value = Vec<Contour>> {
         let shape = (prop::collection::vec(20.0..60.0, 3..12), -80..80, -80..80, any::<bool>());
         let shape = shape.prop_map(|(radii, x, y, hole): (Vec<f64>, i32, i32, bool)| {
@@ -227,7 +242,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn curves_free_of_crossings_come_as_the_library_would_give_them(curves in stars()) {
+        fn curves_without_crossings_are_united_as_the_library_does(curves in stars()) {
             prop_assume!(curves.iter().all(|c| c.len() > 2));
             let library = |fill| from_library(&union_subjects_64(&to_library(&curves), fill));
             if let Some(ours) = disjoint(&curves, |winding| winding != 0, 0.0) {
@@ -240,9 +255,9 @@ mod tests {
     }
 
     #[test]
-    fn a_side_too_short_for_its_cuts_vanishes() {
+    fn a_side_too_short_for_its_cuts_is_removed() {
         let p = |x, y| Point { x, y };
-        // A square on its corner, one corner cut off a little.
+        // A square on its corner, with one corner blunted.
         let cut = vec![
             p(0, -100_000),
             p(100_000, 0),
@@ -266,13 +281,13 @@ mod tests {
         assert!(keep_shape(&[block.clone(), hole(2_100, 50_000)], 1_000, 0.0));
         assert!(!keep_shape(&[block.clone(), hole(1_900, 50_000)], 1_000, 0.0), "a thin rim");
         assert!(!keep_shape(&[square(0, 1_900)], 1_000, 0.0), "nothing is left");
-        // A cape on a side, whose sides vanish one after the other from its tip.
+        // A pointed bump on a side, whose sides are removed one after the other from its tip.
         let mut cape = vec![p(0, 0), p(100_000, 0), p(100_000, 100_000)];
         cape.extend((0..=20).map(|k| p(51_000 - 50 * k, 100_000 + 1_000 * k)));
         cape.extend((0..20).rev().map(|k| p(49_000 + 50 * k, 100_000 + 1_000 * k)));
         cape.push(p(0, 100_000));
         assert!(!keep_shape(&[cape], 1_100, 20_000.0));
-        // A corner that is cut off a little.
+        // A blunted corner.
         let blunt =
             vec![p(0, 0), p(100_000, 0), p(100_000, 99_900), p(99_900, 100_000), p(0, 100_000)];
         let keeps = |most| keep_shape(std::slice::from_ref(&blunt), 1_000, most);
@@ -282,7 +297,7 @@ mod tests {
     #[test]
     fn neighbouring_sides_are_cut_where_they_cross() {
         let p = |x, y| Point { x, y };
-        // A square on its corner: no side is level.
+        // A square on its corner: no side is horizontal.
         let diamond = vec![p(0, -100_000), p(100_000, 0), p(0, 100_000), p(-100_000, 0)];
         let moved = parallel(&diamond, -7_071.067_8, MITER_LIMIT).unwrap();
         for (at, corner) in moved.iter().zip([(0, -90_000), (90_000, 0), (0, 90_000), (-90_000, 0)])

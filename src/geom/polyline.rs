@@ -1,4 +1,4 @@
-//! Points with widths -> Polyline: a bead in the frame of a raster, before it is placed on the bed.
+//! Points with widths -> Polyline: a bead in the frame of its raster, before it is rotated to the bed.
 
 use super::Point;
 use crate::units::Coord;

@@ -13,15 +13,16 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Lines at `degrees` no further apart than `width`, every `stride`-th of which
-    /// (returned with them) lies `spacing` > 0 from the next.
+    /// A raster of lines at `degrees`, at most about `width` apart, and a stride: each line is
+    /// `spacing` > 0 from the line `stride` rows further on. Sparse infill takes every `stride`-th
+    /// row; the rows between follow the region's edge.
     #[must_use]
     pub fn fine(degrees: f64, spacing: Coord, width: Coord) -> (Self, i32) {
         let stride = ((spacing + width - 1) / width).max(1);
         (Self { frame: Frame::new(degrees), pitch: (spacing + stride / 2) / stride }, stride)
     }
 
-    /// The rows `j` with `low < j · pitch <= high` (on the line counts as above).
+    /// The rows `j` with `low < j · pitch <= high`: a point on a line counts as above it.
     #[must_use]
     pub fn rows(&self, low: Coord, high: Coord) -> std::ops::Range<i32> {
         low.div_euclid(self.pitch) + 1..high.div_euclid(self.pitch) + 1

@@ -1,19 +1,29 @@
-//! Contours -> winding numbers: whether closed curves are free of crossings, and what is inside them.
+//! Curves -> winding numbers: rejects curves that cross, and computes winding numbers of the others.
 //!
-//! A line sweeps over the curves from low to high y and keeps the sides that it crosses, from
-//! left to right. Curves cross somewhere only if two sides that once were neighbours on that
-//! line do (Shamos and Hoey 1976): at each corner a search and two comparisons tell, where a
-//! polygon library does all that crossings would need.
+//! - A *curve* is a closed polygon; a *side* is one of its edges.
+//! - The *winding number* of a place is how often the curves run around it counter-clockwise.
+//! - The *sweep line* is horizontal and moves from low to high y. It holds the sides that it crosses,
+//!   from left to right, each with the winding number to its right.
+//!
+//! 1. Sort all corners by y, then by x.
+//! 2. At each corner the sweep line gains two sides, loses two, or replaces one by the next.
+//! 3. Compare each new neighbour with the side beside it. Curves cross only if two sides that were
+//!    neighbours on the sweep line do (Shamos and Hoey 1976).
+//! 4. Where a curve begins, its winding number follows from the side to the left.
+//!
+//! This takes one search and two comparisons for each corner. A library's union does far more work,
+//! as it must be ready for crossings.
 
 use super::{Contour, Point, side};
 
-/// Sides nearer than about this many grid units count as crossing: what rounding could make of
-/// them is for a polygon library.
+/// Sides nearer than about this many grid units count as crossing. The library rounds crossings to whole
+/// units, so that it may change sides that are this near. At lower values results could differ
+/// from the library's; higher ones only send more curves to it, which takes longer.
 const LEAST_GAP: i64 = 2;
 
-/// The winding number to the left of each of `curves`, closed and without equal points in a row,
-/// as all of them together give it; to the right it is one less. None if any two of
-/// their sides cross, touch or nearly do, or if a corner is none: straight, or turning back.
+/// The winding number of all curves together to the left of each curve; to its right it is one less.
+/// Curves are closed and have no equal points in a row. `None` if any two sides cross, touch or nearly
+/// touch, or if a curve goes straight on or folds back at a vertex.
 #[must_use]
 pub fn windings(curves: &[Contour]) -> Option<Vec<i32>> {
     let mut corners = Vec::with_capacity(curves.iter().map(Vec::len).sum());
@@ -41,7 +51,7 @@ struct Corner {
     curve: usize,
 }
 
-/// Whether the way turns at `at`, but not nearly back (173°).
+/// Whether the curve turns at `at`, by less than 173°.
 fn is_corner(before: Point, at: Point, after: Point) -> bool {
     let by =
         |a: Point, b: Point| [i64::from(b.x) - i64::from(a.x), i64::from(b.y) - i64::from(a.y)];
@@ -50,22 +60,22 @@ fn is_corner(before: Point, at: Point, after: Point) -> bool {
     cross != 0 && (dot > 0 || -dot < 8 * cross.abs())
 }
 
-/// The order in which points are met: a level side rises a little to the right.
+/// The order in which the sweep line meets points. Horizontal sides count as rising to the right.
 fn key(p: Point) -> (i32, i32) {
     (p.y, p.x)
 }
 
-/// A side that the sweeping line crosses.
+/// A side that the sweep line crosses.
 #[derive(Debug, Clone, Copy)]
 struct Side {
     low: Point,
     high: Point,
-    /// The winding number to the right of it.
+    /// The winding number to its right.
     right: i32,
 }
 
 impl Side {
-    /// Whether another side is well clear of it, or goes on from one of its ends.
+    /// Whether another side keeps [`LEAST_GAP`] from this one, or shares an end with it.
     fn is_clear_of(&self, other: &Self) -> bool {
         self.low == other.low
             || self.high == other.high
@@ -73,7 +83,8 @@ impl Side {
             || other.is_beside(self)
     }
 
-    /// Whether both ends of `other` are well clear of the line along this side, on one side of it.
+    /// Whether both ends of `other` lie on one side of the line along this side, and keep
+    /// [`LEAST_GAP`] from it.
     fn is_beside(&self, other: &Self) -> bool {
         let run = i64::from(self.high.x) - i64::from(self.low.x);
         let rise = i64::from(self.high.y) - i64::from(self.low.y);
@@ -83,16 +94,16 @@ impl Side {
     }
 }
 
-/// The sweeping line.
+/// The sweep line.
 struct Sweep {
-    /// The sides that it crosses, from left to right.
+    /// The sides that the line crosses, from left to right.
     sides: Vec<Side>,
-    /// To the left of each curve, where known.
+    /// The winding number to the left of each curve, once known.
     windings: Vec<i32>,
 }
 
 impl Sweep {
-    /// Goes on over a corner; none if curves cross.
+    /// Passes a corner. `None` if curves cross.
     fn pass(&mut self, corner: &Corner) -> Option<()> {
         let &Corner { at, before, after, .. } = corner;
         if !is_corner(before, at, after) {
@@ -107,12 +118,12 @@ impl Sweep {
         }
     }
 
-    /// Two sides begin at a corner that has others to its left and right.
+    /// Inserts the two sides that begin at a corner, before side `k`.
     fn begin(&mut self, k: usize, corner: &Corner) -> Option<()> {
         let &Corner { at, before, after, curve } = corner;
         let outside = k.checked_sub(1).map_or(0, |left| self.sides[left].right);
         let turns_left = side(before, at, after) > 0;
-        // Where the curve turns left around its lowest point, what it has to its left lies above.
+        // If the curve turns left at its lowest point, its left is between the two sides.
         let inside = if turns_left { outside + 1 } else { outside - 1 };
         self.windings[curve] = if turns_left { inside } else { outside };
         let (left, right) = if turns_left { (before, after) } else { (after, before) };
@@ -125,7 +136,7 @@ impl Sweep {
         self.check(k + 2)
     }
 
-    /// One side ends and the next begins.
+    /// Replaces a side that ends by the next one of its curve.
     fn replace(&mut self, k: usize, at: Point, high: Point) -> Option<()> {
         let here = self.sides.get_mut(k).filter(|s| s.high == at)?;
         *here = Side { low: at, high, right: here.right };
@@ -133,7 +144,7 @@ impl Sweep {
         self.check(k + 1)
     }
 
-    /// Two sides end.
+    /// Removes two sides that end at a corner.
     fn end(&mut self, k: usize, at: Point) -> Option<()> {
         let both = self.sides.get(k..k + 2)?;
         if both.iter().any(|s| s.high != at) {
@@ -143,7 +154,7 @@ impl Sweep {
         self.check(k)
     }
 
-    /// Side `k` and the one to the left of it, if there are both, have to be clear of each other.
+    /// `None` if side `k` and the one to its left are not clear of each other.
     fn check(&self, k: usize) -> Option<()> {
         let (Some(left), Some(here)) =
             (k.checked_sub(1).map(|l| &self.sides[l]), self.sides.get(k))
@@ -174,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn curves_count_what_they_lie_in() {
+    fn winding_numbers_count_nested_curves() {
         let curves = [
             square(0, 1000),
             turned(square(100, 900)),
@@ -199,7 +210,7 @@ mod tests {
         assert_eq!(windings(&[spike]), None);
     }
 
-    /// Whether two sides have a point in common.
+    /// Whether two sides share a point.
     fn meet((a, b): (Point, Point), (c, d): (Point, Point)) -> bool {
         let apart = |a, b, c, d| side(a, b, c).signum() * side(a, b, d).signum() > 0;
         let box_apart = |f: fn(Point) -> i32| {
@@ -218,7 +229,7 @@ mod tests {
             let curves: Vec<Contour> = curves.iter().map(curve).collect();
             let sides: Vec<(Point, Point)> = curves.iter().flat_map(|c| edges(c)).collect();
             let pairs = || (0..sides.len()).flat_map(|k| (0..k).map(move |l| (k, l)));
-            // Sides that follow each other meet in a corner.
+            // Successive sides of a curve share a corner.
             let clear = pairs().map(|(k, l)| (sides[k], sides[l])).all(|(a, b)| {
                 if a.1 == b.0 {
                     is_corner(a.0, a.1, b.1)

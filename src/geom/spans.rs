@@ -1,8 +1,16 @@
-//! Spans -> Spans: the 1-D booleans that take the place of polygon clipping.
+//! Spans -> Spans: unites, intersects and subtracts regions on raster lines, instead of polygon clipping.
 //!
-//! A span is a half-open stretch `[start, end)` of a raster line. A *row* is
-//! what one raster line holds: spans sorted, disjoint, not touching, never
-//! empty. [`Rows`] keeps the rows of one layer in one arena.
+//! - A *span* is a half-open stretch `[start, end)` of a raster line. It is never empty.
+//! - A *row* is all spans of one raster line: sorted, disjoint and not touching.
+//! - [`Rows`] are the rows of one layer in one direction. All their spans are in one list, with the
+//!   place where each row begins.
+//!
+//! Intersection and subtraction walk over two sorted rows at once, in linear time. Union sorts the
+//! spans and joins those that touch. Regions are combined row by row.
+//!
+//! Dilation grows a span by a circle. On the row `m` lines away it grows by half the chord of the
+//! circle at that distance; the grown spans are united. Between rows nothing is known, so that
+//! this is exact on the lines only.
 
 use crate::units::Coord;
 
@@ -22,13 +30,13 @@ impl Span {
         (start < end).then_some(Self { start, end })
     }
 
-    /// Its length in grid units.
+    /// Its length, grid units.
     #[must_use]
     pub fn len(self) -> i64 {
         i64::from(self.end) - i64::from(self.start)
     }
 
-    /// Never: spans are not empty. Here because `len` is.
+    /// Always `false`: spans are never empty. Clippy wants it beside `len`.
     #[must_use]
     pub fn is_empty(self) -> bool {
         false
@@ -41,7 +49,7 @@ impl Span {
     }
 }
 
-/// Appends `span` to a row that ends at or before its start, joining what touches.
+/// Appends `span` to a row whose spans start no later, and joins it with the last one if they touch.
 fn push(row: &mut Vec<Span>, base: usize, span: Span) {
     match row[base..].last_mut() {
         Some(last) if last.end >= span.start => last.end = last.end.max(span.end),
@@ -80,7 +88,7 @@ pub fn subtract(a: &[Span], b: &[Span], out: &mut Vec<Span>) {
     }
 }
 
-/// Appends the union of `spans`, which may overlap and come in any order; sorts them.
+/// Appends the union of `spans`, which may overlap and come in any order. Sorts `spans`.
 pub fn merge(spans: &mut [Span], out: &mut Vec<Span>) {
     spans.sort_unstable();
     let base = out.len();
@@ -89,7 +97,7 @@ pub fn merge(spans: &mut [Span], out: &mut Vec<Span>) {
     }
 }
 
-/// The summed length of a row in grid units.
+/// The total length of a row, grid units.
 #[must_use]
 pub fn total(row: &[Span]) -> i64 {
     row.iter().map(|span| span.len()).sum()
@@ -100,7 +108,7 @@ pub fn total(row: &[Span]) -> i64 {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rows {
     first: i32,
-    /// Where each row begins in `spans`, and where the last one ends.
+    /// Where each row begins in `spans`, and where the last row ends.
     starts: Vec<u32>,
     spans: Vec<Span>,
 }
@@ -112,20 +120,20 @@ impl Default for Rows {
 }
 
 impl Rows {
-    /// No rows yet; the first one pushed will have index `first`.
+    /// No rows. The first one pushed will have index `first`.
     #[must_use]
     pub fn starting_at(first: i32) -> Self {
         Self { first, starts: vec![0], spans: Vec::new() }
     }
 
-    /// No rows yet, with room for as much as `other` has; the first one pushed will have index `first`.
+    /// No rows, with capacity for as many as `other` has. The first one pushed will have index
+    /// `first`.
     #[must_use]
     pub fn with_room_of(other: &Self, first: i32) -> Self {
         Self::with_room(first, other.starts.len() - 1, other.spans.len())
     }
 
-    /// No rows yet, with room for as many `rows` and `spans`; the first one pushed will have index
-    /// `first`.
+    /// No rows, with capacity for `rows` and `spans`. The first one pushed will have index `first`.
     #[must_use]
     pub fn with_room(first: i32, rows: usize, spans: usize) -> Self {
         let mut starts = Vec::with_capacity(rows + 1);
@@ -150,7 +158,7 @@ impl Rows {
     /// The spans of row `j`.
     #[must_use]
     pub fn row(&self, j: i32) -> &[Span] {
-        // Rows before the first become ones far behind the last.
+        // The index of a row before the first wraps to one far after the last.
         let k = j.wrapping_sub(self.first) as u32 as usize;
         match self.starts.get(k..k + 2) {
             Some(&[start, end]) => &self.spans[start as usize..end as usize],
@@ -170,13 +178,13 @@ impl Rows {
         self.spans.is_empty()
     }
 
-    /// The summed length of all spans in grid units.
+    /// The total length of all spans, grid units.
     #[must_use]
     pub fn total(&self) -> i64 {
         total(&self.spans)
     }
 
-    /// A set of rows made row by row from two others, over the rows that `self` has.
+    /// Combines two sets of rows with `op`, row by row, over the rows of `self`.
     #[must_use]
     pub fn combine(&self, other: &Self, op: impl Fn(&[Span], &[Span], &mut Vec<Span>)) -> Self {
         let mut out = Self::with_room_of(self, self.first);
@@ -186,19 +194,19 @@ impl Rows {
         out
     }
 
-    /// These rows without those of `other`.
+    /// The difference: these rows without those of `other`.
     #[must_use]
     pub fn minus(&self, other: &Self) -> Self {
         self.combine(other, subtract)
     }
 
-    /// What these rows and those of `other` share.
+    /// The intersection of these rows and those of `other`.
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
         self.combine(other, intersect)
     }
 
-    /// What these rows or those of `other` have.
+    /// The union of these rows and those of `other`.
     #[must_use]
     pub fn or(&self, other: &Self) -> Self {
         if self.range().is_empty() {
@@ -219,7 +227,7 @@ impl Rows {
         out
     }
 
-    /// The rows whose spans `keep` says yes to.
+    /// These rows with only the spans that `keep` accepts.
     #[must_use]
     pub fn filter(&self, keep: impl Fn(i32, Span) -> bool) -> Self {
         let mut out = Self::with_room_of(self, self.first);
@@ -229,9 +237,8 @@ impl Rows {
         out
     }
 
-    /// Grown by `radius` in all directions, as far as rows `pitch` apart can tell:
-    /// a span grows by the half chord that the circle around it has on each row
-    /// within reach.
+    /// Grows these rows, which are `pitch` apart, by `radius` in all directions. On each row within
+    /// reach a span grows by half the chord of the circle.
     #[must_use]
     pub fn dilate(&self, radius: Coord, pitch: Coord) -> Self {
         if radius <= 0 || self.spans.is_empty() {
@@ -289,7 +296,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn booleans_are_those_of_bitmaps(a: u64, b: u64) {
+        fn set_operations_agree_with_bitmaps(a: u64, b: u64) {
             let (ra, rb) = (row(a), row(b));
             let mut out = Vec::new();
             intersect(&ra, &rb, &mut out);
