@@ -17,37 +17,27 @@ pub mod flow;
 pub mod hosts;
 pub mod moves;
 pub mod number;
+mod output;
 mod progress;
 pub mod times;
 pub mod usage;
 pub mod write;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::motion::Limits;
 use crate::plan::Toolpath;
 use crate::profile::template::{self, PrintFacts};
 use crate::profile::{Settings, dump};
 use hosts::Thumbnail;
 use moves::{MoveParams, Moves};
+pub use output::Output;
+use output::Places;
 use progress::Progress;
 use rayon::prelude::*;
 use std::collections::VecDeque;
-use std::io::{Seek, Write};
 use times::{Timer, Times};
 use usage::Usage;
 use write::{LayerText, WriteParams};
-
-/// What a G-code file is written to, at its beginning.
-///
-/// - [`Seek`], since `M73` tells the printer which share of the print is done: the time of the
-///   whole print is known at its end only, and the lines are filled in then.
-/// - [`Send`], since a batch of layers is written by another thread than the one that plans the
-///   next.
-///
-/// Any other output: [`slice_to`](crate::slice_to).
-pub trait Output: Write + Seek + Send {}
-
-impl<T: Write + Seek + Send> Output for T {}
 
 /// Sums over a file.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -79,7 +69,8 @@ impl<'a> Writer<'a> {
     /// the layout's middle goes on the machine, mm.
     ///
     /// # Errors
-    /// [`Error::Config`] for an unknown placeholder, [`Error::Write`] if writing fails.
+    /// [`Error::Config`](crate::error::Error::Config) for an unknown placeholder,
+    /// [`Error::Write`](crate::error::Error::Write) if writing fails.
     pub fn new(
         out: &'a mut dyn Output,
         settings: &'a Settings,
@@ -112,7 +103,7 @@ impl<'a> Writer<'a> {
     /// Writes the next layers. All threads make their moves and text; the output keeps their order.
     ///
     /// # Errors
-    /// [`Error::Write`] if writing fails.
+    /// [`Error::Write`](crate::error::Error::Write) if writing fails.
     pub fn layers(&mut self, layers: &[Toolpath]) -> Result<()> {
         // Few at once: moves and text take more memory than the layers themselves.
         let at_once = rayon::current_num_threads().max(4);
@@ -183,42 +174,5 @@ impl<'a> Writer<'a> {
     /// A block of the profile with its placeholders replaced.
     fn block(&self, name: &str, block: &str) -> Result<String> {
         template::render(name, block, &template::values(self.settings, &self.facts))
-    }
-}
-
-/// An output that knows where it is.
-struct Places<'a> {
-    out: &'a mut dyn Output,
-    /// Bytes so far.
-    written: u64,
-    /// These bytes, until something is extruded: a job that extrudes nothing is refused, and
-    /// must not have written anything by then.
-    held: Option<Vec<u8>>,
-}
-
-impl Places<'_> {
-    fn put(&mut self, bytes: &[u8]) -> Result<()> {
-        self.written += bytes.len() as u64;
-        match &mut self.held {
-            Some(held) => {
-                held.extend_from_slice(bytes);
-                Ok(())
-            }
-            None => self.out.write_all(bytes).map_err(Error::Write),
-        }
-    }
-
-    /// From now on all bytes are written, those that were held first.
-    fn release(&mut self) -> Result<()> {
-        match self.held.take() {
-            Some(held) => self.out.write_all(&held).map_err(Error::Write),
-            None => Ok(()),
-        }
-    }
-
-    /// Writes over what stands at this byte.
-    fn put_at(&mut self, place: u64, bytes: &[u8]) -> Result<()> {
-        let seek = self.out.seek(std::io::SeekFrom::Start(place));
-        seek.and_then(|_| self.out.write_all(bytes)).map_err(Error::Write)
     }
 }

@@ -1,7 +1,7 @@
 //! Times + text -> `M73`: progress lines of fixed length, filled in once the total time is known.
 
-use super::Places;
 use super::dialect::Dialect;
+use super::output::Places;
 use super::times::Schedule;
 use super::write::LayerText;
 use crate::error::Result;
