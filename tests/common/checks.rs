@@ -1,4 +1,4 @@
-//! Print -> verdicts: what holds of every print, whatever the model and the profile.
+//! Print -> verdicts: asserts what must hold for every print, whatever the model and the profile.
 
 use super::gcode::{Kind, Move, Print};
 use super::section::Section;
@@ -17,7 +17,7 @@ pub(crate) fn bed(settings: &Settings) -> [[f64; 2]; 2] {
     })
 }
 
-/// All that needs no model to compare with.
+/// All checks that need no model.
 pub(crate) fn sound(print: &Print, settings: &Settings, what: &str) {
     assert!(print.beads().next().is_some(), "{what}: nothing is printed");
     heights_rise(print, what);
@@ -27,7 +27,7 @@ pub(crate) fn sound(print: &Print, settings: &Settings, what: &str) {
     progress_rises(print, what);
 }
 
-/// Layers go up by their height, beads lie at their layer's height, and Z never falls within the print.
+/// Each layer rises by its height, beads lie at their layer's z, and Z never falls within the print.
 pub(crate) fn heights_rise(print: &Print, what: &str) {
     let mut below = 0.0;
     for (k, layer) in print.layers.iter().enumerate() {
@@ -46,8 +46,8 @@ pub(crate) fn heights_rise(print: &Print, what: &str) {
     }
 }
 
-/// From the first bead to the last, filament goes back only by the retraction's
-/// length, standing still, and comes back before any bead.
+/// Between the first and the last bead, filament is retracted only by the set length and without
+/// moving, and is restored before any bead.
 pub(crate) fn filament_is_pulled_and_given_back(print: &Print, settings: &Settings, what: &str) {
     let last = print.moves.iter().rposition(Move::is_bead).unwrap_or(0);
     let on_layers = |m: &&Move| m.layer.is_some() && m.kind != Kind::Custom;
@@ -69,7 +69,7 @@ pub(crate) fn filament_is_pulled_and_given_back(print: &Print, settings: &Settin
     }
 }
 
-/// Every bead, with its width, is on the bed and below its ceiling.
+/// Every bead, with its width, is on the bed and below the machine's height.
 pub(crate) fn stays_on_the_bed(print: &Print, settings: &Settings, what: &str) {
     let bed = bed(settings);
     for m in print.beads() {
@@ -111,11 +111,11 @@ pub(crate) fn progress_rises(print: &Print, what: &str) {
 /// The body `solid` (as it lies on the bed) at the middle of layer `k`.
 pub(crate) fn section(print: &Print, solid: &Solid, k: usize) -> Section {
     let layer = print.layers[k];
-    // Mid-height planes meet faces at round heights: just above counts, as the format has it.
+    // Planes at mid-height may meet a face exactly. A vertex on the plane counts as above it.
     Section::new(solid, layer.z - layer.height / 2.0)
 }
 
-/// How far beads of layers `layers` reach out of the body, support left out: the worst, and its line.
+/// The furthest that a bead of `layers` reaches out of the body, and its line. Support is skipped.
 pub(crate) fn furthest_out(
     print: &Print,
     solid: &Solid,
@@ -139,8 +139,8 @@ pub(crate) fn furthest_out(
     worst
 }
 
-/// Travels that leave the body without the filament pulled back, of those that are
-/// long enough.
+/// Lines of travels that leave the body without a retraction. Travels below the minimum length are
+/// skipped.
 pub(crate) fn stringing_travels(
     print: &Print,
     solid: &Solid,

@@ -1,4 +1,4 @@
-//! Good G-code + a change of its moves -> G-code with that fault, and what `check` says of it.
+//! Good G-code + a change of its moves -> G-code with that fault, and what `check` finds in it.
 
 use super::{Kind, Move, Print, as_it_is, fixtures, slice_placed};
 use slicer::check::finding::{Code, Finding};
@@ -8,7 +8,7 @@ use slicer::mesh::Placement;
 use slicer::profile;
 use slicer::reader;
 
-/// What a run made of a fixture.
+/// The sliced fixture.
 pub(crate) struct Good {
     pub(crate) text: String,
     pub(crate) print: Print,
@@ -21,7 +21,7 @@ impl Good {
         Self { text: run.text, print: run.print, stl }
     }
 
-    /// What is said of `text`, which was made of this one's.
+    /// What `check` finds in `text`, a changed copy of this one's.
     pub(crate) fn judge(&self, text: &str) -> Verdict {
         judge(text, self.stl, &as_it_is())
     }
@@ -31,12 +31,12 @@ impl Good {
         self.print.moves.iter().filter(|m| m.layer.is_some() && m.kind != Kind::Custom)
     }
 
-    /// The file with other moves: `change` alters each, or says `false` to leave it out. All
-    /// else stays: where E counts from the start, `G92` sets it to what it would be.
+    /// The file with changed moves. `change` alters a move, or returns `false` to remove it. Nothing
+    /// else changes: if E is absolute, `G92` sets it to its old value after each changed move.
     pub(crate) fn with(&self, change: impl Fn(&mut Move) -> bool) -> String {
         let relative = self.text.lines().any(|line| line == "M83");
         let mut lines: Vec<String> = self.text.lines().map(str::to_owned).collect();
-        // Words are in force until the next: what follows a change is written in full.
+        // Words stay in force until the next: the move after a change is written in full.
         let mut in_full = false;
         for old in self.print.moves.iter() {
             let mut new = *old;
@@ -66,11 +66,11 @@ fn word(line: &str, letter: char) -> Option<f64> {
     code.split_whitespace().skip(1).find_map(|word| word.strip_prefix(letter)?.parse().ok())
 }
 
-/// What is said of `text` against a fixture laid out so, by the file's own settings.
+/// What `check` finds in `text`, against a fixture placed like this, by the file's own settings.
 pub(crate) fn judge(text: &str, stl: &str, placement: &Placement) -> Verdict {
     let print = reader::Print::read(&mut text.as_bytes(), 1.75).unwrap();
-    let told = profile::recorded(&print.values).unwrap();
-    let settings = &told.unwrap().settings;
+    let recorded = profile::recorded(&print.values).unwrap();
+    let settings = &recorded.unwrap().settings;
     let terms = Terms::new(Some(settings), Some(settings), &print);
     let path = fixtures().join(stl).to_str().unwrap().to_owned();
     let placed = slicer::place(
@@ -93,21 +93,21 @@ pub(crate) fn largest(verdict: &Verdict, code: Code) -> &Finding {
     verdict.findings.iter().find(|finding| finding.code == code).unwrap()
 }
 
-/// The largest finding of the first of these kinds, which are all that are found.
+/// Asserts that exactly these kinds are found. Returns the largest finding of the first kind.
 #[track_caller]
 pub(crate) fn only<'v>(verdict: &'v Verdict, codes: &[Code]) -> &'v Finding {
     assert_eq!(kinds(verdict), codes, "{}", listed(verdict));
     &verdict.findings[0]
 }
 
-/// What is found but for sums, which follow from many faults.
+/// The findings without wrong sums, which follow from many faults.
 pub(crate) fn without_sums(mut verdict: Verdict) -> Verdict {
     verdict.findings.retain(|finding| finding.code != Code::WrongSums);
     verdict.counts.retain(|count| count.code != Code::WrongSums);
     verdict
 }
 
-/// Some of what is found, a line each.
+/// The first findings, one a line.
 pub(crate) fn listed(verdict: &Verdict) -> String {
     let some = verdict.findings.iter().take(9);
     some.map(|finding| format!("{finding}\n")).collect()

@@ -1,4 +1,4 @@
-//! G-code text -> Print: every move with what it is for. Written from the format's rules, not from the writer.
+//! G-code text -> Print: parses every move with its role, from the format's rules and not from the writer.
 
 use std::collections::BTreeMap;
 
@@ -96,7 +96,7 @@ struct State {
 }
 
 impl Print {
-    /// Reads `text`, and says which line is no G-code.
+    /// Reads `text`. An error names the line that is no G-code.
     pub(crate) fn read(text: &str) -> Result<Self, String> {
         let mut print = Self::default();
         let mut state = State {
@@ -186,7 +186,7 @@ impl Print {
                 let e = values
                     .get("E")
                     .map_or(0.0, |&e| if state.relative_e { e } else { e - state.e });
-                // Sums of decimals: what is below the last digit is no filament.
+                // Differences of decimals: removes the rounding below the last digit.
                 let e = (e * 1e6).round() / 1e6;
                 state.e += e;
                 self.moves.push(Move {
@@ -215,7 +215,7 @@ impl Print {
         self.moves.iter().filter(|m| m.is_bead())
     }
 
-    /// Those of one kind.
+    /// Beads of one kind.
     pub(crate) fn of(&self, kind: Kind) -> impl Iterator<Item = &Move> {
         self.beads().filter(move |m| m.kind == kind)
     }

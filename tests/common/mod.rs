@@ -1,4 +1,4 @@
-//! Helpers of the integration tests: solids in code, a run of the slicer, its G-code read back, and judgements of it.
+//! Solids -> prints: makes solids in code, slices them, reads the G-code back and checks it, for all tests.
 
 #![allow(dead_code, reason = "no test uses all of it")]
 #![allow(unused_imports, reason = "no test uses all of it")]

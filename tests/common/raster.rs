@@ -1,4 +1,4 @@
-//! Beads -> bitmap: how often each spot of a layer is covered.
+//! Beads -> bitmap: counts how often each pixel of a layer is covered.
 
 use super::gcode::Move;
 
@@ -41,7 +41,7 @@ impl Bitmap {
         [at(column, 0), at(row, 1)]
     }
 
-    /// Of the pixels that `within` says yes to: how many, and how many of them are covered.
+    /// The number of pixels that `within` accepts, and how many of them are covered.
     pub(crate) fn covered(&self, within: impl Fn([f64; 2]) -> bool) -> (usize, usize) {
         let mut counted = (0, 0);
         for (k, &count) in self.counts.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Triangles -> Section: a body cut at one height, in floating point and without any code of the slicer.
+//! Triangles -> Section: cuts a body at one height, in floating point and without any code of the slicer.
 
 use super::solid::Solid;
 
@@ -69,8 +69,8 @@ impl Section {
         if self.is_inside(p) { -distance } else { distance }
     }
 
-    /// How far a disc of `radius` around `p` reaches out of the body, which may be
-    /// made of shells that overlap: tried in 24 directions.
+    /// How far a disc of `radius` around `p` reaches out of the body, tried in 24 directions. Shells
+    /// of the body may overlap.
     pub(crate) fn reach(&self, p: [f64; 2], radius: f64) -> f64 {
         if self.is_inside(p) && self.distance(p, radius) >= radius {
             return 0.0;

@@ -14,7 +14,7 @@ pub(crate) struct Solid {
 }
 
 impl Solid {
-    /// Outlines of as many corners each, stacked: sides between neighbours, lids at both ends.
+    /// Stacks outlines with equally many corners: sides between neighbours, lids at both ends.
     pub(crate) fn tower(rings: &[(Outline, f64)]) -> Self {
         let at = |k: usize, i: usize| {
             let (outline, z) = &rings[k];

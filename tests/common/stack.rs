@@ -1,4 +1,4 @@
-//! Random layers, prepared as the pipeline does it.
+//! Random stars -> Stack: layers for property tests, prepared as the pipeline does it.
 
 use super::solid::{Outline, star};
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! The same part told in another way -> the same print: order of triangles, place in the file, turns, copies, threads.
+//! The same part in another form -> the same print: order of triangles, place in the file, turns, copies, threads.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 

@@ -1,4 +1,4 @@
-//! Prints -> times, flows and costs: what the file and the report say of them is true of the moves.
+//! Prints -> times, flows and costs: tests that file and report agree with the moves.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -187,7 +187,7 @@ fn an_estimate_of_the_file_agrees() {
             let text = &run.text.as_bytes()[..end];
             let read = estimate(&mut &text[..], "test", &limits, options).unwrap();
             let time = &run.report.time;
-            // Where the first way of a print begins, only the start block knows.
+            // Only the start block knows where the first travel of a print begins.
             let read_s = read.seconds - read.start_seconds - read.layers[0].seconds;
             let said_s = time.total_s - time.layers[0].time_s;
             let what = format!("{model} {profile}: {read_s} s of {said_s} s");

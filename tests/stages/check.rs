@@ -1,4 +1,4 @@
-//! Good G-code with one fault made in it -> the findings of `check`: those of the fault, and no others.
+//! Good G-code with one fault -> findings of `check`: reports that fault and no other.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -119,11 +119,11 @@ fn a_cold_nozzle() {
             let kept = lines.clone().filter(|line| !left_out.iter().any(|w| line.starts_with(w)));
             kept.map(|line| format!("{line}\n")).collect()
         };
-        // GPX's M6 waits; it is told `T1` by the start block.
+        // GPX's M6 waits; the start block gives it `T1`.
         let verdict = good.judge(&text(&["M104", "M109", "M6 "]));
         let found = only(&verdict, &[Code::ColdExtrusion]);
         assert!(found.text.ends_with("with the nozzle cold"), "{found}");
-        // Told once, of the first line or of what primes the nozzle before it.
+        // Reported once, for the first line or for the priming before it.
         let first = good.moves().find(|m| m.is_bead()).unwrap().line as u64;
         assert!(found.place.line.unwrap() <= first && verdict.counts[0].count == 1);
         let verdict = good.judge(&text(&["M109", "M6 ", "M116", "M133"]));
@@ -437,16 +437,16 @@ fn a_layer_that_lies_lower() {
 
 #[test]
 fn sums_that_are_wrong() {
-    let told = |key: &str| {
+    let comment = |key: &str| {
         let line = CUBE.text.lines().find(|line| line.starts_with(key)).unwrap();
         (line, line.rsplit(' ').next().unwrap().parse::<f64>().unwrap())
     };
-    let (line, used) = told("; filament used [mm]");
+    let (line, used) = comment("; filament used [mm]");
     let verdict =
         CUBE.judge(&CUBE.text.replace(line, &format!("; filament used [mm] = {}", used + 20.0)));
     let found = only(&verdict, &[Code::WrongSums]);
     assert!((found.measure - 20.0).abs() < 0.5, "{found}");
-    let (line, _) = told("; total layers count");
+    let (line, _) = comment("; total layers count");
     let verdict = CUBE.judge(&CUBE.text.replace(line, "; total layers count = 101"));
     let found = only(&verdict, &[Code::WrongSums]);
     assert_eq!((found.measure, found.unit), (1.0, "layers"));
@@ -469,25 +469,25 @@ fn walls_and_skins_that_are_too_fat() {
     }
 }
 
-/// Lines that must all be there: of the outer wall anywhere, of what else is solid on the lowest and
-/// highest layer. Inner walls and skins between are seen by nobody, and no finding.
-static SEEN: LazyLock<Vec<Move>> = LazyLock::new(|| {
-    let is_seen = |m: &&Move| {
+/// Lines on the surface: outer walls on every layer, inner walls and skins on the lowest and the highest
+/// layer. Inner walls and skins between are hidden, and `check` does not report them.
+static VISIBLE: LazyLock<Vec<Move>> = LazyLock::new(|| {
+    let is_visible = |m: &&Move| {
         m.is_bead()
             && m.length() > 3.0
             && (m.kind == Kind::OuterWall
                 || [Some(0), Some(TOP)].contains(&m.layer)
                     && matches!(m.kind, Kind::InnerWall | Kind::Skin))
     };
-    CUBE.moves().filter(is_seen).copied().collect()
+    CUBE.moves().filter(is_visible).copied().collect()
 });
 
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(16) })]
 
     #[test]
-    fn no_line_that_is_seen_can_be_missing(pick in any::<prop::sample::Index>()) {
-        let line = pick.get(&SEEN);
+    fn every_missing_line_on_the_surface_is_reported(pick in any::<prop::sample::Index>()) {
+        let line = pick.get(&VISIBLE);
         let verdict = CUBE.judge(&with_e(&CUBE, line.line, 0.0));
         let code = if line.kind == Kind::OuterWall { Code::OpenOutline } else { Code::OpenSurface };
         prop_assert!(kinds(&verdict).contains(&code), "{line:?}: {}", listed(&verdict));

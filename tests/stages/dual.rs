@@ -1,4 +1,4 @@
-//! Laws of dual injection, for groups of any number of layers, on random stacks of layers and on whole prints.
+//! Stacks of layers, whole prints -> laws: tests dual injection for groups of any number of layers.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -198,7 +198,7 @@ proptest! {
     }
 
     #[test]
-    fn every_place_of_every_skin_is_printed_once_and_what_is_seen_for_itself(
+    fn every_place_of_every_skin_is_printed_once_and_visible_skin_is_thin(
         outlines in stacks(), ratio in 2..5_u32, top in 0..6_usize, bottom in 0..6_usize,
     ) {
         let (top, bottom) = (top.to_string(), bottom.to_string());
@@ -368,7 +368,7 @@ fn filament(run: &Run, kind: Kind) -> f64 {
 }
 
 #[test]
-fn inner_skins_are_printed_for_the_group_and_those_that_are_seen_are_not() {
+fn inner_skins_are_printed_for_the_group_and_visible_skins_are_not() {
     let parts = ("dual.parts", "inner-skin");
     let plain = slice(&fixture("cube_20.stl"), "generic-marlin", &[]);
     for mode in MODES {
@@ -418,7 +418,7 @@ fn inner_walls_of_slopes_are_printed_on_every_layer() {
 }
 
 /// Where beads of these kinds lie on the layers that `keep` names, whichever way they are laid:
-/// layer, ends and height, µm; and the material on each layer, mm. Widths are told only where they
+/// layer, ends and height, µm; and the material on each layer, mm. Widths are annotated only where they
 /// change by 0.01 mm, which depends on what was printed before.
 type Laid = (Vec<(usize, [[i64; 2]; 2], i64)>, BTreeMap<usize, f64>);
 
@@ -458,7 +458,7 @@ fn walls_and_skins_are_those_of_the_plain_print() {
 }
 
 #[test]
-fn what_is_seen_is_that_of_the_plain_print_whatever_is_thick() {
+fn visible_beads_are_those_of_the_plain_print_whatever_is_thick() {
     let all = ("dual.parts", "infill,support,inner-walls,inner-skin");
     for name in ["bracket.stl", "cube_20.stl", "tile.stl", "overhang.stl"] {
         let plain = slice(&fixture(name), "generic-marlin", &[]);
@@ -494,7 +494,7 @@ fn interlaced_layers_take_a_third_of_the_spread_of_groups() {
 }
 
 #[test]
-fn compare_tells_every_way_and_what_it_saves() {
+fn compare_reports_every_mode_and_what_it_saves() {
     let bracket = crate::common::fixtures().join("bracket.stl");
     let run = |more: &[&str]| {
         let mut command = assert_cmd::Command::cargo_bin("slicer").unwrap();
@@ -513,7 +513,7 @@ fn compare_tells_every_way_and_what_it_saves() {
     assert!((saved - of(pair, "saved_percent")).abs() < 1e-9 && saved > 5.0);
     assert!((of(pair, "filament_mm") / of(plain, "filament_mm") - 1.0).abs() < 0.02);
     assert!(ways.iter().all(|way| of(way, "time_s") <= of(plain, "time_s")));
-    // As slicing itself tells it.
+    // As slicing itself reports it.
     let report = slice(&fixture("bracket.stl"), "generic-marlin", &[("dual.mode", "pair")]).report;
     assert!((report.time.total_s - of(pair, "time_s")).abs() < 1e-9);
 }

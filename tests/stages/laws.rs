@@ -1,4 +1,4 @@
-//! Laws that every stage keeps, held against brute force, a library of others and sums, on random shapes.
+//! Random shapes -> laws: tests every stage against brute force, another library and sums.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -141,7 +141,7 @@ proptest! {
     }
 }
 
-/// The inside of `contours` without what is within `r` of any edge, each of them asked on all rows.
+/// The inside of `contours` without everything within `r` of an edge; tests every edge on all rows.
 fn cleared(contours: &[Contour], raster: Raster, r: Coord) -> Rows {
     let enter = |(p, q)| (raster.frame.enter(p), raster.frame.enter(q), r);
     let all: Vec<_> = contours.iter().flat_map(|c| edges(c)).map(enter).collect();
@@ -296,7 +296,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
 
     #[test]
-    fn a_blade_is_not_laid_twice(
+    fn no_part_of_a_blade_is_filled_twice(
         length in 5.0..20.0_f64, lines in 0.5..3.0_f64, degrees in 0.0..360.0_f64, raster: bool,
         bends in (2..5_usize).prop_flat_map(|n| prop::collection::vec(-0.2..0.2_f64, 2 * n)),
     ) {
@@ -333,7 +333,7 @@ fn filament_is_the_volume_of_the_beads() {
             for thick in [false, true] {
                 let laid = run.print.filament(kind, thick) * run.filament_area();
                 let space = 0.9 * space(&run, kind, thick);
-                // Widths are told in steps of 0.01 mm.
+                // Widths are annotated in steps of 0.01 mm.
                 assert!(
                     (laid - space).abs() <= 0.005 * space,
                     "{name} {kind:?}: {laid} for {space}"
@@ -355,7 +355,7 @@ fn filament_is_the_factor_times_the_length_and_thick_lines_take_twice_that() {
                 _ => 0.04,
             };
             let is = m.e / m.length();
-            // Both are rounded, and a line may be 0.01 mm wider than is told.
+            // Both are rounded, and a line may be 0.01 mm wider than annotated.
             // Lines in a zig-zag carry what its round turns save, at most 4 %, and thick ones
             // what is too short to be printed beside them, at most a twentieth.
             let off = match m.kind {
@@ -381,13 +381,13 @@ fn the_report_counts_what_the_file_holds() {
             ("thick infill", Kind::Infill, true),
             ("support", Kind::Support, false),
         ] {
-            let told = run.report.roles.iter().find(|r| r.role == name).unwrap();
+            let reported = run.report.roles.iter().find(|r| r.role == name).unwrap();
             let beads = || run.print.of(kind).filter(|m| run.print.is_thick(m) == thick);
             let length: f64 = beads().map(crate::common::Move::length).sum();
             let filament = run.print.filament(kind, thick);
-            assert!((told.length_mm - length).abs() <= 2e-3 * length, "{name}: {length} mm");
+            assert!((reported.length_mm - length).abs() <= 2e-3 * length, "{name}: {length} mm");
             assert!(
-                (told.filament_mm - filament).abs() <= 1e-3 * filament,
+                (reported.filament_mm - filament).abs() <= 1e-3 * filament,
                 "{name}: {filament} mm"
             );
         }

@@ -1,4 +1,4 @@
-//! The library's stages -> laws: each is handed values in code, and what it returns is held against what must be true.
+//! The library's stages -> laws: calls each stage with values made in code, and tests what it returns.
 
 #[path = "../common/mod.rs"]
 mod common;

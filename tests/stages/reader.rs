@@ -67,7 +67,7 @@ fn roles_come_from_comments_and_from_what_moves() {
 }
 
 #[test]
-fn layers_are_marked_or_told_from_heights() {
+fn layers_come_from_marks_or_from_heights() {
     let layers = |text: &str| {
         let (events, _) = read(text.as_bytes());
         let marked = |event: &Event| match event {
@@ -104,7 +104,7 @@ fn arcs_are_as_long_as_they_are() {
 }
 
 #[test]
-fn waits_are_told_apart_and_unknown_lines_counted() {
+fn kinds_of_waits_are_distinguished_and_unknown_lines_counted() {
     let text =
         "M109 S200\nG28\nG4 P1500\nG4 S2\nM400\nT1\nM862.3 P \"MK3\"\nFOO BAR=1\nG999\n%\n(x)";
     let (events, summary) = read_without_commands(text);
@@ -130,7 +130,7 @@ fn waits_are_told_apart_and_unknown_lines_counted() {
 }
 
 #[test]
-fn the_way_from_an_unknown_place_is_not_counted() {
+fn a_move_from_an_unknown_place_is_not_counted() {
     let motion = moves("G162 X Y F2500\nG161 Z F1100\nM132 X Y Z\nG1 X0 Y-74 Z50 F3300\nG1 X10");
     assert_eq!(motion.len(), 1);
     assert_eq!(motion[0].from, [0.0, -74.0, 50.0]);

@@ -1,4 +1,4 @@
-//! STL bytes -> Mesh, from outside: both forms agree, damage never panics, real files load.
+//! STL bytes -> Mesh: tests that both forms agree, damage never panics and real files load.
 
 use proptest::prelude::*;
 use slicer::error::Error;
@@ -133,7 +133,7 @@ fn check(bytes: &[u8]) -> Result<place::Placed, Error> {
     result
 }
 
-/// What a test says that finds no models.
+/// The message of a test that finds no models.
 const SKIPPED: &str = "skipped: SLICER_MODELS names no folder of models";
 
 /// The folder of models, if there is one on this machine.
@@ -209,7 +209,7 @@ fn broken_models_are_read_or_refused_with_a_reason() {
         read::from_path(&folder.join("broken/good_tower.stl").to_string_lossy(), MOST).unwrap(),
     );
     let good = good.unwrap().reports[0].volume_mm3;
-    let mut seen = 0;
+    let mut tested = 0;
     for line in table.lines().skip(1) {
         let fields: Vec<&str> = line.split('\t').collect();
         let result = check(&std::fs::read(folder.join("broken").join(fields[0])).unwrap());
@@ -226,9 +226,9 @@ fn broken_models_are_read_or_refused_with_a_reason() {
         } else if !expected.starts_with("refuse") && !expected.contains("or refuse") {
             assert!(result.is_ok(), "{}", fields[0]);
         }
-        seen += 1;
+        tested += 1;
     }
-    assert!(seen > 60);
+    assert!(tested > 60);
 }
 
 #[test]

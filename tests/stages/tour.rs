@@ -1,4 +1,4 @@
-//! Ordered paths -> better ordered paths: what reordering keeps, on random runs of paths.
+//! Ordered paths -> reordered paths: tests what reordering keeps, on random runs of paths.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -68,7 +68,7 @@ fn paths() -> impl Strategy<Value = Vec<Path>> {
 
 proptest! {
     #[test]
-    fn every_path_is_visited_once_and_the_way_is_never_longer(paths in paths()) {
+    fn every_path_comes_once_and_travels_never_take_longer(paths in paths()) {
         let from = Point { x: 100_000, y: -150_000 };
         let better = improve(paths.clone(), Some(from), &Lengths);
         prop_assert!(cost(from, &better) <= cost(from, &paths) + 1e-6);
@@ -91,7 +91,7 @@ proptest! {
 }
 
 #[test]
-fn a_path_left_behind_is_fetched_on_the_way() {
+fn a_path_left_behind_is_moved_to_where_the_nozzle_passes() {
     let upright = |x: Coord| line(Role::Infill, vec![place(x, 0), place(x, 10_000)]);
     let order = [10_000, 20_000, 40_000, 50_000, 30_000, 60_000].map(upright).to_vec();
     let better = improve(order, Some(Point { x: 0, y: 0 }), &Lengths);
