@@ -36,6 +36,10 @@ pub fn nearest(value: f64) -> i64 {
     (value + 0.5_f64.copysign(value)) as i64
 }
 
+/// A coordinate as G-code has it: a thousandth of a mm. Not a grid unit, of which it has ten.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Thousandths(pub i32);
+
 /// A speed in mm/s, as all speeds are that stages hand to each other.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
 pub struct MmPerS(pub f64);

@@ -19,13 +19,13 @@ use crate::fill::{Both, Path, PathPoint, Role, RoleTable};
 use crate::geom::Point;
 use crate::plan::Toolpath;
 use crate::profile::{ExtrusionModel, Settings};
-use crate::units::{Coord, UNITS_PER_MM, to_mm, to_units};
+use crate::units::{Coord, Thousandths, UNITS_PER_MM, to_mm, to_units};
 
 /// A straight move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Move {
     /// Where it ends in x and y on the machine, thousandths of a mm.
-    pub to: [i32; 2],
+    pub to: [Thousandths; 2],
     /// Where it ends in z, grid units.
     pub z: Coord,
     /// mm/min, as written.
@@ -77,7 +77,7 @@ pub struct Moves {
     /// Height of the layer, grid units.
     pub height: Coord,
     /// Where the nozzle comes from, thousandths of a mm, if known.
-    pub from: Option<[i32; 2]>,
+    pub from: Option<[Thousandths; 2]>,
     /// The moves, in order.
     pub moves: Vec<Move>,
     /// For each path, the index of the first move of its approach.
@@ -153,13 +153,13 @@ impl MoveParams {
         (self.retract, whole_feed(self.retract_feed))
     }
 
-    /// Machine coordinates of a point, thousandths of a mm.
-    fn place(&self, p: Point) -> [i32; 2] {
+    /// Machine coordinates of a point.
+    fn place(&self, p: Point) -> [Thousandths; 2] {
         let [x, y] = self.offset;
         // A thousandth is ten units. Halves round upwards on both sides of zero, so that equal
         // beads stay equal wherever they lie.
         [(i64::from(p.x) + x + 5).div_euclid(10), (i64::from(p.y) + y + 5).div_euclid(10)]
-            .map(|thousandths| thousandths as i32)
+            .map(|thousandths| Thousandths(thousandths as i32))
     }
 }
 
@@ -168,7 +168,7 @@ struct Walk<'a> {
     params: &'a MoveParams,
     out: Moves,
     /// Position of the nozzle: in the layout and on the machine.
-    at: Option<(Point, [i32; 2])>,
+    at: Option<(Point, [Thousandths; 2])>,
     /// Height of the nozzle, once this layer has set it.
     z: Option<Coord>,
     /// The greatest z printed so far. Travels pass over it.
@@ -241,7 +241,7 @@ impl<'a> Walk<'a> {
 
     /// Adds a move that ends at the nozzle's current position.
     fn push(&mut self, feed: f64, length: f64, filament: f64, kind: Kind) {
-        let to = self.at.map_or([0, 0], |(_, place)| place);
+        let to = self.at.map_or([Thousandths(0); 2], |(_, place)| place);
         let z = self.z.unwrap_or(self.out.z);
         self.out.moves.push(Move { to, z, feed: whole_feed(feed), length, filament, kind });
     }

@@ -15,7 +15,7 @@
 use super::moves::{Kind, Move, Moves};
 use crate::fill::{Both, Role, RoleTable};
 use crate::motion::{self, Clock, Limits, Timed};
-use crate::units::{Coord, MmPerMin, to_mm};
+use crate::units::{Coord, MmPerMin, Thousandths, to_mm};
 use std::collections::VecDeque;
 
 /// How long a print takes, without its start and end blocks.
@@ -86,7 +86,7 @@ pub struct Timer {
     clock: Clock<Part>,
     ledger: Ledger,
     /// Position of the nozzle, thousandths of a mm, if known.
-    at: Option<[i32; 2]>,
+    at: Option<[Thousandths; 2]>,
     /// Its z, grid units, if known.
     z: Option<Coord>,
     /// Filament of segments too short to be written, mm. It goes with the next move.
@@ -144,7 +144,7 @@ impl Timer {
         // The first travel starts where the start block ends, which is unknown here: it counts
         // as part of that block.
         let at = self.at.unwrap_or(step.to);
-        let [x, y] = [step.to[0] - at[0], step.to[1] - at[1]].map(|d| f64::from(d) / 1000.0);
+        let [x, y] = [0, 1].map(|k| f64::from(step.to[k].0 - at[k].0) / 1000.0);
         let (delta, part) = match step.kind {
             Kind::Travel => {
                 self.at = Some(step.to);

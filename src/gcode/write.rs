@@ -17,7 +17,7 @@ use super::moves::{Bead, Kind, Move, MoveParams, Moves};
 use super::number::{push_fixed, thousandths};
 use crate::fill::Role;
 use crate::profile::Settings;
-use crate::units::{Coord, nearest, to_mm};
+use crate::units::{Coord, Thousandths, nearest, to_mm};
 use std::io::Write as _;
 
 /// The smallest change of width that is annotated: 0.01 mm. A trade-off: a smaller value
@@ -100,7 +100,7 @@ struct Text<'a> {
     /// E as last written, 10⁻⁵ mm.
     written_e: i64,
     /// Position of the nozzle, thousandths of a mm.
-    at: Option<[i32; 2]>,
+    at: Option<[Thousandths; 2]>,
     /// Its z, grid units.
     z: Option<Coord>,
     feed: u32,
@@ -206,7 +206,7 @@ impl<'a> Text<'a> {
     }
 
     /// Begins a move to `to` and `z` with the words that change. Returns whether there are any.
-    fn go(&mut self, to: [i32; 2], z: Option<Coord>) -> bool {
+    fn go(&mut self, to: [Thousandths; 2], z: Option<Coord>) -> bool {
         if self.at == Some(to) && self.z == z {
             return false;
         }
@@ -215,7 +215,7 @@ impl<'a> Text<'a> {
         for (axis, word) in [b" X", b" Y"].into_iter().enumerate() {
             if before.is_none_or(|before| before[axis] != to[axis]) {
                 self.out.extend_from_slice(word);
-                push_fixed::<3>(&mut self.out, i64::from(to[axis]));
+                push_fixed::<3>(&mut self.out, i64::from(to[axis].0));
             }
         }
         if let Some(z) = z.filter(|&z| self.z != Some(z)) {
