@@ -55,16 +55,23 @@ pub enum Warning {
         /// Its largest side as placed, mm.
         size_mm: f64,
     },
+    /// A print speed so low that it is hardly meant.
+    SlowSpeed {
+        /// The setting.
+        setting: String,
+        /// Its value, mm/s.
+        speed_mm_s: f64,
+    },
     /// Lines that the hot end cannot melt as fast as was asked for, printed slower.
     FlowLimited {
         /// What they are for, as in the report's roles.
         role: String,
         /// The setting that asked for it.
         setting: String,
-        /// Highest feed asked for, mm/min.
-        asked_mm_min: u32,
-        /// Lowest feed given, mm/min.
-        lowest_mm_min: u32,
+        /// Highest speed asked for, mm/s.
+        asked_mm_s: f64,
+        /// Lowest speed given, mm/s.
+        lowest_mm_s: f64,
         /// What the hot end melts, mm³/s.
         limit_mm3_s: f64,
     },
@@ -107,16 +114,26 @@ impl fmt::Display for Warning {
                 "{file}: the model is only {size_mm:.3} mm large; if its unit is not mm, \
                  use --unit or --scale"
             ),
-            Self::FlowLimited { role, setting, asked_mm_min, lowest_mm_min, limit_mm3_s } => {
+            Self::SlowSpeed { setting, speed_mm_s } => {
+                write!(f, "{setting} = {speed_mm_s} is very slow; speeds are in mm/s")
+            }
+            Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
                 write!(
                     f,
-                    "{role}: slowed down from {asked_mm_min} to as little as {lowest_mm_min} mm/min, \
+                    "{role}: slowed down from {} to as little as {} mm/s, \
                  since the hot end melts no more than {limit_mm3_s} mm³/s; set {setting} to that, \
-                 or machine.max_volumetric_flow if it melts more"
+                 or machine.max_volumetric_speed if it melts more",
+                    short(*asked_mm_s),
+                    short(*lowest_mm_s),
                 )
             }
         }
     }
+}
+
+/// A speed in hundredths, rounded down: what a setting may be without being too much.
+fn short(speed: f64) -> f64 {
+    (speed * 100.0 + 1e-6).floor() / 100.0
 }
 
 /// A number of things, such as `1 byte` or `2 bytes`.

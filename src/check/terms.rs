@@ -97,9 +97,8 @@ impl Machine {
             dialect: machine.dialect,
             low: [low[0], low[1], 0.0],
             high: [low[0] + size[0], low[1] + size[1], machine.bed_height],
-            speed: [limits.feed_x, limits.feed_y, limits.feed_z, limits.feed_e]
-                .map(|per_minute| per_minute / 60.0),
-            flow: machine.max_volumetric_flow,
+            speed: [limits.speed_x, limits.speed_y, limits.speed_z, limits.speed_e],
+            flow: machine.max_volumetric_speed,
         }
     }
 }

@@ -176,7 +176,7 @@ pub(crate) struct CompareArgs {
     /// Built-in profile, or a file if it has a `/` or ends in .toml
     #[arg(short, long, value_name = "NAME", default_value = DEFAULT, help_heading = "Settings")]
     pub(crate) profile: String,
-    /// Change any setting of the profile, such as speed.wall=1500 (repeatable)
+    /// Change any setting of the profile, such as speed.wall=25 (repeatable)
     #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
     pub(crate) set: Vec<String>,
     #[command(flatten)]
@@ -198,7 +198,7 @@ pub(crate) struct SliceArgs {
     /// Built-in profile, or a file if it has a `/` or ends in .toml
     #[arg(short, long, value_name = "NAME", default_value = DEFAULT, help_heading = "Settings")]
     pub(crate) profile: String,
-    /// Change any setting of the profile, such as speed.wall=1500 (repeatable)
+    /// Change any setting of the profile, such as speed.wall=25 (repeatable)
     #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
     pub(crate) set: Vec<String>,
     #[command(flatten)]
@@ -334,8 +334,8 @@ impl SettingArgs {
             ("--walls", "walls", self.walls.clone()),
             ("--skin-layers", "skin_layers", self.skin_layers.clone()),
             // A profile may tell top and bottom apart; the flag means both.
-            ("--skin-layers", "top_skin_layers", self.skin_layers.clone()),
-            ("--skin-layers", "bottom_skin_layers", self.skin_layers.clone()),
+            ("--skin-layers", "top_layers", self.skin_layers.clone()),
+            ("--skin-layers", "bottom_layers", self.skin_layers.clone()),
             ("--infill", "infill", self.infill.clone()),
             ("--pattern", "pattern", self.pattern.clone()),
             ("--support", "support.enabled", switched(self.support, "true")),
@@ -367,7 +367,7 @@ mod tests {
         let arguments = Arguments::try_parse_from(words).unwrap();
         let overrides = arguments.slice.settings.overrides();
         let keys: Vec<_> = overrides.iter().map(|one| one.key.as_str()).collect();
-        assert_eq!(keys, ["skin_layers", "top_skin_layers", "bottom_skin_layers"]);
+        assert_eq!(keys, ["skin_layers", "top_layers", "bottom_layers"]);
     }
 
     #[test]

@@ -99,7 +99,9 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
 
 fn print((name, bytes): &(&str, Vec<u8>)) -> Result<Print> {
     let print = Print::read(&mut bytes.as_slice(), SOME_DIAMETER);
-    print.map_err(|error| Cause::Unreadable(error).of(name).into())
+    let mut print = print.map_err(|error| Cause::Unreadable(error).of(name))?;
+    print.values = profile::renewed(&print.values);
+    Ok(print)
 }
 
 fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Result<Side> {

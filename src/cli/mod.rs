@@ -23,6 +23,7 @@ use anyhow::{Context as _, Result};
 use args::{Arguments, Command, ProfileCommand};
 use clap::{CommandFactory as _, Parser as _};
 use slicer::profile;
+use slicer::report::make::slow_speeds;
 use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::Path;
@@ -122,7 +123,11 @@ fn other(command: &Command) -> Result<Outcome> {
             let bare = !name.contains('/') && !name.ends_with(".toml");
             let built_in = profile::builtin_names().any(|known| known == name);
             let file = bare && !built_in && Path::new(name).is_file();
-            profile::load(&if file { format!("./{name}") } else { name.clone() }, &[])?;
+            let name_or_path = if file { format!("./{name}") } else { name.clone() };
+            let profile = profile::load(&name_or_path, &[])?;
+            for warning in slow_speeds(&profile.settings) {
+                say(&format!("warning: {warning}\n"));
+            }
             format!("{name}: good\n")
         }
         Command::Compare(args) => compare::run(args)?,

@@ -25,7 +25,7 @@ pub(super) struct FlowLimit {
 
 impl FlowLimit {
     pub(super) fn new(settings: &Settings) -> Self {
-        Self { most: settings.machine.max_volumetric_flow, area: settings.filament_area() }
+        Self { most: settings.machine.max_volumetric_speed, area: settings.filament_area() }
     }
 
     /// The feed (mm/min) and the flow (mm³/s) of a bead that takes `filament` mm for each mm of
@@ -44,7 +44,18 @@ impl FlowLimit {
     }
 }
 
-/// A feed as it is written, mm/min.
+/// A speed, mm/s, as a feed, mm/min.
+pub(super) fn feed(speed: f64) -> f64 {
+    60.0 * speed
+}
+
+/// A feed as a speed, mm/s, for people.
+#[must_use]
+pub fn speed(feed: u32) -> f64 {
+    f64::from(feed) / 60.0
+}
+
+/// A feed as it is written: the nearest whole mm/min.
 pub(super) fn whole_feed(feed: f64) -> u32 {
     nearest(feed).max(1) as u32
 }

@@ -85,7 +85,7 @@ pub(super) fn tail(layers: usize, sums: &Sums, settings: &Settings) -> String {
          ; first_layer_temperature = {nozzle}\n; temperature = {nozzle}\n\
          ; first_layer_bed_temperature = {bed}\n; bed_temperature = {bed}\n\n",
         machine.name,
-        machine.nozzle,
+        machine.nozzle_diameter,
         filament.name.replace('"', "\\\""),
     )
 }

@@ -91,8 +91,8 @@ impl<'a> Writer<'a> {
             end: String::new(),
         };
         // Both blocks at once: one that cannot be filled in is refused before anything is written.
-        writer.end = writer.block("machine.end", &settings.machine.end)?;
-        let block = writer.block("machine.start", &settings.machine.start)?;
+        writer.end = writer.block("machine.end_gcode", &settings.machine.end_gcode)?;
+        let block = writer.block("machine.start_gcode", &settings.machine.start_gcode)?;
         let e_mode = if settings.machine.relative_e { "M83" } else { "M82" };
         let head = hosts::head(facts.layers, thumbnails);
         let start = format!("{head};TYPE:Custom\n{block}{e_mode}\nG92 E0\n");

@@ -14,7 +14,7 @@
 //! 3. Write a move for each pair of points. Filament is length x width x height x rate of the role.
 //! 4. Where width or height change, compute the feed again, clamped to the flow limit.
 
-use super::flow::{FlowLimit, Flows, Lowered, whole_feed};
+use super::flow::{FlowLimit, Flows, Lowered, feed, whole_feed};
 use crate::fill::{Both, Path, PathPoint, Role, RoleTable};
 use crate::geom::Point;
 use crate::plan::Toolpath;
@@ -118,12 +118,15 @@ impl MoveParams {
         Self {
             offset: offset.map(|mm| i64::from(to_units(mm))),
             rates: RoleTable::new(|role| rate((role.facts().factor)(x))),
-            feeds: RoleTable::new(|role| (role.facts().speed)(s)),
+            feeds: RoleTable::new(|role| {
+                let speed = (role.facts().speed)(s);
+                Both { thin: feed(speed.thin), thick: feed(speed.thick) }
+            }),
             first_layer: s.first_layer / 100.0,
-            travel_feed: s.travel,
-            z_feed: s.z,
+            travel_feed: feed(s.travel),
+            z_feed: feed(s.z),
             retract: settings.retraction.length,
-            retract_feed: settings.retraction.feed,
+            retract_feed: feed(settings.retraction.speed),
             hop: to_units(settings.retraction.z_hop),
             limit: FlowLimit::new(settings),
         }
@@ -340,7 +343,7 @@ mod tests {
         assert!((plastic - 0.5 * 0.4 * 0.5).abs() < 1e-9, "{plastic}");
         // A bead more than twice as high is laid more slowly where the hot end melts no more.
         let flow = |m: &Move| f64::from(m.feed) / 60.0 * 0.4 * 0.5;
-        assert!(flow(beads[1]) <= settings.machine.max_volumetric_flow + 1e-9);
+        assert!(flow(beads[1]) <= settings.machine.max_volumetric_speed + 1e-9);
     }
 
     #[test]

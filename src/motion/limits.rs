@@ -3,9 +3,6 @@
 use crate::profile::{JunctionRule, Settings};
 use crate::units::Bounded as _;
 
-/// Feeds are in mm/min where people set them.
-const SECONDS_PER_MINUTE: f64 = 60.0;
-
 /// What a machine's planner holds itself to. Arrays are x, y, z, e.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limits {
@@ -92,9 +89,8 @@ impl Limits {
     pub fn new(settings: &Settings) -> Self {
         let limits = &settings.limits;
         let jerk = [limits.jerk_x, limits.jerk_y, limits.jerk_z, limits.jerk_e];
-        let per_minute = [limits.feed_x, limits.feed_y, limits.feed_z, limits.feed_e];
         Self {
-            feed: per_minute.map(|feed| feed / SECONDS_PER_MINUTE),
+            feed: [limits.speed_x, limits.speed_y, limits.speed_z, limits.speed_e],
             acceleration: [
                 limits.acceleration_x,
                 limits.acceleration_y,

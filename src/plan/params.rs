@@ -31,9 +31,9 @@ impl PlanParams {
             min_travel: to_units(settings.retraction.min_travel),
             retracts: settings.retraction.length > 0.0,
             times: Times {
-                feed: settings.speed.travel / 60.0 * UNITS_PER_MM,
+                feed: settings.speed.travel * UNITS_PER_MM,
                 acceleration: settings.limits.travel_acceleration * UNITS_PER_MM,
-                retraction: 120.0 * settings.retraction.length / settings.retraction.feed,
+                retraction: 2.0 * settings.retraction.length / settings.retraction.speed,
             },
         }
     }

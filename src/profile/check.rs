@@ -48,7 +48,7 @@ impl Blame<'_> {
 }
 
 fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
-    let nozzle = settings.machine.nozzle;
+    let nozzle = settings.machine.nozzle_diameter;
     let width = settings.line_width;
     for (key, height) in [
         ("layer_height", settings.layer_height),
@@ -56,10 +56,10 @@ fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
     ] {
         if height > nozzle + SLACK_MM {
             let why = format!(
-                "{key} = {height} mm is more than machine.nozzle = {nozzle} mm; \
+                "{key} = {height} mm is more than machine.nozzle_diameter = {nozzle} mm; \
                  use thinner layers or a larger nozzle"
             );
-            return Err(blame.error(&[key, "machine.nozzle"], &why));
+            return Err(blame.error(&[key, "machine.nozzle_diameter"], &why));
         }
         if width < LEAST_WIDTH * height - SLACK_MM {
             let why = format!(
@@ -88,38 +88,46 @@ fn dual(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
     }
     let why = format!(
         "{} layers of layer_height = {height} mm make thick lines taller than the {most} mm that \
-         dual.max_bead_height and machine.nozzle allow; use thinner layers, a lower dual.ratio, \
+         dual.max_bead_height and machine.nozzle_diameter allow; use thinner layers, a lower dual.ratio, \
          or dual.mode = \"off\"",
         ratio.max(2)
     );
-    let keys =
-        ["dual.ratio", "layer_height", "dual.mode", "dual.max_bead_height", "machine.nozzle"];
+    let keys = [
+        "dual.ratio",
+        "layer_height",
+        "dual.mode",
+        "dual.max_bead_height",
+        "machine.nozzle_diameter",
+    ];
     Err(blame.error(&keys, &why))
 }
 
 fn blocks(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
     let values = template::values(settings, &PrintFacts::default());
     let machine = &settings.machine;
-    for (key, block) in [("machine.start", &machine.start), ("machine.end", &machine.end)] {
+    for (key, block) in
+        [("machine.start_gcode", &machine.start_gcode), ("machine.end_gcode", &machine.end_gcode)]
+    {
         let text = template::render(key, block, &values)
             .map_err(|error| blame.error(&[key], &error.to_string()))?;
         if machine.dialect == DialectName::Makerbot {
             no_host_codes(key, &text).map_err(|why| blame.error(&[key], &why))?;
         }
     }
-    if settings.filament.bed_temperature > 0.0 && !machine.start.contains("{bed_temperature}") {
+    if settings.filament.bed_temperature > 0.0 && !machine.start_gcode.contains("{bed_temperature}")
+    {
         let why = format!(
-            "filament.bed_temperature = {} °C would have no effect: machine.start does not \
+            "filament.bed_temperature = {} °C would have no effect: machine.start_gcode does not \
              contain {{bed_temperature}}; put it there, or set 0",
             settings.filament.bed_temperature
         );
-        return Err(blame.error(&["filament.bed_temperature", "machine.start"], &why));
+        return Err(blame.error(&["filament.bed_temperature", "machine.start_gcode"], &why));
     }
-    let says_relative = ["M83", "{e_mode}"].iter().any(|code| machine.start.contains(code));
+    let says_relative = ["M83", "{e_mode}"].iter().any(|code| machine.start_gcode.contains(code));
     if machine.relative_e && !says_relative {
-        let why = "machine.relative_e = true, but machine.start contains neither M83 nor {e_mode}; \
+        let why = "machine.relative_e = true, but machine.start_gcode contains neither M83 nor {e_mode}; \
                    put {e_mode} on a line of its own";
-        return Err(blame.error(&["machine.relative_e", "machine.start"], why));
+        return Err(blame.error(&["machine.relative_e", "machine.start_gcode"], why));
     }
     Ok(())
 }

@@ -6,17 +6,35 @@ use std::f64::consts::PI;
 /// Slack for comparing lengths that were written as decimals, mm.
 const SLACK_MM: f64 = 1e-9;
 
+/// No print is as slow as this on purpose, mm/s: who asks for less has another unit in mind.
+const SLOW_MM_S: f64 = 2.0;
+
 impl Settings {
     /// Solid layers at the top.
     #[must_use]
     pub fn top_skins(&self) -> u32 {
-        self.top_skin_layers.unwrap_or(self.skin_layers)
+        self.top_layers.unwrap_or(self.skin_layers)
     }
 
     /// Solid layers at the bottom.
     #[must_use]
     pub fn bottom_skins(&self) -> u32 {
-        self.bottom_skin_layers.unwrap_or(self.skin_layers)
+        self.bottom_layers.unwrap_or(self.skin_layers)
+    }
+
+    /// Print speeds that are so slow, in mm/s, that they are hardly meant: key and value.
+    #[must_use]
+    pub fn slow_speeds(&self) -> Vec<(&'static str, f64)> {
+        let speed = &self.speed;
+        let mut speeds = vec![
+            ("speed.wall", speed.wall),
+            ("speed.skin", speed.skin),
+            ("speed.infill", speed.infill),
+            ("speed.thick_infill", speed.thick_infill),
+            ("speed.support", speed.support),
+        ];
+        speeds.retain(|(_, speed)| *speed < SLOW_MM_S);
+        speeds
     }
 
     /// The cross-section of the filament, mm².
@@ -28,7 +46,7 @@ impl Settings {
     /// The tallest line that dual injection may print, mm.
     #[must_use]
     pub fn max_bead_height(&self) -> f64 {
-        self.dual.max_bead_height / 100.0 * self.machine.nozzle
+        self.dual.max_bead_height / 100.0 * self.machine.nozzle_diameter
     }
 
     /// How many layers dual injection prints at once: as asked for, or with `auto` as many
@@ -41,7 +59,7 @@ impl Settings {
             DualRatio::Layers(layers) => layers,
             DualRatio::Auto(_) => {
                 let tall = ((self.max_bead_height() + SLACK_MM) / self.layer_height).floor();
-                let melts = (self.machine.max_volumetric_flow / self.layer_flow()).ceil();
+                let melts = (self.machine.max_volumetric_speed / self.layer_flow()).ceil();
                 tall.min(melts.max(2.0)) as u32
             }
         }
@@ -58,7 +76,7 @@ impl Settings {
                 extrusion.infill_factor * self.filament_area() * width * height
             }
         };
-        extrusion.multiplier * area * self.speed.thick_infill / 60.0
+        extrusion.multiplier * area * self.speed.thick_infill
     }
 }
 
@@ -90,9 +108,9 @@ mod tests {
     #[test]
     fn auto_stops_where_more_layers_only_mean_slower_lines() {
         // 0.4 mm x 0.1 mm x 60 mm/s are 2.4 mm³/s a layer.
-        let slow = [("layer_height", "0.1"), ("machine.max_volumetric_flow", "6")];
+        let slow = [("layer_height", "0.1"), ("machine.max_volumetric_speed", "6")];
         assert_eq!(auto("generic-marlin", &slow), 3);
-        let slower = [("layer_height", "0.1"), ("machine.max_volumetric_flow", "2")];
+        let slower = [("layer_height", "0.1"), ("machine.max_volumetric_speed", "2")];
         assert_eq!(auto("generic-marlin", &slower), 2);
         // The thesis's factor: 0.04 mm of 1.75 mm filament at 60 mm/s are 5.8 mm³/s a layer.
         assert_eq!(auto("zcube-dual", &[]), 2);

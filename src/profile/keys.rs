@@ -1,6 +1,6 @@
 //! Key name -> what it may hold: the one table of all settings with unit, limits and meaning.
 
-use super::sizes;
+use super::{old, sizes};
 use toml::Value;
 
 /// What a key may hold.
@@ -112,8 +112,8 @@ pub const KEYS: &[Key] = &[
     word("wall_order", &["outer-first", "inner-first"], "which wall is printed first"),
     word("seam", &["nearest", "rear"], "where a wall begins"),
     count("skin_layers", "layers", 0, 10_000, "solid layers at the top and at the bottom"),
-    optional(count("top_skin_layers", "layers", 0, 10_000, "solid layers at the top, if not skin_layers")),
-    optional(count("bottom_skin_layers", "layers", 0, 10_000, "solid layers at the bottom, if not skin_layers")),
+    optional(count("top_layers", "layers", 0, 10_000, "solid layers at the top, if not skin_layers")),
+    optional(count("bottom_layers", "layers", 0, 10_000, "solid layers at the bottom, if not skin_layers")),
     number("skin_reach", "mm", 0.0, 20.0, "how far a skin reaches sideways into the infill"),
     number("infill", "%", 0.0, 100.0, "density of the sparse infill"),
     word("pattern", &["rectilinear", "aligned", "grid", "triangles"], "pattern of the sparse infill"),
@@ -129,17 +129,17 @@ pub const KEYS: &[Key] = &[
     plain("support.enabled", Kind::Switch, "whether support is printed"),
     number("support.threshold_angle", "degrees", 0.0, 90.0, "overhangs flatter than this are supported; 90 is every one"),
     number("support.spacing", "mm", 0.1, 50.0, "distance between support lines"),
-    number("support.outset", "mm", 0.0, 20.0, "how far support reaches beyond the overhang"),
+    number("support.expansion", "mm", 0.0, 20.0, "how far support reaches beyond the overhang"),
     number("support.xy_distance", "mm", 0.0, 20.0, "distance to the part, sideways"),
     number("support.z_distance", "mm", 0.0, 5.0, "distance to the part above and below, in whole layers"),
     word("support.stands_on", &["everywhere", "bed"], "where support may stand"),
-    number("speed.wall", "mm/min", 1.0, 60_000.0, "walls"),
-    number("speed.skin", "mm/min", 1.0, 60_000.0, "skins"),
-    number("speed.infill", "mm/min", 1.0, 60_000.0, "sparse infill of one layer's height"),
-    number("speed.thick_infill", "mm/min", 1.0, 60_000.0, "sparse infill of a pair's height"),
-    number("speed.support", "mm/min", 1.0, 60_000.0, "support"),
-    number("speed.travel", "mm/min", 1.0, 60_000.0, "moves without extrusion"),
-    number("speed.z", "mm/min", 1.0, 60_000.0, "moves in z"),
+    number("speed.wall", "mm/s", 0.1, 999.0, "walls"),
+    number("speed.skin", "mm/s", 0.1, 999.0, "skins"),
+    number("speed.infill", "mm/s", 0.1, 999.0, "sparse infill of one layer's height"),
+    number("speed.thick_infill", "mm/s", 0.1, 999.0, "sparse infill of a pair's height"),
+    number("speed.support", "mm/s", 0.1, 999.0, "support"),
+    number("speed.travel", "mm/s", 0.1, 999.0, "moves without extrusion"),
+    number("speed.z", "mm/s", 0.1, 100.0, "moves in z"),
     number("speed.first_layer", "%", 1.0, 200.0, "feeds of the first layer, travel and z excepted"),
     word("extrusion.model", &["area", "factor"], "width x height, or the factors below"),
     number("extrusion.multiplier", "times", 0.05, 5.0, "factor on every amount of filament"),
@@ -150,7 +150,7 @@ pub const KEYS: &[Key] = &[
     number("extrusion.infill_factor", "mm/mm", 0.0, 2.0, "filament per length of infill; thick infill takes twice that"),
     number("extrusion.support_factor", "mm/mm", 0.0, 2.0, "filament per length of support"),
     number("retraction.length", "mm", 0.0, 20.0, "filament pulled back; 0 is none"),
-    number("retraction.feed", "mm/min", 1.0, 10_000.0, "feed of the filament, back and forth"),
+    number("retraction.speed", "mm/s", 0.1, 200.0, "speed of the filament, back and forth"),
     word("retraction.when", &["always", "crossing"], "on every travel, or on those that cross an outer wall"),
     number("retraction.min_travel", "mm", 0.0, 1_000.0, "shorter travels never retract"),
     number("retraction.z_hop", "mm", 0.0, 10.0, "how far the nozzle is lifted while retracted"),
@@ -168,18 +168,18 @@ pub const KEYS: &[Key] = &[
     number("machine.bed_depth", "mm", 1.0, 5_000.0, "print volume in y"),
     number("machine.bed_height", "mm", 1.0, 5_000.0, "print volume in z"),
     word("machine.origin", &["centre", "front-left"], "where x = 0, y = 0 is"),
-    number("machine.nozzle", "mm", 0.05, 2.0, "diameter of the nozzle"),
+    number("machine.nozzle_diameter", "mm", 0.05, 2.0, "diameter of the nozzle"),
     count("machine.tool", "number", 0, 1, "tool that prints"),
     number("machine.acceleration", "mm/s²", 1.0, 100_000.0, "acceleration that {acceleration} stands for"),
     plain("machine.relative_e", Kind::Switch, "E counts from the last move, not from the start"),
-    number("machine.max_volumetric_flow", "mm³/s", 0.1, 1_000.0, "plastic that the hot end can melt"),
+    number("machine.max_volumetric_speed", "mm³/s", 0.1, 1_000.0, "plastic that the hot end can melt"),
     Key { unit: "pixels", ..plain("machine.thumbnails", Kind::Sizes, "pictures of the models at the head of the file, for hosts") },
-    plain("machine.start", Kind::Block, "G-code before the print"),
-    plain("machine.end", Kind::Block, "G-code after the print"),
-    number("limits.feed_x", "mm/min", 1.0, 200_000.0, "highest feed in x"),
-    number("limits.feed_y", "mm/min", 1.0, 200_000.0, "highest feed in y"),
-    number("limits.feed_z", "mm/min", 1.0, 200_000.0, "highest feed in z"),
-    number("limits.feed_e", "mm/min", 1.0, 200_000.0, "highest feed of the filament"),
+    plain("machine.start_gcode", Kind::Block, "G-code before the print"),
+    plain("machine.end_gcode", Kind::Block, "G-code after the print"),
+    number("limits.speed_x", "mm/s", 0.1, 999.0, "highest speed in x"),
+    number("limits.speed_y", "mm/s", 0.1, 999.0, "highest speed in y"),
+    number("limits.speed_z", "mm/s", 0.1, 100.0, "highest speed in z"),
+    number("limits.speed_e", "mm/s", 0.1, 200.0, "highest speed of the filament"),
     number("limits.acceleration_x", "mm/s²", 1.0, 1_000_000.0, "highest acceleration in x"),
     number("limits.acceleration_y", "mm/s²", 1.0, 1_000_000.0, "highest acceleration in y"),
     number("limits.acceleration_z", "mm/s²", 1.0, 1_000_000.0, "highest acceleration in z"),
@@ -299,7 +299,15 @@ impl Key {
     }
 
     fn out_of_range(&self, value: &str) -> String {
-        format!("= {value} is out of range; it must be {} {}", self.allowed(), self.unit)
+        let text =
+            format!("= {value} is out of range; it must be {} {}", self.allowed(), self.unit);
+        match value.parse() {
+            Ok(per_minute) if per_minute > 1.0 && old::was_per_minute(self.name) => format!(
+                "{text}; speeds are in mm/s, {value} mm/min would be {}",
+                old::per_second(per_minute)
+            ),
+            _ => text,
+        }
     }
 
     fn one_of(&self, words: &[&'static str], word: String) -> Result<Value, String> {

@@ -1,7 +1,7 @@
 //! Profile name or file + overrides -> Profile: merges the layers and remembers where each value is from.
 
 use super::keys::{self, Kind};
-use super::{Settings, check, parse, suggest};
+use super::{Settings, check, old, parse, suggest};
 use crate::error::{Error, Result};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -256,6 +256,9 @@ fn unknown_key(key: &str) -> String {
     if !inside.is_empty() {
         return format!("`{key}` is a table, not a value; set one of {}", inside.join(", "));
     }
+    if let Some(name) = old::renamed(key) {
+        return format!("`{key}` is called `{name}` now");
+    }
     let names = keys::KEYS.iter().map(|one| one.name);
     let hint = suggest::did_you_mean(key, names);
     let more = if hint.is_empty() { "; `slicer profile show` lists all keys" } else { "" };
@@ -369,17 +372,31 @@ mod tests {
             ),
             ("speed", "1", "--set: `speed` is a table, not a value; set one of speed.wall,"),
             ("walls", "101", "--set: walls = 101 is out of range; it must be 0 to 100 walls"),
+            ("retraction.feed", "20", "--set: `retraction.feed` is called `retraction.speed` now"),
+            (
+                "speed.travel",
+                "1000",
+                "--set: speed.travel = 1000 is out of range; it must be 0.1 to 999 mm/s; \
+                 speeds are in mm/s, 1000 mm/min would be 16.667",
+            ),
+            ("limits.speed_y", "1000", "--set: limits.speed_y = 1000 is out of range"),
+            ("speed.z", "100.1", "--set: speed.z = 100.1 is out of range; it must be 0.1 to 100"),
+            ("retraction.speed", "201", "--set: retraction.speed = 201 is out of range"),
             ("infill", "x", "--set: infill is the text `x`; it must be a number, 0 to 100 %"),
             ("seam", "reer", "--set: seam = `reer` is unknown; did you mean `rear`?"),
-            ("layer_height", "0.41", "--set: layer_height = 0.41 mm is more than machine.nozzle"),
+            (
+                "layer_height",
+                "0.41",
+                "--set: layer_height = 0.41 mm is more than machine.nozzle_diameter",
+            ),
             ("line_width", "0.15", "--set: line_width = 0.15 mm is too little"),
             (
-                "machine.end",
+                "machine.end_gcode",
                 "M104 S{temp}",
-                "--set: machine.end, line 1 of it: unknown placeholder",
+                "--set: machine.end_gcode, line 1 of it: unknown placeholder",
             ),
-            ("machine.end", "M105", "--set: machine.end, line 1 of it: M105 must not"),
-            ("machine.start", "G21", ""),
+            ("machine.end_gcode", "M105", "--set: machine.end_gcode, line 1 of it: M105 must not"),
+            ("machine.start_gcode", "G21", ""),
             ("machine.relative_e", "true", "--set: machine.relative_e = true, but"),
         ] {
             if start.is_empty() {
@@ -396,10 +413,10 @@ mod tests {
     fn combinations_that_cannot_print_blame_the_command_line_first() {
         let message = refused(&[set("dual.mode", "pair"), set("layer_height", "0.3")]);
         assert!(message.starts_with("--set: 2 layers of layer_height = 0.3 mm"), "{message}");
-        let message = refused(&[set("machine.nozzle", "0.1")]);
+        let message = refused(&[set("machine.nozzle_diameter", "0.1")]);
         assert!(message.starts_with("--set: layer_height = 0.2 mm is more"), "{message}");
         let message =
-            refused(&[set("machine.start", "G21"), set("filament.bed_temperature", "60")]);
+            refused(&[set("machine.start_gcode", "G21"), set("filament.bed_temperature", "60")]);
         assert!(message.contains("would have no effect"), "{message}");
     }
 

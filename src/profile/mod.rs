@@ -5,6 +5,7 @@ mod check;
 mod derived;
 pub mod keys;
 mod load;
+mod old;
 mod parse;
 mod recorded;
 mod settings;
@@ -15,6 +16,7 @@ pub mod template;
 
 pub use builder::Builder;
 pub use load::{DEFAULT, Override, Profile, ValueOrigin, builtin_names, load};
+pub use old::{SETTINGS_FORMAT, renewed};
 pub use recorded::recorded;
 pub use settings::*;
 pub use show::{document, dump};

@@ -2,21 +2,22 @@
 
 use super::keys::KEYS;
 use super::load::{DEFAULT, Override, Profile, ValueOrigin, merge};
+use super::old::{is_ours, renewed};
 use super::show::NOT_DUMPED;
 use crate::error::Result;
 
 /// The settings that a file of ours was made with, read from its comments `key = value`;
-/// `None` if it holds none of them. What a file never holds, such as the start block, is
+/// `None` if it holds none of them. Settings of an older format are [renewed]. What a file never holds, such as the start block, is
 /// that of the default profile.
 ///
 /// # Errors
 /// As [`load`](super::load()): a value that is out of range, such as of a file of another version.
 pub fn recorded(comments: &[(String, String)]) -> Result<Option<Profile>> {
-    let value = |name: &str| comments.iter().rev().find(|(key, _)| key == name);
-    // Two that no other slicer writes, so that a stray `infill = 20` is not taken for ours.
-    if value("machine.dialect").is_none() || value("limits.junction").is_none() {
+    if !is_ours(comments) {
         return Ok(None);
     }
+    let values = renewed(comments);
+    let value = |name: &str| values.iter().rev().find(|(key, _)| key == name);
     let dumped = KEYS.iter().filter(|key| !NOT_DUMPED.contains(&key.name));
     let overrides: Vec<Override> = dumped
         .filter_map(|key| {

@@ -7,7 +7,7 @@
 use super::sizes::PictureSize;
 use serde::{Deserialize, Serialize};
 
-/// All effective settings. Lengths in mm, feeds in mm/min, angles in degrees.
+/// All effective settings. Lengths in mm, speeds in mm/s, angles in degrees.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
@@ -36,9 +36,9 @@ pub struct Settings {
     /// Solid layers at the top and at the bottom.
     pub skin_layers: u32,
     /// Solid layers at the top, where they differ from `skin_layers`.
-    pub top_skin_layers: Option<u32>,
+    pub top_layers: Option<u32>,
     /// Solid layers at the bottom, where they differ from `skin_layers`.
-    pub bottom_skin_layers: Option<u32>,
+    pub bottom_layers: Option<u32>,
     /// How far a skin reaches sideways under or over the infill to hold on, mm.
     pub skin_reach: f64,
 
@@ -58,7 +58,7 @@ pub struct Settings {
     pub dual: Dual,
     /// Support under overhangs.
     pub support: Support,
-    /// Feeds.
+    /// Speeds.
     pub speed: Speed,
     /// How much filament a line takes.
     pub extrusion: Extrusion,
@@ -220,7 +220,7 @@ pub struct Support {
     /// Distance between support lines, mm.
     pub spacing: f64,
     /// How far support reaches beyond the overhang, mm.
-    pub outset: f64,
+    pub expansion: f64,
     /// Distance to the part, sideways, mm.
     pub xy_distance: f64,
     /// Distance to the part above and below, mm; rounded to whole layers.
@@ -239,7 +239,7 @@ pub enum SupportBase {
     Bed,
 }
 
-/// `[speed]`: feeds, mm/min.
+/// `[speed]`: how fast the nozzle moves, mm/s.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Speed {
@@ -257,7 +257,7 @@ pub struct Speed {
     pub travel: f64,
     /// Moves in z.
     pub z: f64,
-    /// First layer, % of the feeds above (travel and z excepted).
+    /// First layer, % of the speeds above (travel and z excepted).
     pub first_layer: f64,
 }
 
@@ -299,8 +299,8 @@ pub enum ExtrusionModel {
 pub struct Retraction {
     /// Filament pulled back, mm; 0 turns retraction off.
     pub length: f64,
-    /// Feed of the filament, back and forth, mm/min.
-    pub feed: f64,
+    /// Speed of the filament, back and forth, mm/s.
+    pub speed: f64,
     /// Which travels retract.
     pub when: RetractWhen,
     /// Travels shorter than this never retract, mm.
@@ -358,7 +358,7 @@ pub struct Machine {
     /// Where x = 0, y = 0 is.
     pub origin: Origin,
     /// Nozzle diameter, mm.
-    pub nozzle: f64,
+    pub nozzle_diameter: f64,
     /// Tool that prints: 0 or 1.
     pub tool: u32,
     /// Acceleration asked for by the start block, mm/s².
@@ -366,13 +366,13 @@ pub struct Machine {
     /// E counts from the last move instead of from the start.
     pub relative_e: bool,
     /// Plastic that the hot end can melt, mm³/s.
-    pub max_volumetric_flow: f64,
+    pub max_volumetric_speed: f64,
     /// Sizes of the pictures of the models at the head of the file.
     pub thumbnails: Vec<PictureSize>,
     /// G-code before the print, with `{placeholders}`.
-    pub start: String,
+    pub start_gcode: String,
     /// G-code after the print, with `{placeholders}`.
-    pub end: String,
+    pub end_gcode: String,
 }
 
 /// See [`Machine::dialect`].
@@ -402,14 +402,14 @@ pub enum Origin {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionLimits {
-    /// Highest feed in x, mm/min.
-    pub feed_x: f64,
-    /// Highest feed in y, mm/min.
-    pub feed_y: f64,
-    /// Highest feed in z, mm/min.
-    pub feed_z: f64,
-    /// Highest feed of the filament, mm/min.
-    pub feed_e: f64,
+    /// Highest speed in x, mm/s.
+    pub speed_x: f64,
+    /// Highest speed in y, mm/s.
+    pub speed_y: f64,
+    /// Highest speed in z, mm/s.
+    pub speed_z: f64,
+    /// Highest speed of the filament, mm/s.
+    pub speed_e: f64,
     /// Highest acceleration in x, mm/s².
     pub acceleration_x: f64,
     /// Highest acceleration in y, mm/s².

@@ -1,6 +1,7 @@
 //! Settings -> text: the lines that go into a G-code file, and a profile as TOML.
 
 use super::keys::{KEYS, Key, Kind};
+use super::old::{FORMAT_KEY, SETTINGS_FORMAT};
 use super::{Profile, Settings};
 use std::fmt::Write as _;
 use toml::Value;
@@ -8,16 +9,17 @@ use toml::Value;
 /// Keys that are left out of G-code files: blocks would make lines longer than
 /// GPX's limit of 1023 bytes and stand in the file anyway; the description
 /// says nothing of the print.
-pub(super) const NOT_DUMPED: &[&str] = &["description", "machine.start", "machine.end"];
+pub(super) const NOT_DUMPED: &[&str] = &["description", "machine.start_gcode", "machine.end_gcode"];
 
-/// All settings but the description and the blocks, as dotted key and TOML
-/// value on one line of less than 900 bytes, in the order of
+/// The format of the settings, then all of them but the description and the blocks, as
+/// dotted key and TOML value on one line of less than 900 bytes, in the order of
 /// [`KEYS`](super::keys::KEYS). What a G-code file holds as comments.
 #[must_use]
 pub fn dump(settings: &Settings) -> Vec<(String, String)> {
     let mut lines = all(settings);
     lines.retain(|(key, _)| !NOT_DUMPED.contains(&key.name));
-    lines.into_iter().map(|(key, value)| (key.name.to_owned(), one_line(&value))).collect()
+    let lines = lines.into_iter().map(|(key, value)| (key.name.to_owned(), one_line(&value)));
+    std::iter::once((FORMAT_KEY.to_owned(), SETTINGS_FORMAT.to_string())).chain(lines).collect()
 }
 
 /// The whole profile as a TOML file that gives the same settings again, each
@@ -119,8 +121,8 @@ mod tests {
     #[test]
     fn the_table_of_keys_and_the_type_agree() {
         let mut settings = load("zcube-dual", &[]).unwrap().settings;
-        settings.top_skin_layers = Some(1);
-        settings.bottom_skin_layers = Some(1);
+        settings.top_layers = Some(1);
+        settings.bottom_layers = Some(1);
         let mut typed = BTreeSet::new();
         leaves("", &Value::try_from(&settings).unwrap(), &mut typed);
         let listed: BTreeSet<_> = keys::KEYS.iter().map(|key| key.name.to_owned()).collect();

@@ -35,7 +35,7 @@ pub fn values(settings: &Settings, print: &PrintFacts) -> Vec<(&'static str, Str
         ("bed_height", number(machine.bed_height)),
         ("acceleration", number(machine.acceleration)),
         ("e_mode", if machine.relative_e { "M83" } else { "M82" }.to_owned()),
-        ("nozzle", number(machine.nozzle)),
+        ("nozzle_diameter", number(machine.nozzle_diameter)),
         ("layer_height", number(settings.layer_height)),
         ("first_layer_height", number(settings.first_layer_height)),
         ("filament", settings.filament.name.clone()),
@@ -141,10 +141,10 @@ mod tests {
 
     #[test]
     fn unknown_placeholders_are_named_with_block_and_line() {
-        let error = render("machine.end", "G21\nM104 S{temprature}", &sample()).unwrap_err();
+        let error = render("machine.end_gcode", "G21\nM104 S{temprature}", &sample()).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "machine.end, line 2 of it: unknown placeholder {temprature}; \
+            "machine.end_gcode, line 2 of it: unknown placeholder {temprature}; \
              did you mean {temperature}?"
         );
         let error = render("b", "{zzzzzz}", &sample()).unwrap_err().to_string();

@@ -65,7 +65,7 @@ impl SupportParams {
         support.enabled.then(|| Self {
             lines,
             lean,
-            outset: to_units(support.outset),
+            outset: to_units(support.expansion),
             clearance: to_units(support.xy_distance) + w / 2,
             gap: (support.z_distance / settings.layer_height).round() as usize,
             bed_only: support.stands_on == SupportBase::Bed,

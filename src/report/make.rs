@@ -7,7 +7,7 @@ use super::{
 };
 use crate::fill::Role;
 use crate::gcode::Sums;
-use crate::gcode::flow::Flows;
+use crate::gcode::flow::{Flows, speed};
 use crate::gcode::times::{LayerTime, Times};
 use crate::gcode::usage::Material;
 use crate::job::{self, Job};
@@ -56,11 +56,12 @@ pub fn report(
         time: time(times),
         flow: FlowReport {
             largest_mm3_s: usage.flows.largest,
-            limit_mm3_s: settings.machine.max_volumetric_flow,
+            limit_mm3_s: settings.machine.max_volumetric_speed,
         },
         dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits)),
         warnings: (placed.warnings.iter().cloned())
             .chain(tally.warnings())
+            .chain(slow_speeds(settings))
             .chain(slowed_down(&usage.flows, settings))
             .collect(),
         check: None,
@@ -104,6 +105,16 @@ fn time(times: &Times) -> TimeReport {
     }
 }
 
+/// Print speeds that are hardly meant.
+#[must_use]
+pub fn slow_speeds(settings: &Settings) -> Vec<Warning> {
+    let warning = |(setting, speed_mm_s): (&str, f64)| Warning::SlowSpeed {
+        setting: setting.to_owned(),
+        speed_mm_s,
+    };
+    settings.slow_speeds().into_iter().map(warning).collect()
+}
+
 /// Where the hot end cannot follow.
 fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
     let mut warnings = Vec::new();
@@ -112,9 +123,9 @@ fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
             warnings.extend(lowered.map(|lowered| Warning::FlowLimited {
                 role: role_name(role, thick),
                 setting: (*role.facts().speed_keys.of(thick)).to_owned(),
-                asked_mm_min: lowered.asked,
-                lowest_mm_min: lowered.given,
-                limit_mm3_s: settings.machine.max_volumetric_flow,
+                asked_mm_s: speed(lowered.asked),
+                lowest_mm_s: speed(lowered.given),
+                limit_mm3_s: settings.machine.max_volumetric_speed,
             }));
         }
     }

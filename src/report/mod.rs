@@ -14,7 +14,7 @@ use crate::warning::Warning;
 use serde::Serialize;
 
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
-pub const SCHEMA: u32 = 3;
+pub const SCHEMA: u32 = 4;
 
 /// What one run found and made.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]

@@ -91,7 +91,7 @@ fn wrong_profiles_name_file_and_line() {
     profile("inherits = \"zcub-dual\"\n");
     run("mine.toml:1: inherits: unknown profile `zcub-dual`; did you mean `zcube-dual`?");
     profile("inherits = \"zcube-dual\"\n[machine]\nstart = '''\nG21\nM104 S{temprature}\n'''\n");
-    run("mine.toml:3: machine.start, line 2 of it: unknown placeholder {temprature}");
+    run("mine.toml:3: machine.start_gcode, line 2 of it: unknown placeholder {temprature}");
 }
 
 #[test]
@@ -308,7 +308,7 @@ fn a_product_that_the_check_finds_fault_with_is_not_put_in_place() {
     write_block(&folder.path().join("block.stl"));
     fs::write(folder.path().join("a.gcode"), "old").unwrap();
     // Axes that are slower than the feeds asked for.
-    let words = ["block.stl", "-q", "--check", "--set", "limits.feed_x=60", "--report", "a.json"];
+    let words = ["block.stl", "-q", "--check", "--set", "limits.speed_x=1", "--report", "a.json"];
     for out in ["a.gcode", "-"] {
         let run = slicer(&folder).args(words).args(["-o", out]).assert().code(1).stdout("");
         run.stderr(

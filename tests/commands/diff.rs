@@ -298,3 +298,26 @@ fn errors_name_the_file_the_cause_and_what_to_do() {
         assert!(text.contains(part) && text.lines().count() == 1, "{text}");
     }
 }
+
+/// A file of the first format of settings: no number, speeds in mm/min, other names.
+const OLD: &str = "fixtures/old/tile@generic-marlin.gcode";
+
+#[test]
+fn settings_of_the_first_format_are_read_as_todays() {
+    let old = std::fs::read_to_string(OLD).unwrap();
+    assert!(old.contains("; retraction.feed = 1200") && !old.contains("settings_format"));
+    for words in [
+        &["diff", OLD, TILE, "--settings"][..],
+        &["check", OLD],
+        &["estimate", OLD, "-p", "generic-marlin"],
+    ] {
+        let told = slicer(words).assert().code(0).stderr("");
+        let text = String::from_utf8(told.get_output().stdout.clone()).unwrap();
+        assert!(!text.contains("told only: 1 setting"), "{text}");
+    }
+    // The machine's limits are read as mm/min: 1800 mm/min are less than the lines need.
+    let slow = old.replace("; limits.feed_x = 18000", "; limits.feed_x = 1800");
+    let told = slicer(&["check", "-"]).write_stdin(slow).assert().code(1);
+    let text = String::from_utf8(told.get_output().stdout.clone()).unwrap();
+    assert!(text.contains("mm/s in x, where the machine does 30"), "{text}");
+}

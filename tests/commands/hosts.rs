@@ -109,7 +109,7 @@ fn sums_and_settings_stand_in_the_last_mib_in_the_words_of_hosts() {
             ("total filament used [g]", report.filament.weight_g, 0.005),
             ("total layers count", report.layers.count as f64, 0.0),
             ("total toolchanges", 0.0, 0.0),
-            ("nozzle_diameter", settings.machine.nozzle, 0.0),
+            ("nozzle_diameter", settings.machine.nozzle_diameter, 0.0),
             ("first_layer_temperature", nozzle, 0.0),
             ("temperature", nozzle, 0.0),
             ("first_layer_bed_temperature", bed, 0.0),
@@ -179,8 +179,8 @@ fn what_is_written_for_hosts_leaves_the_settings_as_they_were() {
         for settings in [&mut read, &mut made] {
             // Not in the file, and decided by the model.
             settings.description.clear();
-            settings.machine.start.clear();
-            settings.machine.end.clear();
+            settings.machine.start_gcode.clear();
+            settings.machine.end_gcode.clear();
             settings.angle = slicer::profile::Angle::Degrees(0.0);
         }
         assert_eq!(read, made, "{what:?}");
@@ -254,7 +254,7 @@ fn moonraker_itself_reads_all_of_it() {
             ("layer_count", report.layers.count as f64, 0.0),
             ("object_height", report.layers.top_mm, 1e-9),
             ("estimated_time", report.time.total_s, 0.5),
-            ("nozzle_diameter", settings.machine.nozzle, 0.0),
+            ("nozzle_diameter", settings.machine.nozzle_diameter, 0.0),
             ("layer_height", settings.layer_height, 0.0),
             ("first_layer_height", settings.first_layer_height, 0.0),
             ("first_layer_extr_temp", settings.filament.temperature, 0.0),

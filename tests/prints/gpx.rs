@@ -40,8 +40,8 @@ fn blocks_convert_in_silence() {
             continue;
         }
         let values = values(&settings, &PrintFacts { height: 10.0, ..PrintFacts::default() });
-        let start = render("machine.start", &settings.machine.start, &values).unwrap();
-        let end = render("machine.end", &settings.machine.end, &values).unwrap();
+        let start = render("machine.start_gcode", &settings.machine.start_gcode, &values).unwrap();
+        let end = render("machine.end_gcode", &settings.machine.end_gcode, &values).unwrap();
         let print = "G1 X0 Y0 Z0.2 F5400\nG1 X10 Y0 E0.5 F1620\n";
         assert_silent(&format!("{start}{print}{end}"), 200, name);
     }

@@ -89,7 +89,7 @@ fn progress_is_told_in_time_at_each_layer() {
 
 #[test]
 fn long_layers_tell_progress_every_minute() {
-    let slow = [("speed.wall", "100"), ("speed.skin", "100"), ("speed.infill", "100")];
+    let slow = [("speed.wall", "1.667"), ("speed.skin", "1.667"), ("speed.infill", "1.667")];
     let run = slice(&fixture("bracket.stl"), "generic-marlin", &slow);
     let minutes: Vec<u64> = progress(&run).iter().filter_map(|line| line.2).collect();
     let time = &run.report.time;
@@ -98,6 +98,10 @@ fn long_layers_tell_progress_every_minute() {
     let least = 0.5 * time.total_s / 60.0;
     assert!(minutes.len() as f64 > least, "{} of {least}", minutes.len());
     assert!(minutes.is_sorted_by(|a, b| a >= b));
+    // Speeds below 2 mm/s are hardly meant.
+    let warnings: Vec<String> = run.report.warnings.iter().map(ToString::to_string).collect();
+    let says = |setting| format!("{setting} = 1.667 is very slow; speeds are in mm/s");
+    assert_eq!(warnings, slow.map(|(setting, _)| says(setting)));
 }
 
 #[test]
@@ -129,7 +133,7 @@ fn lines_that_the_hot_end_cannot_follow_are_slowed_down_and_told() {
     assert!((fastest / free.report.flow.largest_mm3_s - 1.0).abs() < 0.01, "{fastest}");
     assert_eq!(free.report.warnings, []);
 
-    let set = [dual, ("machine.max_volumetric_flow", "3")];
+    let set = [dual, ("machine.max_volumetric_speed", "3")];
     let held = slice(&fixture("bracket.stl"), "generic-marlin", &set);
     assert!(held.report.flow.largest_mm3_s <= 3.0);
     assert!(flows(&held).all(|flow| flow < 3.0 * 1.01));
@@ -141,21 +145,21 @@ fn lines_that_the_hot_end_cannot_follow_are_slowed_down_and_told() {
         .warnings
         .iter()
         .map(|warning| match warning {
-            Warning::FlowLimited { role, setting, asked_mm_min, lowest_mm_min, limit_mm3_s } => {
-                assert!(lowest_mm_min < asked_mm_min && *limit_mm3_s == 3.0, "{warning}");
-                (role.as_str(), setting.as_str(), *asked_mm_min)
+            Warning::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
+                assert!(lowest_mm_s < asked_mm_s && *limit_mm3_s == 3.0, "{warning}");
+                (role.as_str(), setting.as_str(), *asked_mm_s)
             }
             other => panic!("{other}"),
         })
         .collect();
     let expected = [
-        ("skin", "speed.skin", 3000),
-        ("infill", "speed.infill", 3600),
-        ("thick infill", "speed.thick_infill", 3600),
+        ("skin", "speed.skin", 50.0),
+        ("infill", "speed.infill", 60.0),
+        ("thick infill", "speed.thick_infill", 60.0),
     ];
     assert_eq!(asked, expected);
     let said = held.report.warnings[2].to_string();
-    assert!(said.contains("3600") && said.contains("speed.thick_infill"), "{said}");
+    assert!(said.contains("from 60 to") && said.contains("speed.thick_infill"), "{said}");
 }
 
 #[test]

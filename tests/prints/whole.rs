@@ -154,7 +154,7 @@ fn the_lowest_and_highest_layers_are_solid() {
 
 #[test]
 fn skins_of_their_own_numbers_are_at_the_top_and_at_the_bottom() {
-    let set = [("top_skin_layers", "4"), ("bottom_skin_layers", "2")];
+    let set = [("top_layers", "4"), ("bottom_layers", "2")];
     let run = slice(&fixture("cube_20.stl"), "generic-marlin", &set);
     let skin = layers(&run, |m| m.kind == Kind::Skin);
     assert_eq!(skin, (0..2).chain(96..100).collect());

@@ -202,7 +202,7 @@ proptest! {
         outlines in stacks(), ratio in 2..5_u32, top in 0..6_usize, bottom in 0..6_usize,
     ) {
         let (top, bottom) = (top.to_string(), bottom.to_string());
-        let set = [("top_skin_layers", top.as_str()), ("bottom_skin_layers", &bottom)];
+        let set = [("top_layers", top.as_str()), ("bottom_layers", &bottom)];
         let params = RegionParams::new(&settings("generic-marlin", &set));
         let layers = stack(&params, &outlines);
         let areas = all_areas(&layers, &params);
