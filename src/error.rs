@@ -2,6 +2,7 @@
 //!
 //! Every message names the file, the place, the cause and what to do.
 
+use crate::profile::ProfileError;
 use crate::progress;
 use crate::warning::plural;
 use std::io;
@@ -15,8 +16,8 @@ pub enum Error {
 
     /// A profile that cannot be read, or a setting that is unknown or out of range (exit 2).
     /// The text starts with the file and line, or with `--set` or the flag that gave it.
-    #[error("{0}")]
-    Config(String),
+    #[error(transparent)]
+    Profile(#[from] ProfileError),
 
     /// A model that cannot be read or is no usable mesh, or a file that is no G-code (exit 3).
     #[error("{file}: {reason}")]
@@ -67,7 +68,7 @@ impl Error {
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage(_) | Self::Config(_) => 2,
+            Self::Usage(_) | Self::Profile(_) => 2,
             Self::Mesh(error) if error.is_usage() => 2,
             Self::Input { .. }
             | Self::Mesh(_)

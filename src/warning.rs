@@ -1,11 +1,12 @@
 //! Findings that do not stop a run: each says the fact, the likely cause and what to do.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
 /// A finding. Printed one a line on stderr, listed in the report; with
 /// `--strict` any of them makes the exit code 1.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "code", rename_all = "kebab-case")]
 pub enum Warning {
     /// Holes were filled, or surfaces that enclose nothing dropped.

@@ -11,6 +11,7 @@
 //! [`Code`], in [`Code::ALL`] and in [`Code::name`], in the order of severity: what harms the machine
 //! first, then what spoils the print, then what is wrong with the shape.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
@@ -18,7 +19,7 @@ use std::fmt;
 pub const MOST_LISTED: usize = 100;
 
 /// Kinds of findings. Their names are stable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Code {
     /// A command that the machine's firmware does not know.
@@ -105,7 +106,7 @@ impl Code {
 }
 
 /// Where something is.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Place {
     /// Line of the file, from 1.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -122,7 +123,7 @@ pub struct Place {
 }
 
 /// Something that is wrong.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Finding {
     /// Its kind.
     pub code: Code,
@@ -225,7 +226,7 @@ impl IntoIterator for Findings {
 }
 
 /// How many findings of one kind there are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Count {
     /// The kind.
     pub code: Code,

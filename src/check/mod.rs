@@ -24,6 +24,7 @@ use crate::mesh::Mesh;
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};
 use finding::{Code, Count, Finding, Findings};
+use schemars::JsonSchema;
 use serde::Serialize;
 use terms::Terms;
 
@@ -43,7 +44,7 @@ pub struct Model<'a> {
 }
 
 /// The report on a file.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Verdict {
     /// [`SCHEMA`].
     pub schema: u32,
@@ -62,7 +63,7 @@ pub struct Verdict {
 }
 
 /// What was measured on the way; `None` where the model is needed and not given.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Measures {
     /// Plastic of all lines of the layers, mm³.
     pub plastic_mm3: f64,

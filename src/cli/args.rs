@@ -55,6 +55,7 @@ nothing, or a model does not fit the machine. What could not be judged is listed
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
     disable_help_subcommand = true,
+    args_override_self = true,
     arg_required_else_help = true,
     override_usage = "slicer [OPTIONS] <INPUT>... -o <OUT>\n       slicer <COMMAND>",
     max_term_width = 100
@@ -72,6 +73,9 @@ pub(crate) enum Command {
     /// List, show and check profiles
     #[command(subcommand)]
     Profile(ProfileCommand),
+    /// Describe the report of slicing
+    #[command(subcommand)]
+    Report(ReportCommand),
     /// Say how long a G-code file takes
     Estimate(EstimateArgs),
     /// Say what is wrong with a G-code file, also against the model
@@ -100,9 +104,9 @@ pub(crate) enum ProfileCommand {
     List,
     /// Print all settings of a profile as TOML, each with where it comes from
     Show {
-        /// Built-in name or file
-        #[arg(default_value = DEFAULT)]
-        name: String,
+        /// Built-in name or file (repeatable: a later one is laid over the earlier)
+        #[arg(value_name = "NAME", default_value = DEFAULT)]
+        names: Vec<String>,
         /// Change a setting (repeatable)
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
@@ -110,12 +114,21 @@ pub(crate) enum ProfileCommand {
         #[arg(short, long)]
         verbose: bool,
     },
+    /// Print the JSON Schema of a profile, by which editors complete and check one
+    Schema,
     /// Check a profile file and say what is wrong
     Check {
         /// Built-in name or file
         #[arg(value_name = "FILE")]
         name: String,
     },
+}
+
+/// What to do about reports.
+#[derive(Debug, Subcommand)]
+pub(crate) enum ReportCommand {
+    /// Print the JSON Schema of what --report writes
+    Schema,
 }
 
 /// Arguments of estimating.
@@ -126,7 +139,7 @@ pub(crate) struct EstimateArgs {
     pub(crate) file: String,
     /// Built-in profile, or a file if it has a `/` or ends in .toml: the machine's [limits]
     #[arg(short, long, value_name = "NAME", default_value = DEFAULT)]
-    pub(crate) profile: String,
+    pub(crate) profile: Vec<String>,
     /// Change any setting of the profile, such as limits.jerk_x=8 (repeatable)
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
@@ -153,7 +166,7 @@ pub(crate) struct CheckArgs {
     pub(crate) against: Vec<String>,
     /// Built-in profile, or a file if it has a `/` or ends in .toml: the machine [default: the file's own settings]
     #[arg(short, long, value_name = "NAME")]
-    pub(crate) profile: Option<String>,
+    pub(crate) profile: Vec<String>,
     /// Change any setting of the profile, such as machine.bed_width=250 (repeatable)
     #[arg(long, value_name = "KEY=VALUE", requires = "profile")]
     pub(crate) set: Vec<String>,
@@ -173,9 +186,9 @@ pub(crate) struct CompareArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// Built-in profile, or a file if it has a `/` or ends in .toml
+    /// Built-in profile, or a file if it has a `/` or ends in .toml (repeatable: a later one is laid over the earlier)
     #[arg(short, long, value_name = "NAME", default_value = DEFAULT, help_heading = "Settings")]
-    pub(crate) profile: String,
+    pub(crate) profile: Vec<String>,
     /// Change any setting of the profile, such as speed.wall=25 (repeatable)
     #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
     pub(crate) set: Vec<String>,
@@ -195,9 +208,9 @@ pub(crate) struct SliceArgs {
     #[arg(short, long, value_name = "OUT", required = true)]
     pub(crate) output: Option<PathBuf>,
 
-    /// Built-in profile, or a file if it has a `/` or ends in .toml
+    /// Built-in profile, or a file if it has a `/` or ends in .toml (repeatable: a later one is laid over the earlier)
     #[arg(short, long, value_name = "NAME", default_value = DEFAULT, help_heading = "Settings")]
-    pub(crate) profile: String,
+    pub(crate) profile: Vec<String>,
     /// Change any setting of the profile, such as speed.wall=25 (repeatable)
     #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
     pub(crate) set: Vec<String>,
@@ -229,7 +242,7 @@ pub(crate) struct SliceArgs {
 
 /// Flags that stand for settings. Their values are checked with the profile's,
 /// so that the messages are the same.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Settings")]
 pub(crate) struct SettingArgs {
     /// Print infill and support of two layers at once, twice as thick
@@ -322,8 +335,24 @@ impl PlaceArgs {
 impl SettingArgs {
     /// The settings these flags give.
     pub(crate) fn overrides(&self) -> Vec<Override> {
+        let given = self.all().into_iter();
+        let one = |(flag, key, value): (&'static str, &str, Option<String>)| {
+            let origin = ValueOrigin::Flag(flag);
+            Some(Override { key: key.to_owned(), value: value?, origin })
+        };
+        given.filter_map(one).collect()
+    }
+
+    /// The flag that sets a key, if there is one.
+    pub(super) fn flag_of(key: &str) -> Option<&'static str> {
+        let all = Self::default().all();
+        all.into_iter().find(|(_, name, _)| *name == key).map(|(flag, _, _)| flag)
+    }
+
+    /// Each flag, the key it sets, and the value given.
+    fn all(&self) -> [(&'static str, &'static str, Option<String>); 15] {
         let switched = |on: bool, value: &str| on.then(|| value.to_owned());
-        let given = [
+        [
             ("--dual", "dual.mode", switched(self.dual, "pair")),
             ("--dual-mode", "dual.mode", self.dual_mode.clone()),
             ("--dual-ratio", "dual.ratio", self.dual_ratio.clone()),
@@ -340,14 +369,7 @@ impl SettingArgs {
             ("--pattern", "pattern", self.pattern.clone()),
             ("--support", "support.enabled", switched(self.support, "true")),
             ("--temperature", "filament.temperature", self.temperature.clone()),
-        ];
-        given
-            .into_iter()
-            .filter_map(|(flag, key, value)| {
-                let origin = ValueOrigin::Flag(flag);
-                Some(Override { key: key.to_owned(), value: value?, origin })
-            })
-            .collect()
+        ]
     }
 }
 

@@ -25,11 +25,11 @@ const MOST_SHOWN: usize = 5;
 /// # Errors
 /// A profile or setting that is wrong, a file or model that cannot be read, a file without a move.
 pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
-    let given = args.profile.as_deref().map(|name| {
-        let overrides = words::set_overrides(&args.set)?;
-        anyhow::Ok(profile::load(name, &overrides)?)
-    });
-    let given = given.transpose()?;
+    let given = if args.profile.is_empty() {
+        None
+    } else {
+        Some(profile::load(&args.profile, &words::set_overrides(&args.set)?)?)
+    };
     let (name, mut source) = input::open(&args.file)?;
     let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
     let print = Print::read(&mut source, diameter).map_err(|e| Cause::Unreadable(e).of(name))?;

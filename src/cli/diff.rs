@@ -61,7 +61,7 @@ pub(crate) struct DiffArgs {
     /// Built-in profile, or a file if it has a `/` or ends in .toml: the machine's [limits]
     /// [default: those that the files hold]
     #[arg(short, long, value_name = "NAME")]
-    pub(crate) profile: Option<String>,
+    pub(crate) profile: Vec<String>,
     /// Change any setting of the profile, such as limits.jerk_x=8 (repeatable)
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
@@ -114,9 +114,10 @@ fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Resul
 /// The profile by whose limits both files are timed, and where it is from.
 fn clock(args: &DiffArgs, a: &Print, b: &Print) -> Result<(Profile, String)> {
     let overrides = words::set_overrides(&args.set)?;
-    let name = args.profile.as_deref();
-    let asked = profile::load(name.unwrap_or(profile::DEFAULT), &overrides)?;
-    if name.is_some() {
+    let given = !args.profile.is_empty();
+    let default = [profile::DEFAULT.to_owned()];
+    let asked = profile::load(if given { &args.profile[..] } else { &default }, &overrides)?;
+    if given {
         let origin = format!("profile {}", asked.name);
         return Ok((asked, origin));
     }

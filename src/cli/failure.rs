@@ -9,6 +9,7 @@
 //! between them. It ends with the library's error: its line holds what its causes say.
 
 use slicer::error::Error;
+use slicer::profile::ProfileError;
 use slicer::{mesh, reader};
 use std::error::Error as StdError;
 use std::fmt;
@@ -94,7 +95,7 @@ pub(super) fn exit_code(error: &anyhow::Error) -> u8 {
 
 /// The exit code of an error that needs no context.
 fn code_of(error: &(dyn StdError + 'static)) -> Option<u8> {
-    if error.is::<Usage>() {
+    if error.is::<Usage>() || error.is::<ProfileError>() {
         return Some(USAGE);
     }
     // What is called within a stage fails with the stage's own error.

@@ -6,6 +6,7 @@ mod compare;
 mod diff;
 mod estimate;
 mod failure;
+mod foreign;
 mod input;
 mod interrupt;
 mod mesh;
@@ -20,10 +21,11 @@ mod viewer;
 mod words;
 
 use anyhow::{Context as _, Result};
-use args::{Arguments, Command, ProfileCommand};
+use args::{Arguments, Command, ProfileCommand, ReportCommand};
+use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory as _, Parser as _};
-use slicer::profile;
 use slicer::report::make::slow_speeds;
+use slicer::{profile, report};
 use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::Path;
@@ -82,7 +84,7 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
 fn refused(error: &clap::Error, first: Option<&str>) -> u8 {
     use clap::error::ErrorKind::{
         DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion,
-        MissingRequiredArgument,
+        MissingRequiredArgument, UnknownArgument,
     };
     let text = error.render();
     match error.kind() {
@@ -96,14 +98,31 @@ fn refused(error: &clap::Error, first: Option<&str>) -> u8 {
             2
         }
         kind => {
-            let command = first
-                .filter(|_| kind == MissingRequiredArgument)
-                .and_then(|word| usage::meant(word, &Arguments::command()));
-            let told = command.unwrap_or_else(|| usage::one_line(&text.to_string()));
+            let told = match kind {
+                MissingRequiredArgument => {
+                    first.and_then(|word| usage::meant(word, &Arguments::command()))
+                }
+                UnknownArgument => unknown_flag(error, first),
+                _ => None,
+            };
+            let told = told.unwrap_or_else(|| usage::one_line(&text.to_string()));
             say(&format!("error: {told}\n"));
             2
         }
     }
+}
+
+/// What to say of a flag that the command, named by the first argument, does not have.
+fn unknown_flag(error: &clap::Error, first: Option<&str>) -> Option<String> {
+    let flag = error.get(ContextKind::InvalidArg).and_then(|value| match value {
+        ContextValue::String(flag) => Some(flag.as_str()),
+        _ => None,
+    });
+    let flag = flag.filter(|flag| flag.starts_with("--"))?;
+    let program = Arguments::command();
+    let command = first.and_then(|word| program.find_subcommand(word));
+    let takes_settings = command.is_none_or(|command| command.get_name() == "compare");
+    Some(foreign::unknown_flag(flag, takes_settings, command.unwrap_or(&program)))
 }
 
 /// Text for people. There is nowhere left to report that it cannot be written.
@@ -114,17 +133,19 @@ fn say(text: &str) {
 fn other(command: &Command) -> Result<Outcome> {
     let text = match command {
         Command::Profile(ProfileCommand::List) => list()?,
-        Command::Profile(ProfileCommand::Show { name, set, verbose }) => {
-            let profile = profile::load(name, &words::set_overrides(set)?)?;
+        Command::Profile(ProfileCommand::Show { names, set, verbose }) => {
+            let profile = profile::load(names, &words::set_overrides(set)?)?;
             profile::document(&profile, *verbose)
         }
+        Command::Profile(ProfileCommand::Schema) => pretty(&profile::schema())?,
+        Command::Report(ReportCommand::Schema) => pretty(&report::schema())?,
         Command::Profile(ProfileCommand::Check { name }) => {
             // A bare name that is a file here is meant as one: a check is about a file.
             let bare = !name.contains('/') && !name.ends_with(".toml");
             let built_in = profile::builtin_names().any(|known| known == name);
             let file = bare && !built_in && Path::new(name).is_file();
             let name_or_path = if file { format!("./{name}") } else { name.clone() };
-            let profile = profile::load(&name_or_path, &[])?;
+            let profile = profile::load([&name_or_path], &[])?;
             for warning in slow_speeds(&profile.settings) {
                 say(&format!("warning: {warning}\n"));
             }
@@ -153,10 +174,14 @@ fn other(command: &Command) -> Result<Outcome> {
     Ok(text.into())
 }
 
+fn pretty(schema: &impl serde::Serialize) -> Result<String> {
+    output::json(schema, Path::new("-"))
+}
+
 fn list() -> Result<String> {
     let mut text = String::new();
     for name in profile::builtin_names() {
-        let profile = profile::load(name, &[])?;
+        let profile = profile::load([name], &[])?;
         text.push_str(&format!("{name:<16} {}\n", profile.settings.description));
     }
     Ok(text)

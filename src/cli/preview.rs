@@ -74,7 +74,7 @@ pub(crate) struct PreviewArgs {
 
     /// Built-in profile, or a file if it has a `/` or ends in .toml: the filament's diameter, for files that tell no widths; for a page the limits that its times depend on, too
     #[arg(short, long, value_name = "NAME", default_value = profile::DEFAULT, help_heading = "Settings")]
-    profile: String,
+    profile: Vec<String>,
     /// Change any setting of the profile, such as filament.diameter=2.85 (repeatable)
     #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
     set: Vec<String>,

@@ -100,7 +100,8 @@ fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
         return usage::refuse("-o and --report name the same file; name two");
     }
     for product in std::iter::once(out).chain(report) {
-        let read = args.inputs.iter().map(String::as_str).chain([args.profile.as_str()]);
+        let read =
+            args.inputs.iter().map(String::as_str).chain(args.profile.iter().map(String::as_str));
         if let Some(name) = read.into_iter().find(|name| same(product, Path::new(name))) {
             return usage::refuse(&format!(
                 "the output would replace {name}; choose another name for it"

@@ -28,16 +28,17 @@ pub(super) fn set_overrides(words: &[String]) -> Result<Vec<Override>> {
 
 /// `all` is short for every part there is.
 pub(super) fn parts(list: &str) -> String {
-    let all = || words("dual.parts").join(",");
+    let all = || words("dual.parts").collect::<Vec<_>>().join(",");
     if list.trim() == "all" { all() } else { list.to_owned() }
 }
 
 /// The words that a setting may have.
-pub(super) fn words(key: &str) -> &'static [&'static str] {
-    match keys::find(key).map(|key| key.kind) {
-        Some(Kind::Word(words) | Kind::Words(words)) => words,
+pub(super) fn words(key: &str) -> impl Iterator<Item = &'static str> {
+    let words = match keys::find(key).map(|key| &key.kind) {
+        Some(Kind::Word(words) | Kind::Words(words)) => words.as_slice(),
         _ => &[],
-    }
+    };
+    words.iter().map(String::as_str)
 }
 
 /// A number above 0.

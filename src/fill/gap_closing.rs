@@ -230,7 +230,7 @@ mod tests {
 
     /// Closes a skin that is all of `contour`, lines along x.
     fn closed(contour: Contour) -> (Vec<Line>, Vec<Polyline>, LineParams) {
-        let mut settings = profile::load("generic-marlin", &[]).unwrap().settings;
+        let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
         settings.angle = profile::Angle::Degrees(0.0);
         let rasters = RegionParams::new(&settings).rasters;
         let along = Scan::new(std::slice::from_ref(&contour), rasters.skin(0)).inside().clone();

@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn no_comment_for_hosts_has_the_name_of_a_setting() {
-        let settings = load("generic-klipper", &[]).unwrap().settings;
+        let settings = load(["generic-klipper"], &[]).unwrap().settings;
         let text = head(5, &[]) + &tail(5, &Sums::default(), &settings);
         let keys = text.lines().filter_map(|line| line.strip_prefix("; ")?.split_once(" = "));
         let keys: Vec<&str> = keys.map(|(key, _)| key).collect();

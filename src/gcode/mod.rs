@@ -27,7 +27,7 @@ use crate::error::Result;
 use crate::motion::Limits;
 use crate::plan::Toolpath;
 use crate::profile::template::{self, PrintFacts};
-use crate::profile::{Settings, dump};
+use crate::profile::{ProfileError, Settings, dump};
 use hosts::Thumbnail;
 use moves::{MoveParams, Moves};
 pub use output::Output;
@@ -69,7 +69,7 @@ impl<'a> Writer<'a> {
     /// the layout's middle goes on the machine, mm.
     ///
     /// # Errors
-    /// [`Error::Config`](crate::error::Error::Config) for an unknown placeholder,
+    /// [`Error::Profile`](crate::error::Error::Profile) for an unknown placeholder,
     /// [`Error::Write`](crate::error::Error::Write) if writing fails.
     pub fn new(
         out: &'a mut dyn Output,
@@ -173,6 +173,7 @@ impl<'a> Writer<'a> {
 
     /// A block of the profile with its placeholders replaced.
     fn block(&self, name: &str, block: &str) -> Result<String> {
-        template::render(name, block, &template::values(self.settings, &self.facts))
+        let values = template::values(self.settings, &self.facts);
+        Ok(template::render(name, block, &values).map_err(ProfileError::from)?)
     }
 }

@@ -327,7 +327,7 @@ mod tests {
     }
 
     fn moves(toolpath: &Toolpath) -> (Moves, Settings) {
-        let settings = profile::load("generic-marlin", &[]).unwrap().settings;
+        let settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
         (MoveParams::new(&settings, [0.0, 0.0]).moves(toolpath), settings)
     }
 

@@ -291,7 +291,7 @@ mod tests {
     }
 
     fn text(profile: &str) -> String {
-        let settings = profile::load(profile, &[]).unwrap().settings;
+        let settings = profile::load([profile], &[]).unwrap().settings;
         let moves = MoveParams::new(&settings, [150.0, 150.0]).moves(&toolpath());
         String::from_utf8(WriteParams::new(&settings).layer(&moves, 1.0).text).unwrap()
     }
@@ -335,7 +335,7 @@ G1 X150 E2.3 F3600
 
     #[test]
     fn a_path_that_rises_is_written_with_z_where_it_changes() {
-        let settings = profile::load("generic-klipper", &[]).unwrap().settings;
+        let settings = profile::load(["generic-klipper"], &[]).unwrap().settings;
         let mut hill = toolpath();
         let points = &mut hill.moves[0].path.points;
         points[1].z = 1_000;
@@ -352,7 +352,7 @@ G1 X150 E2.3 F3600
 
     #[test]
     fn usage_counts_what_is_written() {
-        let settings = profile::load("zcube-dual", &[]).unwrap().settings;
+        let settings = profile::load(["zcube-dual"], &[]).unwrap().settings;
         let usage = Usage::of(&MoveParams::new(&settings, [0.0, 0.0]).moves(&toolpath()));
         assert!((usage.filament() - 1.3).abs() < 1e-9);
         assert_eq!((usage.travels, usage.retractions), (2, 1));

@@ -1,6 +1,7 @@
 //! Faults -> counts and places: names what is wrong with a mesh and what was done about it, for the report.
 
 use crate::warning::plural;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
@@ -8,7 +9,7 @@ use std::fmt;
 pub const MOST_PLACES: usize = 8;
 
 /// What is wrong with a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fault {
     /// Triangles with two equal corners, or with three on one line.
@@ -77,7 +78,7 @@ impl Fault {
 }
 
 /// What was done to a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Mending {
     /// Corners moved onto another one nearby.
@@ -123,7 +124,7 @@ impl Mending {
 }
 
 /// How many of a kind, and where the first of them are.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Counted<K> {
     /// The kind.
     pub kind: K,

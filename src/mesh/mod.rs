@@ -28,6 +28,7 @@ mod notes;
 
 use crate::units::Coord;
 use faults::{Counted, Fault, Mending};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 pub use error::{Error, Result};
@@ -73,7 +74,7 @@ impl Mesh {
 }
 
 /// What a model file held and what was found in it.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct MeshReport {
     /// The file as the user named it.
     pub file: String,

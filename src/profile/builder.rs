@@ -1,14 +1,15 @@
 //! Profile name + keys and values -> Profile: settings for a program that embeds the library.
 
-use super::load::{Override, Profile, ValueOrigin, load};
-use crate::error::Result;
+use super::error::Result;
+use super::load::load;
+use super::origin::{Override, Profile, ValueOrigin};
 use std::fmt::Display;
 
 /// A profile with values laid over it, one key at a time.
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Builder {
-    profile: String,
+    profiles: Vec<String>,
     overrides: Vec<Override>,
 }
 
@@ -16,11 +17,17 @@ impl Profile {
     /// Begins with the profile of this name: a shipped one, or a file if it has a `/` or ends
     /// in `.toml`.
     pub fn builder(profile: impl Into<String>) -> Builder {
-        Builder { profile: profile.into(), overrides: Vec::new() }
+        Builder { profiles: vec![profile.into()], overrides: Vec::new() }
     }
 }
 
 impl Builder {
+    /// Lays another profile over those before it.
+    pub fn with(mut self, profile: impl Into<String>) -> Self {
+        self.profiles.push(profile.into());
+        self
+    }
+
     /// Sets a key, such as `dual.mode`, to a number, a word or any other TOML value.
     pub fn set(mut self, key: impl Into<String>, value: impl Display) -> Self {
         let (key, value) = (key.into(), value.to_string());
@@ -33,7 +40,7 @@ impl Builder {
     /// # Errors
     /// As [`load`](super::load()).
     pub fn load(self) -> Result<Profile> {
-        load(&self.profile, &self.overrides)
+        load(self.profiles, &self.overrides)
     }
 }
 

@@ -1,8 +1,9 @@
 //! Settings + origins -> verdict: refuses values that are each in range but cannot print together.
 
+use super::error::{Conflict, ProfileError, Result};
+use super::origin::ValueOrigin;
 use super::template::{self, PrintFacts};
-use super::{DialectName, DualMode, Settings, ValueOrigin};
-use crate::error::{Error, Result};
+use super::{DialectName, DualMode, Settings};
 use std::collections::BTreeMap;
 
 /// Slack for comparing lengths that were written as decimals, mm.
@@ -21,7 +22,8 @@ const NOT_FOR_MAKERBOT: &[&str] = &[
 /// Checks what no single key can tell.
 ///
 /// # Errors
-/// [`Error::Config`] that starts with the origin of one of the values concerned.
+/// [`ProfileError::Conflict`] or [`ProfileError::Block`], with the origin of one of the values
+/// concerned.
 pub(super) fn together(settings: &Settings, origins: &BTreeMap<String, ValueOrigin>) -> Result<()> {
     let blame = Blame { origins };
     heights(settings, &blame)?;
@@ -34,16 +36,20 @@ struct Blame<'a> {
 }
 
 impl Blame<'_> {
-    /// An error about these keys, which starts with the origin that is most
-    /// likely to blame: a flag before `--set` before a file.
-    fn error(&self, keys: &[&str], why: &str) -> Error {
+    /// An error about these keys.
+    fn error(&self, keys: &[&str], source: Conflict) -> ProfileError {
+        ProfileError::Conflict { origin: self.origin(keys), source }
+    }
+
+    /// The origin that is most likely to blame: a flag before `--set` before a file.
+    fn origin(&self, keys: &[&str]) -> Option<ValueOrigin> {
         let rank = |origin: &&ValueOrigin| match origin {
             ValueOrigin::Flag(_) => 0,
             ValueOrigin::Set | ValueOrigin::Program => 1,
             ValueOrigin::File { .. } | ValueOrigin::Recorded => 2,
+            ValueOrigin::Default => 3,
         };
-        let origin = keys.iter().filter_map(|key| self.origins.get(*key)).min_by_key(rank);
-        Error::Config(origin.map_or_else(|| why.to_owned(), |origin| format!("{origin}: {why}")))
+        keys.iter().filter_map(|key| self.origins.get(*key)).min_by_key(rank).cloned()
     }
 }
 
@@ -55,18 +61,12 @@ fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
         ("first_layer_height", settings.first_layer_height),
     ] {
         if height > nozzle + SLACK_MM {
-            let why = format!(
-                "{key} = {height} mm is more than machine.nozzle_diameter = {nozzle} mm; \
-                 use thinner layers or a larger nozzle"
-            );
-            return Err(blame.error(&[key, "machine.nozzle_diameter"], &why));
+            let conflict = Conflict::HigherThanNozzle { key, height, nozzle };
+            return Err(blame.error(&[key, "machine.nozzle_diameter"], conflict));
         }
         if width < LEAST_WIDTH * height - SLACK_MM {
-            let why = format!(
-                "line_width = {width} mm is too little for {key} = {height} mm; \
-                 use at least {LEAST_WIDTH} times the height"
-            );
-            return Err(blame.error(&["line_width", key], &why));
+            let conflict = Conflict::NarrowLines { width, key, height, least: LEAST_WIDTH };
+            return Err(blame.error(&["line_width", key], conflict));
         }
     }
     dual(settings, blame)
@@ -76,7 +76,7 @@ fn dual(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
     for key in ["dual.ratio", "dual.parts"] {
         let given = matches!(blame.origins.get(key), Some(ValueOrigin::Flag(_)));
         if given && settings.dual.mode == DualMode::Off {
-            return Err(blame.error(&[key], "has no effect while dual.mode is off; add --dual"));
+            return Err(blame.error(&[key], Conflict::DualIsOff { key }));
         }
     }
     let ratio = settings.dual_ratio();
@@ -86,12 +86,6 @@ fn dual(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
     if settings.dual.mode == DualMode::Off || ratio >= 2 && tall <= most + SLACK_MM {
         return Ok(());
     }
-    let why = format!(
-        "{} layers of layer_height = {height} mm make thick lines taller than the {most} mm that \
-         dual.max_bead_height and machine.nozzle_diameter allow; use thinner layers, a lower dual.ratio, \
-         or dual.mode = \"off\"",
-        ratio.max(2)
-    );
     let keys = [
         "dual.ratio",
         "layer_height",
@@ -99,7 +93,7 @@ fn dual(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
         "dual.max_bead_height",
         "machine.nozzle_diameter",
     ];
-    Err(blame.error(&keys, &why))
+    Err(blame.error(&keys, Conflict::ThickLinesTooTall { layers: ratio.max(2), height, most }))
 }
 
 fn blocks(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
@@ -109,38 +103,30 @@ fn blocks(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
         [("machine.start_gcode", &machine.start_gcode), ("machine.end_gcode", &machine.end_gcode)]
     {
         let text = template::render(key, block, &values)
-            .map_err(|error| blame.error(&[key], &error.to_string()))?;
+            .map_err(|source| ProfileError::Block { origin: blame.origin(&[key]), source })?;
         if machine.dialect == DialectName::Makerbot {
-            no_host_codes(key, &text).map_err(|why| blame.error(&[key], &why))?;
+            no_host_codes(key, &text).map_err(|conflict| blame.error(&[key], conflict))?;
         }
     }
-    if settings.filament.bed_temperature > 0.0 && !machine.start_gcode.contains("{bed_temperature}")
-    {
-        let why = format!(
-            "filament.bed_temperature = {} °C would have no effect: machine.start_gcode does not \
-             contain {{bed_temperature}}; put it there, or set 0",
-            settings.filament.bed_temperature
-        );
-        return Err(blame.error(&["filament.bed_temperature", "machine.start_gcode"], &why));
+    let celsius = settings.filament.bed_temperature;
+    if celsius > 0.0 && !machine.start_gcode.contains("{bed_temperature}") {
+        let keys = ["filament.bed_temperature", "machine.start_gcode"];
+        return Err(blame.error(&keys, Conflict::BedStaysCold { celsius }));
     }
     let says_relative = ["M83", "{e_mode}"].iter().any(|code| machine.start_gcode.contains(code));
     if machine.relative_e && !says_relative {
-        let why = "machine.relative_e = true, but machine.start_gcode contains neither M83 nor {e_mode}; \
-                   put {e_mode} on a line of its own";
-        return Err(blame.error(&["machine.relative_e", "machine.start_gcode"], why));
+        let keys = ["machine.relative_e", "machine.start_gcode"];
+        return Err(blame.error(&keys, Conflict::RelativeEUnsaid));
     }
     Ok(())
 }
 
-fn no_host_codes(key: &str, text: &str) -> std::result::Result<(), String> {
+fn no_host_codes(block: &'static str, text: &str) -> Result<(), Conflict> {
     for (index, line) in text.lines().enumerate() {
         let code = line.split([';', '(']).next().and_then(|code| code.split_whitespace().next());
         if let Some(code) = code.filter(|code| NOT_FOR_MAKERBOT.contains(code)) {
-            return Err(format!(
-                "{key}, line {} of it: {code} must not be in a file for GPX, which drops it or \
-                 makes the printer wait for a host; remove the line",
-                index + 1
-            ));
+            let code = code.to_owned();
+            return Err(Conflict::HostCommand { block, line: index + 1, code });
         }
     }
     Ok(())

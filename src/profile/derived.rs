@@ -93,7 +93,7 @@ mod tests {
         };
         let mut overrides: Vec<Override> = set.iter().map(given).collect();
         overrides.push(given(&("dual.ratio", "auto")));
-        load(profile, &overrides).unwrap().settings.dual_ratio()
+        load([profile], &overrides).unwrap().settings.dual_ratio()
     }
 
     #[test]

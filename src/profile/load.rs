@@ -1,124 +1,85 @@
-//! Profile name or file + overrides -> Profile: merges the layers and remembers where each value is from.
+//! Profile names or files + overrides -> Profile: merges the layers and remembers where each value is from.
+//!
+//! Words: a *layer* is the text of one profile; *merged* are the dotted keys that have a value
+//! so far, each with its origin. Values are merged from the most general to the most special, so
+//! that the last one written wins:
+//!
+//! 1. the defaults of the keys,
+//! 2. for each profile asked for: what it inherits, then its own values,
+//! 3. the overrides of the command line, in their order.
+//!
+//! Each value is checked by its key when it is merged, so that a wrong one is reported with its
+//! own place even where another would win over it. At the end the keys are nested again and
+//! become [`Settings`]; whether they can print together is for `check.rs` to say.
 
+use super::error::{ProfileError, Result};
 use super::keys::{self, Kind};
-use super::{Settings, check, old, parse, suggest};
-use crate::error::{Error, Result};
+use super::origin::{Override, Profile, ValueOrigin};
+use super::shipped::{self, builtin_names};
+use super::{Settings, check, parse};
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::fmt;
 use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use toml::Value;
 
-/// Name of the profile that is used where none is asked for.
-pub const DEFAULT: &str = "zcube-dual";
-
 /// Bytes of a profile, at most; start and end blocks are the longest part of one. A device has no end.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// The shipped profiles: name and text.
-const BUILTIN: &[(&str, &str)] = &[
-    ("zcube-dual", include_str!("../../profiles/zcube-dual.toml")),
-    ("replicator", include_str!("../../profiles/replicator.toml")),
-    ("thesis", include_str!("../../profiles/thesis.toml")),
-    ("generic-marlin", include_str!("../../profiles/generic-marlin.toml")),
-    ("generic-klipper", include_str!("../../profiles/generic-klipper.toml")),
-    ("witbox-1", include_str!("../../profiles/witbox-1.toml")),
-];
-
-/// Settings and where they come from.
-#[derive(Debug, Clone)]
-pub struct Profile {
-    /// All effective settings, checked.
-    pub settings: Settings,
-    /// For each dotted key that is set, what set it last.
-    pub origins: BTreeMap<String, ValueOrigin>,
-    /// Built-in name, or name of the file without its folder, so that an
-    /// output that quotes it does not depend on where the file lay.
-    pub name: String,
-}
-
-/// What gave a setting its value. Displays as the start of an error message.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum ValueOrigin {
-    /// A line of a profile.
-    File {
-        /// The file as the user named it, or the name of a built-in profile.
-        name: String,
-        /// Line, from 1.
-        line: usize,
-    },
-    /// `--set`.
-    Set,
-    /// A flag of its own, such as `--layer-height`.
-    Flag(&'static str),
-    /// The comments of a G-code file.
-    Recorded,
-    /// The program that embeds the library.
-    Program,
-}
-
-impl fmt::Display for ValueOrigin {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::File { name, line } => write!(f, "{name}:{line}"),
-            Self::Set => f.write_str("--set"),
-            Self::Flag(flag) => f.write_str(flag),
-            Self::Recorded => f.write_str("the file's own settings"),
-            Self::Program => f.write_str("the program"),
-        }
-    }
-}
-
-/// A value given on the command line.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Override {
-    /// Dotted key.
-    pub key: String,
-    /// TOML value, or bare text where it is none.
-    pub value: String,
-    /// For messages.
-    pub origin: ValueOrigin,
-}
-
-/// Names of the shipped profiles, [`DEFAULT`] first.
-pub fn builtin_names() -> impl Iterator<Item = &'static str> {
-    BUILTIN.iter().map(|(name, _)| *name)
-}
-
-/// Loads a profile, lays `overrides` over it in their order, and checks the result.
+/// Loads profiles, each laid over those before it, lays `overrides` over them in their order,
+/// and checks the result.
 ///
 /// A name with a path separator or the ending `.toml` is a file, any other the
-/// name of a shipped profile.
+/// name of a shipped profile. What no profile says is the key's default.
 ///
 /// # Errors
-/// [`Error::Config`] in one line that starts with the file and line or the flag:
+/// [`ProfileError`], one line that starts with the file and line or the flag:
 /// unreadable file, unknown profile, cyclic `inherits`, TOML syntax, unknown
 /// key, wrong type, out of range, a key without value, values that cannot print
 /// together, blocks that cannot be filled in.
-pub fn load(name_or_path: &str, overrides: &[Override]) -> Result<Profile> {
-    let profile = merge(name_or_path, overrides)?;
+pub fn load(
+    names: impl IntoIterator<Item = impl AsRef<str>>,
+    overrides: &[Override],
+) -> Result<Profile> {
+    let profile = merge(names, overrides)?;
     check::together(&profile.settings, &profile.origins)?;
     Ok(profile)
 }
 
 /// As [`load`], each value checked, but not whether they can print together.
-pub(super) fn merge(name_or_path: &str, overrides: &[Override]) -> Result<Profile> {
-    let mut merged = Merged::new();
-    let layer = Layer::find(name_or_path, None).map_err(Error::Config)?;
-    let name = layer.name.clone();
-    merge_layer(layer, &mut Vec::new(), &mut merged)?;
+pub(super) fn merge(
+    names: impl IntoIterator<Item = impl AsRef<str>>,
+    overrides: &[Override],
+) -> Result<Profile> {
+    let mut merged = defaults();
+    let (mut known, mut shown) = (Vec::new(), Vec::new());
+    for name in names {
+        let layer = Layer::find(name.as_ref(), None)?;
+        known.push(layer.name.clone());
+        shown.push(layer.shown.clone());
+        merge_layer(layer, &mut Vec::new(), &mut merged)?;
+    }
     for given in overrides {
         merge_override(given, &mut merged)?;
     }
-    let settings = build(name_or_path, &merged)?;
+    let settings = build(&shown.join(" + "), &merged)?;
     let origins = merged.into_iter().map(|(key, (_, origin))| (key, origin)).collect();
-    Ok(Profile { settings, origins, name })
+    Ok(Profile { settings, origins, name: known.join(" + ") })
 }
 
 /// Key -> value and origin.
 type Merged = BTreeMap<String, (Value, ValueOrigin)>;
+
+/// What holds where no profile says otherwise.
+fn defaults() -> Merged {
+    let row = |key: &'static keys::Key| {
+        // A test holds defaults against the limits.
+        let value = key.check(key.default.clone()?).ok()?;
+        Some((key.name.clone(), (value, ValueOrigin::Default)))
+    };
+    keys::KEYS.iter().filter_map(row).collect()
+}
 
 /// One profile text before it is read.
 struct Layer {
@@ -134,7 +95,7 @@ struct Layer {
 
 impl Layer {
     /// The profile called `wanted`; relative files are looked for in `folder`.
-    fn find(wanted: &str, folder: Option<&Path>) -> std::result::Result<Self, String> {
+    fn find(wanted: &str, folder: Option<&Path>) -> Result<Self> {
         if is_file_name(wanted) {
             let path = folder.map_or_else(|| PathBuf::from(wanted), |dir| dir.join(wanted));
             let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
@@ -150,34 +111,20 @@ impl Layer {
             let name = wanted.to_owned();
             return Ok(Self { shown: name.clone(), path: None, identity: wanted.into(), name });
         }
-        let names: Vec<_> = builtin_names().collect();
-        Err(format!(
-            "unknown profile `{}`{} Known are {}; a file ends in .toml or is given as ./{}",
-            wanted.escape_debug(),
-            match suggest::did_you_mean(wanted, builtin_names()) {
-                hint if hint.is_empty() => ".".to_owned(),
-                hint => hint,
-            },
-            names.join(", "),
-            wanted.escape_debug()
-        ))
+        Err(ProfileError::UnknownProfile { name: wanted.to_owned() })
     }
 
     fn text(&self) -> Result<String> {
         let Some(path) = &self.path else {
-            let text = BUILTIN.iter().find(|(name, _)| *name == self.name);
-            return Ok(text.map_or_else(String::new, |(_, text)| (*text).to_owned()));
+            return Ok(shipped::text(&self.name).unwrap_or_default().to_owned());
         };
         let shown = &self.shown;
         let mut text = String::new();
         let read = File::open(path)
             .and_then(|file| file.take(MOST_BYTES + 1).read_to_string(&mut text))
-            .map_err(|error| {
-                Error::Config(format!("{shown}: cannot read this profile: {error}; check the path"))
-            })?;
+            .map_err(|source| ProfileError::Unreadable { file: shown.clone(), source })?;
         if read as u64 > MOST_BYTES {
-            let why = "is larger than any profile; check the path";
-            return Err(Error::Config(format!("{shown}: {why}")));
+            return Err(ProfileError::TooLarge { file: shown.clone() });
         }
         Ok(text)
     }
@@ -196,16 +143,11 @@ fn merge_layer(layer: Layer, chain: &mut Vec<Layer>, merged: &mut Merged) -> Res
     let folder = layer.path.as_ref().and_then(|path| path.parent()).map(Path::to_owned);
     chain.push(layer);
     if let Some(entry) = entries.iter().find(|entry| entry.key == "inherits") {
-        let place = format!("{shown}:{}", entry.line);
-        let parent = inherited(entry, folder.as_deref())
-            .map_err(|why| Error::Config(format!("{place}: inherits: {why}")))?;
+        let origin = ValueOrigin::File { name: shown.clone(), line: entry.line };
+        let parent = inherited(entry, &origin, folder.as_deref())?;
         if let Some(start) = chain.iter().position(|one| one.identity == parent.identity) {
-            let names = chain[start..].iter().chain([&parent]).map(|one| one.shown.as_str());
-            let names: Vec<_> = names.collect();
-            return Err(Error::Config(format!(
-                "{place}: inherits goes round in a circle: {}; remove it from one of them",
-                names.join(" -> ")
-            )));
+            let files = chain[start..].iter().chain([&parent]).map(|one| one.shown.clone());
+            return Err(ProfileError::Circle { origin, files: files.collect() });
         }
         merge_layer(parent, chain, merged)?;
     }
@@ -220,11 +162,14 @@ fn merge_layer(layer: Layer, chain: &mut Vec<Layer>, merged: &mut Merged) -> Res
     Ok(())
 }
 
-fn inherited(entry: &parse::Entry, folder: Option<&Path>) -> std::result::Result<Layer, String> {
+fn inherited(entry: &parse::Entry, origin: &ValueOrigin, folder: Option<&Path>) -> Result<Layer> {
     let Value::String(wanted) = &entry.value else {
-        return Err("must be the name of a profile or a file, in quotes".to_owned());
+        return Err(ProfileError::InheritsNoName { origin: origin.clone() });
     };
-    Layer::find(wanted, folder)
+    Layer::find(wanted, folder).map_err(|source| {
+        let origin = origin.clone();
+        ProfileError::Inherits { origin, source: Box::new(source) }
+    })
 }
 
 fn merge_override(given: &Override, merged: &mut Merged) -> Result<()> {
@@ -240,38 +185,20 @@ fn merge_override(given: &Override, merged: &mut Merged) -> Result<()> {
 
 fn insert(key: &str, value: Value, origin: ValueOrigin, merged: &mut Merged) -> Result<()> {
     let Some(known) = keys::find(key) else {
-        return Err(Error::Config(format!("{origin}: {}", unknown_key(key))));
+        return Err(ProfileError::UnknownKey { origin, key: key.to_owned() });
     };
-    let value = known
-        .check(value)
-        .map_err(|why| Error::Config(format!("{origin}: {} {}", known.name, why.trim_end())))?;
+    let value = match known.check(value) {
+        Ok(value) => value,
+        Err(source) => return Err(ProfileError::Value { origin, key: key.to_owned(), source }),
+    };
     merged.insert(key.to_owned(), (value, origin));
     Ok(())
 }
 
-fn unknown_key(key: &str) -> String {
-    let table = format!("{key}.");
-    let inside: Vec<_> =
-        keys::KEYS.iter().map(|one| one.name).filter(|name| name.starts_with(&table)).collect();
-    if !inside.is_empty() {
-        return format!("`{key}` is a table, not a value; set one of {}", inside.join(", "));
-    }
-    if let Some(name) = old::renamed(key) {
-        return format!("`{key}` is called `{name}` now");
-    }
-    let names = keys::KEYS.iter().map(|one| one.name);
-    let hint = suggest::did_you_mean(key, names);
-    let more = if hint.is_empty() { "; `slicer profile show` lists all keys" } else { "" };
-    format!("unknown key `{}`{hint}{more}", key.escape_debug())
-}
-
 /// Nests the dotted keys again and makes the typed value of them.
 fn build(shown: &str, merged: &Merged) -> Result<Settings> {
-    if let Some(key) = keys::KEYS.iter().find(|k| !k.optional && !merged.contains_key(k.name)) {
-        return Err(Error::Config(format!(
-            "{shown}: `{}` has no value; set it, or begin the file with inherits = \"{DEFAULT}\"",
-            key.name
-        )));
+    if let Some(key) = keys::KEYS.iter().find(|k| !k.optional && !merged.contains_key(&k.name)) {
+        return Err(ProfileError::Missing { profile: shown.to_owned(), key: key.name.clone() });
     }
     let mut root = toml::Table::new();
     for (key, (value, _)) in merged {
@@ -289,13 +216,16 @@ fn build(shown: &str, merged: &Merged) -> Result<Settings> {
     }
     // Every value has been checked against the table of keys, which a test
     // holds against the type: this can only fail if the two have parted.
-    Settings::deserialize(root)
-        .map_err(|error| Error::Config(format!("{shown}: {}", error.message().replace('\n', ", "))))
+    Settings::deserialize(root).map_err(|source| {
+        let profile = shown.to_owned();
+        ProfileError::Mismatch { profile, source: Box::new(source) }
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::profile::DEFAULT;
     use crate::profile::{DualMode, RetractWhen};
     use std::fs;
 
@@ -304,13 +234,13 @@ mod tests {
     }
 
     fn refused(overrides: &[Override]) -> String {
-        load(DEFAULT, overrides).unwrap_err().to_string()
+        load([DEFAULT], overrides).unwrap_err().to_string()
     }
 
     #[test]
     fn every_shipped_profile_loads() {
         for name in builtin_names() {
-            let profile = load(name, &[]).unwrap();
+            let profile = load([name], &[]).unwrap();
             assert_eq!(profile.name, name);
             assert!(!profile.settings.description.is_empty());
         }
@@ -318,25 +248,8 @@ mod tests {
     }
 
     #[test]
-    fn shipped_profiles_say_unit_and_limits_of_each_key() {
-        for (name, text) in BUILTIN {
-            let lines: Vec<_> = text.lines().collect();
-            for entry in parse::document(name, text).unwrap() {
-                let Some(key) = keys::find(&entry.key) else {
-                    continue;
-                };
-                // A block's comment stands above it.
-                let back = if key.kind == Kind::Block { 2 } else { 1 };
-                let line = lines[entry.line - back];
-                let comment = line.rsplit_once("# ").map(|(_, comment)| comment);
-                assert_eq!(comment, Some(key.comment().as_str()), "{name}:{}", entry.line);
-            }
-        }
-    }
-
-    #[test]
     fn the_thesis_profile_is_the_thesis() {
-        let thesis = load("thesis", &[]).unwrap();
+        let thesis = load(["thesis"], &[]).unwrap();
         let settings = &thesis.settings;
         assert_eq!(settings.dual.mode, DualMode::Pair);
         assert_eq!(settings.retraction.when, RetractWhen::Always);
@@ -355,7 +268,7 @@ mod tests {
             origin: ValueOrigin::Flag("--walls"),
         };
         let given = [set("walls", "4"), flag, set("dual.mode", "pair"), set("machine.name", "7")];
-        let profile = load(DEFAULT, &given).unwrap();
+        let profile = load([DEFAULT], &given).unwrap();
         assert_eq!(profile.settings.walls, 5);
         assert_eq!(profile.settings.machine.name, "7");
         assert_eq!(profile.origins["walls"], ValueOrigin::Flag("--walls"));
@@ -372,16 +285,6 @@ mod tests {
             ),
             ("speed", "1", "--set: `speed` is a table, not a value; set one of speed.wall,"),
             ("walls", "101", "--set: walls = 101 is out of range; it must be 0 to 100 walls"),
-            ("retraction.feed", "20", "--set: `retraction.feed` is called `retraction.speed` now"),
-            (
-                "speed.travel",
-                "1000",
-                "--set: speed.travel = 1000 is out of range; it must be 0.1 to 999 mm/s; \
-                 speeds are in mm/s, 1000 mm/min would be 16.667",
-            ),
-            ("limits.speed_y", "1000", "--set: limits.speed_y = 1000 is out of range"),
-            ("speed.z", "100.1", "--set: speed.z = 100.1 is out of range; it must be 0.1 to 100"),
-            ("retraction.speed", "201", "--set: retraction.speed = 201 is out of range"),
             ("infill", "x", "--set: infill is the text `x`; it must be a number, 0 to 100 %"),
             ("seam", "reer", "--set: seam = `reer` is unknown; did you mean `rear`?"),
             (
@@ -400,12 +303,61 @@ mod tests {
             ("machine.relative_e", "true", "--set: machine.relative_e = true, but"),
         ] {
             if start.is_empty() {
-                assert!(load(DEFAULT, &[set(key, value)]).is_ok());
+                assert!(load([DEFAULT], &[set(key, value)]).is_ok());
                 continue;
             }
             let message = refused(&[set(key, value)]);
             assert!(message.starts_with(start), "{message}");
             assert!(!message.contains('\n'), "{message}");
+        }
+    }
+
+    #[test]
+    fn names_of_other_slicers_and_old_ones_are_answered_by_ours() {
+        for (key, value, text) in [
+            ("retraction.feed", "20", "--set: `retraction.feed` is called `retraction.speed` now"),
+            ("perimeters", "2", "--set: unknown key `perimeters`; here it is `walls`"),
+            (
+                "nozzle_diameter",
+                "0.4",
+                "--set: unknown key `nozzle_diameter`; here it is `machine.nozzle_diameter`",
+            ),
+            (
+                "perimeter_speed",
+                "50",
+                "--set: unknown key `perimeter_speed`; here it is `speed.wall`",
+            ),
+            (
+                "retract_lift",
+                "1",
+                "--set: unknown key `retract_lift`; here it is `retraction.z_hop`",
+            ),
+            ("brim_width", "5", "--set: unknown key `brim_width`; a brim is not supported yet"),
+        ] {
+            assert_eq!(refused(&[set(key, value)]), text);
+        }
+    }
+
+    #[test]
+    fn speeds_that_look_like_mm_per_minute_are_refused() {
+        for (key, value, start) in [
+            (
+                "speed.travel",
+                "1000",
+                "--set: speed.travel = 1000 is out of range; it must be 0.1 to 999 mm/s; \
+                 speeds are in mm/s, 1000 mm/min would be 16.667",
+            ),
+            ("limits.speed_y", "1000", "--set: limits.speed_y = 1000 is out of range"),
+            ("speed.z", "100.1", "--set: speed.z = 100.1 is out of range; it must be 0.1 to 100"),
+            ("retraction.speed", "201", "--set: retraction.speed = 201 is out of range"),
+        ] {
+            let message = refused(&[set(key, value)]);
+            assert!(message.starts_with(start), "{message}");
+        }
+        for (key, value) in
+            [("speed.travel", "999"), ("speed.z", "100"), ("retraction.speed", "200")]
+        {
+            assert!(load([DEFAULT], &[set(key, value)]).is_ok(), "{key}");
         }
     }
 
@@ -421,10 +373,54 @@ mod tests {
     }
 
     #[test]
+    fn a_later_profile_is_laid_over_the_earlier() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("petg.toml");
+        fs::write(&file, "[filament]\nname = \"PETG\"\n").unwrap();
+        let profile = load(["witbox-1", file.to_str().unwrap()], &[]).unwrap();
+        assert_eq!(profile.settings.filament.name, "PETG");
+        assert_eq!(profile.settings.machine.name, "bq Witbox 1");
+        assert_eq!(profile.name, "witbox-1 + petg.toml");
+        let profile = load([file.to_str().unwrap(), "witbox-1"], &[]).unwrap();
+        assert_eq!(profile.settings.filament.name, "PLA");
+    }
+
+    #[test]
+    fn what_no_profile_says_is_the_default() {
+        let profile = load(["generic-marlin"], &[]).unwrap();
+        assert_eq!(profile.settings.dual.mode, DualMode::Off);
+        assert_eq!(profile.origins["dual.mode"], ValueOrigin::Default);
+        assert!(!profile.origins.contains_key("top_layers"));
+    }
+
+    #[test]
+    fn errors_can_be_matched_on_and_have_their_causes() {
+        use crate::profile::error::{Conflict, ProfileError, ValueError};
+        use std::error::Error as _;
+        let error = load([DEFAULT], &[set("walls", "101")]).unwrap_err();
+        let ProfileError::Value { origin: ValueOrigin::Set, key, source } = &error else {
+            panic!("{error:?}");
+        };
+        assert!(key == "walls" && matches!(source, ValueError::OutOfRange { .. }), "{error:?}");
+        assert!(error.source().unwrap().is::<ValueError>());
+        let error = load(["./no.toml"], &[]).unwrap_err();
+        assert!(error.source().unwrap().is::<std::io::Error>(), "{error:?}");
+        let error = load([DEFAULT], &[set("layer_height", "0.5")]).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                ProfileError::Conflict { source: Conflict::HigherThanNozzle { height, .. }, .. }
+                    if height == 0.5
+            ),
+            "{error:?}"
+        );
+    }
+
+    #[test]
     fn unknown_profiles_get_a_suggestion_and_the_list() {
-        let message = load("zcube", &[]).unwrap_err().to_string();
+        let message = load(["zcube"], &[]).unwrap_err().to_string();
         assert!(message.contains("did you mean `zcube-dual`? Known are zcube-dual,"), "{message}");
-        let message = load("./no.toml", &[]).unwrap_err().to_string();
+        let message = load(["./no.toml"], &[]).unwrap_err().to_string();
         assert!(message.starts_with("./no.toml: cannot read this profile: "), "{message}");
     }
 
@@ -434,24 +430,24 @@ mod tests {
         let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
         fs::write(at("a.toml"), "inherits = \"b.toml\"\nwalls = 3\n").unwrap();
         fs::write(at("b.toml"), "inherits = \"witbox-1\"\nwalls = 4\ninfill = 7\n").unwrap();
-        let profile = load(&at("a.toml"), &[]).unwrap();
+        let profile = load([&at("a.toml")], &[]).unwrap();
         assert_eq!((profile.settings.walls, profile.settings.infill), (3, 7.0));
         assert_eq!(profile.settings.machine.name, "bq Witbox 1");
         assert_eq!(profile.name, "a.toml");
 
         fs::write(at("b.toml"), "walls = 4\ninherits = \"./a.toml\"\n").unwrap();
-        let message = load(&at("a.toml"), &[]).unwrap_err().to_string();
+        let message = load([&at("a.toml")], &[]).unwrap_err().to_string();
         assert!(message.contains("b.toml:2: inherits goes round in a circle: "), "{message}");
 
         // A table whose lines are all commented out is no mistake, unless nobody knows it.
         fs::write(at("b.toml"), "inherits = \"thesis\"\n[dual]\n# mode = 1\n").unwrap();
-        assert!(load(&at("a.toml"), &[]).is_ok());
+        assert!(load([&at("a.toml")], &[]).is_ok());
         fs::write(at("b.toml"), "inherits = \"thesis\"\n[duel]\n").unwrap();
-        let message = load(&at("a.toml"), &[]).unwrap_err().to_string();
+        let message = load([&at("a.toml")], &[]).unwrap_err().to_string();
         assert!(message.contains("b.toml:2: unknown key `duel`"), "{message}");
 
         fs::write(at("b.toml"), "walls = 4\n").unwrap();
-        let message = load(&at("a.toml"), &[]).unwrap_err().to_string();
+        let message = load([&at("a.toml")], &[]).unwrap_err().to_string();
         assert!(message.contains("`description` has no value"), "{message}");
     }
 }

@@ -2,22 +2,34 @@
 
 mod builder;
 mod check;
+mod choices;
 mod derived;
+pub mod error;
+pub mod foreign;
 pub mod keys;
 mod load;
 mod old;
+mod origin;
 mod parse;
 mod recorded;
+mod schema;
 mod settings;
+mod shipped;
 mod show;
 mod sizes;
 pub mod suggest;
 pub mod template;
+mod value;
 
 pub use builder::Builder;
-pub use load::{DEFAULT, Override, Profile, ValueOrigin, builtin_names, load};
+pub use choices::*;
+pub use error::ProfileError;
+pub use load::load;
 pub use old::{SETTINGS_FORMAT, renewed};
+pub use origin::{Override, Profile, ValueOrigin};
 pub use recorded::recorded;
+pub use schema::schema;
 pub use settings::*;
+pub use shipped::{DEFAULT, builtin_names};
 pub use show::{document, dump};
 pub use sizes::PictureSize;

@@ -68,8 +68,8 @@ fn one(key: &str, value: &str) -> (String, String) {
     let speed = value.parse::<f64>().ok().filter(|_| was_per_minute(name)).map(|speed| {
         let speed = per_second(speed);
         // Format 1 allowed speeds beyond today's limits; a file is read all the same.
-        match keys::find(name).map(|key| key.kind) {
-            Some(Kind::Number { min, max }) => speed.clamp(min, max).to_string(),
+        match keys::find(name).map(|key| &key.kind) {
+            Some(&Kind::Number { min, max }) => speed.clamp(min, max).to_string(),
             _ => speed.to_string(),
         }
     });
@@ -121,6 +121,6 @@ mod tests {
             assert!(keys::find(old).is_none(), "{old}");
             assert!(keys::find(new).is_some(), "{new}");
         }
-        assert_eq!(KEYS.iter().filter(|key| was_per_minute(key.name)).count(), 12);
+        assert_eq!(KEYS.iter().filter(|key| was_per_minute(&key.name)).count(), 12);
     }
 }

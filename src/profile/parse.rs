@@ -1,7 +1,7 @@
 //! TOML text -> entries: each value under its dotted key, with the line it stands on.
 
-use super::keys::KEYS;
-use crate::error::{Error, Result};
+use super::error::{ProfileError, Result};
+use super::keys;
 use toml::Value;
 use toml::de::{DeTable, DeValue};
 
@@ -20,7 +20,7 @@ impl Entry {
     /// Whether this is the head of a known table without any value in it.
     pub(super) fn is_empty_table(&self) -> bool {
         let table = format!("{}.", self.key);
-        self.value.is_table() && KEYS.iter().any(|key| key.name.starts_with(&table))
+        self.value.is_table() && keys::names().any(|name| name.starts_with(&table))
     }
 }
 
@@ -31,8 +31,7 @@ impl Entry {
 pub(super) fn document(file: &str, text: &str) -> Result<Vec<Entry>> {
     let table = DeTable::parse(text).map_err(|error| {
         let line = error.span().map_or(1, |span| line_of(text, span.start));
-        let reason = error.message().replace('\n', ", ");
-        Error::Config(format!("{file}:{line}: this is no valid TOML: {reason}; mend the line"))
+        ProfileError::Syntax { file: file.to_owned(), line, source: Box::new(error) }
     })?;
     let mut entries = Vec::new();
     flatten(table.get_ref(), "", text, &mut entries);

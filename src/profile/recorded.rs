@@ -1,10 +1,12 @@
 //! Comments of a G-code file -> Profile: the settings that this program writes at its end.
 
+use super::error::Result;
 use super::keys::KEYS;
-use super::load::{DEFAULT, Override, Profile, ValueOrigin, merge};
+use super::load::merge;
 use super::old::{is_ours, renewed};
+use super::origin::{Override, Profile, ValueOrigin};
+use super::shipped::DEFAULT;
 use super::show::NOT_DUMPED;
-use crate::error::Result;
 
 /// The settings that a file of ours was made with, read from its comments `key = value`;
 /// `None` if it holds none of them. Settings of an older format are [renewed]. What a file never holds, such as the start block, is
@@ -18,14 +20,14 @@ pub fn recorded(comments: &[(String, String)]) -> Result<Option<Profile>> {
     }
     let values = renewed(comments);
     let value = |name: &str| values.iter().rev().find(|(key, _)| key == name);
-    let dumped = KEYS.iter().filter(|key| !NOT_DUMPED.contains(&key.name));
+    let dumped = KEYS.iter().filter(|key| !NOT_DUMPED.contains(&key.name.as_str()));
     let overrides: Vec<Override> = dumped
         .filter_map(|key| {
-            let (key, value) = value(key.name)?.clone();
+            let (key, value) = value(&key.name)?.clone();
             Some(Override { key, value, origin: ValueOrigin::Recorded })
         })
         .collect();
-    merge(DEFAULT, &overrides).map(Some)
+    merge([DEFAULT], &overrides).map(Some)
 }
 
 #[cfg(test)]
@@ -36,7 +38,7 @@ mod tests {
     #[test]
     fn what_a_file_holds_gives_the_settings_back() {
         for name in builtin_names() {
-            let made = load(name, &[]).unwrap().settings;
+            let made = load([name], &[]).unwrap().settings;
             let read = recorded(&dump(&made)).unwrap().unwrap().settings;
             assert_eq!(dump(&read), dump(&made));
         }

@@ -1,463 +1,396 @@
-//! Settings: every key of a profile as a typed value, after all layers of origin are merged.
+//! Settings: every key of a profile as a typed value. **The one declaration of each key.**
 //!
-//! The same names stand in the TOML files, after `--set` and in the block of
-//! settings at the end of a G-code file. Units and meanings are said here once;
-//! the limits are in [`super::keys`].
+//! A field here is a key. Its place in the struct is its place in a profile (`speed.wall`), its
+//! doc comment the key's meaning, its attributes the limits, the unit and the default:
+//!
+//! ```text
+//! /// Speed of walls.
+//! #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 27))]
+//! pub wall: f64,
+//! ```
+//!
+//! Everything else is derived from it: the table of keys that values are checked by
+//! ([`super::keys`]), `profile show`, the settings in a G-code file, the list in
+//! `profiles/README.md` and the JSON Schema for editors ([`super::schema`]).
+//! To add a key, add a field, and use it. Words:
+//!
+//! - **range**: lowest and highest value, both allowed.
+//! - **unit**: for people and editors; values are always in this unit.
+//! - **default**: the value where no profile has one. A key without a default must be set by
+//!   a profile, unless its type is an `Option`: then it may stay unset.
+//! - **choices**: keys that hold a word are enums, in [`super::choices`].
 
-use super::sizes::PictureSize;
+use super::choices::{
+    Angle, DialectName, DualDirection, DualMode, DualPart, DualRatio, DualRemainder,
+    ExtrusionModel, JunctionRule, Origin, Pattern, RetractWhen, Seam, SupportBase, WallOrder,
+};
+use super::sizes::{self, PictureSize};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// All effective settings. Lengths in mm, speeds in mm/s, angles in degrees.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Longest text on one line, in characters. Keeps every settings line of a G-code
+/// file below GPX's limit of 1023 bytes, even if each character is four bytes.
+pub const MAX_TEXT: usize = 200;
+
+/// All effective settings. Lengths are in mm, speeds in mm/s, angles in degrees.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// One line that says what the profile is for.
+    /// What the profile is for, in one line.
+    #[schemars(length(max = MAX_TEXT))]
     pub description: String,
 
-    /// Height of a layer, mm.
+    /// Height of a layer.
+    #[schemars(range(min = 0.02, max = 2), extend("unit" = "mm", "default" = 0.2))]
     pub layer_height: f64,
-    /// Height of the first layer, mm.
+    /// Height of the first layer.
+    #[schemars(range(min = 0.02, max = 2), extend("unit" = "mm", "default" = 0.2))]
     pub first_layer_height: f64,
-    /// Width of a line and distance between neighbouring solid lines, mm.
+    /// Width of a line, and distance between neighbouring solid lines.
+    #[schemars(range(min = 0.05, max = 4), extend("unit" = "mm", "default" = 0.4))]
     pub line_width: f64,
-    /// How far contours may be simplified, mm.
+    /// How far a simplified contour may lie from the model's.
+    #[schemars(range(min = 0, max = 0.5), extend("unit" = "mm", "default" = 0.01))]
     pub tolerance: f64,
 
     /// Number of walls.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "walls", "default" = 2))]
     pub walls: u32,
-    /// Distance of the outer wall's middle from the contour, in line widths:
-    /// 0.5 makes parts measure right, 0 puts the wall on the contour.
+    /// Distance from the contour to the middle of the outer wall: 0.5 gives parts of the right
+    /// size, 0 puts the wall's middle on the contour.
+    #[schemars(range(min = 0, max = 1), extend("unit" = "line widths", "default" = 0.5))]
     pub outer_wall_inset: f64,
     /// Which wall is printed first.
+    #[schemars(extend("default" = "inner-first"))]
     pub wall_order: WallOrder,
     /// Where a wall begins.
+    #[schemars(extend("default" = "rear"))]
     pub seam: Seam,
 
     /// Solid layers at the top and at the bottom.
+    #[schemars(range(min = 0, max = 10_000), extend("unit" = "layers", "default" = 3))]
     pub skin_layers: u32,
-    /// Solid layers at the top, where they differ from `skin_layers`.
+    /// Solid layers at the top; unset means skin_layers.
+    #[schemars(range(min = 0, max = 10_000), extend("unit" = "layers"))]
     pub top_layers: Option<u32>,
-    /// Solid layers at the bottom, where they differ from `skin_layers`.
+    /// Solid layers at the bottom; unset means skin_layers.
+    #[schemars(range(min = 0, max = 10_000), extend("unit" = "layers"))]
     pub bottom_layers: Option<u32>,
-    /// How far a skin reaches sideways under or over the infill to hold on, mm.
+    /// How far a skin reaches sideways into the infill, to hold on.
+    #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 0.4))]
     pub skin_reach: f64,
 
-    /// Density of the sparse infill, %.
+    /// Density of the sparse infill.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 20))]
     pub infill: f64,
     /// Pattern of the sparse infill.
+    #[schemars(extend("default" = "rectilinear"))]
     pub pattern: Pattern,
-    /// Direction of the raster lines of even layers, degrees from the x axis; odd layers are turned by 90.
+    /// Direction of the lines on even layers, from the x axis; odd layers are turned by 90.
+    /// auto takes the direction with the fewest turns.
+    #[schemars(extend("unit" = "degrees", "default" = "auto"))]
     pub angle: Angle,
-    /// How far skin and infill lines reach into the innermost wall, in line widths.
+    /// How far skin and infill lines reach into the innermost wall.
+    #[schemars(range(min = 0, max = 1), extend("unit" = "line widths", "default" = 0.4))]
     pub infill_overlap: f64,
-    /// Radius that the turns of infill, support and skin lines are rounded with where there is
-    /// room, mm; 0 leaves them sharp.
+    /// Radius of the turns of infill, support and skin lines, where there is room; 0 leaves
+    /// them sharp.
+    #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.8))]
     pub corner_radius: f64,
 
-    /// Dual injection: infill on one layer of each pair, twice as thick.
+    /// Dual injection: lines that are printed once for several layers.
     pub dual: Dual,
     /// Support under overhangs.
     pub support: Support,
-    /// Speeds.
+    /// How fast the nozzle moves.
     pub speed: Speed,
     /// How much filament a line takes.
     pub extrusion: Extrusion,
-    /// Retraction around travels.
+    /// What happens to the filament around a travel.
     pub retraction: Retraction,
     /// The material.
     pub filament: Filament,
     /// The printer.
     pub machine: Machine,
-    /// How fast the printer can move, for estimates of time.
+    /// What the printer's planner holds itself to. It changes no move, only estimates of time.
     pub limits: MotionLimits,
 }
 
-/// See [`Settings::wall_order`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum WallOrder {
-    /// From the outer wall inwards.
-    OuterFirst,
-    /// From the innermost wall outwards.
-    InnerFirst,
-}
-
-/// See [`Settings::seam`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Seam {
-    /// At the vertex nearest to the nozzle.
-    Nearest,
-    /// At the vertex furthest back (largest y).
-    Rear,
-}
-
-/// Pattern of the sparse infill.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Pattern {
-    /// Parallel lines, turned by 90° from layer to layer (from pair to pair with dual).
-    Rectilinear,
-    /// Parallel lines, always in the same direction.
-    Aligned,
-    /// Lines at 0° and 90° on every layer, each at half the density.
-    Grid,
-    /// Lines at 0°, 60° and 120° on every layer, each at a third of the density.
-    Triangles,
-}
-
-/// See [`Settings::angle`].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Angle {
-    /// So many degrees.
-    Degrees(f64),
-    /// The one that has least turns, which depends on the model.
-    Auto(Auto),
-}
-
-impl Angle {
-    /// Degrees; half a right angle where no model has decided yet.
-    #[must_use]
-    pub fn degrees(self) -> f64 {
-        match self {
-            Self::Degrees(degrees) => degrees,
-            Self::Auto(_) => 45.0,
-        }
-    }
-}
-
-/// `[dual]`: dual injection. A group is a number of layers one on the other.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// `[dual]`: dual injection. A group is a number of layers, one on the other.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Dual {
-    /// Whether lines are printed thick, and on which layers.
+    /// Which layers thick lines lie on: none, the top layer of each group, or all layers of a
+    /// group in turn.
+    #[schemars(extend("default" = "off"))]
     pub mode: DualMode,
-    /// How many layers make a group, whose lines are printed at once.
+    /// Layers in a group, whose lines are printed at once; auto takes as many as pay.
+    #[schemars(extend("unit" = "layers", "default" = 2))]
     pub ratio: DualRatio,
-    /// Thick lines are never taller than this, % of the nozzle's diameter.
+    /// Height of thick lines, at most.
+    #[schemars(range(min = 10, max = 200), extend("unit" = "% of the nozzle", "default" = 100))]
     pub max_bead_height: f64,
     /// What is printed thick.
+    #[schemars(extend("default" = ["infill", "support"]))]
     pub parts: Vec<DualPart>,
-    /// Which direction a group's thick lines take.
+    /// Direction of a group's thick lines: crossing those of the group before, or the one with
+    /// less length.
+    #[schemars(extend("default" = "cross"))]
     pub direction: DualDirection,
-    /// What happens to infill that a layer of a group lacks.
+    /// What happens to infill that only one layer of a group has: printed thin, or left out.
+    #[schemars(extend("default" = "thin"))]
     pub remainder: DualRemainder,
 }
 
-/// See [`Dual::mode`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DualMode {
-    /// Every line on every layer.
-    Off,
-    /// Thick lines on the uppermost layer of each group, with the material of all its layers.
-    Pair,
-    /// Thick lines shared out among the layers: each layer has its turn with some of them.
-    Interlaced,
-}
-
-/// See [`Dual::ratio`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum DualRatio {
-    /// So many.
-    Layers(u32),
-    /// As many as height and flow allow.
-    Auto(Auto),
-}
-
-/// The word `auto`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Auto {
-    /// The word.
-    Auto,
-}
-
-/// See [`Dual::parts`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DualPart {
-    /// Sparse infill.
-    Infill,
-    /// Support.
-    Support,
-    /// All walls but the outermost.
-    InnerWalls,
-    /// All skin but the layer that is seen.
-    InnerSkin,
-}
-
-/// See [`Dual::direction`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DualDirection {
-    /// Directions alternate, so that the lines of successive pairs cross.
-    Cross,
-    /// The direction whose lines are shorter in all (the thesis's rule).
-    Shorter,
-}
-
-/// See [`Dual::remainder`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DualRemainder {
-    /// Only infill that layers share is printed thick; the rest thin on its own layer.
-    Thin,
-    /// One layer's infill is printed thick as a whole, the others' left out (the thesis's rule).
-    Drop,
-}
-
 /// `[support]`: support under overhangs.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
     /// Whether support is printed.
+    #[schemars(extend("default" = false))]
     pub enabled: bool,
-    /// Overhangs flatter than this are supported, degrees from the bed.
+    /// Overhangs flatter than this, measured from the bed, are supported; 90 supports all.
+    #[schemars(range(min = 0, max = 90), extend("unit" = "degrees", "default" = 45))]
     pub threshold_angle: f64,
-    /// Distance between support lines, mm.
+    /// Distance between support lines.
+    #[schemars(range(min = 0.1, max = 50), extend("unit" = "mm", "default" = 3))]
     pub spacing: f64,
-    /// How far support reaches beyond the overhang, mm.
+    /// How far support reaches beyond the overhang.
+    #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 1.5))]
     pub expansion: f64,
-    /// Distance to the part, sideways, mm.
+    /// Distance to the part, sideways.
+    #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 0.6))]
     pub xy_distance: f64,
-    /// Distance to the part above and below, mm; rounded to whole layers.
+    /// Distance to the part above and below, rounded to whole layers.
+    #[schemars(range(min = 0, max = 5), extend("unit" = "mm", "default" = 0.2))]
     pub z_distance: f64,
     /// Where support may stand.
+    #[schemars(extend("default" = "everywhere"))]
     pub stands_on: SupportBase,
 }
 
-/// See [`Support::stands_on`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SupportBase {
-    /// On the bed and on the part.
-    Everywhere,
-    /// Only on the bed.
-    Bed,
-}
-
-/// `[speed]`: how fast the nozzle moves, mm/s.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// `[speed]`: how fast the nozzle moves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Speed {
-    /// Outer and inner walls.
+    /// Speed of walls.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 27))]
     pub wall: f64,
-    /// Skins.
+    /// Speed of skins.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 50))]
     pub skin: f64,
-    /// Sparse infill of one layer's height.
+    /// Speed of sparse infill that is one layer high.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 60))]
     pub infill: f64,
-    /// Sparse infill of a pair's height.
+    /// Speed of sparse infill that is several layers high.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 60))]
     pub thick_infill: f64,
-    /// Support.
+    /// Speed of support.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 50))]
     pub support: f64,
-    /// Moves in x and y without extrusion.
+    /// Speed in x and y of moves that print nothing.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 90))]
     pub travel: f64,
-    /// Moves in z.
+    /// Speed of moves in z.
+    #[schemars(range(min = 0.1, max = 100), extend("unit" = "mm/s", "default" = 10))]
     pub z: f64,
-    /// First layer, % of the speeds above (travel and z excepted).
+    /// Speed on the first layer, of the speeds above but for travel and z.
+    #[schemars(range(min = 1, max = 200), extend("unit" = "%", "default" = 100))]
     pub first_layer: f64,
 }
 
 /// `[extrusion]`: how much filament a line takes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Extrusion {
-    /// How the amount is found.
+    /// How the amount is found: line width times layer height, or the factors below.
+    #[schemars(extend("default" = "area"))]
     pub model: ExtrusionModel,
-    /// Factor on every amount.
+    /// Factor on every amount of filament.
+    #[schemars(range(min = 0.05, max = 5), extend("unit" = "times", "default" = 1))]
     pub multiplier: f64,
-    /// `factor` only: layer height at which the factors below hold, mm. Other heights scale them.
+    /// Layer height at which the factors hold; other heights scale them.
+    #[schemars(range(min = 0.02, max = 2), extend("unit" = "mm", "default" = 0.2))]
     pub factor_height: f64,
-    /// `factor` only: line width at which the factors below hold, mm. Other widths scale them.
+    /// Line width at which the factors hold; other widths scale them.
+    #[schemars(range(min = 0.05, max = 4), extend("unit" = "mm", "default" = 0.4))]
     pub factor_width: f64,
-    /// `factor` only: walls, mm of filament per mm of path.
+    /// Filament for each mm of wall.
+    #[schemars(range(min = 0, max = 2), extend("unit" = "mm/mm", "default" = 0.05))]
     pub wall_factor: f64,
-    /// `factor` only: skins, mm of filament per mm of path.
+    /// Filament for each mm of skin.
+    #[schemars(range(min = 0, max = 2), extend("unit" = "mm/mm", "default" = 0.04))]
     pub skin_factor: f64,
-    /// `factor` only: sparse infill of one layer's height, mm of filament per mm of path; thick infill takes twice that.
+    /// Filament for each mm of sparse infill that is one layer high; two layers take twice that.
+    #[schemars(range(min = 0, max = 2), extend("unit" = "mm/mm", "default" = 0.04))]
     pub infill_factor: f64,
-    /// `factor` only: support, mm of filament per mm of path.
+    /// Filament for each mm of support.
+    #[schemars(range(min = 0, max = 2), extend("unit" = "mm/mm", "default" = 0.04))]
     pub support_factor: f64,
 }
 
-/// See [`Extrusion::model`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ExtrusionModel {
-    /// Line width × layer height, which is a bead with rounded ends that is `h·(1 − π/4)` wider than its spacing.
-    Area,
-    /// Factors measured on the machine.
-    Factor,
-}
-
-/// `[retraction]`: what happens around a travel.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// `[retraction]`: what happens to the filament around a travel.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Retraction {
-    /// Filament pulled back, mm; 0 turns retraction off.
+    /// Filament that is pulled back; 0 turns retraction off.
+    #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 1))]
     pub length: f64,
-    /// Speed of the filament, back and forth, mm/s.
+    /// Speed of the filament, back and forth.
+    #[schemars(range(min = 0.1, max = 200), extend("unit" = "mm/s", "default" = 20))]
     pub speed: f64,
-    /// Which travels retract.
+    /// Which travels retract: all, or those that cross an outer wall or leave the part.
+    #[schemars(extend("default" = "crossing"))]
     pub when: RetractWhen,
-    /// Travels shorter than this never retract, mm.
+    /// Travels shorter than this never retract.
+    #[schemars(range(min = 0, max = 1_000), extend("unit" = "mm", "default" = 1))]
     pub min_travel: f64,
-    /// How far the nozzle is lifted while retracted, mm.
+    /// How far the nozzle is lifted while retracted.
+    #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0))]
     pub z_hop: f64,
 }
 
-/// See [`Retraction::when`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RetractWhen {
-    /// All but those shorter than `min_travel`.
-    Always,
-    /// Those that cross an outer wall or leave the part.
-    Crossing,
-}
-
 /// `[filament]`: the material.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Filament {
-    /// Its name, such as `PLA`.
+    /// Name of the material, such as PLA.
+    #[schemars(length(max = MAX_TEXT), extend("default" = "PLA"))]
     pub name: String,
-    /// Diameter, mm.
+    /// Diameter of the filament.
+    #[schemars(range(min = 0.5, max = 5), extend("unit" = "mm", "default" = 1.75))]
     pub diameter: f64,
-    /// Density, g/cm³.
+    /// Density of the material.
+    #[schemars(range(min = 0.1, max = 20), extend("unit" = "g/cm³", "default" = 1.24))]
     pub density: f64,
-    /// Nozzle temperature, °C.
+    /// Temperature of the nozzle.
+    #[schemars(range(min = 0, max = 500), extend("unit" = "°C"))]
     pub temperature: f64,
-    /// Bed temperature, °C; 0 leaves the bed cold.
+    /// Temperature of the bed; 0 leaves it cold.
+    #[schemars(range(min = 0, max = 200), extend("unit" = "°C", "default" = 0))]
     pub bed_temperature: f64,
-    /// Part cooling fan, %.
+    /// Power of the part cooling fan.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 100))]
     pub fan: f64,
-    /// First layer (counted from 1) printed with the fan on.
+    /// First layer, counted from 1, that is printed with the fan on.
+    #[schemars(range(min = 1, max = 100_000), extend("unit" = "layer", "default" = 2))]
     pub fan_from_layer: u32,
-    /// Price, money per kg; 0 where it is not known.
+    /// Price of the material; 0 means unknown.
+    #[schemars(range(min = 0, max = 1_000_000), extend("unit" = "money/kg", "default" = 0))]
     pub cost: f64,
 }
 
 /// `[machine]`: the printer.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Machine {
-    /// Its name.
+    /// Name of the printer.
+    #[schemars(length(max = MAX_TEXT))]
     pub name: String,
-    /// The G-code it understands.
+    /// The G-code that its firmware understands.
     pub dialect: DialectName,
-    /// Size of the print volume in x, mm.
+    /// Size of the print volume in x.
+    #[schemars(range(min = 1, max = 5_000), extend("unit" = "mm"))]
     pub bed_width: f64,
-    /// Size of the print volume in y, mm.
+    /// Size of the print volume in y.
+    #[schemars(range(min = 1, max = 5_000), extend("unit" = "mm"))]
     pub bed_depth: f64,
-    /// Size of the print volume in z, mm.
+    /// Size of the print volume in z.
+    #[schemars(range(min = 1, max = 5_000), extend("unit" = "mm"))]
     pub bed_height: f64,
-    /// Where x = 0, y = 0 is.
+    /// Where on the bed x and y are 0.
+    #[schemars(extend("default" = "front-left"))]
     pub origin: Origin,
-    /// Nozzle diameter, mm.
+    /// Diameter of the nozzle.
+    #[schemars(range(min = 0.05, max = 2), extend("unit" = "mm", "default" = 0.4))]
     pub nozzle_diameter: f64,
-    /// Tool that prints: 0 or 1.
+    /// Number of the tool that prints.
+    #[schemars(range(min = 0, max = 1), extend("default" = 0))]
     pub tool: u32,
-    /// Acceleration asked for by the start block, mm/s².
+    /// Acceleration of moves that print, which {acceleration} in the start block stands for.
+    #[schemars(range(min = 1, max = 100_000), extend("unit" = "mm/s²"))]
     pub acceleration: f64,
-    /// E counts from the last move instead of from the start.
+    /// Whether E counts from the last move instead of from the start.
+    #[schemars(extend("default" = false))]
     pub relative_e: bool,
-    /// Plastic that the hot end can melt, mm³/s.
+    /// Plastic that the hot end can melt; lines that need more are printed slower.
+    #[schemars(range(min = 0.1, max = 1_000), extend("unit" = "mm³/s"))]
     pub max_volumetric_speed: f64,
-    /// Sizes of the pictures of the models at the head of the file.
+    /// Sizes of the pictures of the models at the head of the file, for hosts.
+    #[schemars(length(max = sizes::MOST), extend("unit" = "pixels", "default" = []))]
     pub thumbnails: Vec<PictureSize>,
-    /// G-code before the print, with `{placeholders}`.
+    /// G-code before the print, with {placeholders}.
     pub start_gcode: String,
-    /// G-code after the print, with `{placeholders}`.
+    /// G-code after the print, with {placeholders}.
     pub end_gcode: String,
-}
-
-/// See [`Machine::dialect`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum DialectName {
-    /// Sailfish and MakerBot firmware, through GPX.
-    Makerbot,
-    /// Marlin.
-    Marlin,
-    /// Klipper.
-    Klipper,
-}
-
-/// See [`Machine::origin`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Origin {
-    /// In the middle of the bed.
-    Centre,
-    /// At the bed's front left corner.
-    FrontLeft,
 }
 
 /// `[limits]`: what the printer's planner holds itself to. It changes no move, only
 /// estimates of time. `machine.acceleration` is the acceleration of moves that extrude.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionLimits {
-    /// Highest speed in x, mm/s.
+    /// Highest speed in x.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s"))]
     pub speed_x: f64,
-    /// Highest speed in y, mm/s.
+    /// Highest speed in y.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s"))]
     pub speed_y: f64,
-    /// Highest speed in z, mm/s.
+    /// Highest speed in z.
+    #[schemars(range(min = 0.1, max = 100), extend("unit" = "mm/s"))]
     pub speed_z: f64,
-    /// Highest speed of the filament, mm/s.
+    /// Highest speed of the filament.
+    #[schemars(range(min = 0.1, max = 200), extend("unit" = "mm/s"))]
     pub speed_e: f64,
-    /// Highest acceleration in x, mm/s².
+    /// Highest acceleration in x.
+    #[schemars(range(min = 1, max = 1_000_000), extend("unit" = "mm/s²"))]
     pub acceleration_x: f64,
-    /// Highest acceleration in y, mm/s².
+    /// Highest acceleration in y.
+    #[schemars(range(min = 1, max = 1_000_000), extend("unit" = "mm/s²"))]
     pub acceleration_y: f64,
-    /// Highest acceleration in z, mm/s².
+    /// Highest acceleration in z.
+    #[schemars(range(min = 1, max = 1_000_000), extend("unit" = "mm/s²"))]
     pub acceleration_z: f64,
-    /// Highest acceleration of the filament, mm/s².
+    /// Highest acceleration of the filament.
+    #[schemars(range(min = 1, max = 1_000_000), extend("unit" = "mm/s²"))]
     pub acceleration_e: f64,
-    /// Acceleration of moves without extrusion, mm/s².
+    /// Acceleration of moves that print nothing.
+    #[schemars(range(min = 1, max = 1_000_000), extend("unit" = "mm/s²"))]
     pub travel_acceleration: f64,
-    /// Acceleration of the filament alone, mm/s².
+    /// Acceleration of the filament when it moves alone.
+    #[schemars(range(min = 1, max = 1_000_000), extend("unit" = "mm/s²"))]
     pub retract_acceleration: f64,
-    /// Which rule says how fast a corner may be taken.
+    /// Rule for the speed at corners: Marlin's jerk, Marlin's jerk before 1.1, Sailfish's
+    /// speed change, Marlin's junction deviation, Klipper's square corner velocity.
     pub junction: JunctionRule,
-    /// The jerks and `speed-change`: sudden change of speed in x, mm/s.
+    /// Sudden change of speed in x, for jerk, vector-jerk and speed-change.
+    #[schemars(range(min = 0, max = 1_000), extend("unit" = "mm/s", "default" = 10))]
     pub jerk_x: f64,
-    /// The jerks and `speed-change`: sudden change of speed in y, mm/s.
+    /// Sudden change of speed in y, for jerk, vector-jerk and speed-change.
+    #[schemars(range(min = 0, max = 1_000), extend("unit" = "mm/s", "default" = 10))]
     pub jerk_y: f64,
-    /// The jerks and `speed-change`: sudden change of speed in z, mm/s.
+    /// Sudden change of speed in z, for jerk, vector-jerk and speed-change.
+    #[schemars(range(min = 0, max = 1_000), extend("unit" = "mm/s", "default" = 0.4))]
     pub jerk_z: f64,
-    /// The jerks and `speed-change`: sudden change of the filament's speed, mm/s.
+    /// Sudden change of the filament's speed, for jerk, vector-jerk and speed-change.
+    #[schemars(range(min = 0, max = 1_000), extend("unit" = "mm/s", "default" = 5))]
     pub jerk_e: f64,
-    /// `deviation`: how far an arc would pass from the corner, mm.
+    /// How far an arc would pass from the corner, for deviation.
+    #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.013))]
     pub junction_deviation: f64,
-    /// `square-corner`: speed through a corner of 90°, mm/s.
+    /// Speed through a corner of 90 degrees, for square-corner.
+    #[schemars(range(min = 0, max = 1_000), extend("unit" = "mm/s", "default" = 5))]
     pub square_corner_velocity: f64,
-    /// `square-corner`: part of a move, 0 to 0.99, that is left for cruising.
+    /// Part of a move that is left for cruising, for square-corner.
+    #[schemars(range(min = 0, max = 0.99), extend("unit" = "times", "default" = 0.5))]
     pub minimum_cruise_ratio: f64,
-    /// `square-corner`: sudden change of the filament's speed, mm/s.
+    /// Sudden change of the filament's speed, for square-corner.
+    #[schemars(range(min = 0, max = 1_000), extend("unit" = "mm/s", "default" = 1))]
     pub extruder_corner_velocity: f64,
     /// Moves that the planner knows of at a time; 0 is the whole file.
+    #[schemars(range(min = 0, max = 100_000), extend("unit" = "blocks", "default" = 16))]
     pub look_ahead: u32,
-    /// No corner need be slower than this, mm/s.
+    /// No corner need be slower than this.
+    #[schemars(range(min = 0, max = 1_000), extend("unit" = "mm/s", "default" = 0.05))]
     pub minimum_speed: f64,
-}
-
-/// See [`MotionLimits::junction`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum JunctionRule {
-    /// Marlin's classic jerk.
-    Jerk,
-    /// Jerk in x and y as one vector: Marlin's before 1.1.
-    VectorJerk,
-    /// Sailfish's "maximum speed change".
-    SpeedChange,
-    /// Marlin's junction deviation.
-    Deviation,
-    /// Klipper's square corner velocity.
-    SquareCorner,
 }

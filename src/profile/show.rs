@@ -1,8 +1,17 @@
 //! Settings -> text: the lines that go into a G-code file, and a profile as TOML.
+//!
+//! Both show the keys in the order in which they are declared, which is the order of the table
+//! of keys. They differ in purpose:
+//!
+//! - [`dump`] is for machines and for `diff`: one line for each key that has a value, each short
+//!   enough for GPX, and without what stands in the file anyway.
+//! - [`document`] is for people: a profile that gives the same settings again, with every key
+//!   there is and where its value comes from.
 
+use super::Settings;
 use super::keys::{KEYS, Key, Kind};
 use super::old::{FORMAT_KEY, SETTINGS_FORMAT};
-use super::{Profile, Settings};
+use super::origin::Profile;
 use std::fmt::Write as _;
 use toml::Value;
 
@@ -17,20 +26,21 @@ pub(super) const NOT_DUMPED: &[&str] = &["description", "machine.start_gcode", "
 #[must_use]
 pub fn dump(settings: &Settings) -> Vec<(String, String)> {
     let mut lines = all(settings);
-    lines.retain(|(key, _)| !NOT_DUMPED.contains(&key.name));
-    let lines = lines.into_iter().map(|(key, value)| (key.name.to_owned(), one_line(&value)));
+    lines.retain(|(key, _)| !NOT_DUMPED.contains(&key.name.as_str()));
+    let lines = lines.into_iter().map(|(key, value)| (key.name.clone(), one_line(&value)));
     std::iter::once((FORMAT_KEY.to_owned(), SETTINGS_FORMAT.to_string())).chain(lines).collect()
 }
 
-/// The whole profile as a TOML file that gives the same settings again, each
-/// value with its origin as a comment; with `explain` also with the unit,
-/// limits and meaning of each key.
+/// The whole profile as a TOML file that gives the same settings again: every key there is,
+/// each value with its origin as a comment, and a key that is unset as a comment. With
+/// `explain` also the unit, limits and meaning of each key.
 #[must_use]
 pub fn document(profile: &Profile, explain: bool) -> String {
     let mut text = String::new();
     let mut table = "";
-    for (key, value) in all(&profile.settings) {
-        let (prefix, name) = key.name.split_once('.').unwrap_or(("", key.name));
+    let root = table_of(&profile.settings);
+    for key in KEYS.iter() {
+        let (prefix, name) = key.name.split_once('.').unwrap_or(("", &key.name));
         if prefix != table {
             table = prefix;
             push(&mut text, format_args!("\n[{table}]\n"));
@@ -38,9 +48,13 @@ pub fn document(profile: &Profile, explain: bool) -> String {
         if explain {
             push(&mut text, format_args!("# {}\n", key.comment()));
         }
-        let value = if key.kind == Kind::Block { block(&value) } else { one_line(&value) };
+        let Some(value) = value_in(&root, key) else {
+            push(&mut text, format_args!("# {name} =  # unset\n"));
+            continue;
+        };
+        let value = if key.kind == Kind::Block { block(value) } else { one_line(value) };
         push(&mut text, format_args!("{name} = {value}"));
-        if let Some(origin) = profile.origins.get(key.name) {
+        if let Some(origin) = profile.origins.get(&key.name) {
             push(&mut text, format_args!("  # {}", printable(&origin.to_string())));
         }
         text.push('\n');
@@ -50,17 +64,17 @@ pub fn document(profile: &Profile, explain: bool) -> String {
 
 /// Every key that has a value, in the order of the table of keys.
 fn all(settings: &Settings) -> Vec<(&'static Key, Value)> {
+    let root = table_of(settings);
+    KEYS.iter().filter_map(|key| Some((key, value_in(&root, key)?.clone()))).collect()
+}
+
+fn table_of(settings: &Settings) -> Value {
     // A struct of numbers, words and texts always becomes a TOML table.
-    let root = Value::try_from(settings).unwrap_or_else(|_| Value::Table(toml::Table::new()));
-    KEYS.iter()
-        .filter_map(|key| {
-            let mut value = &root;
-            for part in key.name.split('.') {
-                value = value.get(part)?;
-            }
-            Some((key, value.clone()))
-        })
-        .collect()
+    Value::try_from(settings).unwrap_or_else(|_| Value::Table(toml::Table::new()))
+}
+
+fn value_in<'a>(root: &'a Value, key: &Key) -> Option<&'a Value> {
+    key.name.split('.').try_fold(root, |table, part| table.get(part))
 }
 
 fn one_line(value: &Value) -> String {
@@ -120,29 +134,29 @@ mod tests {
 
     #[test]
     fn the_table_of_keys_and_the_type_agree() {
-        let mut settings = load("zcube-dual", &[]).unwrap().settings;
+        let mut settings = load(["zcube-dual"], &[]).unwrap().settings;
         settings.top_layers = Some(1);
         settings.bottom_layers = Some(1);
         let mut typed = BTreeSet::new();
         leaves("", &Value::try_from(&settings).unwrap(), &mut typed);
-        let listed: BTreeSet<_> = keys::KEYS.iter().map(|key| key.name.to_owned()).collect();
+        let listed: BTreeSet<_> = keys::names().map(str::to_owned).collect();
         assert_eq!(typed, listed);
     }
 
     #[test]
     fn words_in_the_table_are_those_of_the_types() {
-        for key in KEYS {
-            let Kind::Word(words) = key.kind else {
+        for key in KEYS.iter() {
+            let Kind::Word(words) = &key.kind else {
                 continue;
             };
             for word in words {
                 let given = crate::profile::Override {
-                    key: key.name.to_owned(),
-                    value: (*word).to_owned(),
+                    key: key.name.clone(),
+                    value: word.clone(),
                     origin: crate::profile::ValueOrigin::Set,
                 };
-                let settings = load("zcube-dual", &[given]).unwrap().settings;
-                let shown = dump(&settings).into_iter().find(|(name, _)| name == key.name);
+                let settings = load(["zcube-dual"], &[given]).unwrap().settings;
+                let shown = dump(&settings).into_iter().find(|(name, _)| *name == key.name);
                 assert_eq!(shown.unwrap().1, format!("\"{word}\""));
             }
         }
@@ -154,19 +168,32 @@ mod tests {
         let path = folder.path().join("shown.toml");
         for name in builtin_names() {
             for explain in [false, true] {
-                let profile = load(name, &[]).unwrap();
+                let profile = load([name], &[]).unwrap();
                 std::fs::write(&path, document(&profile, explain)).unwrap();
-                let again = load(path.to_str().unwrap(), &[]).unwrap();
+                let again = load([path.to_str().unwrap()], &[]).unwrap();
                 assert_eq!(again.settings, profile.settings, "{name}");
             }
         }
     }
 
     #[test]
+    fn every_key_is_shown_even_if_it_is_unset() {
+        let mut profile = load(["zcube-dual"], &[]).unwrap();
+        let text = document(&profile, false);
+        assert!(text.contains("\n# top_layers =  # unset\n"), "{text}");
+        for key in KEYS.iter() {
+            let name = key.name.rsplit('.').next().unwrap();
+            assert!(text.contains(&format!("{name} = ")), "{name}");
+        }
+        profile.settings.top_layers = Some(4);
+        assert!(document(&profile, false).contains("\ntop_layers = 4\n"));
+    }
+
+    #[test]
     fn dumped_lines_are_short_whatever_the_names_hold() {
-        let mut settings = load("zcube-dual", &[]).unwrap().settings;
-        settings.filament.name = "\"".repeat(keys::MAX_TEXT);
-        settings.machine.name = "\u{1f600}".repeat(keys::MAX_TEXT);
+        let mut settings = load(["zcube-dual"], &[]).unwrap().settings;
+        settings.filament.name = "\"".repeat(crate::profile::MAX_TEXT);
+        settings.machine.name = "\u{1f600}".repeat(crate::profile::MAX_TEXT);
         let lines = dump(&settings);
         assert!(lines.iter().all(|(key, value)| key.len() + value.len() < 900));
         assert!(lines.iter().all(|(_, value)| !value.contains('\n')));

@@ -1,5 +1,6 @@
 //! `WxH` -> PictureSize: sizes of pictures in a list, within limits.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -13,7 +14,8 @@ pub(super) const SIDES: RangeInclusive<u32> = 16..=1024;
 pub(super) const MOST: usize = 8;
 
 /// Width and height of a picture, pixels; `300x200` as text.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(extend("pattern" = "^[0-9]+x[0-9]+$"))]
 #[serde(into = "String", try_from = "String")]
 pub struct PictureSize {
     /// From left to right.
@@ -61,15 +63,14 @@ pub(super) fn allowed() -> String {
     format!("at most {MOST} of {least}x{least} to {most}x{most}")
 }
 
-/// The list as it is kept, or what is wrong with it (without the key's name).
+/// The list as it is kept, or what it holds that does not belong there.
 pub(super) fn check(list: &[Value]) -> Result<Value, String> {
-    let wrong = |what: String| format!("holds {what}; it must be a list of {}", allowed());
     if list.len() > MOST {
-        return Err(wrong(format!("{} sizes", list.len())));
+        return Err(format!("{} sizes", list.len()));
     }
     let size = |value: &Value| match value.as_str() {
-        Some(text) => text.parse::<PictureSize>().map_err(wrong),
-        None => Err(wrong(format!("{value}, which is no text"))),
+        Some(text) => text.parse::<PictureSize>(),
+        None => Err(format!("{value}, which is no text")),
     };
     let sizes = list.iter().map(|value| size(value).map(|size| Value::String(size.into())));
     Ok(Value::Array(sizes.collect::<Result<_, _>>()?))
@@ -82,7 +83,7 @@ mod tests {
     fn set(value: &str) -> Result<Vec<String>, String> {
         let key = "machine.thumbnails".to_owned();
         let given = Override { key, value: value.to_owned(), origin: ValueOrigin::Set };
-        let profile = load("zcube-dual", &[given]).map_err(|error| error.to_string())?;
+        let profile = load(["zcube-dual"], &[given]).map_err(|error| error.to_string())?;
         Ok(profile.settings.machine.thumbnails.iter().map(ToString::to_string).collect())
     }
 

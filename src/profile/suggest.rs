@@ -1,7 +1,14 @@
 //! Misspelt word -> the known word nearest to it, for error messages.
+//!
+//! A wrong guess is worse than none: it sends people to a setting that they do not mean. So a
+//! word must be nearly the same, or begin only one known word.
 
-/// Similarity from 0 to 1 below which a suggestion would confuse more than it helps.
-const ALIKE: f64 = 0.5;
+/// Similarity from 0 to 1 that a known word must have: about one wrong letter in four, or two
+/// letters changed over in a word of four.
+const ALIKE: f64 = 0.7;
+
+/// Letters of a word that may stand for the one known word which begins with it.
+const LEAST_BEGINNING: usize = 4;
 
 /// The known word nearest to `word`, if any is near. A known dotted name is
 /// also compared by its last part, because users leave the table out.
@@ -14,12 +21,20 @@ pub fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&
         let part = 0.95 * strsim::normalized_damerau_levenshtein(&word, last);
         whole.max(part)
     };
-    known
-        .map(|name| (score(name), name))
+    let known: Vec<&str> = known.collect();
+    let scored = known.iter().map(|name| (score(name), *name));
+    let best = scored
         .filter(|(score, _)| *score >= ALIKE)
         // Names break ties, so that the message never depends on the order of the list.
-        .max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(a.1)))
-        .map(|(_, name)| name)
+        .max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(a.1)));
+    best.map(|(_, name)| name).or_else(|| begun(&word, &known))
+}
+
+/// The only known word that begins with `word`.
+fn begun<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let mut fits = known.iter().filter(|name| name.starts_with(word));
+    let first = fits.next().filter(|_| word.len() >= LEAST_BEGINNING)?;
+    fits.next().is_none().then_some(*first)
 }
 
 /// `; did you mean …?`, or nothing where no known word is near.
@@ -34,9 +49,19 @@ mod tests {
 
     #[test]
     fn near_words_are_found_and_far_ones_are_not() {
-        let known = ["layer_height", "speed.travel", "walls"];
-        assert_eq!(nearest("layer_heigth", known.into_iter()), Some("layer_height"));
-        assert_eq!(nearest("travel", known.into_iter()), Some("speed.travel"));
-        assert_eq!(nearest("zzz", known.into_iter()), None);
+        let known = ["layer_height", "speed.travel", "walls", "zcube-dual"];
+        for (word, found) in [
+            ("layer_heigth", Some("layer_height")),
+            ("travel", Some("speed.travel")),
+            ("wals", Some("walls")),
+            ("zcube", Some("zcube-dual")),
+            ("zcu", None),
+            ("zzz", None),
+            ("layers", None),
+        ] {
+            assert_eq!(nearest(word, known.into_iter()), found, "{word}");
+        }
+        assert_eq!(nearest("skirt", ["strict", "quiet"].into_iter()), None);
+        assert_eq!(nearest("same", ["same-a", "same-b"].into_iter()), None);
     }
 }

@@ -1,7 +1,7 @@
 //! Start and end blocks + values -> text: fills in `{placeholders}`.
 
-use super::{Settings, suggest};
-use crate::error::{Error, Result};
+use super::Settings;
+use super::error::{BlockError, PlaceholderError};
 
 /// What a block may want to know of the print itself.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -55,12 +55,15 @@ pub fn values(settings: &Settings, print: &PrintFacts) -> Vec<(&'static str, Str
 /// last one too.
 ///
 /// # Errors
-/// [`Error::Config`] for an unknown placeholder or a single brace.
-pub fn render(name: &str, block: &str, values: &[(&str, String)]) -> Result<String> {
+/// An unknown placeholder or a single brace.
+pub fn render(name: &str, block: &str, values: &[(&str, String)]) -> Result<String, BlockError> {
     let mut text = String::with_capacity(block.len());
     for (index, line) in block.lines().enumerate() {
-        render_line(line, values, &mut text)
-            .map_err(|why| Error::Config(format!("{name}, line {} of it: {why}", index + 1)))?;
+        render_line(line, values, &mut text).map_err(|source| BlockError {
+            block: name.to_owned(),
+            line: index + 1,
+            source,
+        })?;
         text.push('\n');
     }
     Ok(text)
@@ -70,7 +73,7 @@ fn render_line(
     line: &str,
     values: &[(&str, String)],
     text: &mut String,
-) -> std::result::Result<(), String> {
+) -> Result<(), PlaceholderError> {
     let mut rest = line;
     while let Some(at) = rest.find(['{', '}']) {
         text.push_str(&rest[..at]);
@@ -82,10 +85,10 @@ fn render_line(
             continue;
         }
         if brace == "}" {
-            return Err("a single `}`; write `}}` for a brace".to_owned());
+            return Err(PlaceholderError::SingleBrace);
         }
         let Some((name, after)) = rest.split_once('}') else {
-            return Err("a `{` is not closed; write `{{` for a brace".to_owned());
+            return Err(PlaceholderError::OpenBrace);
         };
         let found = values.iter().find(|(known, _)| *known == name);
         let (_, value) = found.ok_or_else(|| unknown(name, values))?;
@@ -96,16 +99,9 @@ fn render_line(
     Ok(())
 }
 
-fn unknown(name: &str, values: &[(&str, String)]) -> String {
-    let names = || values.iter().map(|(known, _)| *known);
-    let name = name.trim();
-    suggest::nearest(name, names()).map_or_else(
-        || {
-            let all: Vec<_> = names().collect();
-            format!("unknown placeholder {{{name}}}; known are {}", all.join(", "))
-        },
-        |near| format!("unknown placeholder {{{name}}}; did you mean {{{near}}}?"),
-    )
+fn unknown(name: &str, values: &[(&str, String)]) -> PlaceholderError {
+    let known = values.iter().map(|(known, _)| (*known).to_owned()).collect();
+    PlaceholderError::Unknown { name: name.trim().to_owned(), known }
 }
 
 /// Shortest decimal text; Rust's `Display` for `f64` has no exponents.

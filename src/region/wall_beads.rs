@@ -196,7 +196,7 @@ mod tests {
     /// The beads of a part with one wall whose skin is exposed up to `covered` from its
     /// contour; lines along x.
     fn beads(part: &[Contour], covered: Coord) -> (Vec<Polyline>, BeadParams) {
-        let mut settings = profile::load("generic-marlin", &[]).unwrap().settings;
+        let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
         settings.angle = profile::Angle::Degrees(0.0);
         settings.walls = 1;
         let params = RegionParams::new(&settings);

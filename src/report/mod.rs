@@ -11,13 +11,22 @@ use crate::check::Verdict;
 use crate::mesh::MeshReport;
 use crate::profile::DualPart;
 use crate::warning::Warning;
+use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
 use serde::Serialize;
 
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
 pub const SCHEMA: u32 = 4;
 
+/// The JSON Schema of a report.
+#[must_use]
+pub fn schema() -> serde_json::Value {
+    let settings = SchemaSettings::draft2020_12().for_serialize();
+    settings.into_generator().into_root_schema_for::<Report>().to_value()
+}
+
 /// What one run found and made.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Report {
     /// [`SCHEMA`].
     pub schema: u32,
@@ -54,7 +63,7 @@ pub struct Report {
 }
 
 /// The layers of a print.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct LayersReport {
     /// How many.
     pub count: usize,
@@ -67,7 +76,7 @@ pub struct LayersReport {
 }
 
 /// What was extruded in one role.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct RoleReport {
     /// `outer wall`, `inner wall`, `skin`, `infill` or `support`; `thick ` before it where
     /// it is printed for several layers at once.
@@ -83,7 +92,7 @@ pub struct RoleReport {
 }
 
 /// Moves without extrusion.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct TravelReport {
     /// How many.
     pub count: usize,
@@ -98,7 +107,7 @@ pub struct TravelReport {
 }
 
 /// Material in all.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct FilamentReport {
     /// Length, mm.
     pub length_mm: f64,
@@ -111,7 +120,7 @@ pub struct FilamentReport {
 }
 
 /// How long the print takes, without homing, heating and the rest of the start and end blocks.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct TimeReport {
     /// In all, s.
     pub total_s: f64,
@@ -126,7 +135,7 @@ pub struct TimeReport {
 }
 
 /// How long a layer takes.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct LayerTimeReport {
     /// Its top above the bed, mm.
     pub z_mm: f64,
@@ -135,7 +144,7 @@ pub struct LayerTimeReport {
 }
 
 /// How fast filament is molten.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct FlowReport {
     /// The largest flow of the print, mm³/s.
     pub largest_mm3_s: f64,
@@ -145,7 +154,7 @@ pub struct FlowReport {
 
 /// What dual injection did. Lengths are those of lines, without the turns between them;
 /// lines shorter than they are wide are not printed and not counted.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct DualReport {
     /// Layers of a group.
     pub ratio: u32,
@@ -165,7 +174,7 @@ pub struct DualReport {
 
 /// What became of the infill or the support of one block of layers: those that are filled
 /// in one direction, which is one group, or several where lines are interlaced.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct BlockReport {
     /// `infill` or `support`.
     pub part: DualPart,
@@ -184,7 +193,7 @@ pub struct BlockReport {
 }
 
 /// Length of the layers' lines that are not printed for a whole group, mm, by cause.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct ApartReport {
     /// Another layer of the group has none there: it is at or beyond its walls.
     pub bounds_mm: f64,

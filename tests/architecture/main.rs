@@ -17,7 +17,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("warning", &[]),
     ("progress", &[]),
     // Composes what the stages report of their failures.
-    ("error", &["mesh", "progress", "reader", "warning"]),
+    ("error", &["mesh", "profile", "progress", "reader", "warning"]),
     ("geom", &["units"]),
     ("mesh", &["geom", "units", "warning"]),
     ("slice", &["geom", "mesh", "units"]),
@@ -30,7 +30,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // The program's name comes from the job.
     ("gcode", &["geom", "fill", "plan", "motion", "profile", "error", "units", "job"]),
     ("job", &["mesh", "profile"]),
-    ("profile", &["error"]),
+    ("profile", &[]),
     ("motion", &["profile", "units"]),
     // A witness of its own: it shares nothing with the code that slices, plans or writes.
     ("reader", &["units"]),

@@ -57,7 +57,8 @@ impl Model {
             origin: ValueOrigin::Set,
         };
         let overrides = [set("walls", "1"), set("dual.mode", "pair")];
-        let settings = profile::load("generic-marlin", &overrides).expect("it is shipped").settings;
+        let settings =
+            profile::load(["generic-marlin"], &overrides).expect("it is shipped").settings;
         let bytes = std::fs::read(&file).expect("the model can be read");
         let params = RegionParams::new(&settings);
         Self { name, file, bytes, settings, params }

@@ -67,9 +67,58 @@ fn wrong_settings_name_the_flag() {
     run(&["--layer-height", "0.5"], "--layer-height: layer_height = 0.5 mm is more than");
     run(&["--dual", "--layer-height", "0.3"], "make thick lines taller than the 0.4 mm");
     run(&["--set", "wals=2"], "--set: unknown key `wals`; did you mean `walls`?");
+    run(&["--set", "perimeters=2"], "--set: unknown key `perimeters`; here it is `walls`");
+    run(&["--brim"], "unexpected argument '--brim' found; a brim is not supported yet");
+    run(&["--perimeters", "2"], "unexpected argument '--perimeters' found; use --walls");
     run(&["--set", "walls"], "there is no `=`");
     run(&["-p", "generic"], "unknown profile `generic`");
     run(&["-p", "mine.toml"], "mine.toml: cannot read this profile");
+}
+
+#[test]
+fn of_a_flag_given_twice_the_last_holds_and_lists_grow() {
+    let folder = folder();
+    fs::write(folder.path().join("petg.toml"), "[filament]\nname = \"PETG\"\n").unwrap();
+    write_block(&folder.path().join("block.stl"));
+    let words = [
+        "block.stl",
+        "-q",
+        "--walls",
+        "7",
+        "--set",
+        "tolerance=0.02",
+        "-p",
+        "generic-marlin",
+        "--walls",
+        "4",
+        "--infill=10",
+        "--set",
+        "seam=nearest",
+        "-p",
+        "./petg.toml",
+        "--infill=11",
+        "-o",
+        "a",
+        "-o",
+        "-",
+    ];
+    let told = slicer(&folder).args(words).assert().success().stderr("");
+    let text = String::from_utf8(told.get_output().stdout.clone()).unwrap();
+    for line in [
+        "walls = 4",
+        "infill = 11",
+        "tolerance = 0.02",
+        "seam = \"nearest\"",
+        "machine.name = \"Marlin printer\"",
+        "filament.name = \"PETG\"",
+    ] {
+        assert!(text.contains(&format!("\n; {line}\n")), "{line}");
+    }
+    let words =
+        ["profile", "show", "--set", "walls=3", "witbox-1", "./petg.toml", "--set", "walls=5"];
+    let told = slicer(&folder).args(words).assert().success();
+    let text = String::from_utf8(told.get_output().stdout.clone()).unwrap();
+    assert!(text.contains("walls = 5  # --set") && text.contains("PETG"), "{text}");
 }
 
 #[test]

@@ -60,7 +60,7 @@ pub(crate) fn settings(profile: &str, set: &[(&str, &str)]) -> Settings {
             origin: ValueOrigin::Set,
         })
         .collect();
-    load(profile, &overrides).unwrap().settings
+    load([profile], &overrides).unwrap().settings
 }
 
 /// Slices the file at `path`.

@@ -36,7 +36,7 @@ fn settings(set: &[(&str, &str)]) -> Settings {
         origin: ValueOrigin::Set,
     };
     let overrides: Vec<Override> = set.iter().map(with).collect();
-    profile::load("generic-marlin", &overrides).unwrap().settings
+    profile::load(["generic-marlin"], &overrides).unwrap().settings
 }
 
 /// Bytes of a model are refused, or sliced into G-code that this program's own reader knows.
@@ -94,14 +94,14 @@ pub(crate) fn profile(text: &[u8]) {
     let path = folder.path().join("mine.toml");
     std::fs::write(&path, text).unwrap();
     let name = path.to_str().unwrap();
-    match profile::load(name, &[]) {
+    match profile::load([name], &[]) {
         Ok(loaded) => {
             let dumped = profile::dump(&loaded.settings);
             let again = profile::recorded(&dumped).unwrap().unwrap();
             assert_eq!(profile::dump(&again.settings), dumped);
         }
         // Of this file, or of one beside it that it inherits from.
-        Err(error) => is_good_refusal(&error, 2, folder.path().to_str().unwrap()),
+        Err(error) => is_good_refusal(&error.into(), 2, folder.path().to_str().unwrap()),
     }
 }
 

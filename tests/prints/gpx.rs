@@ -35,7 +35,7 @@ fn blocks_convert_in_silence() {
         return;
     }
     for name in builtin_names() {
-        let settings = load(name, &[]).unwrap().settings;
+        let settings = load([name], &[]).unwrap().settings;
         if settings.machine.dialect != DialectName::Makerbot {
             continue;
         }

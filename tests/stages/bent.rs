@@ -40,7 +40,7 @@ fn read(text: &str) -> Print {
 }
 
 fn times(text: &str) -> Estimate {
-    let settings = profile::load("generic-marlin", &[]).unwrap().settings;
+    let settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
     let options = Options { filament_diameter: 1.75, fixed_limits: false };
     estimate::estimate(&mut text.as_bytes(), "bent", &Limits::new(&settings), options).unwrap()
 }
@@ -48,7 +48,7 @@ fn times(text: &str) -> Estimate {
 /// What is found in `text`, by the machine and the model that it was made for.
 fn judge(text: &str) -> Verdict {
     let print = read(text);
-    let settings = profile::load("generic-marlin", &[]).unwrap().settings;
+    let settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
     let terms = Terms::new(Some(&settings), None, &print);
     let path = crate::common::fixtures().join("bracket.stl").to_str().unwrap().to_owned();
     let placement = Placement { scale: 0.2, ..Placement::default() };

@@ -1,0 +1,194 @@
+//! Words of a profile -> enums: the settings that take one of a few words, or a number or `auto`.
+//!
+//! A variant is a word, written with dashes in a profile (`OuterFirst` is `outer-first`); its
+//! doc comment is the word's meaning. To add a word, add a variant, and use it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// See [`Settings::wall_order`](super::Settings::wall_order).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum WallOrder {
+    /// From the outer wall inwards.
+    OuterFirst,
+    /// From the innermost wall outwards.
+    InnerFirst,
+}
+
+/// See [`Settings::seam`](super::Settings::seam).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Seam {
+    /// At the vertex nearest to the nozzle.
+    Nearest,
+    /// At the vertex furthest back (largest y).
+    Rear,
+}
+
+/// Pattern of the sparse infill.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Pattern {
+    /// Parallel lines, turned by 90° from layer to layer (from pair to pair with dual).
+    Rectilinear,
+    /// Parallel lines, always in the same direction.
+    Aligned,
+    /// Lines at 0° and 90° on every layer, each at half the density.
+    Grid,
+    /// Lines at 0°, 60° and 120° on every layer, each at a third of the density.
+    Triangles,
+}
+
+/// See [`Settings::angle`](super::Settings::angle).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Angle {
+    /// So many degrees.
+    Degrees(#[schemars(range(min = -360, max = 360))] f64),
+    /// The one that has least turns, which depends on the model.
+    Auto(Auto),
+}
+
+impl Angle {
+    /// Degrees; half a right angle where no model has decided yet.
+    #[must_use]
+    pub fn degrees(self) -> f64 {
+        match self {
+            Self::Degrees(degrees) => degrees,
+            Self::Auto(_) => 45.0,
+        }
+    }
+}
+
+/// See [`Dual::mode`](super::Dual::mode).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DualMode {
+    /// Every line on every layer.
+    Off,
+    /// Thick lines on the uppermost layer of each group, with the material of all its layers.
+    Pair,
+    /// Thick lines shared out among the layers: each layer has its turn with some of them.
+    Interlaced,
+}
+
+/// See [`Dual::ratio`](super::Dual::ratio).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum DualRatio {
+    /// So many.
+    Layers(#[schemars(range(min = 2, max = 50))] u32),
+    /// As many as height and flow allow.
+    Auto(Auto),
+}
+
+/// The word `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Auto {
+    /// The word.
+    Auto,
+}
+
+/// See [`Dual::parts`](super::Dual::parts).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DualPart {
+    /// Sparse infill.
+    Infill,
+    /// Support.
+    Support,
+    /// All walls but the outermost.
+    InnerWalls,
+    /// All skin but the layer that is seen.
+    InnerSkin,
+}
+
+/// See [`Dual::direction`](super::Dual::direction).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DualDirection {
+    /// Directions alternate, so that the lines of successive pairs cross.
+    Cross,
+    /// The direction whose lines are shorter in all (the thesis's rule).
+    Shorter,
+}
+
+/// See [`Dual::remainder`](super::Dual::remainder).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DualRemainder {
+    /// Only infill that layers share is printed thick; the rest thin on its own layer.
+    Thin,
+    /// One layer's infill is printed thick as a whole, the others' left out (the thesis's rule).
+    Drop,
+}
+
+/// See [`Support::stands_on`](super::Support::stands_on).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SupportBase {
+    /// On the bed and on the part.
+    Everywhere,
+    /// Only on the bed.
+    Bed,
+}
+
+/// See [`Extrusion::model`](super::Extrusion::model).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ExtrusionModel {
+    /// Line width × layer height, which is a bead with rounded ends that is `h·(1 − π/4)` wider than its spacing.
+    Area,
+    /// Factors measured on the machine.
+    Factor,
+}
+
+/// See [`Retraction::when`](super::Retraction::when).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum RetractWhen {
+    /// All but those shorter than `min_travel`.
+    Always,
+    /// Those that cross an outer wall or leave the part.
+    Crossing,
+}
+
+/// See [`Machine::dialect`](super::Machine::dialect).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DialectName {
+    /// Sailfish and MakerBot firmware, through GPX.
+    Makerbot,
+    /// Marlin.
+    Marlin,
+    /// Klipper.
+    Klipper,
+}
+
+/// See [`Machine::origin`](super::Machine::origin).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Origin {
+    /// In the middle of the bed.
+    Centre,
+    /// At the bed's front left corner.
+    FrontLeft,
+}
+
+/// See [`MotionLimits::junction`](super::MotionLimits::junction).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum JunctionRule {
+    /// Marlin's classic jerk.
+    Jerk,
+    /// Jerk in x and y as one vector: Marlin's before 1.1.
+    VectorJerk,
+    /// Sailfish's "maximum speed change".
+    SpeedChange,
+    /// Marlin's junction deviation.
+    Deviation,
+    /// Klipper's square corner velocity.
+    SquareCorner,
+}

@@ -1,0 +1,172 @@
+//! A name from another slicer -> ours, or that it is not supported yet.
+//!
+//! Names are those of PrusaSlicer and Slic3r, of OrcaSlicer and Bambu Studio, and of
+//! CuraEngine, as keys of a profile and as flags. Whoever comes from there writes them
+//! by habit; a guess by spelling would answer with something else that looks alike.
+
+/// What a name of another slicer means here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Foreign {
+    /// Our key for it. Units may differ.
+    Key(&'static str),
+    /// What it would do, as a noun: there is no such thing here yet.
+    NotSupported(&'static str),
+}
+
+/// What `name`, a key or a flag without its dashes, means here, if another slicer has it.
+#[must_use]
+pub fn meaning(name: &str) -> Option<Foreign> {
+    let name = name.to_lowercase().replace('-', "_");
+    let last = name.rsplit('.').next().unwrap_or_default();
+    let find = |table: &[(&'static str, &[&str])], name: &str| {
+        table.iter().find(|(_, theirs)| theirs.contains(&name)).map(|(ours, _)| *ours)
+    };
+    // Whoever looks for the right table may have put it into one of ours.
+    [name.as_str(), last].into_iter().find_map(|name| {
+        let key = find(KEYS, name).map(Foreign::Key);
+        key.or_else(|| find(NOT_SUPPORTED, name).map(Foreign::NotSupported))
+    })
+}
+
+/// Our key, and what others call it.
+#[rustfmt::skip]
+const KEYS: &[(&str, &[&str])] = &[
+    ("first_layer_height", &["initial_layer_print_height", "initial_layer_height", "layer_height_0"]),
+    ("line_width", &["extrusion_width", "perimeter_extrusion_width", "external_perimeter_extrusion_width", "infill_extrusion_width", "first_layer_extrusion_width", "outer_wall_line_width", "inner_wall_line_width", "sparse_infill_line_width", "wall_line_width", "infill_line_width"]),
+    ("tolerance", &["resolution", "gcode_resolution", "meshfix_maximum_resolution", "meshfix_maximum_deviation"]),
+    ("walls", &["perimeters", "wall_loops", "wall_line_count", "wall_count", "wall_thickness", "shells"]),
+    ("outer_wall_inset", &["wall_0_inset"]),
+    ("wall_order", &["external_perimeters_first", "wall_sequence", "wall_infill_order", "inset_direction", "outer_inset_first"]),
+    ("seam", &["seam_position", "z_seam_type"]),
+    ("skin_layers", &["solid_layers", "top_bottom_thickness"]),
+    ("top_layers", &["top_solid_layers", "top_shell_layers", "top_thickness"]),
+    ("bottom_layers", &["bottom_solid_layers", "bottom_shell_layers", "bottom_thickness", "initial_bottom_layers"]),
+    ("skin_reach", &["expand_skins_expand_distance", "top_skin_expand_distance", "bottom_skin_expand_distance"]),
+    ("infill", &["fill_density", "sparse_infill_density", "infill_sparse_density", "infill_density"]),
+    ("pattern", &["fill_pattern", "sparse_infill_pattern", "infill_pattern"]),
+    ("angle", &["fill_angle", "infill_direction", "infill_angles", "solid_infill_direction"]),
+    ("infill_overlap", &["infill_wall_overlap", "infill_overlap_mm", "skin_overlap"]),
+    ("dual.mode", &["infill_combination", "infill_every_layers"]),
+    ("dual.ratio", &["automatic_infill_combination", "infill_sparse_thickness"]),
+    ("dual.max_bead_height", &["infill_combination_max_layer_height", "automatic_infill_combination_max_layer_height"]),
+    ("dual.parts", &["support_infill_sparse_thickness"]),
+    ("support.enabled", &["support_material", "enable_support", "support_enable", "generate_support", "support_material_auto", "supports"]),
+    ("support.threshold_angle", &["support_material_threshold", "support_threshold_angle", "support_angle"]),
+    ("support.spacing", &["support_material_spacing", "support_base_pattern_spacing", "support_line_distance"]),
+    ("support.expansion", &["support_expansion", "support_offset"]),
+    ("support.xy_distance", &["support_material_xy_spacing", "support_object_xy_distance", "support_xy_distance"]),
+    ("support.z_distance", &["support_material_contact_distance", "support_top_z_distance", "support_bottom_z_distance", "support_z_distance", "support_top_distance"]),
+    ("support.stands_on", &["support_material_buildplate_only", "support_on_build_plate_only", "support_type"]),
+    ("speed.wall", &["perimeter_speed", "external_perimeter_speed", "small_perimeter_speed", "outer_wall_speed", "inner_wall_speed", "speed_wall", "speed_wall_0", "speed_wall_x", "print_speed", "speed_print"]),
+    ("speed.skin", &["solid_infill_speed", "top_solid_infill_speed", "internal_solid_infill_speed", "top_surface_speed", "speed_topbottom"]),
+    ("speed.infill", &["infill_speed", "sparse_infill_speed", "speed_infill"]),
+    ("speed.support", &["support_material_speed", "support_speed", "speed_support"]),
+    ("speed.travel", &["travel_speed", "speed_travel"]),
+    ("speed.z", &["travel_speed_z", "speed_z_hop"]),
+    ("speed.first_layer", &["first_layer_speed", "initial_layer_speed", "speed_layer_0"]),
+    ("extrusion.multiplier", &["extrusion_multiplier", "filament_flow_ratio", "print_flow_ratio", "material_flow", "flow_ratio"]),
+    ("retraction.length", &["retract_length", "retraction_length", "retraction_amount", "retraction_distance"]),
+    ("retraction.speed", &["retract_speed", "deretract_speed", "retraction_speed", "deretraction_speed", "retraction_retract_speed", "retraction_prime_speed"]),
+    ("retraction.when", &["only_retract_when_crossing_perimeters", "reduce_infill_retraction", "retraction_enable"]),
+    ("retraction.min_travel", &["retract_before_travel", "retraction_minimum_travel", "retraction_min_travel"]),
+    ("retraction.z_hop", &["retract_lift", "z_hop", "retraction_hop", "retraction_hop_enabled", "z_lift"]),
+    ("filament.name", &["filament_type", "filament_settings_id", "material_name"]),
+    ("filament.diameter", &["filament_diameter", "material_diameter"]),
+    ("filament.density", &["filament_density", "material_density"]),
+    ("filament.temperature", &["temperature", "first_layer_temperature", "nozzle_temperature", "nozzle_temperature_initial_layer", "material_print_temperature"]),
+    ("filament.bed_temperature", &["bed_temperature", "first_layer_bed_temperature", "hot_plate_temp", "material_bed_temperature"]),
+    ("filament.fan", &["max_fan_speed", "fan_max_speed", "fan_speed", "fan_always_on", "cool_fan_speed", "cool_fan_enabled", "cooling"]),
+    ("filament.fan_from_layer", &["disable_fan_first_layers", "full_fan_speed_layer", "close_fan_the_first_x_layers", "cool_fan_full_layer"]),
+    ("filament.cost", &["filament_cost", "material_cost"]),
+    ("machine.name", &["printer_model", "printer_name", "machine_name"]),
+    ("machine.dialect", &["gcode_flavor", "machine_gcode_flavor"]),
+    ("machine.bed_width", &["bed_shape", "bed_size", "printable_area", "machine_width"]),
+    ("machine.bed_depth", &["machine_depth"]),
+    ("machine.bed_height", &["max_print_height", "printable_height", "machine_height"]),
+    ("machine.origin", &["machine_center_is_zero"]),
+    ("machine.nozzle_diameter", &["nozzle_diameter", "machine_nozzle_size", "nozzle_size"]),
+    ("machine.acceleration", &["default_acceleration", "machine_max_acceleration_extruding", "acceleration_print", "machine_acceleration"]),
+    ("machine.relative_e", &["use_relative_e_distances", "relative_extrusion"]),
+    ("machine.max_volumetric_speed", &["max_volumetric_speed", "filament_max_volumetric_speed"]),
+    ("machine.thumbnails", &["thumbnails", "thumbnail_size"]),
+    ("machine.start_gcode", &["start_gcode", "machine_start_gcode", "start_filament_gcode"]),
+    ("machine.end_gcode", &["end_gcode", "machine_end_gcode", "end_filament_gcode"]),
+    ("limits.speed_x", &["machine_max_feedrate_x", "machine_max_speed_x"]),
+    ("limits.speed_y", &["machine_max_feedrate_y", "machine_max_speed_y"]),
+    ("limits.speed_z", &["machine_max_feedrate_z", "machine_max_speed_z"]),
+    ("limits.speed_e", &["machine_max_feedrate_e", "machine_max_speed_e"]),
+    ("limits.acceleration_x", &["machine_max_acceleration_x"]),
+    ("limits.acceleration_y", &["machine_max_acceleration_y"]),
+    ("limits.acceleration_z", &["machine_max_acceleration_z"]),
+    ("limits.acceleration_e", &["machine_max_acceleration_e"]),
+    ("limits.travel_acceleration", &["machine_max_acceleration_travel", "travel_acceleration", "acceleration_travel"]),
+    ("limits.retract_acceleration", &["machine_max_acceleration_retracting"]),
+    ("limits.jerk_x", &["machine_max_jerk_x", "jerk_print", "default_jerk"]),
+    ("limits.jerk_y", &["machine_max_jerk_y"]),
+    ("limits.jerk_z", &["machine_max_jerk_z"]),
+    ("limits.jerk_e", &["machine_max_jerk_e"]),
+    ("limits.junction_deviation", &["machine_max_junction_deviation"]),
+];
+
+/// What we cannot do, and what others call its settings.
+#[rustfmt::skip]
+const NOT_SUPPORTED: &[(&str, &[&str])] = &[
+    ("a brim", &["brim", "brim_width", "brim_type", "brim_object_gap", "brim_separation", "brim_line_count", "brim_ears", "adhesion_type"]),
+    ("a skirt", &["skirt", "skirts", "skirt_loops", "skirt_distance", "skirt_height", "skirt_line_count", "skirt_gap", "min_skirt_length"]),
+    ("a raft", &["raft", "raft_layers", "raft_margin", "raft_airgap", "raft_first_layer_density"]),
+    ("ironing", &["ironing", "ironing_type", "ironing_enabled"]),
+    ("a spiral vase", &["spiral_vase", "spiral_mode", "magic_spiralize"]),
+    ("fuzzy skin", &["fuzzy_skin", "magic_fuzzy_skin_enabled"]),
+    ("gap fill", &["gap_fill_enabled", "gap_fill_speed", "gap_infill_speed", "fill_gaps", "filter_out_gap_fill", "gap_fill_target"]),
+    ("printing bridges in their own way", &["bridge_speed", "bridge_flow", "bridge_flow_ratio", "bridge_fan_speed", "bridge_angle", "bridge_settings_enabled", "thick_bridges"]),
+    ("slowing down on overhangs", &["enable_dynamic_overhang_speeds", "overhangs", "enable_overhang_speed", "detect_overhang_wall"]),
+    ("a height of layers that varies", &["adaptive_layer_height", "adaptive_layer_height_enabled", "variable_layer_height"]),
+    ("a width of walls that varies", &["wall_generator", "perimeter_generator", "thin_walls", "detect_thin_wall", "wall_distribution_count", "fill_outline_gaps"]),
+    ("adding walls where needed", &["extra_perimeters", "alternate_extra_perimeter", "alternate_extra_wall", "ensure_vertical_shell_thickness"]),
+    ("a pattern for skins", &["top_fill_pattern", "bottom_fill_pattern", "top_surface_pattern", "bottom_surface_pattern", "top_bottom_pattern"]),
+    ("solid infill between skins", &["solid_infill_every_layers", "solid_infill_below_area", "minimum_sparse_infill_area"]),
+    ("a minimum time for a layer", &["slowdown_below_layer_time", "min_print_speed", "slow_down_layer_time", "slow_down_min_speed", "cool_min_layer_time", "cool_min_speed"]),
+    ("an acceleration for each kind of line", &["perimeter_acceleration", "external_perimeter_acceleration", "infill_acceleration", "first_layer_acceleration", "outer_wall_acceleration", "inner_wall_acceleration", "acceleration_wall", "acceleration_infill"]),
+    ("a way around walls for travels", &["avoid_crossing_perimeters", "reduce_crossing_wall", "retraction_combing"]),
+    ("wiping", &["wipe", "wipe_distance", "wipe_tower", "prime_tower_enable", "enable_prime_tower"]),
+    ("printing with several tools", &["infill_extruder", "perimeter_extruder", "solid_infill_extruder", "support_material_extruder", "extruder_nr", "wall_extruder_nr"]),
+    ("compensation of sizes", &["elefant_foot_compensation", "xy_size_compensation", "xy_hole_compensation", "xy_contour_compensation", "xy_offset", "xy_offset_layer_0"]),
+    ("an interface below the part", &["support_material_interface_layers", "support_interface_top_layers", "support_interface_enable"]),
+    ("tree support", &["support_structure", "support_material_style", "support_tree_angle"]),
+    ("pressure advance", &["pressure_advance", "enable_pressure_advance"]),
+    ("arc fitting", &["arc_fitting", "enable_arc_fitting"]),
+    ("printing one model after the other", &["complete_objects", "print_sequence"]),
+    ("labelling of models", &["label_objects", "gcode_label_objects", "exclude_object"]),
+    ("post-processing", &["post_process"]),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::keys;
+
+    #[test]
+    fn names_are_there_once_and_lead_to_keys_of_ours() {
+        let mut all: Vec<&str> = KEYS
+            .iter()
+            .chain(NOT_SUPPORTED)
+            .flat_map(|(_, theirs)| theirs.iter().copied())
+            .collect();
+        assert!(all.len() > 200, "{}", all.len());
+        assert!(all.iter().all(|name| keys::find(name).is_none()));
+        assert!(KEYS.iter().all(|(ours, _)| keys::find(ours).is_some()));
+        all.sort_unstable();
+        let count = all.len();
+        all.dedup();
+        assert_eq!(all.len(), count);
+    }
+
+    #[test]
+    fn names_are_known_in_every_spelling_and_table() {
+        for name in ["perimeters", "wall-loops", "Wall_Line_Count", "machine.perimeters"] {
+            assert_eq!(meaning(name), Some(Foreign::Key("walls")), "{name}");
+        }
+        assert_eq!(meaning("brim-width"), Some(Foreign::NotSupported("a brim")));
+        assert_eq!(meaning("wals"), None);
+    }
+}
