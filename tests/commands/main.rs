@@ -10,4 +10,5 @@ mod estimate;
 mod hosts;
 mod mesh;
 mod preview;
+mod schema;
 mod viewer;

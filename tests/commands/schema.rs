@@ -1,0 +1,148 @@
+//! Schemas that the program prints, and files -> verdict of a validator that is not ours.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use assert_cmd::Command;
+use boon::{Compiler, Schemas};
+use serde_json::Value;
+use slicer::profile::keys::{KEYS, Key, Kind};
+use std::fs;
+
+fn slicer(words: &[&str]) -> Value {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
+    let run = command.args(words).assert().success();
+    serde_json::from_slice(&run.get_output().stdout).unwrap()
+}
+
+/// The schema that these words print, as a question: is this value as it says?
+fn validator(words: &[&str]) -> impl Fn(&Value) -> Result<(), String> {
+    let mut schemas = Schemas::new();
+    let mut compiler = Compiler::new();
+    compiler.add_resource("schema.json", slicer(words)).unwrap();
+    let index = compiler.compile("schema.json", &mut schemas).unwrap();
+    move |value| schemas.validate(value, index).map_err(|error| error.to_string())
+}
+
+#[test]
+fn shipped_profiles_are_as_their_schema_says_and_wrong_ones_are_not() {
+    let is_valid = validator(&["profile", "schema"]);
+    let read = |text: &str| toml::from_str::<Value>(text).unwrap();
+    let mut count = 0;
+    for entry in fs::read_dir("profiles").unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|ending| ending == "toml") {
+            is_valid(&read(&fs::read_to_string(&path).unwrap())).unwrap();
+            count += 1;
+        }
+    }
+    assert!(count >= 6, "{count}");
+    for text in [
+        "inherits = \"thesis\"",
+        "angle = \"auto\"\n[dual]\nratio = 3\nparts = [\"infill\"]",
+        "angle = -90.5\n[machine]\nthumbnails = [\"32x32\"]\n[support]\nenabled = true",
+    ] {
+        is_valid(&read(text)).unwrap();
+    }
+    for text in [
+        "wals = 2",
+        "walls = -1",
+        "walls = 2.5",
+        "seam = \"reer\"",
+        "angle = 400",
+        "[speed]\nwall = 1620",
+        "[speed]\nwal = 20",
+        "[dual]\nratio = 1",
+        "[dual]\nparts = [\"walls\"]",
+        "[machine]\nthumbnails = [\"large\"]",
+        "[filament]\nname = 7",
+    ] {
+        assert!(is_valid(&read(text)).is_err(), "{text}");
+    }
+    // What is shown is a profile, too.
+    let show = Command::new(assert_cmd::cargo::cargo_bin!("slicer"))
+        .args(["profile", "show", "thesis", "-v"])
+        .output()
+        .unwrap();
+    is_valid(&read(&String::from_utf8(show.stdout).unwrap())).unwrap();
+}
+
+#[test]
+fn reports_are_as_their_schema_says() {
+    let is_valid = validator(&["report", "schema"]);
+    let reports = [
+        &["fixtures/bracket.stl", "--dual", "--check"][..],
+        &["fixtures/overhang.stl", "--support", "-p", "generic-marlin", "--set", "speed.wall=1"],
+        // Its middle is thinner than a line of this width, and the flow is more than is molten.
+        &["fixtures/tile.stl", "--line-width", "1", "--set", "machine.max_volumetric_speed=1"],
+    ];
+    let mut codes = Vec::new();
+    for words in reports {
+        let report = slicer(&[words, &["-q", "-o", "/dev/null", "--report", "-"]].concat());
+        is_valid(&report).unwrap();
+        let warnings = report["warnings"].as_array().unwrap();
+        codes.extend(warnings.iter().map(|one| one["code"].as_str().unwrap().to_owned()));
+        let mut wrong = report.clone();
+        wrong["layers"]["count"] = "many".into();
+        assert!(is_valid(&wrong).is_err());
+    }
+    assert!(codes.iter().any(|code| code == "slow-speed"), "{codes:?}");
+    assert!(codes.iter().any(|code| code == "flow-limited"), "{codes:?}");
+}
+
+const LIST: &str = "profiles/README.md";
+const BEGIN: &str = "<!-- keys: begin -->\n";
+const END: &str = "<!-- keys: end -->\n";
+
+/// A table for each table of a profile, with a row for each key.
+fn list_of_keys() -> String {
+    let mut text = String::new();
+    let mut table = None;
+    for key in KEYS.iter() {
+        let (inside, name) = key.name.split_once('.').unwrap_or(("", &key.name));
+        if table.replace(inside) != Some(inside) {
+            let head =
+                if inside.is_empty() { String::new() } else { format!("\n### `[{inside}]`\n") };
+            text += &format!(
+                "{head}\n| key | unit | allowed | default | meaning |\n|---|---|---|---|---|\n"
+            );
+        }
+        let allowed = match key.kind {
+            Kind::Switch => "`true`, `false`".to_owned(),
+            Kind::Text | Kind::Block => "text".to_owned(),
+            _ => key.allowed().replace(" | ", ", "),
+        };
+        let default = default(key);
+        text += &format!("| `{name}` | {} | {allowed} | {default} | {} |\n", key.unit, key.doc);
+    }
+    text + "\n"
+}
+
+fn default(key: &Key) -> String {
+    match &key.default {
+        Some(value) => format!("`{}`", value.to_string().replace('"', "")),
+        None if key.optional => "unset".to_owned(),
+        None => String::new(),
+    }
+}
+
+#[test]
+fn the_list_of_keys_is_as_declared() {
+    let kept = fs::read_to_string(LIST).unwrap();
+    let (before, rest) = kept.split_once(BEGIN).unwrap();
+    let (_, after) = rest.split_once(END).unwrap();
+    let made = format!("{before}{BEGIN}{}{END}{after}", list_of_keys());
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        fs::write(LIST, made).unwrap();
+        panic!("{LIST} is rewritten; look at it, and unset UPDATE_GOLDEN");
+    }
+    assert!(kept == made, "{LIST} does not list the keys as src/profile/settings.rs declares them");
+}
+
+#[test]
+fn the_list_of_placeholders_is_whole() {
+    let settings = slicer::profile::load(["generic-marlin"], &[]).unwrap().settings;
+    let text = fs::read_to_string(LIST).unwrap();
+    for (name, _) in slicer::profile::template::values(&settings, &Default::default()) {
+        assert!(text.contains(&format!("`{{{name}}}`")), "{name}");
+    }
+}
