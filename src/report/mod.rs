@@ -3,6 +3,11 @@
 //! Here are the carriers, the structs of the JSON. [`make`] fills them in, [`tally`] adds up what
 //! the layers hold. Whether a job is refused is decided elsewhere, before anything is written:
 //! see [`pipeline::refuse`](crate::pipeline::refuse).
+//!
+//! Words: a *role* is what a bead is printed for, *thick* one that is printed for several layers.
+//! The *audit* of dual injection follows the lines of each block of layers: how long they are,
+//! thick and thin, and why some are not thick. Units stand at the end of each name; the
+//! meaning of a field never changes without a new [`SCHEMA`] number.
 
 pub mod make;
 pub mod tally;

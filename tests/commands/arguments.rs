@@ -139,7 +139,9 @@ fn wrong_profiles_name_file_and_line() {
     run("mine.toml:1: inherits goes round in a circle: mine.toml -> mine.toml");
     profile("inherits = \"zcub-dual\"\n");
     run("mine.toml:1: inherits: unknown profile `zcub-dual`; did you mean `zcube-dual`?");
-    profile("inherits = \"zcube-dual\"\n[machine]\nstart = '''\nG21\nM104 S{temprature}\n'''\n");
+    profile(
+        "inherits = \"zcube-dual\"\n[machine]\nstart_gcode = '''\nG21\nM104 S{temprature}\n'''\n",
+    );
     run("mine.toml:3: machine.start_gcode, line 2 of it: unknown placeholder {temprature}");
 }
 
