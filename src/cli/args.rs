@@ -80,7 +80,7 @@ pub(crate) enum Command {
     Estimate(EstimateArgs),
     /// Say what is wrong with a G-code file, also against the model
     Check(Box<CheckArgs>),
-    /// Draw what a G-code file prints: layers, a cut, or a page to look through it; or a model
+    /// Draw a G-code file, as pictures or as a page to look through, or a model
     Preview(PreviewArgs),
     /// Say what is wrong with a model's mesh, and mend it
     Mesh(super::mesh::MeshArgs),
@@ -93,8 +93,12 @@ pub(crate) enum Command {
         /// The shell
         shell: clap_complete::Shell,
     },
-    /// Print the manual page
-    Man,
+    /// Print a manual page
+    Man {
+        /// The command, such as `check` or `profile show` [default: the program]
+        #[arg(value_name = "COMMAND")]
+        command: Vec<String>,
+    },
 }
 
 /// What to do with profiles.

@@ -7,6 +7,7 @@ mod diff;
 mod estimate;
 mod failure;
 mod foreign;
+mod help;
 mod input;
 mod interrupt;
 mod mesh;
@@ -16,14 +17,15 @@ mod preview;
 mod progress;
 mod slice;
 mod summary;
+mod texts;
 mod usage;
 mod viewer;
 mod words;
 
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 use args::{Arguments, Command, ProfileCommand, ReportCommand};
+use clap::FromArgMatches as _;
 use clap::error::{ContextKind, ContextValue};
-use clap::{CommandFactory as _, Parser as _};
 use slicer::report::make::slow_speeds;
 use slicer::{profile, report};
 use std::ffi::OsString;
@@ -61,7 +63,8 @@ impl From<String> for Outcome {
 pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
     interrupt::watch_faults();
     let words: Vec<OsString> = words.collect();
-    let arguments = match Arguments::try_parse_from(&words) {
+    let matches = help::command().try_get_matches_from(&words);
+    let arguments = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => arguments,
         Err(error) => return refused(&error, words.get(1).and_then(|word| word.to_str())),
     };
@@ -100,7 +103,7 @@ fn refused(error: &clap::Error, first: Option<&str>) -> u8 {
         kind => {
             let told = match kind {
                 MissingRequiredArgument => {
-                    first.and_then(|word| usage::meant(word, &Arguments::command()))
+                    first.and_then(|word| usage::meant(word, &help::command()))
                 }
                 UnknownArgument => unknown_flag(error, first),
                 _ => None,
@@ -119,7 +122,7 @@ fn unknown_flag(error: &clap::Error, first: Option<&str>) -> Option<String> {
         _ => None,
     });
     let flag = flag.filter(|flag| flag.starts_with("--"))?;
-    let program = Arguments::command();
+    let program = help::command();
     let command = first.and_then(|word| program.find_subcommand(word));
     let takes_settings = command.is_none_or(|command| command.get_name() == "compare");
     Some(foreign::unknown_flag(flag, takes_settings, command.unwrap_or(&program)))
@@ -158,18 +161,8 @@ fn other(command: &Command) -> Result<Outcome> {
         Command::Preview(args) => preview::run(args).map(|()| String::new())?,
         Command::Diff(args) => return diff::run(args),
         Command::Mesh(args) => return mesh::run(args),
-        Command::Completions { shell } => {
-            let mut text = Vec::new();
-            clap_complete::generate(*shell, &mut Arguments::command(), "slicer", &mut text);
-            String::from_utf8_lossy(&text).into_owned()
-        }
-        Command::Man => {
-            let mut text = Vec::new();
-            clap_mangen::Man::new(Arguments::command())
-                .render(&mut text)
-                .with_context(|| output::writing(Path::new("-")))?;
-            String::from_utf8_lossy(&text).into_owned()
-        }
+        Command::Completions { shell } => help::completions(*shell),
+        Command::Man { command } => help::manual(command)?,
     };
     Ok(text.into())
 }

@@ -7,6 +7,7 @@ mod arguments;
 mod check;
 mod diff;
 mod estimate;
+mod help;
 mod hosts;
 mod mesh;
 mod preview;

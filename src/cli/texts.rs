@@ -1,0 +1,62 @@
+//! Text -> `--help` and manual pages: what a command's reader needs beyond its flags.
+
+/// What `check` may find.
+pub(super) const FINDINGS: &str = "\
+Findings, each with a stable code, a place and a measure:
+  unknown-code         a command that the machine's firmware does not know
+  outside-volume       a line or travel beyond the machine's x, y or z
+  cold-extrusion       filament is pushed before the nozzle is told to be hot and waited for
+  too-fast             faster than [limits] allow in x or y
+  too-much-flow        5 % more than the hot end melts
+  unpaired-retraction  a line with the filament pulled back, or more pushed out than was pulled
+  odd-bead             under 0.55 or over 1.6 times the plastic that the role takes for its size
+  falling-z            a line lower than what is printed already
+  in-the-air           lines that hold on to one another, but stand on nothing
+  printed-twice        a line on the middle of another of its layer, over 10 mm or most of it
+  wrong-sums           the file states another amount of filament or number of layers
+  wrong-size           the walls do not lie along the part's outline, or the height differs
+  open-outline         0.6 mm² or more of the outline is not printed
+  open-surface         0.6 mm² or more of a top or bottom surface is not printed
+  outside-part         0.6 mm² or more is printed over 0.3 mm beside the part
+  wrong-infill         another density of the infill than asked for, or none on some layers
+  wrong-volume         walls and skins take under 80 or over 125 % of the plastic they have room for
+
+The part is cut anew at the middle of every layer and laid under pixels of 0.05 mm, larger ones
+where a layer would have more than 30 million. Places narrower than 1.2 lines need not be printed.
+A part that itself begins in the air gives a warning. A file without comments does not tell what
+its lines are for: what cannot be judged is listed.";
+
+/// What is done about a broken mesh.
+pub(super) const MENDING: &str = "\
+A mesh is mended in this order:
+  1. Triangles without area are dropped. Corners of open edges are welded within 0.02 mm, and
+     within 0.1 mm where edges are still open, but by at most half of the shortest edge there.
+  2. Of copies of a triangle one is kept, or none where they are an inner wall or a sheet.
+  3. An edge with other corners on it is split at them.
+  4. Triangles are wound like their neighbours.
+  5. Gaps are closed: two rims along each other by a band, other holes by triangles over their
+     rims. A rim that crosses itself, or whose filling would cross the surface, stays open.
+  6. Fins and sheets are dropped. A shell that is inside out is turned; one that is wound inward
+     within another is a cavity.
+No corner is added, and only welding moves one. Bodies that overlap become one solid when they
+are cut. Filled holes and dropped sheets are guesses and give a warning. What stays open is
+closed layer by layer with lines of up to 2 mm; a model that needs longer ones is refused.
+Coordinates in messages are the file's own.";
+
+/// How dual injection works, in words of its flags.
+pub(super) const DUAL: &str = "\
+Dual injection (--dual) takes layers in groups of --dual-ratio. The first layer is alone.
+  - Infill that all layers of a group have is printed on the uppermost, with the material of all.
+  - What some layers in a row have is printed for these; what one layer has, on this layer.
+  - The direction turns from group to group, so that thick lines cross.
+A thick line is at most dual.max_bead_height tall, 100 % of the nozzle unless set: 0.2 mm layers
+allow two, 0.1 mm layers four. `--dual-ratio auto` takes that many, but stops where the hot end
+cannot melt more.
+`--dual-mode interlaced` prints half of the lines thick on odd layers and half on even ones, so
+that layers take alike.
+--dual-parts says what is thick:
+  infill       where the layers have it in the same place
+  support      likewise
+  inner-walls  where a loop runs along that of the layer below within a tenth of a line
+  inner-skin   where at least one layer covers it, and it is wider than six lines
+The report's dual.audit lists the material of each group against that of thin lines.";
