@@ -22,7 +22,7 @@ pub struct Comparison {
     pub ways: Vec<Way>,
 }
 
-/// What one way of printing takes.
+/// Time and material of one way to print.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Way {
     /// The flags that give it.

@@ -1,44 +1,34 @@
-//! Everything that can go wrong, each as one line a user can act on, with its exit code.
+//! Errors of the stages -> Error: all ways in which a run can fail, to match on.
 //!
-//! Every message names the file, the place, the cause and what to do.
+//! Each stage has an error type of its own; [`Error`] composes them. The rules of all of them:
+//! - A variant for each cause that a program may treat differently, with the numbers that its
+//!   message is made of.
+//! - The message is one line that names the file or the flag, the cause and what to do. It holds
+//!   the text of its causes: print the error alone, not its chain of sources.
+//! - The cause, such as the system's error, is the `source()`.
+//! - Wrong command lines are errors of the program, not of the library.
 
 use crate::profile::ProfileError;
-use crate::progress;
 use crate::warning::plural;
+use crate::{mesh, progress, reader};
 use std::io;
 
-/// A failure that ends the run. [`Error::exit_code`] gives the process exit code.
+/// A failure that ends the run. [`Error::exit_code`] gives the exit code of the program.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
-    /// A bad combination of command-line arguments (exit 2).
-    #[error("{0}")]
-    Usage(String),
-
     /// A profile that cannot be read, or a setting that is unknown or out of range (exit 2).
     /// The text starts with the file and line, or with `--set` or the flag that gave it.
     #[error(transparent)]
     Profile(#[from] ProfileError),
 
-    /// A model that cannot be read or is no usable mesh, or a file that is no G-code (exit 3).
-    #[error("{file}: {reason}")]
-    Input {
-        /// The file as the user named it, `<stdin>` for `-`.
-        file: String,
-        /// Where, what and what to do.
-        reason: String,
-    },
-
     /// A model cannot be read, mended or placed (exit 3), or a placement makes no sense (exit 2).
     #[error(transparent)]
-    Mesh(#[from] crate::mesh::Error),
+    Mesh(#[from] mesh::Error),
 
     /// A G-code file that cannot be read or prints nothing (exit 3).
     #[error(transparent)]
-    Gcode(#[from] crate::reader::Error),
-
-    /// The models are readable but do not fit the printer or leave nothing to print (exit 3).
-    #[error("{0}")]
-    Unprintable(String),
+    Gcode(#[from] reader::Error),
 
     /// The models can be read but not be printed (exit 3).
     #[error(transparent)]
@@ -58,23 +48,14 @@ pub enum Error {
 }
 
 impl Error {
-    /// Shorthand for [`Error::Input`].
-    pub fn input(file: &str, reason: impl Into<String>) -> Self {
-        Self::Input { file: file.to_owned(), reason: reason.into() }
-    }
-
     /// The documented process exit code: 2 usage or configuration, 3 input, 4 output; 130, as of
     /// an interrupted program, if the run was cancelled.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Usage(_) | Self::Profile(_) => 2,
+            Self::Profile(_) => 2,
             Self::Mesh(error) if error.is_usage() => 2,
-            Self::Input { .. }
-            | Self::Mesh(_)
-            | Self::Gcode(_)
-            | Self::Unprintable(_)
-            | Self::Refused(_) => 3,
+            Self::Mesh(_) | Self::Gcode(_) | Self::Refused(_) => 3,
             Self::Write(_) | Self::Thumbnails(_) => 4,
             Self::Cancelled => 130,
         }

@@ -1,11 +1,11 @@
-//! Findings that do not stop a run: each says the fact, the likely cause and what to do.
+//! Findings -> text: what does not stop a run. Each names the fact, the likely cause and what to do.
 
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
-/// A finding. Printed one a line on stderr, listed in the report; with
-/// `--strict` any of them makes the exit code 1.
+/// A finding. It is printed as a line on standard error and listed in the report. With `--strict`
+/// any of them makes the exit code 1.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "code", rename_all = "kebab-case")]
 pub enum Warning {
@@ -37,7 +37,7 @@ pub enum Warning {
         /// The area left out, mm², summed over the layers.
         area_mm2: f64,
     },
-    /// Lines that are printed in the air, since the part itself has nothing below there.
+    /// Lines that are printed in the air, since the part has nothing below them.
     PartHangs {
         /// Their length, mm.
         length_mm: f64,
@@ -63,7 +63,7 @@ pub enum Warning {
         /// Its value, mm/s.
         speed_mm_s: f64,
     },
-    /// Lines that the hot end cannot melt as fast as was asked for, printed slower.
+    /// Lines that are printed slower than asked for, since the hot end cannot melt as fast.
     FlowLimited {
         /// What they are for, as in the report's roles.
         role: String,

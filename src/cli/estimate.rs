@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_said_of_what_is_not_there() {
+    fn what_does_not_occur_is_not_listed() {
         assert_eq!(not_counted(&NotCounted::default()), "");
         let not = NotCounted { heating: 2, unknown_lines: 1, first_unknown_line: 7, ..not_any() };
         assert_eq!(

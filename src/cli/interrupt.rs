@@ -28,14 +28,14 @@ pub(crate) fn watch() {
 /// ends the program after its unfinished files are removed.
 pub(crate) fn watch_faults() {
     std::panic::set_hook(Box::new(|panic| {
-        super::say(&told(panic.payload(), panic.location()));
+        super::say(&fault_line(panic.payload(), panic.location()));
         clear();
         std::process::exit(FAULT);
     }));
 }
 
 /// A panic in one line.
-fn told(payload: &dyn Any, location: Option<&Location>) -> String {
+fn fault_line(payload: &dyn Any, location: Option<&Location>) -> String {
     let text = payload.downcast_ref::<&str>().copied();
     let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
     let text = text.unwrap_or("no more is known").replace('\n', " ");
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_fault_is_told_in_one_line_and_leaves_no_file() {
+    fn a_fault_is_reported_in_one_line_and_leaves_no_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("unfinished");
         std::fs::write(&path, "half").unwrap();
@@ -79,7 +79,7 @@ mod tests {
         let payloads: [Box<dyn Any>; 3] =
             [Box::new("one\ntwo"), Box::new("one\ntwo".to_owned()), Box::new(7)];
         for payload in payloads {
-            let line = told(&*payload, Some(Location::caller()));
+            let line = fault_line(&*payload, Some(Location::caller()));
             assert!(line.ends_with('\n') && line.lines().count() == 1, "{line}");
             assert!(line.contains("interrupt.rs:"), "{line}");
             assert!(line.contains("one two") || line.contains("no more is known"), "{line}");

@@ -32,7 +32,7 @@ use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::Path;
 
-/// What a subcommand has to say: the text for standard output, and the exit code.
+/// What a subcommand gives: the text for standard output, and the exit code.
 struct Outcome {
     text: String,
     code: u8,
@@ -43,7 +43,7 @@ impl Outcome {
     ///
     /// # Errors
     /// [`failure::Output`] if standard output cannot be written.
-    fn tell(self) -> Result<u8> {
+    fn print(self) -> Result<u8> {
         match output::print(&self.text) {
             Err(error) if !output::is_closed_stdout(&error) => Err(error),
             _ => Ok(self.code),
@@ -70,10 +70,10 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
     };
     let done = match &arguments.command {
         None => slice::run(&arguments.slice),
-        Some(command) => other(command).and_then(Outcome::tell),
+        Some(command) => other(command).and_then(Outcome::print),
     };
     done.unwrap_or_else(|error| {
-        // Who stops reading our output has had enough of it: no failure.
+        // A reader that stops reading, such as `head`, has had enough: that is no failure.
         if output::is_closed_stdout(&error) {
             return 0;
         }
@@ -82,7 +82,7 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
     })
 }
 
-/// What clap has to say: help and version are products, the rest is one line.
+/// Prints the help or the version, which are products, or one line of error.
 /// `first` is the first argument, which may be a mistyped command.
 fn refused(error: &clap::Error, first: Option<&str>) -> u8 {
     use clap::error::ErrorKind::{
@@ -101,15 +101,15 @@ fn refused(error: &clap::Error, first: Option<&str>) -> u8 {
             2
         }
         kind => {
-            let told = match kind {
+            let line = match kind {
                 MissingRequiredArgument => {
                     first.and_then(|word| usage::meant(word, &help::command()))
                 }
                 UnknownArgument => unknown_flag(error, first),
                 _ => None,
             };
-            let told = told.unwrap_or_else(|| usage::one_line(&text.to_string()));
-            say(&format!("error: {told}\n"));
+            let line = line.unwrap_or_else(|| usage::one_line(&text.to_string()));
+            say(&format!("error: {line}\n"));
             2
         }
     }
@@ -128,7 +128,7 @@ fn unknown_flag(error: &clap::Error, first: Option<&str>) -> Option<String> {
     Some(foreign::unknown_flag(flag, takes_settings, command.unwrap_or(&program)))
 }
 
-/// Text for people. There is nowhere left to report that it cannot be written.
+/// Prints text for people on standard error. If that fails there is nowhere left to report it.
 fn say(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
@@ -157,7 +157,7 @@ fn other(command: &Command) -> Result<Outcome> {
         Command::Compare(args) => compare::run(args)?,
         Command::Check(args) => return check::run(args),
         Command::Estimate(args) => estimate::run(args)?,
-        // Its product is a file, unless it is told otherwise.
+        // Its product is a file, unless `-o -` asks for another.
         Command::Preview(args) => preview::run(args).map(|()| String::new())?,
         Command::Diff(args) => return diff::run(args),
         Command::Mesh(args) => return mesh::run(args),

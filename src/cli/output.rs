@@ -1,4 +1,18 @@
-//! Path -> Sink: a file that is there whole or not at all, a device, or standard output.
+//! Path -> Sink: an output that appears whole or not at all: a file, a device, or standard output.
+//!
+//! A *sink* takes a product until it is whole. *Commit* makes it the output; a sink that is dropped
+//! without commit leaves no file and changes none.
+//!
+//! - A file is written beside its final place under a temporary name, and renamed on commit: both
+//!   are in one folder, so that this is one step for the system. Links are followed first, so
+//!   that a link stays a link.
+//! - Standard output, devices and pipes cannot be replaced. Their product waits in a temporary
+//!   file without a name and is copied on commit: the other end of a pipe never sees half of it.
+//! - Of several files, as `preview --all` writes, each is closed once it is whole, since a system
+//!   allows only some hundred open files. [`commit_all`] puts all in place, or none.
+//!
+//! Temporary names are registered with [`interrupt`], which removes the files if the program is
+//! stopped by a signal or by a fault of its own.
 
 pub(crate) use super::failure::is_stdout;
 
@@ -22,8 +36,7 @@ pub(super) fn json(value: &impl Serialize, to: &Path) -> Result<String> {
     text.map(|text| text + "\n").with_context(|| writing(to))
 }
 
-/// Where a product goes. Opened before the long work, so that a wrong path
-/// costs no time. Without [`Sink::commit`] no file is left or changed.
+/// Where a product goes. It is opened before the long work, so that a wrong path costs no time.
 #[derive(Debug)]
 pub(crate) struct Sink {
     /// As the user named it.
@@ -33,10 +46,9 @@ pub(crate) struct Sink {
 
 #[derive(Debug)]
 enum Target {
-    /// A file without a name, for what cannot be replaced by a file. Copied when it is
-    /// whole: nobody at the other end of a pipe sees half a product.
+    /// A file without a name, and where it is copied to.
     Unnamed(BufWriter<File>, End),
-    /// A file beside the one that it will become.
+    /// A file beside its final place, and that place.
     Temporary(BufWriter<NamedTempFile>, PathBuf),
 }
 
@@ -48,8 +60,7 @@ enum End {
     Open(File),
 }
 
-/// A whole product beside its final place. It keeps no file open, so that there
-/// may be any number of them.
+/// A whole product beside its final place, no longer open.
 #[derive(Debug)]
 pub(crate) struct Closed {
     /// As the user named it.
@@ -78,14 +89,15 @@ impl Sink {
     pub(crate) fn close(self) -> Result<Closed> {
         let name = self.name;
         let Target::Temporary(out, path) = self.target else {
-            return Err(told("it is no file; choose another name")).with_context(|| writing(&name));
+            return Err(reason("it is no file; choose another name"))
+                .with_context(|| writing(&name));
         };
         let file = out.into_inner().map_err(io::IntoInnerError::into_error);
         let file = file.with_context(|| writing(&name))?.into_temp_path();
         Ok(Closed { name, file, path })
     }
 
-    /// What was written so far, from its beginning. Nothing is to be written afterwards.
+    /// Reads what was written so far, from its beginning. Nothing may be written afterwards.
     ///
     /// # Errors
     /// What writing the rest gives.
@@ -175,7 +187,7 @@ impl Seek for Sink {
     }
 }
 
-/// Whether the failure is that nobody reads standard output any more.
+/// Whether the error is that nobody reads standard output any more.
 pub(crate) fn is_closed_stdout(error: &anyhow::Error) -> bool {
     let is_stdout = error.downcast_ref().is_some_and(|to: &Output| is_stdout(&to.file));
     let closed = |error: &io::Error| error.kind() == io::ErrorKind::BrokenPipe;
@@ -201,14 +213,14 @@ fn open_target(name: &Path) -> io::Result<Target> {
     // Under /dev even a link to a regular file (/dev/stdout) is somebody's open file.
     let device = name.starts_with("/dev");
     match fs::metadata(name) {
-        Ok(data) if data.is_dir() => Err(told("it is a directory; name a file in it")),
+        Ok(data) if data.is_dir() => Err(reason("it is a directory; name a file in it")),
         Ok(data) if device || !data.is_file() => {
             unnamed(End::Open(OpenOptions::new().write(true).open(name)?))
         }
         Ok(data) if data.permissions().readonly() => {
-            Err(told("the file is write-protected; remove it or choose another name"))
+            Err(reason("the file is write-protected; remove it or choose another name"))
         }
-        // The end of the links, so that a link stays one.
+        // The end of the links, so that a link stays a link.
         Ok(_) => beside(fs::canonicalize(name)?),
         Err(_) => beside(end_of_links(name)?),
     }
@@ -225,7 +237,7 @@ fn unnamed(end: End) -> io::Result<Target> {
     Ok(Target::Unnamed(BufWriter::new(file), end))
 }
 
-/// Sends what a file holds to where it is meant for.
+/// Copies a whole product to its end.
 fn copy(out: BufWriter<File>, end: End) -> io::Result<()> {
     let mut file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
     file.rewind()?;
@@ -238,7 +250,7 @@ fn copy(out: BufWriter<File>, end: End) -> io::Result<()> {
     }
 }
 
-/// Follows links that lead to no file yet.
+/// Follows links whose end does not exist yet.
 fn end_of_links(name: &Path) -> io::Result<PathBuf> {
     /// More than any system follows.
     const MOST: usize = 40;
@@ -249,7 +261,7 @@ fn end_of_links(name: &Path) -> io::Result<PathBuf> {
         };
         path = path.parent().map_or_else(|| next.clone(), |folder| folder.join(&next));
     }
-    Err(told("the link leads to itself; remove it"))
+    Err(reason("the link leads to itself; remove it"))
 }
 
 fn beside(path: PathBuf) -> io::Result<Target> {
@@ -259,10 +271,10 @@ fn beside(path: PathBuf) -> io::Result<Target> {
     };
     let is_folder = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
     if path.file_name().is_none() || is_folder {
-        return Err(told("this names no file; add a file name"));
+        return Err(reason("this names no file; add a file name"));
     }
     if !folder.is_dir() {
-        return Err(told(&format!("there is no directory {}; create it", folder.display())));
+        return Err(reason(&format!("there is no directory {}; create it", folder.display())));
     }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".slicer-").suffix(".part");
@@ -275,7 +287,7 @@ fn beside(path: PathBuf) -> io::Result<Target> {
     Ok(Target::Temporary(BufWriter::new(file), path))
 }
 
-fn told(why: &str) -> io::Error {
+fn reason(why: &str) -> io::Error {
     io::Error::other(why.to_owned())
 }
 

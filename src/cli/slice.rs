@@ -55,14 +55,13 @@ pub(super) fn run(args: &SliceArgs) -> Result<u8> {
             say(&check::notes(verdict));
         }
     }
-    // The report is written before the G-code is put in place, so that a full
-    // disk leaves neither.
+    // The report is written before the G-code is put in place: a full disk leaves neither.
     let report_sink = report_sink.map(|(path, sink)| write_report(path, sink, &report));
     let report_sink = report_sink.transpose()?;
     if is_good {
         sink.commit()?;
     }
-    // It tells of findings, too.
+    // The report lists the findings, so that it is written with them, too.
     report_sink.map_or(Ok(()), Sink::commit)?;
     if !is_good {
         say(
@@ -111,8 +110,8 @@ fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The exit code of a run that is done: with `--strict` warnings are a failure, though
-/// the output is there to be looked at.
+/// The exit code of a run that is done. With `--strict` warnings make it a failure, although the
+/// output is written, to be looked at.
 fn findings(strict: bool, warnings: usize) -> u8 {
     if !strict || warnings == 0 {
         return 0;
@@ -128,7 +127,7 @@ fn load(args: &SliceArgs) -> Result<Profile> {
     Ok(profile::load(&args.profile, &overrides)?)
 }
 
-/// The pipeline itself, in a pool of the threads asked for, under a progress bar.
+/// Runs the pipeline with the threads asked for, under a progress bar.
 fn work(args: &SliceArgs, out: &Path, profile: Profile, sink: &mut Sink) -> Result<Report> {
     let job = Job {
         models: args.inputs.iter().map(Model::path).collect(),
@@ -147,7 +146,7 @@ fn work(args: &SliceArgs, out: &Path, profile: Profile, sink: &mut Sink) -> Resu
     pool.install(slice)
 }
 
-/// Slices; with `check` reads the product back and holds it against the models.
+/// Slices; with `check` reads the product back and checks it against the models.
 fn slice_and_check(
     job: &Job,
     check: bool,

@@ -28,7 +28,7 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
     )
 }
 
-/// A time as people say it, such as `1 h 23 min`.
+/// A time for people, such as `1 h 23 min`.
 fn duration(seconds: f64) -> String {
     let minutes = (seconds / 60.0).round() as u64;
     match (minutes / 60, minutes % 60) {
@@ -38,7 +38,7 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// What was mended as a matter of form, one line a model.
+/// Mendings that leave no doubt, one line a model.
 pub(crate) fn notes(report: &Report) -> String {
     let note = |model: &MeshReport| {
         let what = faults::tidied(&model.mended)?;
@@ -105,7 +105,7 @@ mod tests {
     use slicer::report::{DualReport, FilamentReport, LayersReport, RoleReport, TimeReport};
 
     #[test]
-    fn three_lines_say_it_all() {
+    fn the_summary_has_three_lines() {
         let role = |role: &str, filament_mm| RoleReport {
             role: role.to_owned(),
             filament_mm,
@@ -134,10 +134,10 @@ mod tests {
     }
 
     #[test]
-    fn times_are_said_as_people_say_them() {
-        let said =
+    fn times_are_in_hours_and_minutes() {
+        let cases =
             [(12.4, "12 s"), (59.6, "1 min"), (3_590.0, "1 h 0 min"), (90_000.0, "25 h 0 min")];
-        for (seconds, words) in said {
+        for (seconds, words) in cases {
             assert_eq!(duration(seconds), words);
         }
     }

@@ -95,13 +95,13 @@ fn time(times: &Times) -> TimeReport {
     let count = times.layers.len().max(1) as f64;
     let mean = times.total() / count;
     let variance = seconds().map(|s| (s - mean) * (s - mean)).sum::<f64>() / count;
-    let told = |layer: &LayerTime| LayerTimeReport { z_mm: to_mm(layer.z), time_s: layer.seconds };
+    let layer = |layer: &LayerTime| LayerTimeReport { z_mm: to_mm(layer.z), time_s: layer.seconds };
     TimeReport {
         total_s: times.total(),
         longest_layer_s: seconds().fold(0.0, f64::max),
         shortest_layer_s: seconds().reduce(f64::min).unwrap_or_default(),
         layer_spread: if mean > 0.0 { variance.sqrt() / mean } else { 0.0 },
-        layers: times.layers.iter().map(told).collect(),
+        layers: times.layers.iter().map(layer).collect(),
     }
 }
 
@@ -115,7 +115,7 @@ pub fn slow_speeds(settings: &Settings) -> Vec<Warning> {
     settings.slow_speeds().into_iter().map(warning).collect()
 }
 
-/// Where the hot end cannot follow.
+/// Lines that are slowed down since the hot end cannot melt as fast.
 fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
     let mut warnings = Vec::new();
     for (role, lowered) in flows.lowered.iter() {
@@ -133,9 +133,9 @@ fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
 }
 
 fn dual(settings: &Settings, audits: &[Audit]) -> DualReport {
-    let seen = || audits.iter().filter(|a| a.plain > 0);
-    let infill = || seen().filter(|a| a.part == DualPart::Infill);
-    let sum = |of: fn(&Audit) -> i64| seen().map(of).sum::<i64>();
+    let filled = || audits.iter().filter(|a| a.plain > 0);
+    let infill = || filled().filter(|a| a.part == DualPart::Infill);
+    let sum = |of: fn(&Audit) -> i64| filled().map(of).sum::<i64>();
     DualReport {
         ratio: settings.dual_ratio(),
         blocks: infill().count(),
@@ -143,7 +143,7 @@ fn dual(settings: &Settings, audits: &[Audit]) -> DualReport {
         thick_length_mm: sum_mm(sum(|a| a.thick)),
         thin_length_mm: sum_mm(sum(|a| a.thin)),
         volume_ratio: ratio(sum(|a| a.material), sum(|a| a.plain)),
-        audit: seen().map(block).collect(),
+        audit: filled().map(block).collect(),
     }
 }
 
@@ -165,7 +165,7 @@ fn block(audit: &Audit) -> BlockReport {
     }
 }
 
-/// `part` of `whole`; 1 if there is nothing.
+/// `part` over `whole`; 1 if both are nothing.
 fn ratio(part: i64, whole: i64) -> f64 {
     if whole == 0 { 1.0 } else { part as f64 / whole as f64 }
 }

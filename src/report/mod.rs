@@ -56,13 +56,13 @@ pub struct Report {
     pub filament: FilamentReport,
     /// How long the print takes, by `limits` of the profile.
     pub time: TimeReport,
-    /// How fast filament is molten.
+    /// How fast the hot end melts filament.
     pub flow: FlowReport,
     /// Dual injection; absent where it is off.
     pub dual: Option<DualReport>,
     /// Findings.
     pub warnings: Vec<Warning>,
-    /// What `--check` says of the G-code; absent without it.
+    /// The verdict of `--check`; absent without it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub check: Option<Verdict>,
 }
@@ -120,7 +120,7 @@ pub struct FilamentReport {
     pub volume_cm3: f64,
     /// Weight, g.
     pub weight_g: f64,
-    /// Price, in the money of `filament.cost`; absent where that is 0.
+    /// Price in the currency of `filament.cost`; absent if that is 0.
     pub cost: Option<f64>,
 }
 
@@ -148,12 +148,12 @@ pub struct LayerTimeReport {
     pub time_s: f64,
 }
 
-/// How fast filament is molten.
+/// How fast the hot end melts filament.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct FlowReport {
     /// The largest flow of the print, mm³/s.
     pub largest_mm3_s: f64,
-    /// The most that the hot end melts, mm³/s.
+    /// The most that the hot end can melt, mm³/s.
     pub limit_mm3_s: f64,
 }
 
@@ -177,8 +177,8 @@ pub struct DualReport {
     pub audit: Vec<BlockReport>,
 }
 
-/// What became of the infill or the support of one block of layers: those that are filled
-/// in one direction, which is one group, or several where lines are interlaced.
+/// How the infill or the support of one block of layers is printed. A block are the layers that are
+/// filled in one direction: one group, or several if lines are interlaced.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct BlockReport {
     /// `infill` or `support`.
@@ -200,7 +200,7 @@ pub struct BlockReport {
 /// Length of the layers' lines that are not printed for a whole group, mm, by cause.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct ApartReport {
-    /// Another layer of the group has none there: it is at or beyond its walls.
+    /// Another layer of the group has no infill there: the place is at or beyond its walls.
     pub bounds_mm: f64,
     /// Another layer of the group has skin there.
     pub skin_mm: f64,

@@ -85,7 +85,7 @@ fn says_the_size(error: &Error) -> bool {
             error,
             slicer::mesh::Error::TooLarge { .. } | slicer::mesh::Error::BedFull { .. }
         ),
-        Error::Unprintable(_) => true,
+        Error::Refused(_) => true,
         _ => false,
     };
     let text = error.to_string();
