@@ -74,7 +74,6 @@ const LEAST_HEAD: usize = 8;
 /// Long files without a head. None is added.
 const WITHOUT_HEAD: &[&str] = &[
     "cli/args.rs",
-    "cli/output.rs",
     "fill/variable_width.rs",
     "pattern/lines.rs",
     "region/support.rs",
