@@ -80,7 +80,7 @@ pub(crate) enum Command {
     Estimate(EstimateArgs),
     /// Say what is wrong with a G-code file, also against the model
     Check(Box<CheckArgs>),
-    /// Draw a G-code file, as pictures or as a page to look through, or a model
+    /// Draw a G-code file or a model, as pictures or as a page
     Preview(PreviewArgs),
     /// Say what is wrong with a model's mesh, and mend it
     Mesh(super::mesh::MeshArgs),

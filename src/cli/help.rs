@@ -32,7 +32,7 @@ const EVERYDAY: [(&str, &str); 14] = [
     ("support", "Print support under overhangs"),
     ("temperature", "Temperature of the nozzle, °C"),
     ("set", "Change any setting (see `slicer profile show -v`)"),
-    ("rotate", "Turn about x, then y, then z, degrees"),
+    ("rotate", "Turn about x, y, z, degrees"),
     ("copies", "Print each model N times"),
     ("report", "Write a report as JSON, `-` for standard output"),
     ("check", "Write G-code only if it is found to be good"),
@@ -103,7 +103,9 @@ pub(super) fn completions(shell: Shell) -> String {
     let mut text = Vec::new();
     clap_complete::generate(shell, &mut marked(command()), "slicer", &mut text);
     let text = String::from_utf8_lossy(&text);
-    let profiles = builtin_names().collect::<Vec<_>>().join(" ");
+    let mut profiles: Vec<&str> = builtin_names().collect();
+    profiles.sort_unstable();
+    let profiles = profiles.join(" ");
     let keys: String = keys::KEYS.iter().map(|key| format!("{}= ", key.name)).collect();
     let keys = keys.trim_end();
     match shell {
@@ -123,6 +125,10 @@ pub(super) fn completions(shell: Shell) -> String {
             // Files are offered beside profiles.
             let text = text
                 .replace(&format!("-f -a \"{PROFILES}\\t''\""), &format!("-F -a \"{profiles}\""));
+            // A model is a word of its own, which fish's script takes for a command.
+            let early = |flag: &str| format!("-n \"__fish_slicer_needs_command\" {flag} ");
+            let text = text.replace(&early("-s p -l profile"), "-s p -l profile ");
+            let text = text.replace(&early("-l set"), "-l set ");
             text.replace(&format!("{KEYS}\\t''"), keys)
         }
         _ => text.into_owned(),

@@ -72,14 +72,16 @@ pub(crate) struct PreviewArgs {
     #[arg(long, value_name = "AXIS=MM", value_parser = plane, conflicts_with_all = ["layer", "all", "fit", "below", "travels"], help_heading = "Cut")]
     cut: Option<Plane>,
 
-    /// Built-in profile, or a file if it has a `/` or ends in .toml: the filament's diameter, for files that tell no widths; for a page the limits that its times depend on, too
+    /// Built-in profile, or a file if it has a `/` or ends in .toml
+    ///
+    /// It gives the filament's diameter, for files that tell no widths; for a page the limits that its times depend on, too
     #[arg(short, long, value_name = "NAME", default_value = profile::DEFAULT, help_heading = "Settings")]
     profile: Vec<String>,
     /// Change any setting of the profile, such as filament.diameter=2.85 (repeatable)
     #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
     set: Vec<String>,
     /// Refuse a model with more triangles
-    #[arg(long, value_name = "N", default_value_t = DEFAULT_MAX_TRIANGLES, value_parser = words::triangles(), help_heading = "Model")]
+    #[arg(hide_short_help = true, long, value_name = "N", default_value_t = DEFAULT_MAX_TRIANGLES, value_parser = words::triangles(), help_heading = "Model")]
     max_triangles: usize,
     /// Do not say which layer is drawn
     #[arg(short, long, help_heading = "Running")]

@@ -140,7 +140,7 @@ fn fish_offers_profiles_files_and_keys() {
     let Some(profiles) = offered("slicer part.stl -p ") else { return };
     assert!(profiles.contains("generic-klipper") && profiles.contains("mine.toml"), "{profiles}");
     let keys = offered("slicer part.stl --set speed.wal").unwrap();
-    assert_eq!(keys.trim_end(), "speed.wall=");
+    assert!(keys.starts_with("speed.wall=") && keys.lines().count() == 1, "{keys}");
 }
 
 #[test]

@@ -331,7 +331,7 @@ fn files_of_nonsense_are_drawn_or_refused() {
     }
 }
 
-/// The pictures of the README, by its own commands.
+/// The pictures of the README, by the commands that fixtures/README.md gives.
 ///
 /// `UPDATE_GOLDEN=1 cargo test --test commands preview` rewrites them, as in prints/golden.rs.
 #[test]
@@ -345,7 +345,7 @@ fn the_pictures_of_the_readme_are_as_kept() {
         ("bracket-layer-14.svg", "--layer 14"),
         ("bracket-cut.svg", "--cut x=0 --crop 3,0,15.5,7"),
     ] {
-        let readme = fs::read_to_string(fixtures().join("../README.md")).unwrap();
+        let readme = fs::read_to_string(fixtures().join("README.md")).unwrap();
         assert!(readme.contains(&format!("preview bracket.gcode {words} -o")), "{words}");
         let words = words.split(' ').chain(["-q", "-o", name]);
         slicer(&folder).args(["preview", "bracket.gcode"]).args(words).assert().success();
