@@ -10,7 +10,7 @@
 
 use crate::profile::ProfileError;
 use crate::warning::plural;
-use crate::{mesh, progress, reader};
+use crate::{gcode, mesh, progress, reader};
 use std::io;
 
 /// A failure that ends the run. [`Error::exit_code`] gives the exit code of the program.
@@ -28,7 +28,7 @@ pub enum Error {
 
     /// A G-code file that cannot be read or prints nothing (exit 3).
     #[error(transparent)]
-    Gcode(#[from] reader::Error),
+    Reader(#[from] reader::Error),
 
     /// The models can be read but not be printed (exit 3).
     #[error(transparent)]
@@ -38,9 +38,9 @@ pub enum Error {
     #[error("the run was cancelled")]
     Cancelled,
 
-    /// The output cannot be written (exit 4).
-    #[error("cannot write: {0}")]
-    Write(#[source] io::Error),
+    /// The output cannot be written (exit 4), or a start or end block not be filled in (exit 2).
+    #[error(transparent)]
+    Gcode(#[from] gcode::Error),
 
     /// The thumbnails cannot be drawn (exit 4).
     #[error("cannot draw the thumbnails: {0}")]
@@ -53,10 +53,10 @@ impl Error {
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Profile(_) => 2,
+            Self::Profile(_) | Self::Gcode(gcode::Error::Block(_)) => 2,
             Self::Mesh(error) if error.is_usage() => 2,
-            Self::Mesh(_) | Self::Gcode(_) | Self::Refused(_) => 3,
-            Self::Write(_) | Self::Thumbnails(_) => 4,
+            Self::Mesh(_) | Self::Reader(_) | Self::Refused(_) => 3,
+            Self::Gcode(_) | Self::Thumbnails(_) => 4,
             Self::Cancelled => 130,
         }
     }

@@ -8,6 +8,7 @@ use super::{check, failure, interrupt, progress, say, summary, usage};
 use anyhow::{Context as _, Result};
 use slicer::check::terms::Terms;
 use slicer::error::Error;
+use slicer::gcode;
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
 use slicer::reader::Print;
@@ -179,7 +180,7 @@ fn slice_and_check(
 
 /// The library does not know what the output is called.
 fn named(error: Error, out: &Path) -> anyhow::Error {
-    let is_of_output = matches!(error, Error::Write(_) | Error::Thumbnails(_));
+    let is_of_output = matches!(error, Error::Gcode(gcode::Error::Write(_)) | Error::Thumbnails(_));
     let error = anyhow::Error::from(error);
     if is_of_output { error.context(Output { file: out.to_owned(), action: "" }) } else { error }
 }

@@ -13,6 +13,7 @@
 //! 5. [`hosts`] writes the comments that hosts read at the head and the end of the file.
 
 pub mod dialect;
+mod error;
 pub mod flow;
 pub mod hosts;
 pub mod moves;
@@ -23,11 +24,11 @@ pub mod times;
 pub mod usage;
 pub mod write;
 
-use crate::error::Result;
 use crate::motion::Limits;
 use crate::plan::Toolpath;
 use crate::profile::template::{self, PrintFacts};
-use crate::profile::{ProfileError, Settings, dump};
+use crate::profile::{Settings, dump};
+pub use error::{Error, Result};
 use hosts::Thumbnail;
 use moves::{MoveParams, Moves};
 pub use output::Output;
@@ -69,8 +70,8 @@ impl<'a> Writer<'a> {
     /// the layout's middle goes on the machine, mm.
     ///
     /// # Errors
-    /// [`Error::Profile`](crate::error::Error::Profile) for an unknown placeholder,
-    /// [`Error::Write`](crate::error::Error::Write) if writing fails.
+    /// [`Error::Block`] for an unknown placeholder,
+    /// [`Error::Write`] if writing fails.
     pub fn new(
         out: &'a mut dyn Output,
         settings: &'a Settings,
@@ -103,7 +104,7 @@ impl<'a> Writer<'a> {
     /// Writes the next layers. All threads make their moves and text; the output keeps their order.
     ///
     /// # Errors
-    /// [`Error::Write`](crate::error::Error::Write) if writing fails.
+    /// [`Error::Write`] if writing fails.
     pub fn layers(&mut self, layers: &[Toolpath]) -> Result<()> {
         // Few at once: moves and text take more memory than the layers themselves.
         let at_once = rayon::current_num_threads().max(4);
@@ -174,6 +175,6 @@ impl<'a> Writer<'a> {
     /// A block of the profile with its placeholders replaced.
     fn block(&self, name: &str, block: &str) -> Result<String> {
         let values = template::values(self.settings, &self.facts);
-        Ok(template::render(name, block, &values).map_err(ProfileError::from)?)
+        Ok(template::render(name, block, &values)?)
     }
 }

@@ -1,7 +1,7 @@
 //! Bytes -> output: appends to a G-code file, and overwrites bytes at a known place.
 
-use crate::error::{Error, Result};
-use std::io::{Seek, Write};
+use super::error::Result;
+use std::io::{Seek, SeekFrom, Write};
 
 /// What a G-code file is written to, at its beginning.
 ///
@@ -29,25 +29,23 @@ impl Places<'_> {
     pub(super) fn put(&mut self, bytes: &[u8]) -> Result<()> {
         self.written += bytes.len() as u64;
         match &mut self.held {
-            Some(held) => {
-                held.extend_from_slice(bytes);
-                Ok(())
-            }
-            None => self.out.write_all(bytes).map_err(Error::Write),
+            Some(held) => held.extend_from_slice(bytes),
+            None => self.out.write_all(bytes)?,
         }
+        Ok(())
     }
 
     /// From now on all bytes are written, those that were held first.
     pub(super) fn release(&mut self) -> Result<()> {
-        match self.held.take() {
-            Some(held) => self.out.write_all(&held).map_err(Error::Write),
-            None => Ok(()),
+        if let Some(held) = self.held.take() {
+            self.out.write_all(&held)?;
         }
+        Ok(())
     }
 
     /// Writes over what stands at this byte.
     pub(super) fn put_at(&mut self, place: u64, bytes: &[u8]) -> Result<()> {
-        let seek = self.out.seek(std::io::SeekFrom::Start(place));
-        seek.and_then(|_| self.out.write_all(bytes)).map_err(Error::Write)
+        self.out.seek(SeekFrom::Start(place))?;
+        Ok(self.out.write_all(bytes)?)
     }
 }

@@ -1,10 +1,10 @@
 //! Times + text -> `M73`: progress lines of fixed length, filled in once the total time is known.
 
 use super::dialect::Dialect;
+use super::error::Result;
 use super::output::Places;
 use super::times::Schedule;
 use super::write::LayerText;
-use crate::error::Result;
 use crate::profile::DialectName;
 
 /// Longest time between two progress lines, s, where a path ends in time. `M73` counts whole

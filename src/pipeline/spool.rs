@@ -1,6 +1,7 @@
 //! Job -> any Write: the whole G-code at once, for outputs that cannot seek.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::gcode;
 use crate::job::Job;
 use crate::progress::Progress;
 use crate::report::Report;
@@ -21,6 +22,6 @@ pub fn slice_to(job: &Job, out: &mut dyn Write, progress: &Progress) -> Result<R
     let mut spool = tempfile::spooled_tempfile(MOST_IN_MEMORY);
     let report = crate::slice(job, &mut spool, progress)?;
     let copied = spool.rewind().and_then(|()| io::copy(&mut spool, out));
-    copied.and_then(|_| out.flush()).map_err(Error::Write)?;
+    copied.and_then(|_| out.flush()).map_err(gcode::Error::Write)?;
     Ok(report)
 }

@@ -23,7 +23,7 @@ mod value;
 
 pub use builder::Builder;
 pub use choices::*;
-pub use error::ProfileError;
+pub use error::{BlockError, ProfileError};
 pub use load::load;
 pub use old::{SETTINGS_FORMAT, renewed};
 pub use origin::{Override, Profile, ValueOrigin};

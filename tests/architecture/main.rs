@@ -17,7 +17,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("warning", &[]),
     ("progress", &[]),
     // Composes what the stages report of their failures.
-    ("error", &["mesh", "profile", "progress", "reader", "warning"]),
     ("geom", &["units"]),
     ("mesh", &["geom", "units", "warning"]),
     ("slice", &["geom", "mesh", "units"]),
@@ -28,7 +27,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // Paths in, paths out: nothing of where they come from.
     ("plan", &["fill", "geom", "slice", "profile", "units"]),
     // The program's name comes from the job.
-    ("gcode", &["geom", "fill", "plan", "motion", "profile", "error", "units", "job"]),
+    ("gcode", &["geom", "fill", "plan", "motion", "profile", "units", "job"]),
     ("job", &["mesh", "profile"]),
     ("profile", &[]),
     ("motion", &["profile", "units"]),
@@ -40,6 +39,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("check", &["reader", "mesh", "profile", "units", "geom"]),
     ("preview", &["reader", "estimate", "units"]),
     ("diff", &["reader", "estimate", "geom"]),
+    // Composed of the stages' own errors: no stage uses it.
+    ("error", &["gcode", "mesh", "profile", "progress", "reader", "warning"]),
 ];
 
 /// Modules that judge what the others have made.
