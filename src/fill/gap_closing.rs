@@ -1,15 +1,21 @@
 //! Skin rows of two crossing rasters -> Lines: skin closed up to the walls, slivers included.
 //!
-//! Words: a *line* is what is printed of a row's span; a *column* is a line of
-//! the raster across. Lines lie on a fixed grid, so where an edge of the skin
-//! runs nearly along them, a strip up to one line width wide stays open between
-//! the edge and the last line, and a skin narrower than a line may fall between
-//! two. The columns tell how wide the strip is, exactly: they hold the skin's
-//! extent across the lines, and they were made for the neighbours anyway. The
-//! last line is moved and widened to fill the strip; a skin without a line gets
-//! a bead along its middle. Strips shorter than the columns' distance lie where a
-//! line ends before its neighbour does, and are known from these two ends. Only edges at a wall are closed: an edge at the
-//! infill has more skin around it than it needs.
+//! Words: a *line* is what is printed of one span of a row. A *column* is a row of the raster
+//! across. A *strip* is the open room beside a line. An *extent* is a span of a column: the
+//! skin's exact size across the lines at one place. A *sliver* is skin that no line reaches.
+//!
+//! Raster lines lie on a fixed grid. So a strip up to one line width wide stays open between
+//! the last line and a wall that runs nearly parallel to it, and skin narrower than a line may
+//! fall between two rows.
+//!
+//! Algorithm: for each extent, measure the strips above its highest and below its lowest row.
+//! [`variable_width`](super::variable_width) then moves and widens the line to fill them. An
+//! extent without a row is part of a sliver, which gets a bead along its middle. Columns are
+//! one line width apart and miss shorter strips. Those lie where a line ends beyond the end of
+//! the line beside it, so they are computed from these two ends. Columns cost nothing extra:
+//! the region stage needs them for neighbouring layers.
+//!
+//! Only edges at a wall are closed. An edge at the infill has more skin than it needs.
 
 use super::variable_width::{Line, LineParams, SHORT_STRIP, Strip, WIDEST};
 use crate::geom::polyline::{LinePoint, Polyline};
@@ -17,19 +23,22 @@ use crate::geom::spans::Span;
 use crate::region::crossed::Crossed;
 use crate::units::Coord;
 
-/// Strips narrower than this stay open (20 µm): half of what positioning can tell.
+/// Narrower strips stay open (20 µm): about half the positioning error of a printer. A smaller
+/// value gives nearly every line of a slanted wall a changing width; a larger one leaves gaps.
 const LEAST_STRIP: Coord = 200;
 
-/// Beads along thin strips that fewer columns in a row tell of are left out.
+/// Slivers seen by fewer columns in a row get no bead: one column gives one point, which has no
+/// length. 3, the first value, left slivers with two columns open.
 const LEAST_COLUMNS: usize = 2;
 
-/// Strips that are added at the ends of a line, at most.
+/// Room for the strips added at the ends of a line: three at each end ([`add_end`]). Reserved at
+/// once to avoid reallocation; a wrong value costs time only.
 const AT_ENDS: usize = 6;
 
-/// The lines of a skin, and the beads along strips too thin for a line.
+/// Returns the lines of a skin and the beads along its slivers.
 #[must_use]
 pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Polyline>) {
-    // Without a wall there is nothing to close up to, only an outside to stay within.
+    // Without walls the skin ends at the outside of the part: nothing may be widened there.
     let walled = params.walled;
     let mut strips = Strips::new(crossed.skin.range(), params);
     let mut thin = Vec::new();
@@ -53,7 +62,7 @@ pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Poly
     (lines, slivers(thin, params))
 }
 
-/// The skin's extent across the lines at one column, and which of its ends are at a wall.
+/// A span of a column, in the frame of the lines, and which of its ends are at a wall.
 #[derive(Debug, Clone, Copy)]
 struct Extent {
     u: Coord,
@@ -63,7 +72,7 @@ struct Extent {
     wall_high: bool,
 }
 
-/// The extents of all columns, in the order of u.
+/// The extents of all columns, sorted by u.
 fn extents(crossed: &Crossed<'_>, params: &LineParams) -> Vec<Extent> {
     let mut out = Vec::new();
     for (c, spans) in crossed.columns.iter() {
@@ -72,7 +81,7 @@ fn extents(crossed: &Crossed<'_>, params: &LineParams) -> Vec<Extent> {
             let at_start = walls.iter().any(|w| w.start == span.start);
             let at_end = walls.iter().any(|w| w.end == span.end);
             let at = c * params.line_width;
-            // In the frame across, u is −v of ours (turned left) or v is −u of ours.
+            // Back to the frame of the lines: turned left, u is −v of the columns; else v is −u.
             out.push(if crossed.left_turn {
                 let (wall_low, wall_high) = (at_start, at_end);
                 Extent { u: -at, low: span.start, high: span.end, wall_low, wall_high }
@@ -86,7 +95,7 @@ fn extents(crossed: &Crossed<'_>, params: &LineParams) -> Vec<Extent> {
     out
 }
 
-/// The strips beside the lines of each row, in the order of u.
+/// The strips beside the lines of each row, sorted by u.
 struct Strips {
     first: i32,
     above: Vec<Vec<Strip>>,
@@ -121,15 +130,15 @@ impl Strips {
         usize::try_from(row - self.first).ok().filter(|&k| k < self.above.len())
     }
 
-    /// Notes the strips above the highest and below the lowest line within `extent`;
-    /// says no if there is no line in it.
+    /// Adds the strips above the highest and below the lowest row within `extent`. Returns
+    /// `false` if no row crosses it.
     fn add(&mut self, extent: &Extent, params: &LineParams) -> bool {
         let highest = extent.high.div_euclid(self.pitch);
         let lowest = -(-extent.low).div_euclid(self.pitch);
         if lowest > highest {
             return false;
         }
-        // Lines reach `overlap` beyond the extent's ends already.
+        // A line at the wall already reaches `overlap` into it.
         let above = extent.high - highest * self.pitch - params.overlap;
         let below = lowest * self.pitch - extent.low - params.overlap;
         let strip = |open: Coord| Strip { u: extent.u, open: f64::from(open) };
@@ -143,9 +152,9 @@ impl Strips {
     }
 }
 
-/// Adds to the strips between a line of `row` and row `other` those at the ends of
-/// the line: where the edge at a wall crosses row `other` a little earlier, the strip
-/// is a whole pitch wide, and from there it tapers off towards the line's end.
+/// Adds the strips at the ends of a line of `row`, on the side of row `other`. Where the wall
+/// cuts row `other` a little before it cuts `row`, the strip between is one pitch wide at the
+/// end of `other` and tapers to nothing at the end of the line.
 fn add_ends(
     strips: &mut Vec<Strip>,
     span: Span,
@@ -167,8 +176,8 @@ fn add_ends(
     strips.dedup_by_key(|s| s.u);
 }
 
-/// Adds the strip between `edge`, where the other row ends, and the line's own `end`,
-/// if it is short, in place of what columns tell of it.
+/// Adds the strip between `edge`, where the other row ends, and the line's own `end`, if it is
+/// short. It replaces the strips that columns measured there.
 fn add_end(
     strips: &mut Vec<Strip>,
     span: Span,
@@ -181,9 +190,9 @@ fn add_end(
     let Some(edge) = edge.filter(|&u| inside(u) && near(u)) else { return };
     strips.retain(|s| (s.u - end).abs() > (edge - end).abs());
     let run = i64::from(end) - i64::from(edge);
-    // Both lines reach `overlap` into the wall: the taper ends before the line does.
+    // Both lines reach `overlap` into the wall, so the taper ends before the line.
     let taper = end - (run * i64::from(params.overlap) / i64::from(pitch)) as Coord;
-    // The other row's line begins here, so the strip ends at once.
+    // Behind the edge the other row's line fills the room, so the strip ends abruptly.
     let back = edge - (run.signum() as Coord) * pitch / 4;
     let open = f64::from(pitch - params.overlap);
     let ends = [(back, 0.0), (edge, open), (taper, 0.0)];
@@ -191,7 +200,7 @@ fn add_end(
     strips.extend(ends.into_iter().filter(|e| inside(e.0)).map(|(u, open)| Strip { u, open }));
 }
 
-/// Beads along the middle of extents that no line reaches, joined from column to column.
+/// Beads along the middle of slivers: extents that overlap on neighbouring columns are joined.
 fn slivers(thin: Vec<Extent>, params: &LineParams) -> Vec<Polyline> {
     let mut beads: Vec<(Extent, Polyline)> = Vec::new();
     let w = params.line_width;
@@ -228,7 +237,7 @@ mod tests {
     use crate::region::RegionParams;
     use crate::region::scan::Scan;
 
-    /// Closes a skin that is all of `contour`, lines along x.
+    /// The closed skin of a layer that is all skin, with lines along x.
     fn closed(contour: Contour) -> (Vec<Line>, Vec<Polyline>, LineParams) {
         let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
         settings.angle = profile::Angle::Degrees(0.0);
@@ -254,7 +263,7 @@ mod tests {
 
     #[test]
     fn the_last_line_is_widened_up_to_the_edge() {
-        // Rows lie at multiples of 4000: 3000 are left above the last one.
+        // Rows lie at multiples of 4000, so 3000 stay open above the last one.
         let (lines, slivers, params) = closed(rectangle((-50_000, -1_000), (50_000, 43_000)));
         assert!(slivers.is_empty());
         let last = lines.iter().find(|l| l.row == 10).unwrap();

@@ -1,13 +1,13 @@
 //! Region -> Paths: how each area of a layer is laid.
 //!
-//! The region stage says where walls, skin and sparse lines go; here they become paths. Skin is
-//! closed up to the walls ([`gap_closing`], [`variable_width`]) and its lines are joined to zigzags
-//! ([`skin`]); sparse areas are filled by their pattern; corners are rounded ([`rounding`]).
-//! Whatever is laid, the next stage sees nothing but [`Path`]: points with their own height above
-//! the layer, width and height of the bead. A new thing to print is a new file here.
+//! The region stage decides where walls, skin and sparse lines go. This stage turns them into
+//! paths. Skin is closed up to the walls ([`gap_closing`], [`variable_width`]), and its lines are
+//! joined to zigzags ([`skin`]). Sparse areas are filled with their pattern. Corners are rounded
+//! ([`rounding`]). The next stage sees nothing but [`Path`]: points with a height above the layer,
+//! and the width and height of the bead. A new thing to print is a new file here.
 //!
-//! Guaranteed to the next stage: every path has a point; a loop repeats its first point; a bead
-//! stays inside its region but for half its width.
+//! Guaranteed to the next stage: every path has at least one point; a loop repeats its first
+//! point; the middle of a bead stays inside its region.
 
 pub mod gap_closing;
 mod path;
@@ -41,11 +41,11 @@ pub struct FillParams {
 }
 
 impl FillParams {
-    /// The numbers that `settings` mean for this stage, for layers at `heights`.
+    /// Derives the numbers from `settings`, for layers at `heights`.
     #[must_use]
     pub fn new(settings: &Settings, heights: &Heights) -> Self {
         let line_width = to_units(settings.line_width);
-        // Without a wall the ends of lines are the outside, where nothing gets wider.
+        // Without walls the ends of lines are the outside of the part: their corners stay sharp.
         let radius = if settings.walls == 0 { 0 } else { to_units(settings.corner_radius) };
         Self {
             heights: heights.clone(),
@@ -58,7 +58,7 @@ impl FillParams {
     }
 }
 
-/// The paths of a layer, in no order. Independent of all other layers.
+/// The paths of a layer, unordered. They depend on no other layer.
 #[must_use]
 pub fn paths(region: &Region, params: &FillParams) -> Vec<Path> {
     let mut maker = Maker { k: region.layer.index, params, out: Vec::new() };
@@ -102,7 +102,7 @@ impl Maker<'_> {
         }
     }
 
-    /// Adds a polyline of a raster with this frame, its corners rounded.
+    /// Adds a polyline given in `frame`, with its corners rounded.
     fn polyline(
         &mut self,
         role: Role,
@@ -128,7 +128,7 @@ impl Maker<'_> {
         }
     }
 
-    /// Height of a bead that is printed for so many layers.
+    /// Height of a bead that is printed for `layers` layers.
     fn height(&self, layers: u32) -> Coord {
         self.params.heights.stack(self.k, layers)
     }

@@ -1,15 +1,15 @@
-//! Path: a bead laid in one go, the currency between filling areas and ordering what fills them.
+//! Path: a bead laid in one go; filling makes paths, ordering sorts them.
 
 use super::role::Role;
 use crate::geom::Point;
 use crate::units::Coord;
 
-/// A point of a path. What it says of the bead holds from the previous point to this one.
+/// A point of a path. Its width and height hold for the bead from the previous point to this one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PathPoint {
-    /// Where it is on the bed, seen from the middle of the layout, grid units.
+    /// Position on the bed relative to the middle of the layout, grid units.
     pub at: Point,
-    /// How much higher than the top of its layer the nozzle is, grid units: 0 on a flat path.
+    /// Height of the nozzle above the top of its layer, grid units: 0 on a flat path.
     pub z: Coord,
     /// Width of the bead, grid units.
     pub width: Coord,
@@ -23,9 +23,9 @@ pub enum Shape {
     /// Either end may come first.
     Open,
     /// Closed: the last point repeats the first, and any point may become the first. Loops are
-    /// printed by depth, counted from 0 at the outside.
+    /// ordered by their depth.
     Loop {
-        /// Its depth.
+        /// Counted from 0 at the outside.
         depth: u32,
     },
 }
@@ -67,17 +67,17 @@ impl Path {
     /// Reverses its direction.
     pub fn reverse(&mut self) {
         self.points.reverse();
-        // The bead belongs to the way to its point: it moves on to the segment's other end.
+        // Each point has the bead of the segment before it. That segment now ends at its other point.
         for k in (1..self.points.len()).rev() {
             let PathPoint { width, height, .. } = self.points[k - 1];
             self.points[k] = PathPoint { width, height, ..self.points[k] };
         }
     }
 
-    /// Lets a loop begin at its point `first`.
+    /// Rotates a loop so that it begins at its point `first`.
     pub fn begin_at(&mut self, first: usize) {
         let Some(closing) = self.points.last().copied().filter(|_| first > 0) else { return };
-        // The way to the old first point is that of the point which repeated it.
+        // The bead of the segment to the old first point is that of the point which repeated it.
         self.points[0] = closing;
         self.points.pop();
         self.points.rotate_left(first);
@@ -98,7 +98,7 @@ mod tests {
         Path { role: Role::OuterWall, shape, points, layers: 1, tool: 0 }
     }
 
-    /// The segments: both ends and the width between them.
+    /// The segments: both ends and the width of the bead between them.
     fn segments(path: &Path) -> Vec<(Point, Point, Coord)> {
         path.points.windows(2).map(|w| (w[0].at, w[1].at, w[1].width)).collect()
     }

@@ -1,4 +1,4 @@
-//! Role: what a path is printed for, and all that is particular to each role, in one table.
+//! Role: what a path is printed for, with everything specific to each role in one table.
 
 use crate::profile::{Extrusion, Speed};
 use std::ops::{Index, IndexMut};
@@ -21,11 +21,11 @@ pub enum Role {
 /// Where a role has its place in the order of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
-    /// Before all else of its island, by depth.
+    /// Before everything else of its island, by depth.
     Walls,
     /// Inside the walls of its island, role after role.
     Inside,
-    /// No part of the model: after all islands of the layer.
+    /// Not part of the model: after all islands of the layer.
     Helper,
 }
 
@@ -34,17 +34,17 @@ pub enum Place {
 pub struct RoleFacts {
     /// Its name in reports.
     pub name: &'static str,
-    /// Its annotation in G-code, after `;TYPE:`, in the words that viewers know.
+    /// Its annotation in G-code, after `;TYPE:`, as viewers know it.
     pub annotation: &'static str,
     /// Its place in the order of a layer.
     pub place: Place,
     /// Whether it may be printed for several layers at once.
     pub may_be_thick: bool,
-    /// The settings of its speed, thin and thick.
+    /// The settings keys of its speed, thin and thick.
     pub speed_keys: Both<&'static str>,
     /// Its speed, thin and thick.
     pub speed: fn(&Speed) -> Both<f64>,
-    /// Filament per length of path, where the profile gives it, mm/mm.
+    /// Filament per length of path, mm/mm, for profiles that set it explicitly.
     pub factor: fn(&Extrusion) -> f64,
 }
 
@@ -108,7 +108,7 @@ impl Role {
 pub struct RoleTable<T>([T; Role::ALL.len()]);
 
 impl<T> RoleTable<T> {
-    /// The values that `of` gives.
+    /// The table with the value `of(role)` for each role.
     #[must_use]
     pub fn new(of: impl FnMut(Role) -> T) -> Self {
         Self(Role::ALL.map(of))
@@ -144,12 +144,12 @@ pub struct Both<T> {
 }
 
 impl<T> Both<T> {
-    /// The value for thick beads, or for thin ones.
+    /// The value for thick beads if `thick`, else that for thin ones.
     pub fn of(&self, thick: bool) -> &T {
         if thick { &self.thick } else { &self.thin }
     }
 
-    /// The same, to be changed.
+    /// Like [`Self::of`], mutable.
     pub fn of_mut(&mut self, thick: bool) -> &mut T {
         if thick { &mut self.thick } else { &mut self.thin }
     }
@@ -173,7 +173,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_table_finds_each_role_where_it_stands() {
+    fn a_table_finds_each_role_at_its_own_place() {
         let table = RoleTable::new(|role| role);
         assert!(Role::ALL.into_iter().all(|role| table[role] == role));
         assert!(table.iter().all(|(role, value)| role == *value));

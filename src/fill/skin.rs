@@ -5,25 +5,27 @@ use crate::geom::polyline::{LinePoint, Polyline};
 use crate::pattern::zigzag::{Side, link};
 use crate::units::Coord;
 
-/// A join between two lines may run at most this many line widths along them: a longer one
-/// would lie on its neighbours.
+/// Maximum distance that a join runs along its lines, in line widths. A longer join would lie on
+/// the ends of neighbouring lines; a smaller limit cuts zigzags at slanted walls.
 const LONGEST_JOIN: Coord = 2;
 
-/// Width of a join between two lines, in line widths: the rest of what it covers
-/// is filled by the lines' round ends.
+/// Width of a join, in line widths. The round ends of the lines fill most of what it covers. A
+/// larger value overfills each turn, a smaller one leaves it open.
 const JOIN_WIDTH: f64 = 0.25;
 
-/// The same where turns are rounded: arcs cover more than corners do.
+/// Width of a join where turns are rounded. It is less because arcs cover more than corners do.
 const ROUND_JOIN_WIDTH: f64 = 0.1;
 
-/// Lines that turn in an arc reach further by the arc's radius over this.
+/// Lines that turn in an arc are lengthened by the arc's radius divided by this. The arc cuts off
+/// the corner; this moves it outwards to cover the same area. A smaller value presses plastic
+/// into the wall, a larger one leaves open corners.
 const REACH: Coord = 4;
 
-/// Lines shorter than this are left out (50 µm): the ends of their neighbours cover them.
+/// Shorter lines are skipped (50 µm): the ends of their neighbours cover them.
 const LEAST: i64 = 500;
 
-/// Zigzags of a skin's lines, which are closed up to the walls. Their turns will be rounded
-/// with `radius`.
+/// Joins the lines of a skin, already closed up to the walls, to zigzags. `radius` is that with
+/// which their turns will be rounded.
 #[must_use]
 pub fn zigzags(lines: &[Line], params: &LineParams, radius: Coord) -> Vec<Polyline> {
     let pitch = params.line_width;
@@ -33,7 +35,7 @@ pub fn zigzags(lines: &[Line], params: &LineParams, radius: Coord) -> Vec<Polyli
     let join = |from: (Coord, i32), to: (Coord, i32), _: Side| {
         ((from.0 - to.0).abs() <= LONGEST_JOIN * pitch).then(Vec::new)
     };
-    // Rows come in order, but rows without skin are left out.
+    // Rows are sorted, but rows without skin are missing.
     let line = |row: i32, index: usize| &rows[rows.partition_point(|r| r[0].row < row)][index];
     link(spans, 1, pitch, join)
         .into_iter()
@@ -52,17 +54,17 @@ pub fn zigzags(lines: &[Line], params: &LineParams, radius: Coord) -> Vec<Polyli
                     points.reverse();
                 }
                 let ends = (k > 0, k + 1 < zigzag.len());
-                reach(&mut points, ends, link.from, radius);
-                lay(points, &mut polyline, pitch, radius);
+                extend_ends(&mut points, ends, link.from, radius);
+                append_line(points, &mut polyline, pitch, radius);
             }
             polyline
         })
         .collect()
 }
 
-/// Moves those ends of a line that are joined (the first and the last of `points`, entered
-/// from `side`) outwards, so that the arcs there cover what lies between their corners.
-fn reach(points: &mut [LinePoint], joined: (bool, bool), side: Side, radius: Coord) {
+/// Moves the joined ends of a line outwards, so that the arcs there cover the area up to their
+/// corners. `points` is entered from `side`; `joined` is for its first and last point.
+fn extend_ends(points: &mut [LinePoint], joined: (bool, bool), side: Side, radius: Coord) {
     let by = if side == Side::Left { radius / REACH } else { -radius / REACH };
     if let [first, .., last] = points {
         first.u -= if joined.0 { by } else { 0 };
@@ -70,9 +72,9 @@ fn reach(points: &mut [LinePoint], joined: (bool, bool), side: Side, radius: Coo
     }
 }
 
-/// Appends a line, given with the widths at its points, to a polyline, whose widths are those
-/// on the way to its points.
-fn lay(points: Vec<LinePoint>, polyline: &mut Polyline, line_width: Coord, radius: Coord) {
+/// Appends a line to a polyline. The line has the widths at its points; those of the polyline
+/// hold for the segment before each point.
+fn append_line(points: Vec<LinePoint>, polyline: &mut Polyline, line_width: Coord, radius: Coord) {
     let share = if radius > 0 { ROUND_JOIN_WIDTH } else { JOIN_WIDTH };
     let join = (f64::from(line_width) * share) as Coord;
     let mut before = None;

@@ -1,4 +1,20 @@
 //! Line with open strips beside it -> points: the line moved and widened to fill them.
+//!
+//! Words: a *strip* is the open room beside a line, given by its width at some places.
+//! *Above* is towards the next row, *below* towards the previous one. A *profile* is the open
+//! width along the whole span of a line. A *join* links a line to the end of one in a
+//! neighbouring row; it covers the strip there itself.
+//!
+//! Algorithm, for each line:
+//! 1. On either side, drop the strips near joined ends, and complete the rest to a profile:
+//!    zero where nothing is open, extrapolated to the ends of the span.
+//! 2. Sample both profiles at all places where one of them changes.
+//! 3. Decimate the samples: keep only those where the width bends.
+//! 4. At each sample, widen the line by both open widths and move its middle by half their
+//!    difference. Beyond `WIDEST`, share what the line can take between both sides.
+//! 5. Lengthen ends that are not joined by the tip.
+//!
+//! Most lines have no strips: they keep their width and their two ends.
 
 use crate::geom::decimate::{decimate, most_missed};
 use crate::geom::polyline::LinePoint;
@@ -6,18 +22,23 @@ use crate::geom::spans::Span;
 use crate::profile::Settings;
 use crate::units::{Coord, nearest, to_units};
 
-/// A line gets at most this many line widths wide (what a nozzle's flat still irons).
+/// Maximum width of a line, in line widths: the flat of a nozzle still smooths a bead this wide.
+/// A strip is up to one line width wide less the overlap. A smaller value leaves the widest
+/// strips partly open; a larger one makes beads that bulge beside the nozzle.
 pub(super) const WIDEST: f64 = 1.75;
 
-/// How much further the ends of lines reach that are not joined to another, in line
-/// widths and at most the overlap: two round ends leave a corner open between them
-/// that a join would cover.
+/// How much an end that is not joined is lengthened, in line widths, at most the overlap. Two
+/// round ends leave a notch between them at the wall, which a join would cover. A larger value
+/// presses more plastic into the wall; zero leaves the notch open.
 const TIP: f64 = 0.25;
 
-/// A join between two lines covers the strips this many line widths from their ends.
+/// A join covers the strips within this many line widths of the ends it links. With a smaller
+/// value the line is widened where the join already lies: too much plastic at each turn. With a
+/// larger one long strips at slanted walls stay open.
 pub(super) const SHORT_STRIP: Coord = 3;
 
-/// Changes of width or place below this are not worth a corner in a line (20 µm).
+/// Smaller changes of width or position give no corner in a line (20 µm): about half the
+/// positioning error of a printer. A smaller value makes more, shorter moves.
 const LEAST_BEND: f64 = 200.0;
 
 /// The numbers for solid lines, in grid units.
@@ -27,12 +48,12 @@ pub struct LineParams {
     pub line_width: Coord,
     /// How far lines reach into the innermost wall.
     pub overlap: Coord,
-    /// There is a wall around the lines.
+    /// Whether a wall surrounds the lines.
     pub walled: bool,
 }
 
 impl LineParams {
-    /// The numbers that `settings` mean.
+    /// Derives the numbers from `settings`.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let walled = settings.walls > 0;
@@ -42,8 +63,8 @@ impl LineParams {
     }
 }
 
-/// What is printed of one span of a row, with the open strips above (towards the
-/// next row) and below it, each in the order of u.
+/// What is printed of one span of a row, with the open strips above (towards the next row) and
+/// below it, each sorted by u.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
     /// Index of the row.
@@ -52,7 +73,7 @@ pub struct Line {
     pub span: Span,
     /// Open strips towards the next row.
     pub above: Vec<Strip>,
-    /// Open strips towards the row before.
+    /// Open strips towards the previous row.
     pub below: Vec<Strip>,
 }
 
@@ -65,8 +86,8 @@ pub struct Strip {
     pub open: f64,
 }
 
-/// Whether a line's ends are joined to the row before or to the next: the join
-/// covers the short strip there.
+/// Which ends of a line are joined to the previous or the next row. A join covers the short
+/// strip at its end.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Joined {
     above: Ends,
@@ -80,25 +101,25 @@ struct Ends {
 }
 
 impl Joined {
-    /// Joined to a line of the row before, at the left end or at the right.
+    /// Marks the left or the right end as joined to the previous row.
     pub fn below(&mut self, left: bool) {
         self.below = Ends { left, right: !left };
     }
 
-    /// Joined to a line of the next row, at the left end or at the right.
+    /// Marks the left or the right end as joined to the next row.
     pub fn above(&mut self, left: bool) {
         self.above = Ends { left, right: !left };
     }
 }
 
-/// The points of `line` from left to right, moved and widened to fill the strips
-/// beside it; widths are those at the points.
+/// The points of `line` from left to right, moved and widened to fill the strips beside it.
+/// Widths are those at the points.
 #[must_use]
 pub fn points(line: &Line, joined: Joined, params: &LineParams) -> Vec<LinePoint> {
     let w = params.line_width;
     let point = |sample| filled(line.row, sample, w);
     let mut points = if line.above.is_empty() && line.below.is_empty() {
-        // Most lines lie between two others.
+        // Most lines lie between two others and have no strips: no profile needed.
         let ends = [line.span.start, line.span.end];
         ends.map(|u| point(Sample { u, above: 0.0, below: 0.0 })).to_vec()
     } else {
@@ -114,8 +135,8 @@ pub fn points(line: &Line, joined: Joined, params: &LineParams) -> Vec<LinePoint
     points
 }
 
-/// The open width along a whole span: what no join covers of `known`, nothing where
-/// none is known, and at the span's ends what the last two places lead one to expect.
+/// The open width along a whole span. Strips that a join covers are dropped. Between strips more
+/// than two pitches apart the width falls to zero; at the ends of the span it is extrapolated.
 fn profile(known: &[Strip], span: Span, joined: Ends, pitch: Coord) -> Vec<Strip> {
     let from = span.start + if joined.left { SHORT_STRIP * pitch } else { 0 };
     let to = span.end - if joined.right { SHORT_STRIP * pitch } else { 0 };
@@ -130,7 +151,7 @@ fn profile(known: &[Strip], span: Span, joined: Ends, pitch: Coord) -> Vec<Strip
     if first.u - pitch > span.start {
         out.extend([none(span.start), none(first.u - pitch)]);
     } else if first.u > span.start {
-        out.push(beyond(known.get(1), first, span.start, pitch));
+        out.push(extrapolate(known.get(1), first, span.start, pitch));
     }
     for (k, &strip) in known.iter().enumerate() {
         if k > 0 && strip.u - known[k - 1].u > 2 * pitch {
@@ -142,14 +163,14 @@ fn profile(known: &[Strip], span: Span, joined: Ends, pitch: Coord) -> Vec<Strip
         out.extend([none(last.u + pitch), none(span.end)]);
     } else if last.u < span.end {
         let before = known.len().checked_sub(2).map(|k| &known[k]);
-        out.push(beyond(before, last, span.end, pitch));
+        out.push(extrapolate(before, last, span.end, pitch));
     }
     out
 }
 
-/// The strip at `u`, just beyond `last`: going on as from `before` to `last`, but
-/// never wider than `last`, since a span ends where the strip does or at a corner.
-fn beyond(before: Option<&Strip>, last: Strip, u: Coord, pitch: Coord) -> Strip {
+/// Extrapolates the strip to `u`, just beyond `last`, with the slope from `before` to `last`.
+/// The result is never wider than `last`: a span ends at a corner or where its strip ends.
+fn extrapolate(before: Option<&Strip>, last: Strip, u: Coord, pitch: Coord) -> Strip {
     let near = before.filter(|b| (b.u - last.u).abs() <= pitch);
     let far = f64::from((u - last.u).abs()) / f64::from(pitch);
     let before = near.map_or(0.0, |b| b.open);
@@ -164,8 +185,8 @@ struct Sample {
     below: f64,
 }
 
-/// Both sides at every place where one of them is given. Both begin and end at the
-/// span's ends.
+/// The open widths on both sides at every place of either profile. Both profiles cover the whole
+/// span.
 fn samples(above: &[Strip], below: &[Strip]) -> Vec<Sample> {
     let mut places: Vec<Coord> = above.iter().chain(below).map(|s| s.u).collect();
     places.sort_unstable();
@@ -173,7 +194,7 @@ fn samples(above: &[Strip], below: &[Strip]) -> Vec<Sample> {
     places.into_iter().map(|u| Sample { u, above: at(above, u), below: at(below, u) }).collect()
 }
 
-/// The value of a profile at `u`, which is not beyond its ends.
+/// Interpolates a profile at `u`, which lies within its ends.
 fn at(profile: &[Strip], u: Coord) -> f64 {
     let next = profile.partition_point(|s| s.u < u);
     match (next.checked_sub(1).map(|k| profile[k]), profile.get(next)) {
@@ -187,7 +208,7 @@ fn at(profile: &[Strip], u: Coord) -> f64 {
     }
 }
 
-/// The middle of a line and its width where it fills the strips beside it.
+/// The middle of a line, and its width, where it fills the strips beside it.
 fn filled(row: i32, sample: Sample, line_width: Coord) -> LinePoint {
     let w = f64::from(line_width);
     let Sample { u, above, below } = sample;
@@ -200,7 +221,7 @@ fn filled(row: i32, sample: Sample, line_width: Coord) -> LinePoint {
     }
 }
 
-/// The samples without those between which everything changes evenly.
+/// The samples at which a width bends. Those that interpolation gives anyway are dropped.
 fn bends(samples: &[Sample]) -> Vec<Sample> {
     let kept = decimate(samples.len(), |a, b| {
         let (first, last) = (samples[a], samples[b]);

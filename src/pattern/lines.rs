@@ -1,8 +1,18 @@
 //! Raster -> Lines: parallel lines as a pattern, every so many lines of a fine raster.
 //!
-//! The raster is as fine as a solid fill: the rows between two printed lines show where the
-//! region's edge runs, so that joins can follow it. Where the spacing is a multiple of the line
-//! width the raster is the skin's own, and its rows cost nothing more.
+//! Words: the *stride* is the number of rows from one printed line to the next, the *offset* the
+//! index of a printed row. A *join* links the ends of two neighbouring lines. A *strand* is a
+//! zigzag: lines and joins in turn. An *edge* is the border of the region, known as the ends of
+//! its spans on each row.
+//!
+//! The raster is as fine as a solid fill, though few of its rows are printed. The rows between
+//! two printed lines show where the region's edge runs, so that joins can follow it. Where the
+//! spacing is a multiple of the line width, the raster is the skin's own and costs nothing.
+//!
+//! Algorithm: [`zigzag::link`] walks over the printed rows and asks for a join between two ends.
+//! A join goes straight if that stays inside the region on all rows between. Else it follows the
+//! edge from row to row, and its points are decimated. Where neither works, or the ends are too
+//! far apart, the strand ends.
 
 use super::zigzag::{self, Side};
 use super::{Pattern, SparsePattern};
@@ -14,17 +24,21 @@ use crate::geom::{Point, side};
 use crate::units::{Bounded as _, Coord};
 use std::sync::Arc;
 
-/// A join runs at most this many rows' distance along the lines from row to row.
+/// Maximum run of a join along the lines from one row to the next, in row distances. A flatter
+/// edge is seen by too few rows: the join could miss a hole between two of them.
 const FLATTEST_STEP: Coord = 2;
 
-/// Ends of lines further apart than this, in line widths, are not joined: the joins along a
-/// wall would weigh more than the lines, most where lines of several directions end there.
+/// Maximum distance of two ends that are joined, in line widths. Longer joins along a wall add
+/// more plastic than the lines there, most where lines of several directions end. A smaller value
+/// replaces joins by travels, already at higher densities.
 const LONGEST_JOIN: i64 = 12;
 
-/// A straight join may leave its region by this much (10 µm): edges are rounded to the grid.
+/// Tolerance by which a straight join may leave its region (10 µm), because edges are rounded to
+/// the grid. At 0, joins along a straight edge would fail at random.
 const SLACK: Coord = 100;
 
-/// Bends of a join along an edge that move it by less, in line widths, are left out.
+/// Tolerance for decimating a join along an edge, in line widths. A smaller value makes more,
+/// shorter moves; a larger one lets the join leave the edge visibly.
 const BEND: f64 = 0.125;
 
 /// Every `stride`-th line of a raster.
@@ -34,15 +48,15 @@ pub struct Lines {
     pub raster: Raster,
     /// Index of a line that is printed.
     pub offset: i32,
-    /// From one printed line to the next.
+    /// Number of rows from one printed line to the next.
     pub stride: i32,
-    /// Neighbouring lines are joined at their ends. Not where lines of several directions
-    /// end at the same wall: their joins would lie on each other.
+    /// Whether neighbouring lines are joined at their ends. They are not where lines of several
+    /// directions end at the same wall: their joins would lie on each other.
     pub joined: bool,
 }
 
 impl Lines {
-    /// Lines at `degrees` that lie `spacing` apart, on rows no further apart than `width`.
+    /// Lines at `degrees` with distance `spacing`, on rows at most `width` apart.
     #[must_use]
     pub fn new(degrees: f64, spacing: Coord, width: Coord) -> Self {
         let (raster, stride) = Raster::fine(degrees, spacing, width);
@@ -104,7 +118,7 @@ impl SparsePattern for Lines {
     }
 }
 
-/// The edges of a sparse region, as its fine rows show them. Ends are given as `(u, row)`.
+/// The edges of a sparse region as its fine rows show them. Ends of lines are `(u, row)`.
 struct Edges<'a> {
     region: &'a Rows,
     pitch: Coord,
@@ -112,7 +126,7 @@ struct Edges<'a> {
 }
 
 impl Edges<'_> {
-    /// Whether the straight join is inside the region on every row between.
+    /// Whether the straight join is inside the region on every row between the two ends.
     fn straight(&self, (u, a): (Coord, i32), (to, b): (Coord, i32)) -> bool {
         let run = i64::from(to) - i64::from(u);
         // A flatter join could slip past a hole between two rows.
@@ -124,14 +138,14 @@ impl Edges<'_> {
             })
     }
 
-    /// The points of a join along the region's edge, if one edge leads there.
+    /// The points of a join along the region's edge, if one edge leads from end to end.
     fn along(
         &self,
         (u, a): (Coord, i32),
         (to, b): (Coord, i32),
         side: Side,
     ) -> Option<Vec<LinePoint>> {
-        // Along a flatter edge a join would be longer than a travel is worth.
+        // Along a flatter edge the join is long, and a travel is cheaper.
         let step = FLATTEST_STEP * self.pitch;
         let mut at = u;
         let point = |u, row| LinePoint { u, v: row * self.pitch, width: self.width };
@@ -146,8 +160,7 @@ impl Edges<'_> {
     }
 }
 
-/// Of `points`, without the first and the last, those that straight lines between the kept ones
-/// would miss by more than `least`.
+/// The inner `points` that remain after decimation with tolerance `least`.
 fn bends(points: &[LinePoint], least: f64) -> Vec<LinePoint> {
     let at = |k: usize| Point { x: points[k].u, y: points[k].v };
     let kept = decimate(points.len(), |a, b| {
@@ -170,7 +183,7 @@ mod tests {
         Lines { raster, offset: 0, stride, joined: true }
     }
 
-    /// Rows 0 to `count`, 40 mm long, without `hole` on the rows it names.
+    /// Rows 0 to `count`, 40 mm long, without `hole` on its rows.
     fn region(count: i32, hole: Option<(std::ops::Range<i32>, Span)>) -> Rows {
         let whole = [Span { start: 0, end: 400_000 }];
         let mut rows = Rows::starting_at(0);
@@ -225,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sparse_line_shorter_than_wide_is_left_out() {
+    fn a_sparse_line_shorter_than_its_width_is_skipped() {
         let mut rows = Rows::starting_at(0);
         rows.push_row(|out| out.push(Span { start: 0, end: W - 1 }));
         assert!(every(1).strands(&rows, W, W).is_empty());

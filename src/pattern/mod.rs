@@ -1,11 +1,10 @@
-//! Settings -> patterns: how sparse lines run, as values that answer for themselves.
+//! Settings -> patterns: the lines or curves of sparse areas, behind one trait.
 //!
-//! A *pattern* is a set of lines or curves that covers the plane: every fifth raster line, say,
-//! or a curve. Sparse infill and support are a pattern inside a region. Nobody else needs
-//! to know what the curves are: the region stage asks a pattern how long it is inside some
-//! rows and for its *shares* (interlaced layers print one share each), the fill stage asks for
-//! its *strands*, the polylines to print. So a new pattern is a new file here, and a line in
-//! [`Turns::new`].
+//! A *pattern* is a set of lines or curves that covers the plane, such as every fifth raster
+//! line. Sparse infill and support are a pattern inside a region. No other stage knows the
+//! curves. The region stage asks a pattern for its length inside some rows and for its *shares*:
+//! interlaced layers print one share each. The fill stage asks for its *strands*, the polylines
+//! to print. So a new pattern is a new file here, and a line in [`Turns::new`].
 //!
 //! A *turn* is the set of patterns that one block of layers prints: one direction of rectilinear
 //! infill, or both directions of a grid. Blocks take the turns one after the other.
@@ -23,21 +22,21 @@ use crate::units::{Coord, to_units};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Lines or curves that fill a region sparsely. The same on every layer that prints it.
+/// Lines or curves that fill a region sparsely. They are the same on every layer.
 ///
-/// A region is given as rows of [`Self::raster`]; strands come in that raster's frame.
-/// Strands shorter than `least` are not printed, so that they do not count in lengths either.
+/// A region is given as rows of [`Self::raster`]; strands are in that raster's frame. Strands
+/// shorter than `least` are not printed, so lengths do not include them.
 pub trait SparsePattern: Debug + Send + Sync {
-    /// The raster whose rows tell this pattern where a region is.
+    /// The raster on whose rows this pattern expects a region.
     fn raster(&self) -> Raster;
 
-    /// The length of what is printed inside `region`, grid units. Joins between lines do not
-    /// count. As it stands here it is that of the strands; lines have a quicker way.
+    /// The length of what is printed inside `region`, grid units, without joins between lines.
+    /// By default it is the length of the strands; straight lines compute it faster.
     fn length(&self, region: &Rows, least: Coord) -> i64 {
         self.strands(region, least, least).iter().map(|strand| polyline::length(strand)).sum()
     }
 
-    /// This pattern divided evenly into `count` patterns that together print what it prints.
+    /// Divides this pattern evenly into `count` patterns that together print the same.
     fn shares(&self, count: usize) -> Vec<Pattern>;
 
     /// What is printed inside `region` with lines `width` wide.
@@ -47,7 +46,7 @@ pub trait SparsePattern: Debug + Send + Sync {
 /// A pattern that several layers and stages refer to.
 pub type Pattern = Arc<dyn SparsePattern>;
 
-/// The patterns of the sparse infill, turn by turn.
+/// The patterns of the sparse infill, by turn.
 #[derive(Debug, Clone, Default)]
 pub struct Turns(Vec<Vec<Pattern>>);
 
@@ -82,14 +81,14 @@ impl Turns {
         self.0.is_empty()
     }
 
-    /// The rasters of all patterns, some of them several times.
+    /// The rasters of all patterns, with repetitions.
     pub fn rasters(&self) -> impl Iterator<Item = Raster> {
         self.0.iter().flatten().map(|pattern| pattern.raster())
     }
 }
 
-/// Lines in several directions, in degrees from that of the skin, that are printed on the same
-/// layers: together as dense as asked for.
+/// Lines in several directions, in degrees from that of the skin, printed on the same layers.
+/// Together they have the density of the settings.
 fn lines(settings: &Settings, directions: &[f64]) -> Vec<Pattern> {
     let spacing = settings.line_width * 100.0 / settings.infill * directions.len() as f64;
     let (spacing, width) = (to_units(spacing), to_units(settings.line_width));

@@ -1,14 +1,15 @@
 //! Lines on rows -> zigzags: neighbouring raster lines joined end to end.
 //!
-//! A join goes from the end of one line to the same end of the next. The caller says whether
-//! two ends can be joined, and by which points: solid lines go straight, sparse lines may follow
-//! the region's edge. Lines that cannot be joined begin a new zigzag.
+//! A join goes from the end of one line to the same end of the next. The caller decides whether
+//! two ends can be joined, and gives the points between them: solid lines go straight, sparse
+//! lines may follow the region's edge. A line that cannot be joined begins a new zigzag.
 
 use crate::geom::polyline::LinePoint;
 use crate::geom::spans::Span;
 use crate::units::Coord;
 
-/// Lines are joined if their distance is at most this many times the shorter one's length.
+/// Lines are joined if the distance of their rows is at most this many times the shorter line's
+/// length. A larger value makes zigzags of joins only, a smaller one makes more travels.
 const LONGEST_JOIN: i64 = 4;
 
 /// Which end of a line.
@@ -41,17 +42,17 @@ pub struct Link {
     pub join: Vec<LinePoint>,
     /// The line's row.
     pub row: i32,
-    /// Which of its row's lines, among those given to [`link`].
+    /// Index of the line in its row, as given to [`link`].
     pub index: usize,
     /// The line.
     pub span: Span,
-    /// Where it is entered. Of a line without a neighbour either end will do.
+    /// The end at which it is entered; arbitrary for a line without a neighbour.
     pub from: Side,
 }
 
-/// Joins lines of rows `stride` apart that lie beside each other or at most `slack` apart along
-/// the lines. A `None` among a row's lines is not printed. `join` gives the points between two
-/// ends, given as `(u, row)`, or `None` if these cannot be joined.
+/// Joins lines of rows `stride` apart that overlap, or lie at most `slack` apart along the lines.
+/// A `None` among a row's lines is not printed. `join` is given two ends as `(u, row)`. It returns
+/// the points between them, or `None` if they cannot be joined.
 #[must_use]
 pub fn link(
     rows: impl Iterator<Item = (i32, impl Iterator<Item = Option<Span>>)>,
@@ -84,8 +85,8 @@ pub fn link(
     done
 }
 
-/// Extends `zigzag` by a line of `row`: the outermost, on the side where it ended, of those that
-/// are free and near its last line. Returns the line's index, or `None` if none could be joined.
+/// Extends `zigzag` by a free line of `row` near its last line: the outermost on the side where
+/// the zigzag ended. Returns the line's index, or `None` if none could be joined.
 fn extend(
     zigzag: &mut Vec<Link>,
     row: i32,
@@ -104,7 +105,7 @@ fn extend(
             .enumerate()
             .filter_map(|(k, s)| s.filter(|s| s.overlaps(near)).map(|s| (k, s)));
         let (index, span) = if side == Side::Right { beside.next_back() } else { beside.next() }?;
-        // A join much longer than the lines it joins would be an infill of its own.
+        // Joins much longer than their lines would be an infill of their own.
         let shorter = last.span.len().min(span.len());
         let worth = i64::from(slack) <= LONGEST_JOIN * shorter;
         let ends = ((side.of(last.span), last.row), (side.of(span), row));

@@ -1,11 +1,9 @@
 //! Neighbouring layers' rows -> Areas: which stretch of each raster line is skin, which sparse infill.
 //!
-//! With `n` skin layers a place is sparse infill where all of the `n` layers
-//! below and above cover it, else skin. A neighbour covers nearly up to its contour,
-//! with its walls, while skin and infill begin inside this layer's walls: a steep
-//! slope, which the walls of the layers close already, gets no thin ring of skin.
-//! Where there is skin it reaches a little further, under or over what covers it,
-//! to hold on.
+//! With `n` skin layers a place is sparse infill where all of the `n` layers below and above
+//! cover it, else skin. A neighbour covers with its walls, nearly up to its contour; skin and
+//! infill begin inside this layer's walls. So a steep slope, which the walls already close, gets
+//! no thin ring of skin. Skin reaches a little under or over what covers it, to hold on.
 
 use super::params::SkinParams;
 use super::prepare::LayerRows;
@@ -14,23 +12,24 @@ use crate::geom::spans::{Rows, Span, intersect};
 use crate::units::Coord;
 use std::sync::Arc;
 
-/// Skin shorter than this along its line is noise of the contours, not shape (50 µm).
+/// Shorter skin on a row is dropped as noise of the contours (50 µm). A smaller value gives single
+/// specks of skin, each grown by the reach; a larger one leaves thin ledges open.
 const LEAST_SKIN: Coord = 500;
 
-/// Skin and sparse infill of one layer on one raster: disjoint, together the layer's
-/// fill rows without what beads along the walls take.
+/// Skin and sparse infill of one layer on one raster. They are disjoint. Together they are the
+/// layer's fill rows without what wall beads take.
 #[derive(Debug, Clone, Default)]
 pub struct Areas {
     /// Solid lines.
     pub skin: Arc<Rows>,
     /// Sparse lines.
     pub infill: Rows,
-    /// Both together: the fill rows without what beads along walls take.
+    /// Both together: the fill rows without what wall beads take.
     pub fill: Arc<Rows>,
 }
 
-/// Where a neighbour of layer `k` leaves it bare on `raster`. `layers(k)` is `None`
-/// outside the part.
+/// Where a neighbour of layer `k` leaves it exposed, on `raster`. `layers(k)` is `None` outside
+/// the part.
 #[must_use]
 pub fn exposed<'a>(
     k: usize,
@@ -44,7 +43,7 @@ pub fn exposed<'a>(
     fill.minus(&covered).filter(|_, span| span.len() >= i64::from(LEAST_SKIN))
 }
 
-/// Divides the `fill` rows of a layer on a raster whose rows lie `pitch` apart.
+/// Divides the `fill` rows of a layer into skin and infill. `pitch` is the distance of the rows.
 #[must_use]
 pub fn areas(fill: &Arc<Rows>, exposed: &Rows, pitch: Coord, params: &SkinParams) -> Areas {
     let skin = fill.and(&exposed.dilate(params.reach, pitch));
@@ -52,7 +51,7 @@ pub fn areas(fill: &Arc<Rows>, exposed: &Rows, pitch: Coord, params: &SkinParams
     bridge_gaps(fill, skin, infill, 2 * params.line_width)
 }
 
-/// Divides what beads along the walls leave of a layer: `taken` is where no line may end.
+/// Divides what wall beads leave of a layer. `taken` is their area, in which no line may end.
 #[must_use]
 pub fn areas_beside(
     taken: &Rows,
@@ -66,7 +65,7 @@ pub fn areas_beside(
     areas(&fill, &left, pitch, params)
 }
 
-/// Where all neighbours within the skins' reach cover `fill`.
+/// The part of `fill` that all neighbours within the number of skin layers cover.
 fn covered<'a>(
     fill: &Rows,
     k: usize,
@@ -95,8 +94,8 @@ fn covered<'a>(
     out
 }
 
-/// Gives infill shorter than `least` between two pieces of skin to the skin: such
-/// a hole would cost more turns than it saves material.
+/// Turns infill shorter than `least` between two pieces of skin into skin. Such a hole would
+/// cost more time in turns than it saves material.
 fn bridge_gaps(fill: &Arc<Rows>, skin: Rows, infill: Rows, least: Coord) -> Areas {
     let is_gap = |j: i32, span: Span| {
         span.len() < i64::from(least)

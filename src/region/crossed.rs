@@ -2,7 +2,7 @@
 
 use crate::geom::spans::Rows;
 
-/// Some area of a layer on the raster that is printed and on the one across it.
+/// An area of a layer, on the raster that is printed and on the one across it.
 #[derive(Debug, Clone, Copy)]
 pub struct Crossed<'a> {
     /// The area on the raster that is printed.

@@ -1,4 +1,4 @@
-//! Layer and its neighbours -> Areas and beads: narrow skin along the walls, the rest skin or infill.
+//! Layer and its neighbours -> Areas and beads: narrow skin as wall beads, the rest as skin or infill.
 
 use super::classify::{Areas, areas, areas_beside, exposed};
 use super::crossed::Crossed;
@@ -12,12 +12,12 @@ use crate::geom::polyline::Polyline;
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
 
-/// Areas of one layer on both rasters of skins, and on others as far as they were asked for.
+/// Areas of one layer on both rasters of skins, and on the others that were requested.
 pub type LayerAreas = PerRaster<Areas>;
 
-/// Divides the layer `own`, one of `layers`: its areas on both rasters of skins and on `more`,
-/// and the beads along its walls, in the frame of the raster of its skin. `layers(k)` is
-/// `None` outside the part.
+/// Divides the layer `own`, one of `layers`. Returns its areas on both rasters of skins and on
+/// `more`, and its wall beads in the frame of its skin's raster. `layers(k)` is `None` outside
+/// the part.
 #[must_use]
 pub fn divide<'a>(
     own: &Own,
@@ -34,7 +34,7 @@ pub fn divide<'a>(
     let areas_on = |raster: Raster| {
         let Some(fill) = fill(raster) else { return Areas::default() };
         let other;
-        let bare = match (0..2).find(|&r| params.rasters.skin(r) == raster) {
+        let uncovered = match (0..2).find(|&r| params.rasters.skin(r) == raster) {
             Some(r) => &skins[r],
             None => {
                 other = exposed(raster);
@@ -42,16 +42,17 @@ pub fn divide<'a>(
             }
         };
         if beads.is_empty() {
-            return areas(fill, bare, raster.pitch, &params.skins);
+            return areas(fill, uncovered, raster.pitch, &params.skins);
         }
         let taken = taken(&beads, along.frame, raster, &params.beads);
-        areas_beside(&taken, fill, bare, raster.pitch, &params.skins)
+        areas_beside(&taken, fill, uncovered, raster.pitch, &params.skins)
     };
     let areas = PerRaster::new(&params.rasters, more, areas_on);
     (areas, beads)
 }
 
-/// The beads of a layer: along its innermost walls where `skins` are narrow, and in strips.
+/// The beads of a layer: along its innermost walls where the exposed `skins` are narrow, and in
+/// strips.
 fn beads<'a>(
     own: &Own,
     skins: &[Rows; 2],
@@ -65,8 +66,8 @@ fn beads<'a>(
     beads
 }
 
-/// The beads of a layer where it is too thin for both passes of an inner wall, and where
-/// it is too thin for infill and has no skin.
+/// The beads of a layer where it is too thin for both passes of an inner wall, and where it is
+/// too thin for infill and no skin fills it.
 fn in_strips(own: &Own, skins: &[Rows; 2], params: &RegionParams) -> Vec<Polyline> {
     let only_strips = BeadParams { only_strips: true, ..params.beads };
     let beads = |(walls, Strip { room: [a, b], narrow }): (u32, &Strip)| {
@@ -75,14 +76,14 @@ fn in_strips(own: &Own, skins: &[Rows; 2], params: &RegionParams) -> Vec<Polylin
             return along_walls(own, walls, narrow, room, params, &only_strips);
         }
         let hollow = params.sparse.is_empty();
-        let bare = |r: usize| if hollow { Rows::default() } else { apart(&narrow[r], &skins[r]) };
-        along_walls(own, walls, &[bare(0), bare(1)], room, params, &only_strips)
+        let uncovered = |r: usize| if hollow { Rows::default() } else { apart(&narrow[r], &skins[r]) };
+        along_walls(own, walls, &[uncovered(0), uncovered(1)], room, params, &only_strips)
     };
     (1..).zip(&own.strips).flat_map(beads).collect()
 }
 
-/// The beads of a layer along the innermost of its first `count` walls, where the skin is
-/// exposed as `skins` tell within `room`.
+/// The beads of a layer along the innermost of its first `count` walls. `skins` is the exposed
+/// skin, `room` where beads may run.
 fn along_walls(
     own: &Own,
     count: u32,
@@ -91,7 +92,7 @@ fn along_walls(
     params: &RegionParams,
     beads: &BeadParams,
 ) -> Vec<Polyline> {
-    // Without walls the ends of the lines are the part's outside, all of them alike.
+    // Without walls the ends of lines form the outside of the part, so all skin stays lines.
     if count == 0 || skins.iter().all(Rows::is_empty) {
         return Vec::new();
     }

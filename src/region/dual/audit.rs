@@ -1,4 +1,4 @@
-//! Lines of a block and what is printed of them -> Audit: what is thick, what is not and why, and whether the material is all there.
+//! Lines of a block and what is printed of them -> Audit: how much is thick, why the rest is not, and whether material is missing.
 
 use crate::geom::spans::Rows;
 use crate::pattern::SparsePattern;
@@ -7,8 +7,8 @@ use crate::region::Sparse;
 use crate::units::Coord;
 use std::sync::Arc;
 
-/// What became of one kind of lines of a block; lengths in grid units. Lines shorter
-/// than they are wide are not printed on their own, with or without dual injection.
+/// What was printed of one kind of lines in a block; lengths in grid units. Lines shorter than
+/// their width are not printed on their own, with or without dual injection.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Audit {
     /// Infill or support.
@@ -23,29 +23,29 @@ pub struct Audit {
     pub thin: i64,
     /// Length of the lines of all layers in a print without dual injection.
     pub plain: i64,
-    /// Material of what is printed, as the length of thin lines with as much.
+    /// Material of what is printed, as the length of thin lines with the same volume.
     pub material: i64,
     /// Why lines are not printed for a whole group.
     pub kept_apart: Apart,
 }
 
-/// Length of a print's lines that are not in a line of a whole group's height, by cause;
-/// grid units, summed over the layers.
+/// Length of lines that are not part of a line as high as the whole group, by cause; grid units,
+/// summed over the layers.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Apart {
-    /// Another layer of the group has none there: it is at or beyond its walls.
+    /// Another layer of the group has no fill there: its walls or the outside.
     pub bounds: i64,
     /// Another layer of the group has skin there.
     pub skin: i64,
-    /// What the layers share is shorter than a line is wide.
+    /// What the layers share is shorter than a line's width.
     pub short: i64,
-    /// The group has fewer layers than the ratio: at the bed, at the top, where the
-    /// direction turns.
+    /// The group has fewer layers than the ratio: at the bed, at the top, or where the
+    /// direction changes.
     pub ends: i64,
 }
 
 impl Apart {
-    /// Counts `other` in.
+    /// Adds the lengths of `other`.
     pub fn add(&mut self, other: Self) {
         self.bounds += other.bounds;
         self.skin += other.skin;
@@ -55,7 +55,7 @@ impl Apart {
 }
 
 impl Audit {
-    /// An audit of nothing yet.
+    /// An empty audit.
     #[must_use]
     pub fn new(part: DualPart, layers: std::ops::Range<usize>) -> Self {
         Self {
@@ -70,7 +70,7 @@ impl Audit {
         }
     }
 
-    /// Counts what an undoubled print has on one layer.
+    /// Counts what one layer has in a print without dual injection.
     pub fn plain(&mut self, pattern: &dyn SparsePattern, rows: &Rows, least: Coord) {
         self.plain += pattern.length(rows, least);
     }
@@ -84,9 +84,8 @@ impl Audit {
     }
 }
 
-/// What of the strands of `pattern` on each layer of a group is not in `whole`, the lines
-/// printed for all its layers, and why. `full` says whether the group has as many
-/// layers as the ratio.
+/// The length of `pattern` on the layers of a group that is not in `whole`, the lines printed
+/// for all its layers, by cause. `full` is whether the group has as many layers as the ratio.
 #[must_use]
 pub fn apart(
     pattern: &dyn SparsePattern,
@@ -109,13 +108,13 @@ pub fn apart(
         let others = || (0..layers.len()).filter(|&n| n != k);
         let shared = others().fold(left.clone(), |rows, n| rows.and(&layers[n]));
         let beyond = left.minus(&shared);
-        let bare = others().fold(beyond.clone(), |rows, n| match &skins[n] {
+        let without_skin = others().fold(beyond.clone(), |rows, n| match &skins[n] {
             Some(skin) => rows.minus(skin),
             None => rows,
         });
         out.short += length(&shared);
-        out.bounds += length(&bare);
-        out.skin += length(&beyond) - length(&bare);
+        out.bounds += length(&without_skin);
+        out.skin += length(&beyond) - length(&without_skin);
     }
     out
 }

@@ -1,18 +1,17 @@
 //! Dual settings -> Blocks: which layers are filled in one direction, and which of them share their lines.
 //!
-//! A *group* is a number of layers, the ratio, whose lines may be printed at once, on
-//! the uppermost of them. A *block* is the layers that are filled in the same
-//! direction: one group, or several where the lines are interlaced. Nothing is
-//! shared beyond a block, so that lines of two directions never lie in the same
-//! layers and cross without being stacked twice.
+//! A *group* is a number of layers whose lines may be printed at once, on the uppermost of them.
+//! Their number is the *ratio*. A *block* is the layers filled in the same direction: one group,
+//! or several where the lines are interlaced. No line is shared beyond its block. Otherwise thick
+//! lines of two directions would cross in the same layers and be stacked on each other.
 
 use crate::pattern::Pattern;
 use crate::profile::{Dual, DualDirection, DualMode, DualPart, DualRemainder};
 use std::ops::Range;
 
-/// Groups that an interlaced block is high. Lines that are not interlaced end at
-/// each block's end, so that a low block costs time and evenness; a high one makes
-/// upright walls of parallel lines, which are weak across.
+/// Height of an interlaced block in groups. All lanes must end with the block, so groups at its
+/// two ends are incomplete. A lower block has more of them, which costs time and evenness. A
+/// higher one makes upright walls of parallel lines, which are weak across.
 const INTERLACED_GROUPS: usize = 6;
 
 /// Which layers share their lines.
@@ -22,32 +21,32 @@ pub struct Grouping {
     /// Layers of a group, at least 1.
     ratio: usize,
     parts: Vec<DualPart>,
-    /// Thick lines take the direction that has less length.
+    /// Thick lines take the direction with the smaller total length.
     pub shorter: bool,
-    /// Of a group one layer's infill is kept, the others' are dropped.
+    /// One layer's infill is printed for the whole group; that of the others is dropped.
     pub drops: bool,
 }
 
 /// Layers that are filled in the same direction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Block {
-    /// Whose turn it is: the blocks' directions alternate with this number.
+    /// Number of the turn; directions alternate with it.
     pub turn: usize,
     /// The layers.
     pub layers: Range<usize>,
 }
 
-/// The share of a pattern that is printed on the same layers.
+/// A share of a pattern, all of it printed on the same layers.
 #[derive(Debug, Clone)]
 pub struct Lane {
     /// The share.
     pub pattern: Pattern,
-    /// How many layers earlier than the block's their groups end.
+    /// How many layers before the block's end its groups end.
     pub phase: usize,
 }
 
 impl Grouping {
-    /// What `dual` means, with groups of `ratio` layers.
+    /// The grouping that `dual` asks for, with groups of `ratio` layers.
     #[must_use]
     pub fn new(dual: &Dual, ratio: u32) -> Self {
         let ratio = if dual.mode == DualMode::Off { 1 } else { ratio.max(1) as usize };
@@ -72,8 +71,8 @@ impl Grouping {
         self.mode != DualMode::Off && self.parts.contains(&part)
     }
 
-    /// The block that has layer `k` of `count`. The first layer is always on its own: a
-    /// thick bead on the bare bed does not hold.
+    /// The block of layer `k` of `count`. The first layer is always on its own, because a thick
+    /// bead does not hold on the bed.
     #[must_use]
     pub fn block(&self, k: usize, count: usize) -> Block {
         if self.mode == DualMode::Off {
@@ -97,14 +96,14 @@ impl Grouping {
         pattern.shares(self.ratio).into_iter().enumerate().map(lane).collect()
     }
 
-    /// How many layers earlier than the block's the groups of walls of this depth end.
+    /// How many layers before the block's end the groups of walls of this depth end.
     #[must_use]
     pub fn wall_phase(&self, depth: u32) -> usize {
         if self.is_interlaced() { depth as usize % self.ratio } else { 0 }
     }
 
-    /// Whether a group that ends `phase` layers earlier than the block's ends with layer
-    /// `k` of `block`.
+    /// Whether a group ends with layer `k` of `block`, in a lane whose groups end `phase` layers
+    /// before the block's end. Every group ends with the block.
     #[must_use]
     pub fn ends(&self, phase: usize, k: usize, block: &Block) -> bool {
         k + 1 == block.layers.end || (k + 1 + phase).is_multiple_of(self.ratio)

@@ -1,12 +1,17 @@
-//! Skins of successive layers -> which of them nobody sees, and which layer prints them for several.
+//! Skins of successive layers -> Printed: the hidden skin that one layer prints for several.
 //!
-//! The *depth* of a place of a skin says how many layers lie between it and the air:
-//! 1 is the layer that is seen, from above or from below, and is never shared. What lies
-//! deeper is grouped by depth, not by the layer's number, since else half of all skins
-//! would fall between two groups: depths 2 and 3 are a group of two, whichever layers
-//! they are on. A place that is near both to the top and to the bottom belongs to the
-//! top. So each place of each layer is in one group at most, and its uppermost
-//! layer prints it for all.
+//! Words: the *depth* of a place of skin is its layer's number counted from the air, above or
+//! below. Depth 1 is the visible layer, which is never shared. The *core* is where a layer is the
+//! uppermost of a group; the *margin* is what skin reaches under or over what covers it.
+//!
+//! Deeper skin is grouped by depth, not by layer number: depths 2 and 3 are a group of two,
+//! whichever layers they are on. By layer number, half of all skins would fall between two
+//! groups. A place near both the top and the bottom belongs to the top. So each place of each
+//! layer is in at most one group, and the uppermost layer of the group prints it for all.
+//!
+//! Algorithm, for each layer and each group of depths: intersect the layer's skin with the
+//! covers of its neighbours to find the core, add the margin, drop what any layer of the group
+//! lacks or shows, and drop what neighbouring groups print.
 
 use super::runs::Printed;
 use crate::geom::raster::Raster;
@@ -15,18 +20,20 @@ use crate::region::params::SkinParams;
 use crate::region::prepare::LayerRows;
 use crate::units::Coord;
 
-/// As in : exposed stretches shorter than this are noise (50 µm).
-const LEAST_SEEN: Coord = 500;
+/// Shorter exposed stretches are dropped as noise (50 µm). It equals `LEAST_SKIN` in
+/// `classify`: with another value, depth would not match the skin that is there.
+const LEAST_VISIBLE: Coord = 500;
 
-/// Skin narrower than this, in line widths, is not shared: strips on slopes would fall
-/// into even narrower ones on every second layer, which take longer.
+/// Minimum width of shared skin, in line widths. A narrower strip on a slope would be cut into
+/// even narrower ones on every second layer. These have more turns and take longer than what
+/// sharing saves. A larger value shares less skin.
 const LEAST_WIDE: Coord = 6;
 
-/// The layers as one raster sees them.
+/// The layers on one raster.
 pub struct Skins<'a, L, S> {
     /// Layers, `None` outside the part.
     pub layers: L,
-    /// Their skins, `None` where they are not known: they share nothing.
+    /// Their skins; a layer with `None` shares nothing.
     pub skins: S,
     /// The raster.
     pub raster: Raster,
@@ -42,7 +49,7 @@ struct Depths {
     from_top: bool,
     /// Depth of the layer that prints it.
     depth: usize,
-    /// How many layers it has.
+    /// Number of its layers.
     count: usize,
 }
 
@@ -51,8 +58,8 @@ where
     L: Fn(usize) -> Option<&'a LayerRows>,
     S: Fn(usize) -> Option<&'a Rows>,
 {
-    /// What layer `k` prints for itself and layers below it, and what of its skin is left for
-    /// itself alone: the rest is printed by layers above.
+    /// What layer `k` prints for itself and layers below, and the skin that it prints for itself
+    /// alone. Layers above print the rest.
     #[must_use]
     pub fn share(&self, k: usize) -> (Printed, Rows) {
         let thick = self.thick(k);
@@ -83,12 +90,12 @@ where
             }
             for n in 0..depths.count {
                 rows = match (self.skins)(k.wrapping_sub(n)) {
-                    Some(skin) => rows.and(skin).minus(&self.seen(k - n)),
+                    Some(skin) => rows.and(skin).minus(&self.visible(k - n)),
                     None => Rows::default(),
                 };
             }
-            // Groups of neighbouring depths end on other layers: a place near both is the upper
-            // group's if it lies in its depths, else the lower one's.
+            // The groups of other layers may reach here too. The core of an upper group goes
+            // first, then what lower groups print with their margin.
             for other in self.depths() {
                 for far in 1..self.ratio {
                     rows = rows.minus(&self.core(k + far, other));
@@ -109,7 +116,7 @@ where
         let groups = |skins: usize, from_top: bool| {
             (2..=skins).step_by(self.ratio).map(move |first| {
                 let count = self.ratio.min(skins + 1 - first);
-                // From the top the uppermost layer is the nearest to the air, from below the furthest.
+                // The uppermost layer is the nearest to the air at a top, the furthest at a bottom.
                 let depth = if from_top { first } else { first + count - 1 };
                 Depths { from_top, depth, count }
             })
@@ -118,15 +125,14 @@ where
         groups(top, true).chain(groups(bottom, false)).filter(|d| d.count > 1)
     }
 
-    /// Where layer `k` prints a group, with the margin that skins have under and over what
-    /// covers them.
+    /// Where layer `k` prints a group, with the margin.
     fn margined(&self, k: usize, depths: Depths) -> Rows {
         let core = self.core(k, depths);
         let pitch = self.raster.pitch;
         if core.is_empty() { core } else { core.dilate(self.params.reach, pitch) }
     }
 
-    /// Where layer `k` is the uppermost of a group's depths, with all its layers below.
+    /// Where layer `k` is the uppermost of a group and all other layers of the group are below.
     fn core(&self, k: usize, depths: Depths) -> Rows {
         let Depths { from_top, depth, count } = depths;
         let Some(skin) = (self.skins)(k) else { return Rows::default() };
@@ -141,7 +147,7 @@ where
         if let Some(cover) = ends {
             rows = rows.minus(cover);
         }
-        rows = rows.filter(|_, span| span.len() >= i64::from(LEAST_SEEN));
+        rows = rows.filter(|_, span| span.len() >= i64::from(LEAST_VISIBLE));
         for n in 1..depth {
             rows = and(rows, if from_top { up(n) } else { down(n) });
         }
@@ -149,7 +155,7 @@ where
             return rows;
         }
         if from_top {
-            // Its lowest layer is not seen from below.
+            // The group's lowest layer must not be visible from below.
             rows = and(rows, down(count));
         } else {
             for n in 1..=self.params.top {
@@ -160,8 +166,8 @@ where
         self.wide(k, rows)
     }
 
-    /// What of `rows` of layer `k` is wider than [`LEAST_WIDE`] line widths, or as wide as the part: what is left if
-    /// everything around it reaches in by half of that, and it grows again.
+    /// The part of `rows` of layer `k` that is wider than [`LEAST_WIDE`] line widths, or as wide
+    /// as the part. This is an opening: shrink from all around by half of that, then grow back.
     fn wide(&self, k: usize, rows: Rows) -> Rows {
         let Some(fill) = self.fill(Some(k)) else { return Rows::default() };
         let pitch = self.raster.pitch;
@@ -174,16 +180,16 @@ where
         if inmost.is_empty() { inmost } else { rows.and(&inmost.dilate(half, pitch)) }
     }
 
-    /// What is seen of layer `k`, from above or from below, with its margin.
-    fn seen(&self, k: usize) -> Rows {
+    /// The visible part of layer `k`, from above or from below, with its margin.
+    fn visible(&self, k: usize) -> Rows {
         let Some(fill) = self.fill(Some(k)) else { return Rows::default() };
         let mut hidden = fill.clone();
         for cover in [self.cover(Some(k + 1)), self.cover(k.checked_sub(1))] {
             hidden = cover.map_or_else(Rows::default, |cover| hidden.and(cover));
         }
-        let seen = fill.minus(&hidden).filter(|_, span| span.len() >= i64::from(LEAST_SEEN));
+        let visible = fill.minus(&hidden).filter(|_, span| span.len() >= i64::from(LEAST_VISIBLE));
         let pitch = self.raster.pitch;
-        if seen.is_empty() { seen } else { seen.dilate(self.params.reach, pitch) }
+        if visible.is_empty() { visible } else { visible.dilate(self.params.reach, pitch) }
     }
 
     fn fill(&self, k: Option<usize>) -> Option<&'a Rows> {

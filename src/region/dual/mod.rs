@@ -1,11 +1,19 @@
 //! Areas of a block of layers -> Sparse: which lines each layer prints, for itself or for several layers.
 //!
-//! Where all layers of a group have sparse lines these are printed once, on the
-//! uppermost layer, with the material of all: exactly so many times as much. Where
-//! only some in a row have them, these share one line. The thesis this follows keeps
-//! the whole infill of that layer of a pair whose lines are shorter in all; that leaves
-//! hollow places where the layers differ and often keeps the same direction every
-//! time. Both gaps are closed unless the settings ask for the thesis's rule.
+//! Words: *group*, *block*, *ratio* and *lane* as in [`groups`]; *run* as in [`mod@runs`]. A
+//! *thick* line is printed for several layers at once, a *thin* one for its own layer. The
+//! *remainder* is what not all layers of a group have.
+//!
+//! Where all layers of a group have sparse lines, the uppermost prints them once, with exactly
+//! the material of all. Where only some successive layers have them, these share one line.
+//!
+//! Algorithm, for each block: choose its patterns; divide each into lanes; find the runs of each
+//! lane; count in an [`audit`] what is thick and why the rest is not; widen the thick lines
+//! slightly, to make up for lines too short to be printed.
+//!
+//! The thesis that this follows prints the layer of a pair whose lines are shorter in total, and
+//! drops the other. That leaves hollow places where the layers differ, and it often keeps the
+//! same direction every time. Both are avoided here unless the settings ask for that rule.
 
 pub mod audit;
 pub mod groups;
@@ -23,12 +31,12 @@ use groups::{Block, Grouping, Lane};
 use runs::{Printed, runs};
 use std::sync::Arc;
 
-/// Thick lines get wider by at most this, so that the material of lines which are too
-/// short to be printed is not lost; per cent of a line's width. More would show as a bulge
-/// where the thick lines end.
+/// Thick lines are widened by at most this, per cent of a line's width, to carry the material of
+/// lines too short to be printed. A larger value shows as bulges where thick lines end; a smaller
+/// one loses that material.
 const MOST_WIDENED: i64 = 5;
 
-/// The patterns that may carry the infill of `block`: all that it has to be classified for.
+/// The patterns that may fill `block`. Its layers must be divided on the rasters of all of them.
 #[must_use]
 pub fn patterns(block: &Block, grouping: &Grouping, turns: &Turns) -> Vec<Pattern> {
     if grouping.shares(DualPart::Infill) && !grouping.shorter {
@@ -37,7 +45,7 @@ pub fn patterns(block: &Block, grouping: &Grouping, turns: &Turns) -> Vec<Patter
     block.layers.clone().flat_map(|k| turns.of(k)).cloned().collect()
 }
 
-/// The infill of each layer of `block`, and what became of its lines if they may be shared.
+/// The infill of each layer of `block`, and the audit of its lines if they may be shared.
 #[must_use]
 pub fn infill(
     block: &Block,
@@ -66,8 +74,8 @@ pub fn infill(
     (sparse, Some(audit))
 }
 
-/// The support of each layer of `block`, given on all rows of its raster, and what
-/// became of its lines if they may be shared.
+/// The support of each layer of `block`, and the audit of its lines if they may be shared. `rows`
+/// is where each layer has support.
 #[must_use]
 pub fn support(
     block: &Block,
@@ -97,13 +105,13 @@ fn thin(pattern: &Pattern, rows: Rows, width: Coord) -> Sparse {
     Sparse { pattern: pattern.clone(), rows, layers: 1, width }
 }
 
-/// Where a layer has sparse infill, on the raster of `pattern`: nowhere if it was not divided there.
+/// The sparse infill of a layer on the raster of `pattern`; empty if it was not divided there.
 fn rows(pattern: &dyn SparsePattern, areas: &LayerAreas) -> Rows {
     areas.on(pattern.raster()).map_or_else(Rows::default, |areas| areas.infill.clone())
 }
 
-/// Which layer of the block has the least length of lines, in its own direction if
-/// directions are free; the upper one of equals.
+/// The layer of the block with the smallest length of lines; of equals the upper one. Each layer
+/// counts in its own direction if thick lines take the shorter one.
 fn shortest(
     block: &Block,
     layers: &[&LayerAreas],
@@ -124,7 +132,7 @@ fn shortest(
     by_length.unwrap_or(0)
 }
 
-/// The thesis's rule: one layer's infill for all, the others' left out.
+/// The rule of the thesis: one layer's infill is printed for all, the others' are dropped.
 fn dropped(
     block: &Block,
     layers: &[&LayerAreas],
@@ -146,7 +154,7 @@ fn dropped(
     (out, Some(audit))
 }
 
-/// Lines of a block being shared out among its layers.
+/// Distributes the lines of a block among its layers.
 struct Sharing<'a> {
     block: &'a Block,
     grouping: &'a Grouping,
@@ -162,8 +170,8 @@ impl<'a> Sharing<'a> {
         Self { block, grouping, line_width, sparse, audit }
     }
 
-    /// Shares the strands of `pattern`, whose region on each layer is `rows`. `skins` are the
-    /// layers' skins on the same raster.
+    /// Distributes the strands of `pattern`. `rows` is its region on each layer, `skins` are the
+    /// skins of the layers on the same raster.
     fn share(&mut self, pattern: &Pattern, rows: &[Rows], skins: &[Option<Arc<Rows>>]) {
         for lane in self.grouping.lanes(pattern) {
             let first = self.block.layers.start;
@@ -180,7 +188,7 @@ impl<'a> Sharing<'a> {
         }
     }
 
-    /// Counts the strands of a lane, and notes why some are not printed for a whole group.
+    /// Counts the strands of a lane, and why some are not printed for a whole group.
     fn explain(
         &mut self,
         lane: &Lane,
@@ -206,8 +214,8 @@ impl<'a> Sharing<'a> {
         }
     }
 
-    /// The lines of each layer. Thick ones carry the material of those that are too
-    /// short to be printed.
+    /// The lines of each layer. Thick ones are widened to carry the material of lines too short to
+    /// be printed.
     fn finish(mut self) -> (Vec<Vec<Sparse>>, Audit) {
         let w = self.line_width;
         let all = || self.sparse.iter().flatten();
