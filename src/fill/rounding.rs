@@ -49,7 +49,7 @@ const MOST_MORE: f64 = 1.04;
 
 /// Joins up to this many radii long get one width together with the arcs at their ends, so that
 /// the flow stays constant through the turn. A larger value spreads plastic further from where
-/// it belongs; at 0 the flow changes three times in a turn.
+/// it belongs; at 0 the flow changes within each turn.
 const LONGEST_LEVELLED: f64 = 2.5;
 
 /// A way of rounding corners.

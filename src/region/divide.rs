@@ -76,7 +76,8 @@ fn in_strips(own: &Own, skins: &[Rows; 2], params: &RegionParams) -> Vec<Polylin
             return along_walls(own, walls, narrow, room, params, &only_strips);
         }
         let hollow = params.sparse.is_empty();
-        let uncovered = |r: usize| if hollow { Rows::default() } else { apart(&narrow[r], &skins[r]) };
+        let uncovered =
+            |r: usize| if hollow { Rows::default() } else { apart(&narrow[r], &skins[r]) };
         along_walls(own, walls, &[uncovered(0), uncovered(1)], room, params, &only_strips)
     };
     (1..).zip(&own.strips).flat_map(beads).collect()

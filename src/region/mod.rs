@@ -1,18 +1,18 @@
 //! Layers -> Regions: what each place is for: walls, skin, sparse infill, support.
 //!
-//! Everything but the walls comes from one pass over raster lines. Each layer's contours are
-//! scanned with every raster once ([`mod@prepare`]); then each layer combines its own spans
-//! with its neighbours' by 1-D booleans ([`classify`]). Where skin is narrow, beads along the walls
-//! take its place ([`wall_beads`]); they belong to this stage because lines have to end at them.
-//! Dual injection decides which layer prints what for which others ([`dual`]).
+//! Everything but the walls is computed on raster lines. Each layer's contours are scanned once
+//! with every raster ([`mod@prepare`]). Then each layer combines its spans with those of its
+//! neighbours by 1-D booleans ([`classify`]). Where skin is narrow, beads along the walls replace
+//! its lines ([`wall_beads`]). They belong to this stage because lines must end at them. Dual
+//! injection decides which layer prints what for which others ([`dual`]).
 //!
-//! Words: a *row* is one raster line of a layer, with the *spans* of it that are inside
-//! something. A *column* is a row of the raster across. The *fill rows* of a layer are where
-//! lines may run at all: the layer inset by its walls.
+//! Words: a *row* is one raster line of a layer, with its *spans*: the stretches inside something.
+//! A *column* is a row of the raster across. The *fill rows* of a layer are where lines may run:
+//! the layer inset by its walls.
 //!
-//! Guaranteed to the next stage: skin and sparse infill of a layer are disjoint, and together with
-//! the beads along walls they are its fill rows; rows are sorted, disjoint, never empty. How
-//! an area is laid, and what does not fit a line's width, is up to [`crate::fill`].
+//! Guaranteed to the next stage: skin and sparse infill of a layer are disjoint; together with
+//! the wall beads they are its fill rows. Spans are sorted, disjoint, never empty. How an area is
+//! filled, and what to do where a line does not fit, is up to [`crate::fill`].
 
 pub mod angle;
 pub mod classify;
@@ -52,17 +52,17 @@ pub struct Region {
     pub layer: Layer,
     /// Its walls.
     pub walls: Vec<Wall>,
-    /// Its skin: what is for this layer alone, then what is printed for several.
+    /// Its skin: first that for this layer alone, then that printed for several.
     pub skins: Vec<Skin>,
     /// Its sparse infill.
     pub infill: Vec<Sparse>,
     /// Its support.
     pub support: Vec<Sparse>,
-    /// Area too thin for a wall, which is not printed, mm².
+    /// Area that is too thin for a wall and so not printed, mm².
     pub thin_mm2: f64,
 }
 
-/// Skin of one layer, as its raster and the one across it see it.
+/// Skin of one layer, on its raster and on the one across.
 #[derive(Debug)]
 pub struct Skin {
     /// How many layers it is printed for: this one and those below it.
@@ -84,7 +84,7 @@ pub struct Skin {
 pub struct SkinRows {
     /// The skin.
     pub skin: Arc<Rows>,
-    /// Where skin and infill may go: an end of the skin that is one of these is at a wall.
+    /// Where skin and infill may go. An end of the skin that is also an end here is at a wall.
     pub fill: Arc<Rows>,
 }
 
@@ -102,10 +102,10 @@ impl Skin {
     }
 }
 
-/// A region of one layer that a pattern fills: infill or support.
+/// A region of one layer that is filled with a pattern: infill or support.
 #[derive(Debug, Clone)]
 pub struct Sparse {
-    /// What fills it.
+    /// The pattern.
     pub pattern: Pattern,
     /// The region, on every row of the pattern's raster.
     pub rows: Rows,

@@ -1,4 +1,4 @@
-//! Walls -> Near: whether a place keeps its distance from all of them.
+//! Walls -> Near: their edges sorted into cells, to find the nearest one or whether a place is free.
 
 use crate::geom::cells::Cells;
 use crate::geom::{Contour, Point, edges, segment};
@@ -6,10 +6,11 @@ use crate::units::Bounded as _;
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// Cells along each side of an area, at most.
+/// Maximum number of cells along each side of an area. It bounds the memory for large parts; fewer
+/// cells hold more edges each, and look-ups get slower.
 const MOST_CELLS: f64 = 256.0;
 
-/// An edge of a wall, grid units: from where to where.
+/// An edge of a wall, grid units: its two ends.
 type Edge = [[f64; 2]; 2];
 
 /// A box around some places, grid units.
@@ -20,7 +21,7 @@ pub(super) struct Area {
 }
 
 impl Area {
-    /// Around `places`, with `margin` on all sides.
+    /// The box around `places`, with `margin` on all sides.
     pub(super) fn around(places: impl Iterator<Item = [f64; 2]>, margin: f64) -> Self {
         let none = Self { low: [f64::MAX; 2], high: [f64::MIN; 2] };
         let mut out = places.fold(none, |area, p| Self {
@@ -49,7 +50,7 @@ pub(super) struct Near {
 #[derive(Debug)]
 struct Grid {
     low: [f64; 2],
-    /// Cells for each grid unit.
+    /// Cells per grid unit.
     scale: f64,
     /// Columns and rows of cells.
     size: [usize; 2],
@@ -58,7 +59,7 @@ struct Grid {
 impl Grid {
     /// The cells that meet the box with corners `p` and `q`, row by row of cells.
     fn cells(&self, [p, q]: [[f64; 2]; 2]) -> impl Iterator<Item = Range<usize>> + use<> {
-        // Casts to unsigned numbers hold below zero; what is beyond the area counts to its edge.
+        // A cast clamps negative numbers to 0. Places beyond the area count to its border cells.
         let at =
             |x: f64, k: usize| (((x - self.low[k]) * self.scale) as usize).min(self.size[k] - 1);
         let [columns, rows] =
@@ -69,7 +70,7 @@ impl Grid {
 }
 
 impl Near {
-    /// Cells of side `side`, larger where they would be too many.
+    /// Sorts the edges into cells of side `side`; larger ones if there would be too many.
     pub(super) fn new(walls: &[Contour], area: Area, side: f64) -> Self {
         let point = |p: Point| [f64::from(p.x), f64::from(p.y)];
         let all = walls.iter().flat_map(|w| edges(w)).map(|(p, q)| [point(p), point(q)]);
@@ -84,8 +85,8 @@ impl Near {
         Self { grid, cells }
     }
 
-    /// The edge nearest to `p`, within the area, among those nearer than `distance`; of two that
-    /// are equally near the one that begins, or ends, further left or lower.
+    /// The edge nearest to `p`, which lies within the area, among those nearer than `distance`. Of
+    /// equally near edges it is the one that begins, or ends, further left or lower.
     pub(super) fn nearest(&self, p: [f64; 2], distance: f64) -> Option<Edge> {
         let square = distance * distance;
         let near = self.around(&[p], distance).flatten().filter(|edge| is_nearer(p, edge, square));
@@ -95,28 +96,28 @@ impl Near {
         nearest.min_by(order).map(|(_, edge)| *edge)
     }
 
-    /// Whether no wall is nearer to any of `places`, within the area, than `distance`.
+    /// Whether no wall is nearer than `distance` to any of `places`, which lie within the area.
     pub(super) fn is_free<const N: usize>(&self, places: [[f64; 2]; N], distance: f64) -> bool {
         let square = distance * distance;
         let far = |edge: &Edge| places.iter().all(|&p| !is_nearer(p, edge, square));
         self.around(&places, distance).all(|edges| edges.iter().all(far))
     }
 
-    /// The edges of all cells that are nearer to the box around `places` than `distance` in either
-    /// direction, row by row of cells.
+    /// The edges in all cells that meet the box around `places` grown by `distance`, by rows of
+    /// cells.
     fn around(
         &self,
         places: &[[f64; 2]],
         distance: f64,
     ) -> impl Iterator<Item = &[Edge]> + use<'_> {
         let area = Area::around(places.iter().copied(), distance);
-        // The edges of cells beside each other stand one after the other.
+        // The edges of neighbouring cells in a row are contiguous.
         self.grid.cells([area.low, area.high]).map(|cells| self.cells.of(cells))
     }
 }
 
-/// Whether `p` is nearer to an edge than the square root of `square`. This decides for nearly all
-/// edges of a cell, so it does without dividing.
+/// Whether the squared distance from `p` to an edge is less than `square`. It runs for nearly all
+/// edges of a cell, so it avoids the division.
 fn is_nearer(p: [f64; 2], [a, b]: &Edge, square: f64) -> bool {
     let along = [b[0] - a[0], b[1] - a[1]];
     let from = [p[0] - a[0], p[1] - a[1]];

@@ -1,7 +1,7 @@
-//! Settings -> RegionParams: the numbers of the region stage, in one small struct for each part of it.
+//! Settings -> RegionParams: the numbers of the region stage, one small struct for each part of it.
 //!
-//! All lengths are grid units. Distances from the contour are to the centre line of a bead or
-//! to the end of a line.
+//! All lengths are in grid units. Distances from the contour are measured to the centre line of a
+//! bead or to the end of a line.
 
 use super::per_raster::Rasters;
 use crate::geom::frame::Frame;
@@ -15,9 +15,9 @@ use crate::units::{Coord, to_units};
 pub struct RegionParams {
     /// For the walls.
     pub walls: WallParams,
-    /// For the rows of a layer.
+    /// For the rows of a layer: how far they lie inside its contours.
     pub insets: Insets,
-    /// For dividing these into skin and infill.
+    /// For dividing rows into skin and infill.
     pub skins: SkinParams,
     /// For beads along walls.
     pub beads: BeadParams,
@@ -43,12 +43,12 @@ pub struct WallParams {
 pub struct Insets {
     /// Distance of the ends of skin and infill lines from the contour.
     pub fill: Coord,
-    /// How far inside its contour a neighbouring layer counts as covering this one,
-    /// so that skin begins where this layer's walls stop closing what is exposed.
+    /// How far inside its contour a neighbouring layer begins to cover this one. It is chosen so
+    /// that skin begins where this layer's walls stop closing what is exposed.
     pub cover: Coord,
 }
 
-/// Where skin is.
+/// Where skin lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SkinParams {
     /// Solid layers at the top.
@@ -66,28 +66,29 @@ pub struct SkinParams {
 pub struct BeadParams {
     /// Width of a line.
     pub line_width: Coord,
-    /// From the centre line of the innermost wall to where lines end; there is a wall.
+    /// From the centre line of the innermost wall to where lines end. Used only with walls.
     pub wall_to_fill: Coord,
     /// How far lines reach into the innermost wall.
     pub overlap: Coord,
-    /// Beads are only laid along the middle of strips, not along walls.
+    /// Lay beads only along the middle of strips, not along walls.
     pub only_strips: bool,
 }
 
 impl RegionParams {
-    /// The numbers that `settings` mean for this stage.
+    /// Derives the numbers from `settings`.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let w = settings.line_width;
         let outer = settings.outer_wall_inset;
-        // Without a wall there is none to reach into.
+        // Without walls there is nothing to overlap with.
         let (wall, overlap) = match settings.walls {
             0 => (0.5, 0.0),
             walls => (outer + f64::from(walls), settings.infill_overlap),
         };
         let fill = wall - overlap;
-        // Where the walls' inner edge is, seen from the ends of the lines; never quite
-        // as far in as they are, so that an upright side needs no skin.
+        // The distance from the inner edge of the walls to the ends of lines: what a neighbour
+        // leaves exposed above the walls alone then needs no skin. It stays below `fill`, so
+        // that an upright side needs none either.
         let cover = (0.5 - overlap).min(fill - 0.25).max(0.0);
         let line_width = to_units(w);
         let walls =

@@ -37,7 +37,7 @@ pub fn skin_turn(k: usize) -> (usize, usize) {
     (k % 2, 1 - k % 2)
 }
 
-/// Values for the two rasters of skins, and for others as far as they were asked for.
+/// Values for the two rasters of skins, and for others that were requested.
 #[derive(Debug, Clone)]
 pub struct PerRaster<T> {
     skins: [T; 2],
@@ -63,7 +63,7 @@ impl<T> PerRaster<T> {
         out
     }
 
-    /// For each value another.
+    /// Maps each value to another.
     #[must_use]
     pub fn map<U>(&self, make: impl Fn(&T) -> U) -> PerRaster<U> {
         let others = self.others.iter().map(|(raster, value)| (*raster, make(value))).collect();
@@ -77,7 +77,7 @@ impl<T> PerRaster<T> {
         &self.skins[index]
     }
 
-    /// The value for `raster`; `None` if nobody asked for one.
+    /// The value for `raster`; `None` if it was not requested.
     #[must_use]
     pub fn on(&self, raster: Raster) -> Option<&T> {
         if let Some(index) = self.rasters.iter().position(|r| *r == raster) {

@@ -1,7 +1,7 @@
-//! Layer -> its walls and rows: all that it and its neighbours will ask of its contours.
+//! Layer -> its walls and rows: everything that it and its neighbours need of its contours.
 //!
-//! What comes out are two values. [`Own`] goes with the layer itself and is taken apart once;
-//! [`LayerRows`] is what neighbours look at, and stays as long as one of them may.
+//! The result is two values. [`Own`] belongs to the layer and is consumed once. [`LayerRows`] is
+//! what neighbours read; it is kept as long as one of them needs it.
 
 use super::params::{Insets, RegionParams};
 use super::per_raster::PerRaster;
@@ -20,7 +20,7 @@ pub struct Own {
     pub layer: Layer,
     /// Its walls.
     pub walls: Vec<Wall>,
-    /// The room inside each of its walls, where some of it may be thin.
+    /// The room inside each of its walls; empty if nothing can be too thin.
     pub strips: Vec<Strip>,
 }
 
@@ -32,7 +32,7 @@ pub type LayerRows = PerRaster<PreparedRows>;
 pub struct PreparedRows {
     /// Where lines of skin or infill may run.
     pub fill: Arc<Rows>,
-    /// Where this layer covers its neighbours: with its walls, nearly up to its contour.
+    /// Where this layer covers its neighbours. Its walls count, so nearly up to its contour.
     pub cover: Rows,
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-/// Values of successive layers, of which the first are forgotten or taken out.
+/// Values of successive layers. Old ones are taken out or dropped at the front.
 #[derive(Debug)]
 pub(super) struct Queue<T> {
     first: usize,
@@ -16,29 +16,29 @@ impl<T> Default for Queue<T> {
 }
 
 impl<T> Queue<T> {
-    /// The first layer that is still there.
+    /// The first layer in the queue.
     pub(super) fn start(&self) -> usize {
         self.first
     }
 
-    /// One more than the last layer.
+    /// One past the last layer.
     pub(super) fn end(&self) -> usize {
         self.first + self.values.len()
     }
 
-    /// The value of layer `k`; `None` if it is not in the window.
+    /// The value of layer `k`; `None` if it is not in the queue.
     pub(super) fn get(&self, k: usize) -> Option<&T> {
         k.checked_sub(self.first).and_then(|k| self.values.get(k))
     }
 
-    /// Takes out the first value.
+    /// Removes and returns the first value.
     pub(super) fn take(&mut self) -> Option<T> {
         let value = self.values.pop_front()?;
         self.first += 1;
         Some(value)
     }
 
-    /// Forgets the layers before `k`.
+    /// Drops the layers before `k`.
     pub(super) fn forget(&mut self, k: usize) {
         while self.first < k && self.take().is_some() {}
     }

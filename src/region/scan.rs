@@ -1,26 +1,32 @@
 //! Contours -> Rows: the inside of a layer on raster lines, grown or shrunk by an exact distance.
 //!
-//! A raster line at `v` meets an edge that has one end below it and one at or
-//! above it ("on the line counts as above"), so that a vertex on the line is
-//! never counted twice and every closed contour gives a balanced set of
-//! crossings. Inside is where the winding number is not zero.
+//! Words: a *crossing* is where a raster line meets an edge. The *winding number* says how often
+//! the contours go around a place; inside is where it is not zero. A *capsule* is the set of all
+//! points within a distance `r` of an edge, a *chord* what a line cuts out of it. A *flank* is
+//! the left or right border of a capsule.
 //!
-//! The points within a distance `r` of an edge form a capsule; a line cuts it
-//! in one chord. Inside spans without the chords of all near edges are the
-//! Euclidean inset, inside spans and chords together the outset: no polygon
-//! offset is needed.
+//! Algorithm:
+//! 1. Find the crossings of all rows, sort each row, and sum the winding numbers. An edge crosses
+//!    a line at `v` if one end is below `v` and the other at or above it. So a vertex on the line
+//!    is never counted twice, and every closed contour gives balanced crossings.
+//! 2. Find the chords of the capsules around all edges. Inside spans minus chords are the exact
+//!    Euclidean inset; the union of both is the outset. No polygon offset is needed.
+//!
+//! For an inset, an edge gives chords only on rows where it may be the nearest one to a place
+//! inside (`Stretch::inner`). All other chords are covered anyway.
 
 use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span, merge, subtract};
 use crate::geom::{Contour, Point, edges, side};
 use crate::units::{Bounded as _, Coord, between, nearest};
 
-/// Rows so much further up and down than an edge reaches are asked as well (2 µm): what rounding
-/// can have made of the contours.
+/// Rows this much above and below an edge are searched too (2 µm). Rounding the contours to the
+/// grid moves their ends by less. At 0 an inset may keep places near a vertex; a larger value only
+/// costs time.
 const MARGIN: Coord = 20;
 
-/// A layer's contours as one raster sees them: in its frame, with the crossings
-/// of every row already found, ready for insets and outsets.
+/// A layer's contours in the frame of a raster, and their inside on its rows: ready for insets and
+/// outsets.
 #[derive(Debug)]
 pub struct Scan {
     raster: Raster,
@@ -29,7 +35,7 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// Lays `contours` (closed, outside counter-clockwise) under the lines of `raster`.
+    /// Scans `contours` (closed, outside counter-clockwise) with the lines of `raster`.
     #[must_use]
     pub fn new(contours: &[Contour], raster: Raster) -> Self {
         let contours: Vec<Contour> =
@@ -38,13 +44,13 @@ impl Scan {
         Self { raster, contours, inside }
     }
 
-    /// Where the lines are inside the contours.
+    /// The spans of the lines inside the contours.
     #[must_use]
     pub fn inside(&self) -> &Rows {
         &self.inside
     }
 
-    /// Where the lines are inside and at least `distance` from every contour.
+    /// The spans inside and at least `distance` from every contour.
     #[must_use]
     pub fn inset(&self, distance: Coord) -> Rows {
         if distance <= 0 {
@@ -69,7 +75,7 @@ impl Scan {
         out
     }
 
-    /// Where the lines are inside or at most `distance` from a contour.
+    /// The spans inside or at most `distance` from a contour.
     #[must_use]
     pub fn outset(&self, distance: Coord) -> Rows {
         if distance <= 0 {
@@ -90,8 +96,8 @@ impl Scan {
     }
 }
 
-/// Where the lines of `raster` are within the radius that is given with each of `edges`;
-/// these are in the raster's frame.
+/// The spans of `raster` within the radius of an edge. `edges` holds the ends and the radius of
+/// each, in the raster's frame.
 #[must_use]
 pub fn around(edges: &[(Point, Point, Coord)], raster: Raster) -> Rows {
     let all = edges.iter().map(|&(p, q, r)| Stretch::whole(p, q, r, raster));
@@ -110,16 +116,16 @@ fn extent(contours: &[Contour]) -> Option<(Coord, Coord)> {
     Some(all.fold((first, first), |(low, high), v| (low.min(v), high.max(v))))
 }
 
-/// Where a line at `v` crosses the edge between `low` and `high`, `low.y < v <= high.y`,
-/// rounded to the nearest unit in a way that does not depend on the edge's direction.
+/// Where a line at `v` crosses the edge between `low` and `high`, `low.y < v <= high.y`. It is
+/// rounded to the nearest unit, the same for both directions of the edge.
 fn crossing(low: Point, high: Point, v: Coord) -> Coord {
     between(low.x, high.x, (v, low.y, high.y))
 }
 
-/// Items in rows, pushed in any order: rows get room for what they will hold at most.
+/// Items sorted into rows. Each row has room for the most items that it can get.
 struct Buckets<T> {
     first: i32,
-    /// Where each row begins in `items`; one more than there are rows.
+    /// Where each row begins in `items`, and the end of the last.
     starts: Vec<u32>,
     /// Where each row ends so far.
     ends: Vec<u32>,
@@ -127,14 +133,14 @@ struct Buckets<T> {
 }
 
 impl<T: Copy + Default> Buckets<T> {
-    /// Room for rows `range`, in each for as many items as `stretches` of rows reach it.
+    /// Reserves room in the rows `range`: one item for each of `stretches` that reaches a row.
     fn new(
         range: std::ops::Range<i32>,
         stretches: impl Iterator<Item = std::ops::Range<i32>>,
     ) -> Self {
         let first = range.start;
         let index = |j: i32| (j - first) as usize;
-        // How many stretches more reach each row than the row before.
+        // The change of the number of stretches from row to row.
         let mut change = vec![0_i32; range.len() + 1];
         for stretch in stretches.filter(|s| !s.is_empty()) {
             change[index(stretch.start)] += 1;
@@ -171,8 +177,8 @@ impl<T: Copy + Default> Buckets<T> {
 }
 
 impl Buckets<Span> {
-    /// Pushes a chord, or joins it to the last one of its row where they meet: neighbouring
-    /// edges have much in common.
+    /// Pushes a chord, or merges it with the last one of its row if they meet. Chords of
+    /// neighbouring edges mostly overlap, so this keeps rows short.
     fn join(&mut self, j: i32, chord: Span) {
         let k = (j - self.first) as usize;
         let (start, end) = (self.starts[k] as usize, self.ends[k] as usize);
@@ -186,7 +192,7 @@ impl Buckets<Span> {
     }
 }
 
-/// A crossing: where, and by how much the winding number changes to its right.
+/// A crossing: its place, and the change of the winding number from its left to its right.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 struct Crossing {
     u: Coord,
@@ -201,7 +207,7 @@ fn inside(contours: &[Contour], raster: Raster) -> Rows {
     let rows = |p: Point, q: Point| raster.rows(p.y.min(q.y), p.y.max(q.y));
     let mut crossings = Buckets::new(range.clone(), all().map(|(p, q)| rows(p, q)));
     for (p, q) in all() {
-        // An edge that falls has the solid on its right: entering, seen along u.
+        // The solid is on the left of an edge: to the right of it along u if the edge falls.
         let (low, high, winding) = if p.y < q.y { (p, q, -1) } else { (q, p, 1) };
         for j in rows(p, q) {
             let u = crossing(low, high, j * raster.pitch);
@@ -236,24 +242,24 @@ fn wound(crossings: &[Crossing], out: &mut Vec<Span>) {
     }
 }
 
-/// The points within a radius of an edge, and the rows on which they matter.
+/// A capsule around an edge, and the rows on which it matters.
 struct Stretch {
     capsule: Capsule,
     rows: std::ops::Range<i32>,
 }
 
 impl Stretch {
-    /// With all rows that reach the capsule.
+    /// The capsule with all rows that meet it.
     fn whole(p: Point, q: Point, r: Coord, raster: Raster) -> Self {
         let rows = raster.rows(p.y.min(q.y) - r, p.y.max(q.y) + r);
         Self { capsule: Capsule::new(p, q, r), rows }
     }
 
-    /// With the rows on which the edge from `p` to `q`, which has the solid on its left and is
-    /// followed by one to `next`, may be the nearest to a place inside. Beside the edge these are
-    /// the rows on its left. Beyond its end they are those around a corner that the solid lies
-    /// around; only one that is the highest or lowest place there has rows that neither of
-    /// its two edges has beside it.
+    /// The capsule with the rows on which the edge from `p` to `q` may be the nearest one to a
+    /// place inside. The solid is on its left; `next` is the end of the following edge. Places
+    /// beside the edge lie on its left. Beyond its end the edge is nearest only around a reflex
+    /// corner. Both edges together already have the rows of such a corner beside them, unless it
+    /// is the highest or lowest point: then all rows within `r` are needed.
     fn inner([p, q, next]: [Point; 3], r: Coord, raster: Raster) -> Self {
         let capsule = Capsule::new(p, q, r);
         let lift = if p.y <= q.y { capsule.lift } else { -capsule.lift } as Coord;
@@ -289,11 +295,11 @@ struct Capsule {
     high: [f64; 2],
     /// The distance, squared.
     square: f64,
-    /// Run per rise; 0 for a level edge.
+    /// Run per rise; 0 for a horizontal edge.
     slope: f64,
-    /// Distance along u from the edge's line to its parallel at the distance.
+    /// Distance along u from the edge's line to the parallel that bounds the capsule.
     shift: f64,
-    /// How much lower the right flank ends than the edge (the left flank: higher).
+    /// How much lower than the edge the straight part of the right flank ends; the left: higher.
     lift: f64,
 }
 
@@ -309,8 +315,8 @@ impl Capsule {
         Self { low, high, square: r * r, slope, shift, lift }
     }
 
-    /// The chord at `v`, none where rounding leaves nothing of it. A flank is a straight line
-    /// between the feet of the two end circles' tangents, and a circle beyond.
+    /// The chord at `v`; `None` if rounding leaves nothing of it. A flank is a straight line
+    /// between its tangent points with the two end circles, and an arc beyond.
     fn chord(&self, v: Coord) -> Option<Span> {
         let v = f64::from(v);
         let Self { low: [low_u, low_v], high: [high_u, high_v], lift, .. } = *self;

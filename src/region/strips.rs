@@ -1,8 +1,8 @@
-//! Scans + walls -> Strips: room between walls that is too thin for two beads, where one has to do.
+//! Scans + walls -> Strips: room between walls that is too thin for two beads and gets one.
 //!
-//! Where [`super::thin`] left out an inner wall the room gets one bead as wide as it is, which
-//! [`super::wall_beads`] lays like that in a thin strip of skin. The room inside the innermost
-//! wall is filled in the same way where it is too thin for infill.
+//! Where [`super::thin`] cut off an inner wall, the room gets one bead of its full width.
+//! [`super::wall_beads`] lays it like the bead in a thin strip of skin. Where the room inside the
+//! innermost wall is too thin for infill, it is filled in the same way.
 
 use super::params::RegionParams;
 use super::scan::Scan;
@@ -15,12 +15,12 @@ use crate::geom::spans::Rows;
 pub struct Strip {
     /// Where a bead inside that wall may run.
     pub room: [Rows; 2],
-    /// What of it is too thin for two beads, and has no part of the next wall.
+    /// The part of it that is too thin for two beads and holds no part of the next wall.
     pub narrow: [Rows; 2],
 }
 
-/// For each of `walls`, from the outside inwards, the room inside it on the rasters of skins.
-/// `innermost` is the room inside the last, where lines run.
+/// The room inside each of `walls` on the rasters of skins, from the outside inwards. `innermost`
+/// is the room inside the last wall, where lines run.
 #[must_use]
 pub fn strips(
     scans: [&Scan; 2],
@@ -50,7 +50,7 @@ pub fn strips(
         .collect()
 }
 
-/// The spans of `rows` that do not meet any of `others`.
+/// The spans of `rows` that overlap none of `others`.
 #[must_use]
 pub fn apart(rows: &Rows, others: &Rows) -> Rows {
     rows.filter(|j, span| !others.row(j).iter().any(|other| span.overlaps(*other)))

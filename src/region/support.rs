@@ -1,9 +1,18 @@
 //! Layers, from the top down -> Rows: where support stands under overhangs.
 //!
-//! An overhang is what reaches further out over the layer below than the
-//! threshold angle allows. It is grown by the outset and goes down layer by
-//! layer, keeping its distance from the part, until it reaches the bed or the part:
-//! `S(k) = (O(k+1+gap) ∪ S(k+1)) − outset(L(k))`.
+//! Words: an *overhang* is what a layer reaches further out over the layer below than the
+//! threshold angle allows. The *lean* is how far it may reach for each unit of its height. The
+//! *gap* is the number of layers left open between part and support, above and below. The
+//! *clearance* is the sideways distance from the part to the middle of a support line.
+//!
+//! Algorithm, from the top down, with the overhang `O(k)` of layer `k` grown by the outset, the
+//! contours `L(k)`, and the support `S(k)`:
+//! `S(k) = (O(k+1+gap) ∪ S(k+1)) − outset(L(k), clearance)`, less the layers within the gap.
+//! So support goes down until it reaches the bed or the part. All of this happens on the rows
+//! of one raster. A window keeps only the layers within the gap; layers are sliced block by block.
+//!
+//! In the end, support that stands on the part is removed if the settings allow only the bed, and
+//! everything beyond the bed and shorter than a line width is dropped.
 
 use super::scan::Scan;
 use crate::geom::Point;
@@ -17,20 +26,20 @@ use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Overhangs and supports shorter than this along their line are left out (50 µm and
-/// one line width): noise, and blobs.
+/// Shorter overhangs on a row are dropped as noise of the contours (50 µm). A smaller value lets
+/// specks grow by the outset to columns of support; a larger one misses thin ledges.
 const LEAST_OVERHANG: Coord = 500;
 
-/// A layer is never taken to lean out further than this, mm: at an angle of nearly zero
-/// nothing is an overhang.
+/// Maximum lean of a layer, mm. At a threshold angle near zero nothing is an overhang, and the lean
+/// grows without limit.
 const MOST_LEAN_MM: f64 = 1000.0;
 
 /// The numbers of support, in grid units.
 #[derive(Debug, Clone, Copy)]
 pub struct SupportParams {
-    /// The lines, on rows fine enough to see every overhang.
+    /// The lines, on rows fine enough to find every overhang.
     lines: Lines,
-    /// How far a layer may reach over the one below without support, for each unit of its height.
+    /// How far a layer may reach out without support, for each unit of its height.
     lean: f64,
     outset: Coord,
     /// Distance from the part to the middle of a support line, sideways.
@@ -42,18 +51,18 @@ pub struct SupportParams {
 }
 
 impl SupportParams {
-    /// What support is filled with.
+    /// The pattern that fills support.
     #[must_use]
     pub fn pattern(&self) -> Pattern {
         Arc::new(self.lines)
     }
 
-    /// The rows on which support is worked out.
+    /// The raster on whose rows support is computed.
     fn raster(&self) -> Raster {
         self.lines.raster
     }
 
-    /// The numbers that `settings` mean for support; none if there is to be none.
+    /// Derives the numbers from `settings`; `None` if support is off.
     #[must_use]
     pub fn new(settings: &Settings) -> Option<Self> {
         let support = &settings.support;
@@ -74,17 +83,17 @@ impl SupportParams {
     }
 }
 
-/// One layer as support sees it.
-struct Seen {
+/// What support needs of one layer.
+struct LayerView {
     index: usize,
     inside: Rows,
-    /// The part with the distance support keeps from it.
+    /// The part grown by the clearance.
     near: Rows,
-    /// What the layer may carry above it.
+    /// The part grown by the lean: what the layer above may reach without support.
     carries: Rows,
 }
 
-impl Seen {
+impl LayerView {
     /// `above` is the height of the layer above.
     fn new(layer: &Layer, above: Coord, params: &SupportParams) -> Self {
         let lean = to_units((to_mm(above) * params.lean).min(MOST_LEAN_MM));
@@ -98,20 +107,20 @@ impl Seen {
     }
 }
 
-/// The support of every layer, by index, on all rows of its raster.
-/// `within` is the bed, as the corners of a rectangle around the origin.
+/// The support of every layer, by index, on all rows of its raster. `within` is the bed, as two
+/// opposite corners of a rectangle around the origin.
 #[must_use]
 pub fn supports(slicer: &Slicer<'_>, params: &SupportParams, within: (Point, Point)) -> Vec<Rows> {
     let heights = slicer.heights();
     let mut columns = vec![Rows::default(); heights.count()];
     let mut window = Window::default();
-    let seen = |layer: &Layer| {
+    let view = |layer: &Layer| {
         let above = (layer.index + 1).min(heights.count() - 1);
-        Seen::new(layer, heights.height(above), params)
+        LayerView::new(layer, heights.height(above), params)
     };
     for block in (0..slicer.blocks()).rev() {
-        let mut seen: Vec<Seen> = slicer.block(block).par_iter().map(seen).collect();
-        while let Some(layer) = seen.pop() {
+        let mut views: Vec<LayerView> = slicer.block(block).par_iter().map(view).collect();
+        while let Some(layer) = views.pop() {
             window.push(layer, params, &mut columns);
         }
     }
@@ -126,22 +135,22 @@ pub fn supports(slicer: &Slicer<'_>, params: &SupportParams, within: (Point, Poi
     columns.par_iter().map(|rows| rows.and(bed.inside()).filter(long)).collect()
 }
 
-/// The layers around the one whose support is being made, from the top down.
+/// The layers around the one whose support is computed, from the top down.
 #[derive(Default)]
 struct Window {
     /// Highest first.
-    layers: VecDeque<Seen>,
-    /// Overhangs grown, waiting for the layer `gap` below them, highest first.
+    layers: VecDeque<LayerView>,
+    /// Grown overhangs that wait for the layer where their support begins, highest first.
     overhangs: VecDeque<Rows>,
     /// Support of the layer above.
     above: Rows,
-    /// Layers done.
+    /// Number of layers in the window that are done.
     done: usize,
 }
 
 impl Window {
-    /// Takes the next layer down and makes the support of the one `gap` layers above it.
-    fn push(&mut self, layer: Seen, params: &SupportParams, out: &mut [Rows]) {
+    /// Takes the next layer down and computes the support of the one `gap` layers above it.
+    fn push(&mut self, layer: LayerView, params: &SupportParams, out: &mut [Rows]) {
         if let Some(over) = self.layers.back() {
             let hanging = over
                 .inside
@@ -161,17 +170,17 @@ impl Window {
         }
     }
 
-    /// Makes the support of the lowest layers, which have fewer than `gap` below them.
+    /// Computes the support of the lowest layers, which have fewer than `gap` below them.
     fn flush(&mut self, params: &SupportParams, out: &mut [Rows]) {
         while self.done < self.layers.len() {
             self.support(self.done, params, out);
         }
     }
 
-    /// Makes the support of the layer at `at` in the window.
+    /// Computes the support of the layer at index `at` of the window.
     fn support(&mut self, at: usize, params: &SupportParams, out: &mut [Rows]) {
         let layer = &self.layers[at];
-        // The overhang of layer k + 1 + gap begins at layer k.
+        // Support of the overhang of layer k + 1 + gap begins at layer k.
         let begins = out.len() > layer.index + 1 + params.gap;
         let new =
             if begins { self.overhangs.pop_front().unwrap_or_default() } else { Rows::default() };
@@ -186,9 +195,9 @@ impl Window {
     }
 }
 
-/// Joins support on both sides of a gap that is no wider than two lines and free of
-/// the part: such a gap is a leftover of something above, and only costs travels.
-fn join_gaps(rows: &Rows, layer: &Seen, line_width: Coord) -> Rows {
+/// Joins support on both sides of a gap that is at most two lines wide and free of the part. Such
+/// a gap is left over from something above and only costs travels.
+fn join_gaps(rows: &Rows, layer: &LayerView, line_width: Coord) -> Rows {
     let mut out = Rows::starting_at(rows.range().start);
     let mut free = Vec::new();
     for (j, row) in rows.iter() {
@@ -209,7 +218,7 @@ fn join_gaps(rows: &Rows, layer: &Seen, line_width: Coord) -> Rows {
     out
 }
 
-/// Takes away what stands on the part: everything above any layer below.
+/// Removes support that stands on the part: everything above any layer below it.
 fn keep_to_bed(slicer: &Slicer<'_>, params: &SupportParams, columns: &mut [Rows]) {
     let mut shadow = Rows::default();
     for block in 0..slicer.blocks() {

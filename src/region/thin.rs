@@ -1,9 +1,9 @@
 //! Contours -> contours: inner walls without the places that are too thin for both of their passes.
 //!
-//! An inner wall is a loop. Where the room inside the wall around it is hardly wider than a
-//! line, it would run out and back on itself: two beads in the room of one. There the loop is
-//! left out, and [`super::strips`] gives the room one bead. Parts with a single wall are left
-//! as they are.
+//! An inner wall is a loop. Where the room for it is hardly wider than a line, the loop would run
+//! out and back on itself: two beads in the room of one, up to a third too much plastic. There the
+//! loop is cut off, and [`super::strips`] gives the room one bead. Parts with a single wall are
+//! not changed.
 
 use super::params::WallParams;
 use super::wall_samples::SINGLE;
@@ -11,16 +11,18 @@ use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, edges, polygon};
 use crate::units::{Coord, nearest};
 
-/// Thin places of a loop shorter than this many line widths are left in it: they are corners,
-/// or hardly longer than the shortest bead.
+/// Shorter thin places stay in a loop, in line widths: they are corners, or hardly longer than the
+/// shortest bead. With a smaller value corners lose their wall; with a larger one short thin
+/// places get too much plastic.
 const SHORT: f64 = 5.0;
 
-/// Loops are compared, and cut off, so much larger (2 µm), against rounding.
+/// Loops are grown by this (2 µm) before they are compared or cut, so that rounding to the grid
+/// leaves no slivers along their edges.
 const ROUNDING: Coord = 20;
 
-/// Whether some of the layer whose inside two crossing rasters show may be so thin. The question
-/// is cheap: a thin place longer than a few lines gives a short span on two neighbouring rows
-/// of one of the two rasters.
+/// Whether a layer may have such thin places, given its inside on two crossing rasters. This is a
+/// cheap test to skip most layers: a thin place longer than a few lines has short spans on two
+/// neighbouring rows of at least one raster.
 #[must_use]
 pub fn may_be_thin(insides: [&Rows; 2], params: &WallParams) -> bool {
     let limit = f64::from(2 * params.inset_of_narrow(params.count)) * std::f64::consts::SQRT_2;
@@ -35,12 +37,12 @@ pub fn may_be_thin(insides: [&Rows; 2], params: &WallParams) -> bool {
         })
 }
 
-/// The loops of an inner wall without the places where their passes are too near to each other.
+/// Cuts off the places where two passes of an inner wall are too near to each other.
 #[must_use]
 pub fn open(loops: Vec<Contour>, params: &WallParams) -> Vec<Contour> {
     let half = (params.least_apart() / 2).max(1);
     let short = SHORT * f64::from(params.line_width);
-    // Both passes of a thin place would meet, or vanish.
+    // Shrunk by half, the passes of a thin place would meet or vanish. If none do, nothing is thin.
     if polygon::keep_shape(&loops, half, short) {
         return loops;
     }
@@ -54,8 +56,8 @@ pub fn open(loops: Vec<Contour>, params: &WallParams) -> Vec<Contour> {
 }
 
 impl WallParams {
-    /// How far apart both passes of an inner wall are at least: with a line's width more there
-    /// is room for two beads where one would be too wide.
+    /// Minimum distance of the two passes of an inner wall. Their room is one line width more: at
+    /// this distance it reaches the width from which one bead is too wide ([`SINGLE`]).
     fn least_apart(&self) -> Coord {
         nearest((SINGLE - 1.0) * f64::from(self.line_width)) as Coord
     }

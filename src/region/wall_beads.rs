@@ -1,11 +1,20 @@
 //! Walls and exposed rows of two crossing rasters -> Beads: narrow skin along the walls.
 //!
-//! On a slope the skin is a ring hardly wider than a line just inside the wall, on
-//! a blade it is a strip. Zig-zags there are all turns. Where a row crosses the inner
-//! edge of the walls it tells exactly how deep the skin is behind it, and how far it
-//! is to the wall on the other side; of the two rasters one always crosses the wall at
-//! 45° or steeper. What one to three beads can cover is laid along the wall; what is
-//! deeper stays for lines. Between two walls the beads of both sides share the width.
+//! Words: a *wall sample* is a place on a wall, with the depth of the skin behind it. A *lap* is
+//! all samples of one closed wall. The *index* of a bead counts from the wall, from 0. A *place*
+//! is a point of a bead. An *arc* is a stretch of a lap along which a bead runs.
+//!
+//! On a slope, skin is a ring hardly wider than a line just inside the wall; on a blade it is a
+//! strip. Zigzags there would be all turns. So what one to three beads can cover is laid along
+//! the wall, and deeper skin stays for lines. Between two walls the beads of both share the width.
+//!
+//! Algorithm:
+//! 1. Sample the walls (`wall_samples`). A row that crosses the inner edge of the walls gives the
+//!    exact depth of the skin there, and the distance to the wall on the other side. Of the two
+//!    rasters, one always crosses the wall at 45° or steeper.
+//! 2. For each lap and bead index, offset each sample to the place of that bead. Skip places too
+//!    near to another wall, split the lap where a bead ends, and drop short arcs.
+//! 3. Decimate each arc to the places where the bead bends or its width changes.
 
 use super::crossed::Crossed;
 use super::near::Near;
@@ -21,29 +30,33 @@ use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
 use crate::units::{Bounded as _, Coord, nearest};
 
-/// Beads may be this much nearer to a wall than asked for, in line widths: walls on
-/// both sides of a strip are not quite parallel.
+/// Tolerance by which beads may be too near to a wall, in line widths, because the walls of a strip
+/// are not quite parallel. A smaller value breaks beads in tapering strips; a larger one lets
+/// beads overlap walls.
 const SLACK: f64 = 0.15;
 
-/// Changes of place below this are not worth a corner (10 µm).
+/// Smaller changes of place give no corner in a bead (10 µm). A smaller value makes more, shorter
+/// moves; a larger one lets beads cut corners into the wall.
 const LEAST_BEND: f64 = 100.0;
 
-/// Changes of width between two points above this are divided (0.08 mm).
+/// Larger changes of width between two points are divided (0.08 mm). A segment has one width, so a
+/// long taper needs steps; a larger value makes them visible, and leaves gaps and bulges.
 const MOST_STEP: f64 = 800.0;
 
-/// Changes of width weigh this many times less.
+/// Divisor for changes of width when they are compared with changes of place. A wrong width is
+/// shared by both sides of the bead and shows less.
 const WIDTH_TO_PLACE: f64 = 3.0;
 
-/// A place on the way of a bead.
+/// A point of a bead.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Place {
     at: [f64; 2],
     width: f64,
-    /// How far all walls have to be away.
+    /// Minimum distance from all walls.
     clear: f64,
 }
 
-/// The beads that cover the narrow parts of the exposed skin `crossed` along `walls`:
+/// The beads that cover the narrow parts of the exposed skin `crossed` along `walls`. These are
 /// the innermost walls, in the frame of the raster that is printed.
 #[must_use]
 pub fn wall_beads(walls: &[Contour], crossed: &Crossed<'_>, params: &BeadParams) -> Vec<Polyline> {
@@ -62,8 +75,8 @@ pub fn wall_beads(walls: &[Contour], crossed: &Crossed<'_>, params: &BeadParams)
     out
 }
 
-/// Where the bead with `index`, counted from the wall, runs at a sample; none if there
-/// is none, or if another wall is too near.
+/// The place of bead `index` at a sample. `None` if there is no such bead, or if another wall is
+/// too near.
 fn place(sample: &WallSample, index: usize, near: &Near, params: &BeadParams) -> Option<Place> {
     let w = f64::from(params.line_width);
     if index >= sample.beads {
@@ -84,11 +97,11 @@ fn place(sample: &WallSample, index: usize, near: &Near, params: &BeadParams) ->
     near.is_free([[x, y]], clear).then_some(Place { at: [x, y], width, clear })
 }
 
-/// The stretches of a lap around a wall that bead `index` takes, long enough to be
-/// worth it. One that goes all round ends where it begins.
+/// The arcs of bead `index` on a lap, without those that are too short. An arc that goes all
+/// around the wall ends where it begins.
 fn arcs(lap: &[WallSample], index: usize, near: &Near, params: &BeadParams) -> Vec<Vec<Place>> {
     let short = SHORT * f64::from(params.line_width);
-    // Begins where there is no such bead, so that no arc is cut in two; else once more at its end.
+    // Start where there is no such bead, so that no arc is split. If it goes all around, close it.
     let bare = lap.iter().position(|s| s.beads <= index);
     let around = lap.iter().cycle().skip(bare.unwrap_or(0));
     let around = around.take(lap.len() + usize::from(bare.is_none()));
@@ -99,14 +112,13 @@ fn arcs(lap: &[WallSample], index: usize, near: &Near, params: &BeadParams) -> V
             open = false;
             continue;
         }
-        // What is too near to another wall is left out: the corner of a bead is where
-        // its two sides meet.
+        // Skip places too near to another wall. At a corner the two sides of the bead then meet.
         let Some(place) = place(sample, index, near, params) else { continue };
         let last = arcs.last_mut().filter(|_| open);
         match last.filter(|a| a.last().is_some_and(|l| joins(l, &place, near, params))) {
             Some(arc) => arc.push(place),
             None => {
-                // Few are shorter; a list that grows from one place is moved four times.
+                // Room for most arcs: growing from one place would reallocate four times.
                 let mut arc = Vec::with_capacity(16);
                 arc.push(place);
                 arcs.push(arc);
@@ -118,8 +130,8 @@ fn arcs(lap: &[WallSample], index: usize, near: &Near, params: &BeadParams) -> V
     arcs
 }
 
-/// Whether a bead may go straight from one place to the next: not far, and not across
-/// a wall that pokes in between.
+/// Whether a bead may go straight from one place to the next: they are near, and no wall pokes in
+/// between.
 fn joins(a: &Place, b: &Place, near: &Near, params: &BeadParams) -> bool {
     let w = f64::from(params.line_width);
     let far = distance(a.at, b.at);
@@ -128,8 +140,8 @@ fn joins(a: &Place, b: &Place, near: &Near, params: &BeadParams) -> bool {
     far <= w / 2.0 || far <= SHORT * w && near.is_free([0.25, 0.5, 0.75].map(on_the_way), clear)
 }
 
-/// Where on `raster` no line may end because of `beads`, which are in `frame`: lines
-/// reach into them as they do into walls.
+/// The area on `raster` that `beads`, given in `frame`, keep free of lines. Lines overlap with
+/// beads as they do with walls.
 #[must_use]
 pub fn taken(beads: &[Polyline], frame: Frame, raster: Raster, params: &BeadParams) -> Rows {
     let enter = |p: &LinePoint| raster.frame.enter(frame.leave(Point { x: p.u, y: p.v }));
@@ -151,7 +163,7 @@ fn length(arc: &[Place]) -> f64 {
     arc.windows(2).map(|w| distance(w[0].at, w[1].at)).sum()
 }
 
-/// The points of a bead, only those where it bends or changes its width.
+/// The points of a bead, decimated to those where it bends or changes its width.
 fn bead(arc: &[Place]) -> Polyline {
     let kept = decimate(arc.len(), |a, b| bend(arc, a, b));
     let mut before = arc[0].width;
@@ -169,7 +181,8 @@ fn bead(arc: &[Place]) -> Polyline {
         .collect()
 }
 
-/// The place between `a` and `b` that a straight bead from one to the other would miss.
+/// The place between `a` and `b` to keep: the one that a straight bead would miss most, or the
+/// middle of a long taper.
 fn bend(arc: &[Place], a: usize, b: usize) -> Option<usize> {
     let (first, last) = (arc[a], arc[b]);
     let chord = way(first.at, last.at);
@@ -180,7 +193,7 @@ fn bend(arc: &[Place], a: usize, b: usize) -> Option<usize> {
         let foot = along(first.at, t, chord);
         distance(foot, arc[k].at).at_least((width - arc[k].width).abs() / WIDTH_TO_PLACE)
     });
-    // Between two points a bead has one width: a long taper needs steps.
+    // A segment has one width, so a long taper needs steps.
     let tapers = (first.width - last.width).abs() > MOST_STEP && b - a > 1;
     worst.or_else(|| tapers.then_some(usize::midpoint(a, b)))
 }
@@ -193,8 +206,8 @@ mod tests {
     use crate::region::RegionParams;
     use crate::region::scan::Scan;
 
-    /// The beads of a part with one wall whose skin is exposed up to `covered` from its
-    /// contour; lines along x.
+    /// The beads of a part with one wall and lines along x, whose skin is exposed up to `covered`
+    /// from its contour.
     fn beads(part: &[Contour], covered: Coord) -> (Vec<Polyline>, BeadParams) {
         let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
         settings.angle = profile::Angle::Degrees(0.0);
@@ -224,7 +237,7 @@ mod tests {
 
     #[test]
     fn a_ring_of_skin_is_a_closed_bead_beside_the_wall() {
-        // Exposed as far as 1 mm from the contour: 0.6 mm from the wall's inner edge.
+        // Exposed up to 1 mm from the contour: 0.6 mm from the wall's inner edge.
         let (beads, params) = beads(&block(200_000, 150_000), 10_000);
         assert_eq!(beads.len(), 1, "{beads:?}");
         assert_eq!(beads[0].first().map(|p| (p.u, p.v)), beads[0].last().map(|p| (p.u, p.v)));
@@ -249,7 +262,7 @@ mod tests {
 
     #[test]
     fn both_sides_of_a_strip_share_its_width() {
-        // 1.7 mm with walls, 0.9 mm within: one closed bead that turns at the ends.
+        // 1.7 mm with walls, 0.9 mm inside them: one closed bead that turns at the ends.
         let (beads, _) = beads(&block(300_000, 17_000), 10_000);
         assert_eq!(beads.len(), 1, "{beads:?}");
         for p in beads.iter().flatten().filter(|p| p.u > 20_000 && p.u < 280_000) {
@@ -258,8 +271,8 @@ mod tests {
         }
     }
 
-    /// The beads of a strip about along x, 1.24 mm wide with its walls at the middle. It is
-    /// `lean` narrower on the right than on the left, and rises by `turn` from left to right.
+    /// The beads of a strip roughly along x that is 1.24 mm wide at its middle, walls included. It
+    /// is `lean` narrower on the right than on the left, and rises by `turn` from left to right.
     fn leaning(lean: Coord, turn: Coord) -> Vec<Polyline> {
         let p = |x, y| Point { x, y };
         let (left, right) = (-turn / 2, turn / 2);

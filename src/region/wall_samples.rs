@@ -1,4 +1,23 @@
 //! Wall and exposed rows -> Samples: how deep the exposed skin is behind each place of a wall.
+//!
+//! Words: a *wall sample* is a place on a wall's centre line, with the *depth* of the skin behind
+//! it, measured from the wall's inner edge at right angles to it. A *strip* is the room between
+//! two walls; its samples are *shared*, and one of the two walls *leads*: it lays the bead that
+//! both share. The *position* of a sample is its distance from the wall's first point along the
+//! wall; the *perimeter* is the length of the wall. A *stretch* is a sequence of equal samples.
+//!
+//! Algorithm, for each closed wall:
+//! 1. Sample each edge where rows cross the inner edge of the wall ([`measured`]). Of the two
+//!    rasters take the one whose rows cross the edge at 45° or steeper. The exposed span behind
+//!    the crossing, times the sine of the angle, is the depth. If little infill would remain
+//!    before the skin of the opposite wall, the sample is shared and its depth is half the room.
+//! 2. Choose the number of beads: as many as cover the depth, or 0 if it is too deep.
+//! 3. Confirm shared samples: the opposite wall must really lie there ([`WallSample::confirm`]).
+//! 4. Bridge short gaps without beads, and smooth short changes of their number.
+//! 5. Add the wall's own corners, with the interpolated depth, so that beads follow them.
+//!
+//! The constants are in line widths unless they say otherwise. Most are as old as this file, and
+//! the history records no measurements of them. So each says what it trades off.
 
 use super::crossed::Crossed;
 use super::near::{Area, Near};
@@ -7,80 +26,102 @@ use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, Point, edges};
 use crate::units::{Bounded as _, Coord, between, nearest};
 
-/// At most this many beads beside each other along one wall.
+/// Maximum number of beads beside each other along one wall. More would replace zigzags that are
+/// wide enough to be fast; fewer leave rings of skin to zigzags that are nearly all turns.
 pub(super) const MOST_BEADS: usize = 3;
 
-/// A bead along a wall is at least this many line widths wide, where there is room.
+/// Minimum width of a bead, where there is room. Thinner skin gets a bead that reaches
+/// beyond the skin. A smaller value makes beads too thin to flow evenly; a larger one
+/// wastes plastic.
 pub(super) const NARROWEST: f64 = 0.75;
 
-/// Beads shorter than this many line widths are left to the lines, and gaps in a bead
-/// shorter than this are closed.
+/// Shorter beads are dropped and left to lines; shorter gaps in a bead are closed. A smaller value
+/// makes many short beads with a travel each. A larger one lays beads where there is no skin.
 pub(super) const SHORT: f64 = 2.5;
 
-/// A bead takes a depth of up to this many line widths on its own.
+/// Maximum depth for each bead, which is also its width. A larger value needs fewer beads but makes
+/// them wider than what a nozzle lays evenly; a smaller one needs a second bead earlier.
 const WIDEST: f64 = 1.5;
 
-/// Strips between two walls get beads if they are no wider than twice this many line
-/// widths, one along either wall: wider ones taper too much for more.
+/// Strips are filled with one bead along either wall if each half is at most this wide. Wider ones
+/// would need more beads, and strips mostly taper too much for these: lines fill them better. A
+/// smaller value leaves more strips to zigzags.
 const SHARED: f64 = 1.6;
 
-/// A strip between two walls up to this many line widths wide gets one bead.
+/// A narrower strip gets a single bead, of its full width. From this width on two beads of 0.8 fit.
+/// A larger value makes single beads too wide; a smaller one makes pairs that are too thin. `thin`
+/// cuts off inner walls by the same constant, so that no strip gets both or none.
 pub(super) const SINGLE: f64 = 1.6;
 
-/// A bead is stretched to this many line widths to spare another one on a short way.
+/// Maximum depth for each bead on a short stretch where one bead more would be needed: stretching
+/// the others avoids a short extra bead. It is as wide as lines may get in gap closing. At
+/// [`WIDEST`] short extra beads would stay; a larger value makes bulges.
 const STRETCHED: f64 = 1.75;
 
-/// Depths up to this many line widths more than the beads cover are left open: the
-/// walls of the layer that ends there reach over it.
+/// Depth beyond what the beads cover that may stay open: the walls of the layer that ends there
+/// reach over it. At 0, a depth just above the limit gets one bead more, all of them thin; a
+/// larger value leaves visible gaps.
 const OPEN: f64 = 0.1;
 
-/// Between skin along two walls, this many line widths are not worth any infill.
+/// If no more infill than this would remain between the skins of two walls, the whole room counts
+/// as a strip. A smaller value lays tiny pieces of infill, each with turns and travels; a larger
+/// one makes more strips solid.
 const GAP: f64 = 2.0;
 
-/// A place beyond the middle of a strip, as a share of its width.
+/// Where a shared sample looks for the opposite wall, as a fraction of the strip's width. It must
+/// be past the middle, 0.5, so that the opposite wall is the nearer one. The larger it is, the
+/// smaller the circle that is searched, and the fewer tapering strips are found.
 const BEYOND: f64 = 0.6;
 
-/// How much further away the other wall may be there, as a share of the strip's width.
+/// How much further away the opposite wall may be there, as a fraction of the strip's width. A
+/// smaller value rejects tapering strips. A larger one accepts corners, where the wall at the
+/// other end of the row is not opposite; above 0.2 the sample's own wall would pass.
 const SLOPE: f64 = 0.1;
 
-/// How far out the middle of a round corner lies, so that its chords keep their distance.
+/// Length of the middle normal of a round corner. A corner of 90° to 180° gets three points; their
+/// two chords would cut inside the circle around the corner. At 1 beads come too near to the
+/// wall at such corners; a larger value leaves them further open.
 const ROUND: f64 = 1.2;
 
-/// Stretches that seem deep are narrow all the same if narrow skin follows within this
-/// many line widths: near a corner the depth is that along the other wall.
+/// Maximum length of a stretch that is too deep and yet gets beads, because narrow skin is on both
+/// sides. Near a corner a row runs inside the skin of the other wall, so the depth seems large.
+/// At a square corner each side seems deep for half a line plus the depth that [`MOST_BEADS`]
+/// cover: 2 · (0.5 + 4.6) = 10.2, and samples are a line apart. It was 8 first, which broke rings
+/// of three beads at corners. A larger value lays beads over skin that is really deep.
 const CORNER: f64 = 11.0;
 
-/// Beads and gaps closed in them are no further than this many line widths from a
-/// sample that has beads.
+/// Margin around the samples with beads within which wall edges are collected. It must reach from a
+/// sample to the middle of a bridged gap, and from there to the far side of the beads and to walls
+/// near them. If it is too small, beads may cross walls; a larger value sorts edges for nothing.
 const MARGIN: f64 = CORNER + 8.0;
 
-/// Side of the cells that edges are sorted into, in line widths: larger than what is asked for
-/// around most places, so that few are looked up.
+/// Side of the cells into which edges are sorted. It is larger than the distance of most queries, so
+/// that a query looks up few cells. It affects speed only: larger cells hold more edges to test.
 const CELL: f64 = 4.0;
 
-/// A place of a wall, and the skin behind it.
+/// A place on a wall, and the skin behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct WallSample {
-    /// On the wall.
+    /// The place, on the centre line of the wall.
     pub at: [f64; 2],
-    /// What leads away from the wall: its length is that of a mitre, 1 where the wall is straight.
+    /// Points away from the wall, into the solid. Its length is 1, or that of the mitre at a corner.
     pub normal: [f64; 2],
-    /// How deep the skin is, from the walls' inner edge.
+    /// Depth of the skin, from the wall's inner edge.
     pub depth: f64,
-    /// The depth ends half-way to another wall, which lays beads as well.
+    /// The depth is half the distance to another wall, which lays beads as well.
     pub shared: bool,
-    /// Of these two walls this is the one that lays a bead which both share.
+    /// Of these two walls, this one lays a single bead that both share.
     pub leads: bool,
-    /// How many beads it takes; 0 where there is no skin or too much.
+    /// Number of beads; 0 where there is no skin or too much.
     pub beads: usize,
     /// Distance from the wall's first point along the wall.
-    way: f64,
-    /// There is skin, whether or not beads can cover it.
+    position: f64,
+    /// Whether there is skin, even if beads cannot cover it.
     skin: bool,
 }
 
-/// The samples of closed walls in the order of their points; none where beads cover
-/// nothing. Also all edges of the walls, if there are samples.
+/// The samples of closed walls in the order of their points, and the edges of the walls around
+/// them. A wall without beads has no samples; `None` if no wall has beads.
 pub(super) fn samples(
     walls: &[Contour],
     crossed: &Crossed<'_>,
@@ -100,31 +141,31 @@ pub(super) fn samples(
             let others = lap.iter_mut().filter(|s| !s.is_single(params));
             others.for_each(|s| (s.beads, s.skin) = (0, false));
         }
-        *lap = settled(wall, std::mem::take(lap), params);
+        *lap = finished(wall, std::mem::take(lap), params);
     }
     Some((laps, near))
 }
 
-/// The samples of a wall without short changes, with the wall's own corners.
-fn settled(wall: &Contour, mut found: Vec<WallSample>, params: &BeadParams) -> Vec<WallSample> {
+/// Bridges and smooths the samples of a wall, and adds the wall's own corners.
+fn finished(wall: &Contour, mut found: Vec<WallSample>, params: &BeadParams) -> Vec<WallSample> {
     if found.iter().all(|s| s.beads == 0) {
         return Vec::new();
     }
-    let round = edges(wall).map(|(p, q)| p.distance(q)).sum::<f64>();
-    bridge(&mut found, round, params);
-    calm(&mut found, round, params);
-    with_corners(wall, &found, round, params)
+    let perimeter = edges(wall).map(|(p, q)| p.distance(q)).sum::<f64>();
+    bridge(&mut found, perimeter, params);
+    smooth(&mut found, perimeter, params);
+    with_corners(wall, &found, perimeter, params)
 }
 
 impl WallSample {
-    /// Whether it is at a strip so thin that one bead fills it.
+    /// Whether one bead fills the strip at this sample.
     pub(super) fn is_single(&self, params: &BeadParams) -> bool {
         self.shared && 2.0 * self.depth < SINGLE * f64::from(params.line_width)
     }
 
-    /// Keeps no beads where the wall at the other end of the row is not beside this one:
-    /// beyond the middle of a strip the other wall is the nearer one, in a corner it is not.
-    /// Else settles which of the two leads.
+    /// Checks that a shared sample really has another wall opposite, and decides which of the two
+    /// leads. Past the middle of a strip the opposite wall is the nearer one. In a corner the wall
+    /// at the other end of the row is not: then the sample loses its beads.
     fn confirm(&mut self, near: &Near, params: &BeadParams) {
         let across = 2.0 * (self.depth + f64::from(params.line_width) / 2.0);
         let beyond = [0, 1].map(|k| self.at[k] + BEYOND * across * self.normal[k]);
@@ -137,9 +178,9 @@ impl WallSample {
     }
 }
 
-/// Whether a wall with this normal leads the one with edge `other`, by where the strip
-/// between them lies seen from it. The difference of the two normals is the same one
-/// from the other side, but for its sign: of two walls that lean either way one leads.
+/// Whether a wall with this normal leads the one with edge `other`. The sign of the difference of
+/// the two normals decides. The opposite wall sees the same difference with the other sign, so
+/// exactly one of the two leads, however they lean.
 fn leads(normal: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
     let [x, y] = [to[0] - from[0], to[1] - from[1]];
     let length = (x * x + y * y).sqrt().at_least(1.0);
@@ -147,18 +188,18 @@ fn leads(normal: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
     x > 0.0 || (x == 0.0 && y > 0.0)
 }
 
-/// Where rows cross the inner edge of the walls: each edge of the wall under the raster
-/// whose rows it crosses at 45° or steeper.
+/// Samples a wall where rows cross its inner edge. Each edge is sampled on the raster whose rows
+/// cross it at 45° or steeper.
 fn measured(wall: &Contour, crossed: &Crossed<'_>, params: &BeadParams) -> Vec<WallSample> {
     let turned = |p: Point| {
         if crossed.left_turn { Point { x: p.y, y: -p.x } } else { Point { x: -p.y, y: p.x } }
     };
     let mut out = Vec::with_capacity(wall.len());
-    let mut way = 0.0;
+    let mut position = 0.0;
     for (p, q) in edges(wall) {
         let steep = (q.y - p.y).abs() >= (q.x - p.x).abs();
-        let edge = Edge::new(p, q, way);
-        way += edge.length;
+        let edge = Edge::new(p, q, position);
+        position += edge.length;
         if steep {
             edge.measure((p, q), (crossed.fill, crossed.skin), params, &mut out);
         } else {
@@ -175,23 +216,24 @@ struct Edge {
     /// Its direction; the solid is on its left.
     along: [f64; 2],
     length: f64,
-    way: f64,
+    /// Position of its start.
+    position: f64,
 }
 
 impl Edge {
-    fn new(p: Point, q: Point, way: f64) -> Self {
+    fn new(p: Point, q: Point, position: f64) -> Self {
         let length = p.distance(q);
         let [x, y] = [f64::from(q.x) - f64::from(p.x), f64::from(q.y) - f64::from(p.y)];
         let from = [f64::from(p.x), f64::from(p.y)];
-        Self { from, along: [x / length.at_least(1.0), y / length.at_least(1.0)], length, way }
+        Self { from, along: [x / length.at_least(1.0), y / length.at_least(1.0)], length, position }
     }
 
     fn normal(&self) -> [f64; 2] {
         [-self.along[1], self.along[0]]
     }
 
-    /// Adds the samples where the rows of `fill` and `exposed` cross this edge, which
-    /// is `p` to `q` in their frame.
+    /// Adds the samples where the rows of `fill` and `exposed` cross this edge. It runs from `p` to
+    /// `q` in the frame of these rows.
     fn measure(
         &self,
         (p, q): (Point, Point),
@@ -222,7 +264,7 @@ impl Edge {
                 shared: false,
                 leads: false,
                 beads: 0,
-                way: self.way + t * self.length,
+                position: self.position + t * self.length,
                 skin: false,
             };
             if exposed.row(j).is_empty() {
@@ -238,18 +280,18 @@ impl Edge {
     }
 }
 
-/// What a row meets behind the inner edge of the walls.
+/// What a row has behind the inner edge of the walls.
 struct Behind {
-    /// Length of the exposed skin from there on.
+    /// Length of the exposed skin that begins there.
     skin: i64,
     /// Length of the exposed skin at the other end.
     other: i64,
-    /// To the walls at the other end.
+    /// Length of the row up to the walls at the other end.
     room: i64,
 }
 
 impl Behind {
-    /// For a row that crosses the edge at about `u`, entering to the right or to the left.
+    /// For a row that crosses the edge near `u`, with the solid to the right or to the left.
     fn new(fill: &[Span], exposed: &[Span], u: Coord, right: bool, pitch: Coord) -> Option<Self> {
         let end = |s: &Span| if right { s.start } else { s.end };
         let near = |s: &&Span| (end(s) - u).abs() <= pitch / 4;
@@ -266,13 +308,13 @@ impl Behind {
         Some(Self { skin, other, room: fill.len() })
     }
 
-    /// `blank` with what is behind it; `sine` is that of the angle at which the row crosses.
+    /// Completes `blank` with what is behind it. `sine` is of the angle between row and edge.
     fn sample(&self, blank: WallSample, sine: f64, params: &BeadParams) -> WallSample {
         let w = f64::from(params.line_width);
         let lead = f64::from(params.wall_to_fill) - w / 2.0;
         let skin = self.skin > 0 || self.other > 0;
         let depth = |length: i64| length as f64 * sine + lead;
-        // What a bead covers at least of either side.
+        // Beads cover at least their minimum width on either side.
         let taken = |length: i64| if length > 0 { depth(length).max(NARROWEST * w) } else { 0.0 };
         let across = depth(self.room) + lead;
         if skin && across - taken(self.skin) - taken(self.other) <= GAP * w {
@@ -288,8 +330,8 @@ impl Behind {
     }
 }
 
-/// How far stretches reach that begin at zero; what is covered between two of them is
-/// a speck if it is shorter than half a `pitch`.
+/// How far exposed stretches reach, beginning at zero. A covered gap shorter than half a `pitch`
+/// is noise and does not end them.
 fn reach(stretches: impl Iterator<Item = (i64, i64)>, pitch: Coord) -> i64 {
     let mut end = 0;
     for (from, to) in stretches {
@@ -301,14 +343,14 @@ fn reach(stretches: impl Iterator<Item = (i64, i64)>, pitch: Coord) -> i64 {
     end
 }
 
-/// How many beads cover a depth; none if it is too deep.
+/// Number of beads that cover a depth; 0 if it is too deep.
 fn beads(depth: f64, w: f64) -> usize {
     let count = (((depth - OPEN * w) / (WIDEST * w)).ceil() as usize).max(1);
     if count <= MOST_BEADS { count } else { 0 }
 }
 
-/// The stretches of samples with the same value of `key` as index ranges around the
-/// wall, which go on beyond the last sample into the first ones.
+/// The stretches of samples with equal `key`, as index ranges. The last one may wrap around: its
+/// indices then continue past the last sample.
 fn stretches<K: PartialEq>(
     samples: &[WallSample],
     key: impl Fn(&WallSample) -> K,
@@ -320,15 +362,15 @@ fn stretches<K: PartialEq>(
     starts.iter().copied().zip(ends).collect()
 }
 
-/// The way from the sample before a stretch to the one behind it.
-fn span(samples: &[WallSample], (from, to): (usize, usize), round: f64) -> f64 {
+/// The length from the sample before a stretch to the one behind it.
+fn span(samples: &[WallSample], (from, to): (usize, usize), perimeter: f64) -> f64 {
     let n = samples.len();
-    let way = samples[to % n].way - samples[(from + n - 1) % n].way;
-    if way > 0.0 { way } else { way + round }
+    let length = samples[to % n].position - samples[(from + n - 1) % n].position;
+    if length > 0.0 { length } else { length + perimeter }
 }
 
-/// Gives beads to short stretches without between two with beads.
-fn bridge(samples: &mut [WallSample], round: f64, params: &BeadParams) {
+/// Gives beads to short stretches without beads between two with beads.
+fn bridge(samples: &mut [WallSample], perimeter: f64, params: &BeadParams) {
     let (n, w) = (samples.len(), f64::from(params.line_width));
     for (from, to) in stretches(samples, |s| s.beads > 0) {
         let (before, after) = (samples[(from + n - 1) % n], samples[to % n]);
@@ -337,11 +379,11 @@ fn bridge(samples: &mut [WallSample], round: f64, params: &BeadParams) {
         }
         let deep = (from..to).any(|k| samples[k % n].skin);
         let most = if deep { CORNER } else { SHORT } * w;
-        if span(samples, (from, to), round) > most {
+        if span(samples, (from, to), perimeter) > most {
             continue;
         }
         let model = if before.depth <= after.depth { before } else { after };
-        // Around the end of a strip the wall turns from one side to the other.
+        // At the end of a strip the wall turns back: one side leads, the other does not.
         let leads = before.leads || after.leads;
         for k in from..to {
             let sample = &mut samples[k % n];
@@ -351,8 +393,8 @@ fn bridge(samples: &mut [WallSample], round: f64, params: &BeadParams) {
     }
 }
 
-/// Spares beads on short stretches, and closes short gaps in them.
-fn calm(samples: &mut [WallSample], round: f64, params: &BeadParams) {
+/// Smooths the number of beads: short stretches with more or fewer take that of their neighbours.
+fn smooth(samples: &mut [WallSample], perimeter: f64, params: &BeadParams) {
     let (n, w) = (samples.len(), f64::from(params.line_width));
     for (from, to) in stretches(samples, |s| s.beads) {
         let (before, after) = (samples[(from + n - 1) % n].beads, samples[to % n].beads);
@@ -364,7 +406,7 @@ fn calm(samples: &mut [WallSample], round: f64, params: &BeadParams) {
             _ if here > more => more,
             _ => continue,
         };
-        if other == 0 || span(samples, (from, to), round) > SHORT * w {
+        if other == 0 || span(samples, (from, to), perimeter) > SHORT * w {
             continue;
         }
         let fits = |s: &WallSample| s.depth <= other as f64 * STRETCHED * w;
@@ -374,24 +416,24 @@ fn calm(samples: &mut [WallSample], round: f64, params: &BeadParams) {
     }
 }
 
-/// Adds the wall's own corners to the samples found, with the skin of the nearest one.
+/// Adds the wall's own corners to the samples, with the skin of the nearest sample.
 fn with_corners(
     wall: &Contour,
     found: &[WallSample],
-    round: f64,
+    perimeter: f64,
     params: &BeadParams,
 ) -> Vec<WallSample> {
     let most = SHORT * f64::from(params.line_width);
     let n = wall.len();
     let mut out = Vec::with_capacity(found.len() + n);
-    let mut way = 0.0;
+    let mut position = 0.0;
     let mut next = 0;
     for (k, (p, q)) in edges(wall).enumerate() {
-        let (before, edge) = (Edge::new(wall[(k + n - 1) % n], p, 0.0), Edge::new(p, q, way));
+        let (before, edge) = (Edge::new(wall[(k + n - 1) % n], p, 0.0), Edge::new(p, q, position));
         let near = |k: usize| {
             let sample = found[k % found.len()];
-            let away = (sample.way - way).abs();
-            (away.at_most(round - away), sample)
+            let away = (sample.position - position).abs();
+            (away.at_most(perimeter - away), sample)
         };
         let (a, b) = (near(next + found.len() - 1), near(next));
         let nearest = if a.0 <= b.0 { a } else { b };
@@ -404,21 +446,21 @@ fn with_corners(
         };
         let beads = if nearest.0 <= most { nearest.1.beads } else { 0 };
         let leads = a.1.leads || b.1.leads;
-        let corner = WallSample { at: edge.from, way, depth, leads, beads, ..nearest.1 };
+        let corner = WallSample { at: edge.from, position, depth, leads, beads, ..nearest.1 };
         add_corner(&before, &edge, corner, &mut out);
-        way += edge.length;
-        while let Some(sample) = found.get(next).filter(|s| s.way <= way) {
+        position += edge.length;
+        while let Some(sample) = found.get(next).filter(|s| s.position <= position) {
             out.push(*sample);
             next += 1;
         }
     }
-    // Of places without beads one in a row is enough.
+    // One sample is enough for each stretch without beads.
     out.dedup_by(|b, a| a.beads == 0 && b.beads == 0);
     out
 }
 
-/// Adds a corner between two edges: on its mitre, or round in three points where that
-/// would reach far.
+/// Adds a corner between two edges: one point on its mitre, or three round points where the mitre
+/// would reach too far.
 fn add_corner(before: &Edge, after: &Edge, corner: WallSample, out: &mut Vec<WallSample>) {
     let (a, b) = (before.normal(), after.normal());
     let cosine = a[0] * b[0] + a[1] * b[1];
@@ -427,7 +469,7 @@ fn add_corner(before: &Edge, after: &Edge, corner: WallSample, out: &mut Vec<Wal
         out.push(WallSample { normal, ..corner });
         return;
     }
-    // Between the edges, or straight on where the wall turns back.
+    // The middle normal bisects the two, or points straight on where the wall turns back.
     let length = (2.0 + 2.0 * cosine).at_least(0.0).sqrt();
     let middle = [0, 1].map(|k| {
         let ahead = if length > 0.1 { (a[k] + b[k]) / length } else { before.along[k] };

@@ -10,7 +10,7 @@ use crate::units::UNITS_PER_MM;
 /// One closed wall.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wall {
-    /// The middle of its bead, solid on the left.
+    /// The centre line of its bead, with the solid on the left.
     pub path: Contour,
     /// Counted from the outside; 0 is the outer wall.
     pub depth: u32,
@@ -18,8 +18,8 @@ pub struct Wall {
     pub layers: u32,
 }
 
-/// The walls of `contours`, from the outside inwards. Where the part is too thin
-/// for a wall there is none; nor for an inner wall's two passes, if it `may_be_thin`.
+/// The walls of `contours`, from the outside inwards. Where the part is too thin for a wall, there
+/// is none. If the layer `may_be_thin`, inner walls are cut off where their two passes do not fit.
 #[must_use]
 pub fn walls(contours: &[Contour], may_be_thin: bool, params: &WallParams) -> Vec<Wall> {
     let mut walls = Vec::new();
@@ -37,13 +37,14 @@ pub fn walls(contours: &[Contour], may_be_thin: bool, params: &WallParams) -> Ve
     walls
 }
 
-/// Walls of two layers are printed at once if they are no further apart than one part
-/// in so many of a line's width.
+/// Walls of two layers are printed at once if they are at most this fraction (one tenth) of a
+/// line's width apart. A larger distance lets thick walls hang over or leave gaps to the outer
+/// wall on slopes; a smaller one shares nothing but upright walls.
 const ALIKE: i32 = 10;
 
-/// For each wall of each layer of `block`, how many layers it is printed for: none if a
-/// layer above prints it. The outer wall is for its own layer; an inner one goes on in
-/// that of the next layer which runs along it.
+/// For each wall of each layer of `block`, the number of layers it is printed for: 0 if a layer
+/// above prints it. The outer wall is always for its own layer. An inner one continues in a wall
+/// of the next layer that runs along it.
 #[must_use]
 pub fn share(
     block: &Block,
@@ -51,7 +52,7 @@ pub fn share(
     grouping: &Grouping,
     params: &WallParams,
 ) -> Vec<Vec<u32>> {
-    let far = params.line_width / ALIKE;
+    let tolerance = params.line_width / ALIKE;
     let mut out: Vec<Vec<u32>> = layers.iter().map(|walls| vec![1; walls.len()]).collect();
     for n in 1..layers.len() {
         let k = block.layers.start + n;
@@ -59,13 +60,13 @@ pub fn share(
             if grouping.ends(grouping.wall_phase(wall.depth), k - 1, block) {
                 continue;
             }
-            let goes_on = |&j: &usize| {
+            let continues = |&j: &usize| {
                 let below = &layers[n - 1][j];
                 out[n - 1][j] > 0
                     && below.depth == wall.depth
-                    && follow(&below.path, &wall.path, far)
+                    && follow(&below.path, &wall.path, tolerance)
             };
-            if let Some(j) = (0..layers[n - 1].len()).find(goes_on) {
+            if let Some(j) = (0..layers[n - 1].len()).find(continues) {
                 out[n][i] += std::mem::take(&mut out[n - 1][j]);
             }
         }
@@ -73,14 +74,15 @@ pub fn share(
     out
 }
 
-/// Corners of a wall sharper than this (half the turn's tangent) are cut off by the
-/// offset: what is outside of them is a thin place.
+/// Limit for the tangent of half a turn, when the strip outside a wall is computed. The offset cuts
+/// off sharper corners, so what is outside of them is not printed. A larger value misses thin
+/// tips; a smaller one counts every acute corner as thin.
 const SHARPEST_CORNER: f64 = 1.75;
 
-/// The area of `contours` that is too thin for the outer wall, mm²: what they have
-/// more than the walls with a strip of the inset around them. The strip around a
-/// polygon has the area `P·d + d²·Σ tan(φ/2)` with perimeter `P` and turns `φ`.
-/// Nothing is too thin for no wall, or for one on the contour.
+/// The area of `contours` that is too thin for the outer wall, mm². It is their area less that of
+/// the walls with a strip of the inset around them. The strip around a polygon has the area
+/// `P·d + d²·Σ tan(φ/2)`, with perimeter `P`, inset `d` and turns `φ`. The result is 0 without
+/// walls, or with the wall on the contour.
 #[must_use]
 pub fn thin_area(contours: &[Contour], walls: &[Wall], params: &WallParams) -> f64 {
     if params.count == 0 || params.outer_inset == 0 {
@@ -98,7 +100,8 @@ pub fn thin_area(contours: &[Contour], walls: &[Wall], params: &WallParams) -> f
     ((whole - walled) / (UNITS_PER_MM * UNITS_PER_MM)).max(0.0)
 }
 
-/// The perimeter of a polygon and the sum of the tangents of half its turns, left positive.
+/// The perimeter of a polygon, and the sum of the tangents of half its turns; left turns are
+/// positive.
 fn length_and_turns(contour: &Contour) -> (f64, f64) {
     let n = contour.len();
     let edge = |k: usize| {

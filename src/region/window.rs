@@ -1,14 +1,18 @@
 //! Slicer -> Regions, batch by batch: the rolling window of layers that need each other.
 //!
-//! Words: to *prepare* a layer is to make its walls and rows from its contours. To *divide* it
-//! is to tell skin from infill, once the layers above that its top skins depend on are prepared.
-//! A *block* of layers is *filled* once all of it, and what it shares skins with, is divided:
-//! dual injection decides which layer prints what.
+//! Words: to *prepare* a layer is to make its walls and rows from its contours. To *divide* it is
+//! to tell skin from infill. A *block* of layers is *filled* when dual injection has decided
+//! which layer prints what.
 //!
-//! Two kinds of values are kept for a layer. What neighbours look at (rows, areas) stays until
-//! no layer above needs it. What belongs to the layer alone (contours, walls, beads) is taken
-//! out once, when its region is handed on. So memory holds a batch and a few layers, whatever
-//! the height of the print.
+//! Algorithm: a layer is divided once the layers above that its top skins depend on are prepared.
+//! A block is filled once all of it, and all layers it may share skin with, are divided. Each
+//! call of `next` loads batches of layers until a block is ready, fills all ready blocks, and
+//! hands on their regions. Layers and blocks run in parallel; results stay in layer order.
+//!
+//! Two kinds of values are kept for a layer. What neighbours read (rows, areas) stays until no
+//! layer above needs it. What belongs to the layer alone (contours, walls, beads) is taken out
+//! once, when its region is handed on. So memory holds a batch and a few layers, whatever the
+//! height of the print.
 
 use super::divide::{LayerAreas, divide};
 use super::dual;
@@ -38,9 +42,9 @@ pub struct Window<'a> {
     support: Option<Support>,
     /// The next batch to be sliced.
     batch: usize,
-    /// What layers keep for themselves.
+    /// What belongs to each layer alone.
     own: Queue<Own>,
-    /// Beads along the walls of the layers that are divided.
+    /// Wall beads of the layers that are divided.
     beads: Queue<Vec<Polyline>>,
     /// Rows of the layers that are prepared.
     rows: Queue<LayerRows>,
@@ -52,13 +56,13 @@ pub struct Window<'a> {
 /// The support of a print.
 #[derive(Debug)]
 pub struct Support {
-    /// What it is filled with.
+    /// The pattern that fills it.
     pub pattern: Pattern,
     /// Where it stands, by layer.
     pub rows: Vec<Rows>,
 }
 
-/// What is decided for one layer of a block, before its walls and beads are taken along.
+/// What is decided for one layer of a block, before its walls and beads are added.
 struct Filling {
     skins: Vec<Skin>,
     infill: Vec<Sparse>,
@@ -68,7 +72,7 @@ struct Filling {
 }
 
 impl<'a> Window<'a> {
-    /// A window at the bed.
+    /// A window that begins at the bed.
     #[must_use]
     pub fn new(
         slicer: &'a Slicer<'a>,
@@ -90,7 +94,7 @@ impl<'a> Window<'a> {
         }
     }
 
-    /// What dual injection did, block by block. Nothing is left of it afterwards.
+    /// Takes the audits of dual injection, block by block.
     #[must_use]
     pub fn audits(&mut self) -> Vec<Audit> {
         std::mem::take(&mut self.audits)
@@ -100,13 +104,13 @@ impl<'a> Window<'a> {
         self.slicer.heights().count()
     }
 
-    /// How many layers up and down a layer's skin may depend on another's.
+    /// How many layers up and down the skin of a layer may be shared.
     fn skin_reach(&self) -> usize {
         let shares = self.grouping.shares(DualPart::InnerSkin);
         if shares { self.grouping.ratio() - 1 } else { 0 }
     }
 
-    /// Slices and prepares the next batch, and divides the layers whose neighbours are there.
+    /// Slices and prepares the next batch, and divides the layers whose neighbours are prepared.
     fn load(&mut self) {
         let layers = self.slicer.block(self.batch);
         self.batch += 1;
@@ -125,8 +129,8 @@ impl<'a> Window<'a> {
         self.beads.extend(beads);
     }
 
-    /// The areas of layer `k` on both rasters of skins and on those of its block's infill, and
-    /// the beads along its walls; `None` if the layer is not there.
+    /// The areas of layer `k` on both rasters of skins and on those of its block's infill, and its
+    /// wall beads. `None` if the layer is not in the window.
     fn divide(&self, k: usize) -> Option<(LayerAreas, Vec<Polyline>)> {
         let block = self.grouping.block(k, self.count());
         let patterns = dual::patterns(&block, self.grouping, &self.params.sparse);
@@ -134,7 +138,7 @@ impl<'a> Window<'a> {
         Some(divide(self.own.get(k)?, rasters, &|k| self.rows.get(k), self.params))
     }
 
-    /// The next blocks whose layers have all they need.
+    /// The next blocks that can be filled.
     fn ready(&self) -> Vec<Block> {
         let divided = self.areas.end();
         let all = divided == self.count();
@@ -168,7 +172,7 @@ impl<'a> Window<'a> {
         (fillings.collect(), audit.into_iter().chain(support_audit).collect())
     }
 
-    /// How many layers each wall of each layer of a block is printed for.
+    /// The number of layers that each wall of each layer of a block is printed for.
     fn share_walls(&self, block: &Block) -> Vec<Vec<u32>> {
         let walls = |k| self.own.get(k).map_or(&[] as &[Wall], |own| &own.walls);
         let layers: Vec<&[Wall]> = block.layers.clone().map(walls).collect();
@@ -189,7 +193,7 @@ impl<'a> Window<'a> {
         dual::support(block, rows, &support.pattern, self.grouping, line_width)
     }
 
-    /// The skins of layer `k`, which is divided.
+    /// The skins of layer `k`, which must be divided.
     fn skins(&self, k: usize) -> Vec<Skin> {
         let Some(areas) = self.areas.get(k) else { return Vec::new() };
         let (along, across) = skin_turn(k);
@@ -208,8 +212,8 @@ impl<'a> Window<'a> {
         skins
     }
 
-    /// The skin of layer `k` on raster `r` of skins: what is printed for several layers, and
-    /// what for this one alone.
+    /// The skin of layer `k` on raster `r` of skins: that printed for several layers, and that for
+    /// this one alone.
     fn share_skin(&self, k: usize, r: usize) -> (Vec<(u32, Rows)>, Rows) {
         let skins = Skins {
             layers: |k| self.rows.get(k),
@@ -221,7 +225,7 @@ impl<'a> Window<'a> {
         skins.share(k)
     }
 
-    /// The skin of layer `k` on these rows and columns. Beads come with the layer's own.
+    /// The skin of layer `k` on these rows and columns. Its beads are added later.
     fn skin(
         &self,
         k: usize,
@@ -242,12 +246,12 @@ impl<'a> Window<'a> {
         }
     }
 
-    /// The regions of the layers that `fillings` were made for, in order.
+    /// Joins `fillings` with what belongs to their layers, and drops what no layer needs any more.
     fn hand_on(&mut self, fillings: Vec<Filling>) -> Vec<Region> {
         let own = std::iter::from_fn(|| self.own.take().zip(self.beads.take()));
         let regions = fillings.into_iter().zip(own).map(|(filling, (own, beads))| {
             let Filling { mut skins, infill, support, walls: printed } = filling;
-            // Beads along walls are for this layer alone.
+            // Wall beads are for this layer alone.
             if let Some(skin) = skins.first_mut() {
                 skin.beads = beads;
             }

@@ -73,13 +73,7 @@ const LONG: usize = 200;
 const LEAST_HEAD: usize = 8;
 
 /// Long files without a head. None is added.
-const WITHOUT_HEAD: &[&str] = &[
-    "cli/args.rs",
-    "fill/variable_width.rs",
-    "pattern/lines.rs",
-    "region/support.rs",
-    "region/wall_samples.rs",
-];
+const WITHOUT_HEAD: &[&str] = &["cli/args.rs"];
 
 struct Source {
     /// From src/, with slashes.

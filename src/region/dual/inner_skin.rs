@@ -94,8 +94,8 @@ where
                     None => Rows::default(),
                 };
             }
-            // The groups of other layers may reach here too. The core of an upper group goes
-            // first, then what lower groups print with their margin.
+            // Groups of other layers may reach here too. A place in the core of the upper group
+            // belongs to that group, any other place to the lower one.
             for other in self.depths() {
                 for far in 1..self.ratio {
                     rows = rows.minus(&self.core(k + far, other));
