@@ -100,8 +100,8 @@ const KEYS: &str = "@keys@";
 
 /// The script that tells `shell` how to complete.
 pub(super) fn completions(shell: Shell) -> String {
-    let mut text = Vec::new();
-    clap_complete::generate(shell, &mut marked(command()), "slicer", &mut text);
+    let (mut program, mut text) = (marked(command()), Vec::new());
+    clap_complete::generate(shell, &mut program, "slicer", &mut text);
     let text = String::from_utf8_lossy(&text);
     let mut profiles: Vec<&str> = builtin_names().collect();
     profiles.sort_unstable();
@@ -125,10 +125,13 @@ pub(super) fn completions(shell: Shell) -> String {
             // Files are offered beside profiles.
             let text = text
                 .replace(&format!("-f -a \"{PROFILES}\\t''\""), &format!("-F -a \"{profiles}\""));
-            // A model is a word of its own, which fish's script takes for a command.
-            let early = |flag: &str| format!("-n \"__fish_slicer_needs_command\" {flag} ");
-            let text = text.replace(&early("-s p -l profile"), "-s p -l profile ");
-            let text = text.replace(&early("-l set"), "-l set ");
+            // fish takes a model for a command, and would offer no flag after it.
+            let commands: Vec<_> = program.get_subcommands().map(Command::get_name).collect();
+            let slices = FISH_SLICES.replace("@commands@", &commands.join(" "));
+            let text = ["-s ", "-l "].iter().fold(text, |text, flag| {
+                let before_all = format!("-n \"__fish_slicer_needs_command\" {flag}");
+                text.replace(&before_all, &format!("{slices} {flag}"))
+            });
             text.replace(&format!("{KEYS}\\t''"), keys)
         }
         _ => text.into_owned(),
@@ -155,6 +158,9 @@ _slicer_keys() {
 }
 
 ";
+
+/// There is no command among the words: it is a model that is sliced.
+const FISH_SLICES: &str = "-n \"not __fish_seen_subcommand_from @commands@\"";
 
 /// With the marks where profiles and keys are meant, in all commands.
 fn marked(command: Command) -> Command {

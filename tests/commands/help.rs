@@ -8,7 +8,7 @@ use std::fs;
 use std::process::Command as Process;
 
 /// Every command there is; those below have commands of their own.
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 16] = [
     "",
     "check",
     "compare",
@@ -21,7 +21,10 @@ const COMMANDS: [&str; 13] = [
     "profile",
     "profile check",
     "profile list",
+    "profile schema",
     "profile show",
+    "report",
+    "report schema",
 ];
 
 fn product(words: &str, flags: &[&str]) -> String {
@@ -141,6 +144,9 @@ fn fish_offers_profiles_files_and_keys() {
     assert!(profiles.contains("generic-klipper") && profiles.contains("mine.toml"), "{profiles}");
     let keys = offered("slicer part.stl --set speed.wal").unwrap();
     assert!(keys.starts_with("speed.wall=") && keys.lines().count() == 1, "{keys}");
+    // All flags of slicing after a model, and none of them after a command.
+    assert!(offered("slicer part.stl --copi").unwrap().starts_with("--copies"));
+    assert_eq!(offered("slicer estimate a.gcode --copi").unwrap(), "");
 }
 
 #[test]
