@@ -26,6 +26,8 @@ for patch in "$here"/*.patch; do
     # A repository of its own: within another one git would look for the files at its top.
     git init --quiet
     git apply "$patch"
+    # Cargo may take one copy's build for that of another.
+    cargo clean --quiet --locked -p slicer
     cargo build --quiet --locked
     # shellcheck disable=SC2046 # flags are words
     "$CARGO_TARGET_DIR/debug/slicer" -q $(head_line Slice "$patch") --check -o made.gcode
