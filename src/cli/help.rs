@@ -87,9 +87,11 @@ pub(super) fn manual(words: &[String]) -> Result<String> {
     }
     let mut text = Vec::new();
     clap_mangen::Man::new(page.clone())
+        .source(concat!("slicer ", env!("CARGO_PKG_VERSION")))
         .render(&mut text)
         .with_context(|| output::writing(Path::new("-")))?;
-    Ok(String::from_utf8_lossy(&text).into_owned())
+    // Lines of tables and examples stay lines.
+    Ok(String::from_utf8_lossy(&text).replace(".SH EXTRA\n", ".SH NOTES\n.nf\n"))
 }
 
 /// Stands for the names of profiles in what clap writes.

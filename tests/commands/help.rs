@@ -77,6 +77,7 @@ fn every_command_has_a_manual_page() {
 #[test]
 fn the_page_of_check_names_every_finding() {
     let page = product("man check", &[]).replace("\\-", "-");
+    assert!(page.contains(".SH NOTES\n.nf\n"), "lines of a table must stay lines:\n{page}");
     for code in slicer::check::finding::Code::ALL {
         assert!(page.contains(&format!("  {} ", code.name())), "{}:\n{page}", code.name());
     }
