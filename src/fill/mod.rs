@@ -78,11 +78,16 @@ struct Maker<'a> {
 
 impl Maker<'_> {
     fn wall(&mut self, wall: &Wall) {
-        let (width, height) = (self.params.line_width, self.height(wall.layers));
+        let (plain, height) = (self.params.line_width, self.height(wall.layers));
         let role = if wall.depth == 0 { Role::OuterWall } else { Role::InnerWall };
-        let corners = wall.path.iter().chain(wall.path.first());
-        let points = corners.map(|&at| PathPoint { at, z: 0, width, height }).collect();
-        self.push(role, Shape::Loop { depth: wall.depth }, wall.layers, points);
+        let point = |(k, &at): (usize, &Point)| {
+            let width = wall.widths.get(k).copied().unwrap_or(plain);
+            PathPoint { at, z: 0, width, height }
+        };
+        let corners = wall.path.iter().enumerate().map(point);
+        let again = corners.clone().next().filter(|_| wall.closed);
+        let shape = if wall.closed { Shape::Loop { depth: wall.depth } } else { Shape::Open };
+        self.push(role, shape, wall.layers, corners.chain(again).collect());
     }
 
     fn skin(&mut self, skin: &Skin) {

@@ -15,7 +15,7 @@
 //! Of equally near paths the first in the list wins, so that the order is always the same.
 
 use super::{PlanParams, tour};
-use crate::fill::{Path, PathPoint, Place, Role, Shape};
+use crate::fill::{Path, Place, Role, Shape};
 use crate::geom::{Contour, Point, double_area, edges, encloses};
 
 /// The paths of one layer, divided among islands but not sorted.
@@ -148,29 +148,38 @@ fn order_walls(mut walls: Vec<Path>, at: &mut Point, params: &PlanParams, out: &
         let depths = walls.iter().map(depth);
         if params.outer_first { depths.min() } else { depths.max() }
     } {
-        let seam = |wall: &Path| -> usize {
-            let place = |(k, p): (usize, &PathPoint)| {
-                (if params.seam_rear { -i64::from(p.at.y) } else { p.at.distance2(*at) }, k)
-            };
-            let corners = wall.points.len() - usize::from(wall.shape != Shape::Open);
-            let first = wall.points[..corners].iter().enumerate().map(place).min();
-            first.map(|(_, k)| k).unwrap_or_default()
-        };
         let best = walls
             .iter()
             .enumerate()
             .filter(|(_, wall)| depth(wall) == next)
             .map(|(k, wall)| {
-                let from = seam(wall);
+                let from = seam(wall, *at, params);
                 (wall.points[from].at.distance2(*at), k, from)
             })
             .min();
         let Some((_, k, from)) = best else { break };
         let mut wall = walls.remove(k);
-        wall.begin_at(from);
+        match wall.shape {
+            Shape::Loop { .. } => wall.begin_at(from),
+            Shape::Open if from > 0 => wall.reverse(),
+            Shape::Open => {}
+        }
         *at = wall.end();
         out.push(wall);
     }
+}
+
+/// The index of the point where `wall` begins: its seam, or the nearer end of an open wall.
+fn seam(wall: &Path, at: Point, params: &PlanParams) -> usize {
+    let near = |k: usize| (wall.points[k].at.distance2(at), k);
+    let last = wall.points.len() - 1;
+    if wall.shape == Shape::Open {
+        return near(0).min(near(last)).1;
+    }
+    let place = |k: usize| {
+        if params.seam_rear { (-i64::from(wall.points[k].at.y), k) } else { near(k) }
+    };
+    (0..last).map(place).min().map(|(_, k)| k).unwrap_or_default()
 }
 
 /// Sorts open paths nearest first, entering each at its nearer end.
@@ -249,6 +258,7 @@ fn travel_length(picks: &[Pick], ends: &[Ends], (before, home): Ends) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fill::PathPoint;
     use crate::units::Coord;
 
     fn place(x: Coord, y: Coord) -> PathPoint {

@@ -60,6 +60,16 @@ pub struct Settings {
     /// size, 0 puts the wall's middle on the contour.
     #[schemars(range(min = 0, max = 1), extend("unit" = "line widths", "default" = 0.5))]
     pub outer_wall_inset: f64,
+    /// Thinner parts are not printed. Thicker ones get a bead of their own width where two walls
+    /// do not fit.
+    #[schemars(range(min = 0.01, max = 10), extend("unit" = "mm", "default" = 0.1))]
+    pub min_feature: f64,
+    /// Minimum width of a bead; parts thinner than that get a bead this wide.
+    #[schemars(range(min = 25, max = 200), extend("unit" = "% of the nozzle", "default" = 85))]
+    pub min_bead_width: f64,
+    /// Maximum width of a single bead; where it would be wider, two share the room.
+    #[schemars(range(min = 100, max = 200), extend("unit" = "% of the line width", "default" = 175))]
+    pub max_bead_width: f64,
     /// Which wall is printed first.
     #[schemars(extend("default" = "inner-first"))]
     pub wall_order: WallOrder,

@@ -2,10 +2,9 @@
 
 use super::classify::{Areas, areas, areas_beside, exposed};
 use super::crossed::Crossed;
-use super::params::{BeadParams, RegionParams};
+use super::params::RegionParams;
 use super::per_raster::{PerRaster, skin_turn};
 use super::prepare::{LayerRows, Own};
-use super::strips::{Strip, apart};
 use super::wall_beads::{taken, wall_beads};
 use crate::geom::Contour;
 use crate::geom::polyline::Polyline;
@@ -51,8 +50,7 @@ pub fn divide<'a>(
     (areas, beads)
 }
 
-/// The beads of a layer: along its innermost walls where the exposed `skins` are narrow, and in
-/// strips.
+/// The beads of a layer along its innermost walls, where the exposed `skins` are narrow.
 fn beads<'a>(
     own: &Own,
     skins: &[Rows; 2],
@@ -60,39 +58,8 @@ fn beads<'a>(
     params: &RegionParams,
 ) -> Vec<Polyline> {
     let Some(rows) = layers(own.layer.index) else { return Vec::new() };
-    let innermost = [0, 1].map(|r| &*rows.skin(r).fill);
-    let mut beads = along_walls(own, params.walls.count, skins, innermost, params, &params.beads);
-    beads.extend(in_strips(own, skins, params));
-    beads
-}
-
-/// The beads of a layer where it is too thin for both passes of an inner wall, and where it is
-/// too thin for infill and no skin fills it.
-fn in_strips(own: &Own, skins: &[Rows; 2], params: &RegionParams) -> Vec<Polyline> {
-    let only_strips = BeadParams { only_strips: true, ..params.beads };
-    let beads = |(walls, Strip { room: [a, b], narrow }): (u32, &Strip)| {
-        let room = [a, b];
-        if walls < params.walls.count {
-            return along_walls(own, walls, narrow, room, params, &only_strips);
-        }
-        let hollow = params.sparse.is_empty();
-        let uncovered =
-            |r: usize| if hollow { Rows::default() } else { apart(&narrow[r], &skins[r]) };
-        along_walls(own, walls, &[uncovered(0), uncovered(1)], room, params, &only_strips)
-    };
-    (1..).zip(&own.strips).flat_map(beads).collect()
-}
-
-/// The beads of a layer along the innermost of its first `count` walls. `skins` is the exposed
-/// skin, `room` where beads may run.
-fn along_walls(
-    own: &Own,
-    count: u32,
-    skins: &[Rows; 2],
-    room: [&Rows; 2],
-    params: &RegionParams,
-    beads: &BeadParams,
-) -> Vec<Polyline> {
+    let room = [0, 1].map(|r| &*rows.skin(r).fill);
+    let count = params.walls.count;
     // Without walls the ends of lines form the outside of the part, so all skin stays lines.
     if count == 0 || skins.iter().all(Rows::is_empty) {
         return Vec::new();
@@ -106,7 +73,7 @@ fn along_walls(
         left_turn: along == 0,
     };
     let frame = params.rasters.skin(along).frame;
-    let innermost = own.walls.iter().filter(|w| w.depth + 1 == count);
+    let innermost = own.walls.iter().filter(|w| w.closed && w.depth + 1 == count);
     let walls = innermost.map(|w| -> Contour { w.path.iter().map(|&p| frame.enter(p)).collect() });
-    wall_beads(&walls.collect::<Vec<_>>(), &crossed, beads)
+    wall_beads(&walls.collect::<Vec<_>>(), &crossed, &params.beads)
 }

@@ -11,7 +11,7 @@ use std::ops::Range;
 const MOST_CELLS: f64 = 256.0;
 
 /// An edge of a wall, grid units: its two ends.
-type Edge = [[f64; 2]; 2];
+pub(super) type Edge = [[f64; 2]; 2];
 
 /// A box around some places, grid units.
 #[derive(Debug, Clone, Copy)]
@@ -33,6 +33,11 @@ impl Area {
         out
     }
 
+    /// Its lowest and highest corner.
+    pub(super) fn corners(&self) -> [[f64; 2]; 2] {
+        [self.low, self.high]
+    }
+
     fn meets(&self, [p, q]: &Edge) -> bool {
         (0..2).all(|k| p[k].at_most(q[k]) <= self.high[k] && p[k].at_least(q[k]) >= self.low[k])
     }
@@ -48,7 +53,7 @@ pub(super) struct Near {
 
 /// How an area is divided into cells.
 #[derive(Debug)]
-struct Grid {
+pub(super) struct Grid {
     low: [f64; 2],
     /// Cells per grid unit.
     scale: f64,
@@ -57,8 +62,24 @@ struct Grid {
 }
 
 impl Grid {
+    /// Square cells of side `side` over `area`; larger ones if there would be too many.
+    pub(super) fn new(area: Area, side: f64) -> Self {
+        let extent = [0, 1].map(|k| (area.high[k] - area.low[k]).max(0.0));
+        let side = side.max(extent[0].max(extent[1]) / MOST_CELLS);
+        let size = extent.map(|x| (x / side) as usize + 1);
+        Self { low: area.low, scale: 1.0 / side, size }
+    }
+
+    /// The number of cells.
+    pub(super) fn count(&self) -> usize {
+        self.size[0] * self.size[1]
+    }
+
     /// The cells that meet the box with corners `p` and `q`, row by row of cells.
-    fn cells(&self, [p, q]: [[f64; 2]; 2]) -> impl Iterator<Item = Range<usize>> + use<> {
+    pub(super) fn cells(
+        &self,
+        [p, q]: [[f64; 2]; 2],
+    ) -> impl Iterator<Item = Range<usize>> + use<> {
         // A cast clamps negative numbers to 0. Places beyond the area count to its border cells.
         let at =
             |x: f64, k: usize| (((x - self.low[k]) * self.scale) as usize).min(self.size[k] - 1);
@@ -76,12 +97,26 @@ impl Near {
         let all = walls.iter().flat_map(|w| edges(w)).map(|(p, q)| [point(p), point(q)]);
         let mut edges = Vec::with_capacity(walls.iter().map(Vec::len).sum());
         edges.extend(all.filter(|edge| area.meets(edge)));
-        let extent = [0, 1].map(|k| (area.high[k] - area.low[k]).max(0.0));
-        let side = side.max(extent[0].max(extent[1]) / MOST_CELLS);
-        let size = extent.map(|x| (x / side) as usize + 1);
-        let grid = Grid { low: area.low, scale: 1.0 / side, size };
+        Self::sorted(edges, area, side)
+    }
+
+    /// Sorts all edges into cells of side `side`, for places anywhere.
+    pub(super) fn of_all(walls: &[Contour], side: f64) -> Self {
+        let point = |p: Point| [f64::from(p.x), f64::from(p.y)];
+        let all = walls.iter().flat_map(|w| edges(w)).map(|(p, q)| [point(p), point(q)]);
+        Self::of_edges(all.collect(), side)
+    }
+
+    /// Sorts `edges` into cells of side `side`, for places anywhere.
+    pub(super) fn of_edges(edges: Vec<Edge>, side: f64) -> Self {
+        let area = Area::around(edges.iter().flatten().copied(), 0.0);
+        Self::sorted(edges, area, side)
+    }
+
+    fn sorted(edges: Vec<Edge>, area: Area, side: f64) -> Self {
+        let grid = Grid::new(area, side);
         let reach = |edge: Edge| grid.cells(edge).flatten();
-        let cells = Cells::new(size[0] * size[1], || edges.iter().copied(), reach);
+        let cells = Cells::new(grid.count(), || edges.iter().copied(), reach);
         Self { grid, cells }
     }
 

@@ -8,7 +8,7 @@ use crate::geom::frame::Frame;
 use crate::geom::raster::Raster;
 use crate::pattern::Turns;
 use crate::profile::Settings;
-use crate::units::{Coord, to_units};
+use crate::units::{Coord, UNITS_PER_MM, to_units};
 
 /// The numbers of the whole stage.
 #[derive(Debug, Clone)]
@@ -28,7 +28,7 @@ pub struct RegionParams {
 }
 
 /// How walls are laid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WallParams {
     /// Width of a line and distance between walls.
     pub line_width: Coord,
@@ -36,6 +36,12 @@ pub struct WallParams {
     pub count: u32,
     /// Distance of the outer wall's centre line from the contour.
     pub outer_inset: Coord,
+    /// Thinner places get no bead, grid units.
+    pub least_room: f64,
+    /// Minimum width of a bead, grid units.
+    pub narrowest: f64,
+    /// Maximum width of a single bead, in line widths.
+    pub widest: f64,
 }
 
 /// How far inside the contour lines may run.
@@ -43,6 +49,8 @@ pub struct WallParams {
 pub struct Insets {
     /// Distance of the ends of skin and infill lines from the contour.
     pub fill: Coord,
+    /// How far lines reach out of the core of the walls, where walls share the room of thin places.
+    pub core: Coord,
     /// How far inside its contour a neighbouring layer begins to cover this one. It is chosen so
     /// that skin begins where this layer's walls stop closing what is exposed.
     pub cover: Coord,
@@ -70,8 +78,6 @@ pub struct BeadParams {
     pub wall_to_fill: Coord,
     /// How far lines reach into the innermost wall.
     pub overlap: Coord,
-    /// Lay beads only along the middle of strips, not along walls.
-    pub only_strips: bool,
 }
 
 impl RegionParams {
@@ -91,9 +97,21 @@ impl RegionParams {
         // that an upright side needs none either.
         let cover = (0.5 - overlap).min(fill - 0.25).max(0.0);
         let line_width = to_units(w);
-        let walls =
-            WallParams { line_width, count: settings.walls, outer_inset: to_units(outer * w) };
-        let insets = Insets { fill: to_units(fill * w), cover: to_units(cover * w) };
+        let walls = WallParams {
+            line_width,
+            count: settings.walls,
+            outer_inset: to_units(outer * w),
+            least_room: settings.min_feature * UNITS_PER_MM,
+            narrowest: settings.min_bead_width / 100.0
+                * settings.machine.nozzle_diameter
+                * UNITS_PER_MM,
+            widest: settings.max_bead_width / 100.0,
+        };
+        let insets = Insets {
+            fill: to_units(fill * w),
+            core: to_units(overlap * w),
+            cover: to_units(cover * w),
+        };
         let skin =
             |turn| Raster { frame: Frame::new(settings.angle.degrees() + turn), pitch: line_width };
         let sparse = Turns::new(settings);
@@ -110,7 +128,6 @@ impl RegionParams {
                 line_width,
                 wall_to_fill: insets.fill - walls.inset_of(walls.count),
                 overlap: to_units(overlap * w),
-                only_strips: false,
             },
             rasters: Rasters::new([skin(0.0), skin(90.0)], sparse.rasters()),
             sparse,

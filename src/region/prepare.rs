@@ -6,9 +6,8 @@
 use super::params::{Insets, RegionParams};
 use super::per_raster::PerRaster;
 use super::scan::Scan;
-use super::strips::{self, Strip};
-use super::thin;
-use super::walls::{self, Wall};
+use super::walls::{self, Wall, Walls, thin};
+use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
 use crate::slice::Layer;
 use std::sync::Arc;
@@ -20,15 +19,15 @@ pub struct Own {
     pub layer: Layer,
     /// Its walls.
     pub walls: Vec<Wall>,
-    /// The room inside each of its walls; empty if nothing can be too thin.
-    pub strips: Vec<Strip>,
+    /// Area that is too thin for any bead, mm².
+    pub thin_mm2: f64,
 }
 
 /// The rows of a layer on each raster in use.
 pub type LayerRows = PerRaster<PreparedRows>;
 
 /// One raster's rows of a layer.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct PreparedRows {
     /// Where lines of skin or infill may run.
     pub fill: Arc<Rows>,
@@ -42,17 +41,19 @@ pub fn prepare(layer: Layer, params: &RegionParams) -> (Own, LayerRows) {
     let scan = |raster| Scan::new(&layer.contours, raster);
     let scans = PerRaster::new(&params.rasters, params.rasters.iter(), scan);
     let skins = [scans.skin(0), scans.skin(1)];
-    let may_be_thin = thin::may_be_thin(skins.map(Scan::inside), &params.walls);
-    let walls = walls::walls(&layer.contours, may_be_thin, &params.walls);
-    let Insets { fill, cover } = params.insets;
-    let rows =
-        |scan: &Scan| PreparedRows { fill: Arc::new(scan.inset(fill)), cover: scan.inset(cover) };
-    let rows = scans.map(rows);
-    let strips = if may_be_thin {
-        let innermost = [0, 1].map(|r| &*rows.skin(r).fill);
-        strips::strips(skins, &walls, innermost, params)
-    } else {
-        Vec::new()
+    let may_be_thin = thin::may_be_thin(&layer.contours, skins.map(Scan::inside), &params.walls);
+    let Walls { walls, core, lost_mm2: thin_mm2 } =
+        walls::walls(&layer.contours, may_be_thin, &params.walls);
+    let Insets { fill, cover, core: overlap } = params.insets;
+    let rows = |raster: Raster, scan: &Scan| {
+        let mut rows = scan.inset(fill);
+        if let Some(core) = &core {
+            rows = rows.and(&Scan::new(core, raster).outset(overlap));
+        }
+        PreparedRows { fill: Arc::new(rows), cover: scan.inset(cover) }
     };
-    (Own { layer, walls, strips }, rows)
+    let rows = PerRaster::new(&params.rasters, params.rasters.iter(), |raster| {
+        scans.on(raster).map_or_else(PreparedRows::default, |scan| rows(raster, scan))
+    });
+    (Own { layer, walls, thin_mm2 }, rows)
 }

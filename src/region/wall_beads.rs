@@ -20,32 +20,19 @@ use super::crossed::Crossed;
 use super::near::Near;
 use super::params::BeadParams;
 use super::scan::around;
+use super::taper::{self, distance, tapered};
 use super::wall_samples::{MOST_BEADS, NARROWEST, SHORT, WallSample, samples};
-use crate::geom::decimate::{decimate, most_missed};
 use crate::geom::frame::Frame;
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::raster::Raster;
-use crate::geom::segment::{along, dot, way};
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
-use crate::units::{Bounded as _, Coord, nearest};
+use crate::units::Coord;
 
 /// Tolerance by which beads may be too near to a wall, in line widths, because the walls of a strip
 /// are not quite parallel. A smaller value breaks beads in tapering strips; a larger one lets
 /// beads overlap walls.
 const SLACK: f64 = 0.15;
-
-/// Smaller changes of place give no corner in a bead (10 µm). A smaller value makes more, shorter
-/// moves; a larger one lets beads cut corners into the wall.
-const LEAST_BEND: f64 = 100.0;
-
-/// Larger changes of width between two points are divided (0.08 mm). A segment has one width, so a
-/// long taper needs steps; a larger value makes them visible, and leaves gaps and bulges.
-const MOST_STEP: f64 = 800.0;
-
-/// Divisor for changes of width when they are compared with changes of place. A wrong width is
-/// shared by both sides of the bead and shows less.
-const WIDTH_TO_PLACE: f64 = 3.0;
 
 /// A point of a bead.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -154,48 +141,16 @@ pub fn taken(beads: &[Polyline], frame: Frame, raster: Raster, params: &BeadPara
     around(&edges, raster)
 }
 
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    let (x, y) = (b[0] - a[0], b[1] - a[1]);
-    (x * x + y * y).sqrt()
-}
-
 fn length(arc: &[Place]) -> f64 {
     arc.windows(2).map(|w| distance(w[0].at, w[1].at)).sum()
 }
 
 /// The points of a bead, decimated to those where it bends or changes its width.
 fn bead(arc: &[Place]) -> Polyline {
-    let kept = decimate(arc.len(), |a, b| bend(arc, a, b));
-    let mut before = arc[0].width;
-    kept.into_iter()
-        .map(|k| {
-            let Place { at: [u, v], width, .. } = arc[k];
-            let mean = f64::midpoint(before, width);
-            before = width;
-            LinePoint {
-                u: nearest(u) as Coord,
-                v: nearest(v) as Coord,
-                width: nearest(mean) as Coord,
-            }
-        })
-        .collect()
-}
-
-/// The place between `a` and `b` to keep: the one that a straight bead would miss most, or the
-/// middle of a long taper.
-fn bend(arc: &[Place], a: usize, b: usize) -> Option<usize> {
-    let (first, last) = (arc[a], arc[b]);
-    let chord = way(first.at, last.at);
-    let square = dot(chord, chord).at_least(1.0);
-    let worst = most_missed(a, b, LEAST_BEND, |k| {
-        let t = (dot(way(first.at, arc[k].at), chord) / square).clamp(0.0, 1.0);
-        let width = first.width + t * (last.width - first.width);
-        let foot = along(first.at, t, chord);
-        distance(foot, arc[k].at).at_least((width - arc[k].width).abs() / WIDTH_TO_PLACE)
-    });
-    // A segment has one width, so a long taper needs steps.
-    let tapers = (first.width - last.width).abs() > MOST_STEP && b - a > 1;
-    worst.or_else(|| tapers.then_some(usize::midpoint(a, b)))
+    let places: Vec<taper::Place> =
+        arc.iter().map(|p| taper::Place { at: p.at, width: p.width }).collect();
+    let (points, widths) = tapered(&places);
+    points.iter().zip(widths).map(|(p, width)| LinePoint { u: p.x, v: p.y, width }).collect()
 }
 
 #[cfg(test)]

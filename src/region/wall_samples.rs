@@ -49,8 +49,7 @@ const WIDEST: f64 = 1.5;
 const SHARED: f64 = 1.6;
 
 /// A narrower strip gets a single bead, of its full width. From this width on two beads of 0.8 fit.
-/// A larger value makes single beads too wide; a smaller one makes pairs that are too thin. `thin`
-/// cuts off inner walls by the same constant, so that no strip gets both or none.
+/// A larger value makes single beads too wide; a smaller one makes pairs that are too thin.
 pub(super) const SINGLE: f64 = 1.6;
 
 /// Maximum depth for each bead on a short stretch where one bead more would be needed: stretching
@@ -137,10 +136,6 @@ pub(super) fn samples(
     let near = Near::new(walls, Area::around(with_beads, MARGIN * w), CELL * w);
     for (lap, wall) in laps.iter_mut().zip(walls) {
         lap.iter_mut().filter(|s| s.shared).for_each(|s| s.confirm(&near, params));
-        if params.only_strips {
-            let others = lap.iter_mut().filter(|s| !s.is_single(params));
-            others.for_each(|s| (s.beads, s.skin) = (0, false));
-        }
         *lap = finished(wall, std::mem::take(lap), params);
     }
     Some((laps, near))

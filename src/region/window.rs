@@ -255,8 +255,7 @@ impl<'a> Window<'a> {
             if let Some(skin) = skins.first_mut() {
                 skin.beads = beads;
             }
-            let Own { layer, walls, .. } = own;
-            let thin_mm2 = walls::thin_area(&layer.contours, &walls, &self.params.walls);
+            let Own { layer, walls, thin_mm2 } = own;
             let printed = walls.into_iter().zip(printed).filter(|(_, layers)| *layers > 0);
             let walls = printed.map(|(wall, layers)| Wall { layers, ..wall }).collect();
             Region { layer, walls, skins, infill, support, thin_mm2 }

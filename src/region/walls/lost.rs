@@ -1,0 +1,60 @@
+//! Contours and walls -> area: what is too thin to be printed.
+
+use super::Wall;
+use crate::geom::{Contour, double_area};
+use crate::region::params::WallParams;
+use crate::units::UNITS_PER_MM;
+
+/// Limit for the tangent of half a turn, when the strip outside a wall is computed. The offset cuts
+/// off sharper corners, so what is outside of them is not printed. A larger value misses thin
+/// tips; a smaller one counts every acute corner as thin.
+const SHARPEST_CORNER: f64 = 1.75;
+
+/// The area of `contours` that `walls` leave open outside the outer loops, mm². It is their area
+/// less that of the loops with a strip of the inset around them. The strip around a polygon has
+/// the area `P·d + d²·Σ tan(φ/2)`, with perimeter `P`, inset `d` and turns `φ`. The result is 0
+/// without walls, or with the wall on the contour. Loops must have their nominal inset.
+pub(super) fn outside_loops(contours: &[Contour], loops: &[Wall], params: &WallParams) -> f64 {
+    if params.count == 0 || params.outer_inset == 0 {
+        return 0.0;
+    }
+    let d = f64::from(params.outer_inset);
+    let area = |c: &Contour| double_area(c) as f64 / 2.0;
+    let strip = |c: &Contour| {
+        let (length, turns) = length_and_turns(c);
+        length * d + turns * d * d
+    };
+    let whole: f64 = contours.iter().map(area).sum();
+    let outer = loops.iter().filter(|w| w.depth == 0);
+    let walled: f64 = outer.map(|w| area(&w.path) + strip(&w.path)).sum();
+    ((whole - walled) / (UNITS_PER_MM * UNITS_PER_MM)).max(0.0)
+}
+
+/// The area that single beads cover, mm², with a half circle at each end.
+pub(super) fn under_beads(beads: &[Wall]) -> f64 {
+    let area = |bead: &Wall| {
+        let sides = bead.path.windows(2).zip(bead.widths.iter().skip(1));
+        let sides: f64 = sides.map(|(p, &w)| p[0].distance(p[1]) * f64::from(w)).sum();
+        let ends = bead.widths.first().zip(bead.widths.last());
+        let ends = ends
+            .filter(|_| !bead.closed)
+            .map_or(0, |(&a, &b)| i64::from(a).pow(2) + i64::from(b).pow(2));
+        sides + ends as f64 * std::f64::consts::PI / 8.0
+    };
+    beads.iter().filter(|b| b.depth == 0).map(area).sum::<f64>() / (UNITS_PER_MM * UNITS_PER_MM)
+}
+
+/// The perimeter of a polygon, and the sum of the tangents of half its turns; left turns are
+/// positive.
+fn length_and_turns(contour: &Contour) -> (f64, f64) {
+    let n = contour.len();
+    let edge = |k: usize| {
+        let (a, b) = (contour[k % n], contour[(k + 1) % n]);
+        (f64::from(b.x) - f64::from(a.x), f64::from(b.y) - f64::from(a.y), a.distance(b))
+    };
+    (0..n).fold((0.0, 0.0), |(length, turns), k| {
+        let ((ax, ay, a), (bx, by, b)) = (edge(k), edge(k + 1));
+        let half = (ax * by - ay * bx) / (a * b + ax * bx + ay * by).max(f64::MIN_POSITIVE);
+        (length + a, turns + half.clamp(-SHARPEST_CORNER, SHARPEST_CORNER))
+    })
+}

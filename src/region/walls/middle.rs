@@ -1,0 +1,217 @@
+//! Layout -> middle beads: one bead along the middle of places too thin for one more loop.
+//!
+//! Words: a *sample* is a place of the contour that has a middle bead opposite; a *lap* is all
+//! samples of one contour, with `None` where it has none. An *arc* is a sequence of neighbouring
+//! samples of a lap. Its places are the centres of circles inside the part, so they lie on the
+//! medial axis.
+//!
+//! Algorithm:
+//! 1. Sample each side of the contour, and fan out at corners that stick into the part.
+//! 2. Both sides of a thin place see the same middle. The one whose side has the lower index
+//!    *leads* and lays the bead. So the arcs of all leading samples cover nearly everything once.
+//! 3. Where sides of different length look at each other, none may lead. Samples that are still
+//!    far from all arcs make arcs of their own.
+//! 4. Join arcs whose ends meet, and drop short ones.
+
+use super::{Layout, Share, Wall};
+use crate::geom::segment::along;
+use crate::geom::{Contour, Point, edges, side};
+use crate::region::near::Near;
+use crate::region::taper::{Place, distance, tapered};
+use crate::units::Bounded as _;
+
+/// Distance of samples along the contour, in line widths. A larger value cuts corners; a smaller
+/// one costs time.
+const STEP: f64 = 0.5;
+
+/// Turn between two samples at a corner, radians: 15°. See [`STEP`].
+const TURN: f64 = 0.26;
+
+/// Two samples are neighbours if their middles are at most this far apart, in line widths. A
+/// smaller value breaks beads on the outside of bends, a larger one bridges gaps.
+const NEIGHBOURS: f64 = 1.5;
+
+/// How far a bead stays away from the end of its strip, as a part of half the strip's width. The
+/// bead's round end then covers as much as its square end misses.
+const CLEAR: f64 = 0.8;
+
+/// Shorter beads are dropped, in line widths: the outermost ones, and those between loops. They
+/// leave less open than a start and a stop spoil; a letter's dot is longer.
+const SHORT: [f64; 2] = [0.4, 2.0];
+
+/// Samples nearer than this part of their bead's width to an arc already have their bead.
+const SAME: f64 = 0.6;
+
+/// A place of a middle bead.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    place: Place,
+    /// How many loops lie on either side.
+    loops: u32,
+    /// Whether this side lays the bead.
+    leads: bool,
+}
+
+/// A run of neighbouring samples.
+type Arc = Vec<Sample>;
+
+/// The middle beads of a layer.
+pub(super) fn beads(layout: &Layout<'_>) -> Vec<Wall> {
+    let mut first = 0;
+    let lap = |contour: &Contour| {
+        let lap = lap(contour, first, layout);
+        first += contour.len() as u32;
+        lap
+    };
+    let laps: Vec<Vec<Option<Sample>>> = layout.contours.iter().map(lap).collect();
+    let w = layout.line_width;
+    let mut all: Vec<Arc> = laps.iter().flat_map(|lap| arcs(lap, w, |s| s.leads)).collect();
+    let sides = all.iter().flat_map(|arc| arc.windows(2));
+    let sides = sides.map(|s| [s[0].place.at, s[1].place.at]);
+    let near = Near::of_edges(sides.collect(), 2.0 * w);
+    let is_left = |s: &Sample| !s.leads && near.is_free([s.place.at], SAME * s.place.width);
+    let left = laps.iter().flat_map(|lap| arcs(lap, w, is_left));
+    all.extend(left.filter(|arc| length(arc) >= w));
+    join(&mut all, w);
+    all.iter().filter(|arc| is_long(arc, w)).map(|arc| wall(arc)).collect()
+}
+
+fn is_long(arc: &Arc, w: f64) -> bool {
+    let between = arc.iter().all(|s| s.loops > 0);
+    length(arc) >= SHORT[usize::from(between)] * w
+}
+
+fn wall(arc: &Arc) -> Wall {
+    let places: Vec<Place> = arc.iter().map(|s| s.place).collect();
+    let depth = arc.iter().map(|s| s.loops).min().unwrap_or_default();
+    let (mut path, mut widths) = tapered(&places);
+    let closed = path.len() > 3 && path.first() == path.last();
+    if closed {
+        path.pop();
+        if let (Some(last), Some(first)) = (widths.pop(), widths.first_mut()) {
+            *first = last;
+        }
+    }
+    Wall { path, widths, closed, depth, layers: 1 }
+}
+
+/// The samples of a contour whose first side has the index `first`.
+fn lap(contour: &Contour, first: u32, layout: &Layout<'_>) -> Vec<Option<Sample>> {
+    let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
+    let n = contour.len();
+    let mut out = Vec::new();
+    for (index, (k, (p, q))) in (first..).zip(edges(contour).enumerate()) {
+        if p == q {
+            continue;
+        }
+        let length = p.distance(q);
+        let along_side = [0, 1].map(|k| (float(q)[k] - float(p)[k]) / length);
+        let normal = [-along_side[1], along_side[0]];
+        let before = contour[(k + n - 1) % n];
+        if side(before, p, q) < 0 {
+            fan((before, p), normal, |normal| out.push(sample(float(p), normal, index, layout)));
+        }
+        let count = (length / (STEP * layout.line_width)).ceil();
+        out.extend((0..count as usize).map(|i| {
+            let at = along(float(p), (i as f64 + 0.5) / count * length, along_side);
+            sample(at, normal, index, layout)
+        }));
+    }
+    out
+}
+
+/// Calls `at` with normals between that of the side before a corner and `to`.
+fn fan((before, corner): (Point, Point), to: [f64; 2], mut at: impl FnMut([f64; 2])) {
+    let length = before.distance(corner).at_least(1.0);
+    let from = [before.y - corner.y, corner.x - before.x].map(|x| f64::from(x) / length);
+    let turn = libm::atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
+    let count = (turn.abs() / TURN).ceil();
+    for i in 0..count as usize {
+        let (sin, cos) = libm::sincos((i as f64 + 0.5) / count * turn);
+        at([from[0] * cos - from[1] * sin, from[0] * sin + from[1] * cos]);
+    }
+}
+
+/// The middle bead opposite to a place of the contour, if there is one.
+fn sample(at: [f64; 2], normal: [f64; 2], index: u32, layout: &Layout<'_>) -> Option<Sample> {
+    let opposite = layout.outline.opposite(at, normal)?;
+    let share = layout.share(at, normal, opposite.radius).filter(|share| share.middle)?;
+    let Share { width, loops, .. } = share;
+    let middle = along(at, opposite.radius, normal);
+    let clear = layout.outline.is_free(middle, CLEAR * opposite.radius);
+    let place = Place { at: middle, width };
+    clear.then_some(Sample { place, loops, leads: index < opposite.side })
+}
+
+/// The runs of neighbouring samples that are `wanted`. A run all around ends where it begins.
+fn arcs(lap: &[Option<Sample>], w: f64, wanted: impl Fn(&Sample) -> bool) -> Vec<Arc> {
+    let wanted = |s: &Option<Sample>| s.filter(|s| wanted(s));
+    let n = lap.len();
+    let start = lap.iter().position(|s| wanted(s).is_none());
+    let around = lap.iter().cycle().skip(start.unwrap_or(0)).take(n + usize::from(start.is_none()));
+    let mut out: Vec<Arc> = Vec::new();
+    let mut open = false;
+    for sample in around {
+        let Some(sample) = wanted(sample) else {
+            open = false;
+            continue;
+        };
+        let far =
+            |arc: &Arc| arc.last().map_or(f64::MAX, |s| distance(s.place.at, sample.place.at));
+        match out.last_mut().filter(|arc| open && far(arc) <= NEIGHBOURS * w) {
+            Some(arc) => arc.push(sample),
+            None => out.push(vec![sample]),
+        }
+        open = true;
+    }
+    out
+}
+
+/// Joins arcs whose ends are neighbours, the nearest first for each arc in turn.
+fn join(arcs: &mut Vec<Arc>, w: f64) {
+    let mut k = 0;
+    while k < arcs.len() {
+        let Some((other, turn)) = nearest(arcs, k, NEIGHBOURS * w) else {
+            k += 1;
+            continue;
+        };
+        let mut more = arcs.remove(other);
+        if turn.1 {
+            more.reverse();
+        }
+        let arc = &mut arcs[k];
+        if turn.0 {
+            arc.reverse();
+        }
+        arc.append(&mut more);
+    }
+    for arc in arcs.iter_mut() {
+        let ends = arc.first().zip(arc.last());
+        let gap = ends.map_or(f64::MAX, |(a, b)| distance(a.place.at, b.place.at));
+        if gap > 0.0 && gap <= NEIGHBOURS * w && length(arc) > 3.0 * NEIGHBOURS * w {
+            arc.extend(arc.first().copied());
+        }
+    }
+}
+
+/// The arc after `k` with the end nearest to an end of arc `k`, and which of the two to reverse so
+/// that the second continues the first.
+fn nearest(arcs: &[Arc], k: usize, most: f64) -> Option<(usize, (bool, bool))> {
+    let ends = |arc: &Arc| Some([arc.first()?.place.at, arc.last()?.place.at]);
+    let here = ends(&arcs[k])?;
+    let mut best: Option<(f64, usize, (bool, bool))> = None;
+    for (j, arc) in arcs.iter().enumerate().skip(k + 1) {
+        let Some(there) = ends(arc) else { continue };
+        for turn in [(false, false), (false, true), (true, false), (true, true)] {
+            let gap = distance(here[usize::from(!turn.0)], there[usize::from(turn.1)]);
+            if gap <= best.map_or(most, |(least, ..)| least) && best.is_none_or(|b| gap < b.0) {
+                best = Some((gap, j, turn));
+            }
+        }
+    }
+    best.map(|(_, j, turn)| (j, turn))
+}
+
+fn length(arc: &Arc) -> f64 {
+    arc.windows(2).map(|s| distance(s[0].place.at, s[1].place.at)).sum()
+}

@@ -1,0 +1,215 @@
+//! Contours -> Walls: loops parallel to the contours, and one bead where two passes of a loop do not fit.
+//!
+//! Words:
+//! - The *room* of a place is the thickness of the part there: twice the radius of the largest
+//!   circle inside the part that touches the contour at this place ([`room`]).
+//! - A *loop* is a closed wall at a fixed depth. Its two *passes* run along both sides of a thin
+//!   place.
+//! - A *middle bead* runs along the middle of a thin place, from end to end.
+//! - The *core* is what lies so deep inside the loops that lines fit there.
+//!
+//! Algorithm:
+//! 1. Inset the contours once for each wall. Cut off each loop where its two passes come too near
+//!    to each other ([`thin`]). The inset one further, cut in the same way, is the core.
+//! 2. Where the core is cut off, count the loops that are left. They and a middle bead, if there is
+//!    room for one, share the room evenly ([`share_room`]): loops are moved and widened
+//!    ([`loops`]), and the middle bead gets its share of the width ([`middle`]).
+//!
+//! So the loops that exist decide how many beads there are, and no place gets two counts. A
+//! medial axis of the whole contour (Kuipers, Doubrovski, Wu, Wang 2020) decides the same from
+//! one diagram; here only thin places of thin layers cost anything, and thick ones keep their
+//! exact offsets. Nothing depends on the direction of raster lines, so equal layers get equal
+//! beads.
+
+mod loops;
+mod lost;
+mod middle;
+mod room;
+mod share;
+pub mod thin;
+
+pub use share::share;
+
+use super::near::Near;
+use super::params::WallParams;
+use crate::geom::{Contour, polygon};
+use crate::units::Coord;
+use room::Outline;
+
+/// One wall.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wall {
+    /// The centre line of its bead. A closed one has the solid on its left.
+    pub path: Contour,
+    /// The width of the bead from the previous point to each point; empty if it is one line width
+    /// everywhere. A closed wall begins with the width of the way from its last point.
+    pub widths: Vec<Coord>,
+    /// Whether it is a loop.
+    pub closed: bool,
+    /// Counted from the outside; 0 is the outer wall.
+    pub depth: u32,
+    /// How many layers it is printed for: this one and those below it.
+    pub layers: u32,
+}
+
+/// The walls of a layer.
+#[derive(Debug, Default)]
+pub struct Walls {
+    /// The walls, from the outside inwards; then the middle beads.
+    pub walls: Vec<Wall>,
+    /// The contours one line width inside the innermost loops, without the places that walls fill.
+    /// `None` if there are no such places.
+    pub core: Option<Vec<Contour>>,
+    /// Area that is too thin for any bead, mm².
+    pub lost_mm2: f64,
+}
+
+/// The walls of `contours`. If the layer `may_be_thin`, places that are too thin for the passes of
+/// all loops get fewer beads that share the room.
+#[must_use]
+pub fn walls(contours: &[Contour], may_be_thin: bool, params: &WallParams) -> Walls {
+    let (mut levels, whole) = levels(contours, may_be_thin, params);
+    let core = levels.split_off((params.count as usize).min(levels.len())).pop();
+    let plain = |(depth, level): (u32, &Vec<Contour>)| -> Vec<Wall> {
+        level.iter().map(|path| Wall::closed(path.clone(), depth)).collect()
+    };
+    let mut walls: Vec<Wall> = (0..).zip(&levels).flat_map(plain).collect();
+    let lost_mm2 = lost::outside_loops(contours, &walls, params);
+    let Some(core) = core.filter(|_| !whole) else { return Walls { walls, core: None, lost_mm2 } };
+    let layout = Layout::new(contours, &levels, &core, params);
+    walls.iter_mut().for_each(|wall| loops::share(wall, &layout));
+    let beads = middle::beads(&layout);
+    let lost_mm2 = (lost_mm2 - lost::under_beads(&beads)).max(0.0);
+    walls.extend(beads);
+    Walls { walls, core: Some(core), lost_mm2 }
+}
+
+/// The loops of each depth, and the core if the layer `may_be_thin`. Also whether each contour has
+/// its loop at each depth, so that nothing is too thin.
+fn levels(
+    contours: &[Contour],
+    may_be_thin: bool,
+    params: &WallParams,
+) -> (Vec<Vec<Contour>>, bool) {
+    let mut levels: Vec<Vec<Contour>> = Vec::new();
+    let mut whole = true;
+    for depth in 0..params.count + u32::from(may_be_thin) {
+        let outer = levels.last().map_or(contours, |level| level.as_slice());
+        let distance = if depth == 0 { params.outer_inset } else { params.line_width };
+        let mut level = if distance > 0 { polygon::inset(outer, distance) } else { outer.to_vec() };
+        if may_be_thin {
+            let cut;
+            (level, cut) = thin::open(level, depth, params);
+            whole &= !cut && level.len() == contours.len();
+        }
+        levels.push(level);
+    }
+    (levels, whole)
+}
+
+impl Wall {
+    /// A loop of one line width.
+    fn closed(path: Contour, depth: u32) -> Self {
+        Self { path, widths: Vec::new(), closed: true, depth, layers: 1 }
+    }
+}
+
+/// How far from its place a loop is looked for, in line widths. A cut ends a loop more than half
+/// a line before the passes meet, so that half a line would find the wrong pass; a small value
+/// misses loops at corners, where they lie further from the contour.
+const BESIDE: f64 = 0.3;
+
+/// Room in line widths that a place may have beyond what its beads are for. Where a loop is cut
+/// off, rounding and the ends of the cut leave such places; a larger value makes fat beads.
+const BEYOND: f64 = 0.15;
+
+/// Room in line widths beside passes from which there is a middle bead. The middle between no bead
+/// and one of full width is 0.5; a little more, so that walls of a round thickness, such as 2.5
+/// lines, are not decided by rounding.
+const LEAST_MIDDLE: f64 = 0.54;
+
+/// Rooms thinner than the least by this much (1 µm) still count: rounding.
+const ROUNDING: f64 = 10.0;
+
+/// All that decides how beads lie at a place.
+struct Layout<'a> {
+    contours: &'a [Contour],
+    outline: Outline,
+    /// The loops of each depth, then the core.
+    levels: Vec<Near>,
+    params: &'a WallParams,
+    line_width: f64,
+}
+
+/// How beads lie at a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Share {
+    /// The room, from outer edge to outer edge of the beads.
+    room: f64,
+    /// The width of each bead.
+    width: f64,
+    /// How many loops have passes here.
+    loops: u32,
+    /// Whether there is a middle bead.
+    middle: bool,
+}
+
+impl<'a> Layout<'a> {
+    fn new(
+        contours: &'a [Contour],
+        levels: &[Vec<Contour>],
+        core: &[Contour],
+        params: &'a WallParams,
+    ) -> Self {
+        let line_width = f64::from(params.line_width);
+        let near = |level: &[Contour]| Near::of_all(level, 2.0 * line_width);
+        let mut near: Vec<Near> = levels.iter().map(|level| near(level)).collect();
+        near.push(Near::of_all(core, 2.0 * line_width));
+        Self { contours, outline: Outline::new(contours, params), levels: near, params, line_width }
+    }
+
+    /// How far beads reach out over the contour; negative if they stay inside.
+    fn outside(&self) -> f64 {
+        self.line_width / 2.0 - f64::from(self.params.outer_inset)
+    }
+
+    /// Distance of the centre line of a loop of nominal width from the contour.
+    fn inset(&self, depth: u32) -> f64 {
+        f64::from(self.params.inset_of(depth + 1))
+    }
+
+    /// How beads lie where the contour runs through `at`, the part lies towards `normal`, and the
+    /// circle that touches it has `radius`. `None` if loops and core lie there as everywhere, or
+    /// nothing fits.
+    fn share(&self, at: [f64; 2], normal: [f64; 2], radius: f64) -> Option<Share> {
+        let place = |depth: u32| [0, 1].map(|k| at[k] + self.inset(depth) * normal[k]);
+        let has = |depth: u32| {
+            let near = &self.levels[depth as usize];
+            self.inset(depth) < radius + BESIDE * self.line_width
+                && !near.is_free([place(depth)], BESIDE * self.line_width)
+        };
+        let loops = (0..=self.params.count).take_while(|&depth| has(depth)).count() as u32;
+        if loops > self.params.count {
+            return None;
+        }
+        share_room(2.0 * (radius + self.outside()), loops, self.params)
+    }
+}
+
+/// How `loops` loops and perhaps a middle bead share `room`. `None` if nothing fits, or if there is
+/// more room than they are for.
+fn share_room(room: f64, loops: u32, params: &WallParams) -> Option<Share> {
+    let w = f64::from(params.line_width);
+    let passes = f64::from(2 * loops);
+    let most = if loops == 0 { params.widest } else { passes + 1.5 };
+    let least = if loops == 0 { params.least_room - ROUNDING } else { (passes + LEAST_MIDDLE) * w };
+    if room > (most + BEYOND) * w || (loops == 0 && room < least) {
+        return None;
+    }
+    let middle = room >= least;
+    let width = room / (passes + f64::from(u8::from(middle)));
+    Some(Share { room, width: width.max(params.narrowest), loops, middle })
+}
+
+#[cfg(test)]
+mod tests;

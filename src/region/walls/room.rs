@@ -1,0 +1,146 @@
+//! Contours -> Outline: how thick the part is behind a place of its contour.
+//!
+//! A circle inside the part that touches the contour at a place has its centre on the normal
+//! there. Of all sides of the contour, the one that allows the smallest circle bounds the part on
+//! the other side. The circle's centre then lies on the medial axis, and the thickness is twice
+//! its radius. For a place `p` with the normal `n`:
+//!
+//! - A side with the normal `m` at the distance `h` from `p` touches the circle of the radius
+//!   `h / (1 − n·m)`.
+//! - A point at `q` from `p` touches the circle of the radius `q² / 2 n·q`.
+
+use crate::geom::cells::Cells;
+use crate::geom::segment::{along, dot, way};
+use crate::geom::{Contour, edges};
+use crate::region::near::{Area, Grid};
+use crate::region::params::WallParams;
+use crate::units::Bounded as _;
+
+/// Cosine of the angle between two sides that are opposite to each other: a wedge of 32°. Blunter
+/// wedges keep their loops up to the corner, as the tests of [`super::thin`] show. A smaller value
+/// lays middle beads in corners; a larger one leaves steep tapers open.
+const OPPOSITE: f64 = 0.85;
+
+/// The same for corners that stick into the part. Where walls cross, a wall looks at two such
+/// corners; a middle bead runs on between them. A larger value breaks it there.
+const OPPOSITE_CORNER: f64 = 0.5;
+
+/// Sides that look at a place at a flatter angle bound nothing there: the end of a strip must not
+/// hide what is opposite.
+const BOUNDS: f64 = 0.3;
+
+/// A side of the contour.
+#[derive(Debug, Clone, Copy, Default)]
+struct Side {
+    from: [f64; 2],
+    /// Its direction; the solid is on its left.
+    along: [f64; 2],
+    length: f64,
+    index: u32,
+}
+
+impl Side {
+    fn normal(&self) -> [f64; 2] {
+        [-self.along[1], self.along[0]]
+    }
+}
+
+/// What lies opposite to a place of the contour.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Opposite {
+    /// Radius of the circle that touches both.
+    pub radius: f64,
+    /// The index of the side that it touches: sides count through all contours.
+    pub side: u32,
+}
+
+/// The sides of contours, sorted into cells.
+#[derive(Debug)]
+pub(super) struct Outline {
+    grid: Grid,
+    cells: Cells<Side>,
+    /// No circle is larger than this.
+    most: f64,
+}
+
+impl Outline {
+    /// Sorts the sides of `contours`. Places with more room than the walls can share have nothing
+    /// opposite.
+    pub(super) fn new(contours: &[Contour], params: &WallParams) -> Self {
+        let sides: Vec<Side> = (0..)
+            .zip(contours.iter().flat_map(|c| edges(c)))
+            .filter(|(_, (p, q))| p != q)
+            .map(|(index, (p, q))| {
+                let from = [f64::from(p.x), f64::from(p.y)];
+                let way = way(from, [f64::from(q.x), f64::from(q.y)]);
+                let length = p.distance(q);
+                Side { from, along: way.map(|x| x / length), length, index }
+            })
+            .collect();
+        let w = f64::from(params.line_width);
+        let most = w * (f64::from(params.count) + 1.0) + w / 2.0 - f64::from(params.outer_inset);
+        let area = Area::around(sides.iter().map(|s| s.from), most);
+        let grid = Grid::new(area, 2.0 * w);
+        let end = |s: &Side| along(s.from, s.length, s.along);
+        let reach = |s: Side| grid.cells([s.from, end(&s)]).flatten();
+        let cells = Cells::new(grid.count(), || sides.iter().copied(), reach);
+        Self { grid, cells, most }
+    }
+
+    /// What lies opposite to `at`, where the part lies towards `normal`. `None` if it is too far
+    /// away, or not opposite.
+    pub(super) fn opposite(&self, at: [f64; 2], normal: [f64; 2]) -> Option<Opposite> {
+        let middle = along(at, self.most, normal);
+        let area = Area::around(std::iter::once(middle), self.most);
+        let mut best = self.most;
+        let mut found = None;
+        for side in self.grid.cells(area.corners()).flat_map(|cells| self.cells.of(cells)) {
+            if let Some((radius, opposite)) = touch(side, at, normal, best) {
+                best = radius;
+                found = opposite.then_some(side.index);
+            }
+        }
+        found.map(|side| Opposite { radius: best, side })
+    }
+
+    /// Whether no side is nearer to `at` than `distance`.
+    pub(super) fn is_free(&self, at: [f64; 2], distance: f64) -> bool {
+        let area = Area::around(std::iter::once(at), distance);
+        let far = |side: &Side| {
+            let arm = way(side.from, at);
+            let t = dot(arm, side.along).at_least(0.0).at_most(side.length);
+            let off = along(arm, -t, side.along);
+            dot(off, off) >= distance * distance
+        };
+        self.grid.cells(area.corners()).flat_map(|cells| self.cells.of(cells)).all(far)
+    }
+}
+
+/// The circle at `at` that touches `side` or its start, if it is smaller than `most`, and whether
+/// they are opposite to `at`.
+fn touch(side: &Side, at: [f64; 2], normal: [f64; 2], most: f64) -> Option<(f64, bool)> {
+    let mut best = None;
+    let mut least = most;
+    let m = side.normal();
+    let (height, facing) = (dot(way(side.from, at), m), -dot(normal, m));
+    if height > 0.0 && facing > BOUNDS {
+        let radius = height / (1.0 + facing);
+        let centre = along(at, radius, normal);
+        let t = dot(way(side.from, centre), side.along);
+        if radius < least && (0.0..=side.length).contains(&t) {
+            least = radius;
+            best = Some((radius, facing >= OPPOSITE));
+        }
+    }
+    let arm = way(at, side.from);
+    let ahead = dot(arm, normal);
+    if ahead > 0.0 {
+        let square = dot(arm, arm);
+        let radius = square / (2.0 * ahead);
+        let facing = 2.0 * ahead * ahead / square.at_least(1.0) - 1.0;
+        if radius < least && facing > BOUNDS {
+            best = Some((radius, facing >= OPPOSITE_CORNER));
+        }
+    }
+    best
+}

@@ -1,0 +1,86 @@
+//! Contours -> contours: loops without the places that are too thin for both of their passes.
+//!
+//! Where the room for a loop is hardly wider than a line, it would run out and back on itself: two
+//! beads in the room of one, up to twice the plastic. There the loop is cut off, and the room gets
+//! one bead ([`super::middle`]).
+
+use crate::geom::spans::{Rows, Span};
+use crate::geom::{Contour, edges, polygon};
+use crate::region::params::WallParams;
+use crate::units::{Coord, nearest};
+
+/// Shorter thin places stay in a loop, in line widths: they are corners. With a smaller value
+/// corners lose their wall; with a larger one the strokes of small letters get both passes. A wedge
+/// blunter than 20° is shorter than this.
+const SHORT: f64 = 2.0;
+
+/// Loops are grown by this (2 µm) before they are compared or cut, so that rounding to the grid
+/// leaves no slivers along their edges.
+const ROUNDING: Coord = 20;
+
+/// Passes may be this much (5 µm) nearer to each other. So a wall of exactly the limit gets one
+/// bead on every layer, whichever way its contours were rounded.
+const LIMIT: Coord = 50;
+
+/// Room in line widths from which on one more loop fits inside another: its two passes then are
+/// three quarters of a line wide.
+const ONE_MORE: f64 = 1.5;
+
+/// Whether a layer may have such thin places, given its contours and its inside on two crossing
+/// rasters. This is a cheap test to skip most layers: a thin place longer than a few lines has
+/// short spans on two neighbouring rows of at least one raster; shorter ones are contours of their
+/// own or corners.
+#[must_use]
+pub fn may_be_thin(contours: &[Contour], insides: [&Rows; 2], params: &WallParams) -> bool {
+    let limit = f64::from(2 * params.inset_of_narrow()) * std::f64::consts::SQRT_2;
+    let is_short = |s: &&Span| (s.len() as f64) < limit;
+    let is_small = |contour: &Contour| {
+        let extent = |of: fn(&crate::geom::Point) -> Coord| {
+            let (low, high) = (contour.iter().map(of).min(), contour.iter().map(of).max());
+            low.zip(high).map_or(0.0, |(low, high)| f64::from(high) - f64::from(low))
+        };
+        extent(|p| p.x).min(extent(|p| p.y)) < limit
+    };
+    params.count > 0
+        && (contours.iter().any(is_small)
+            || insides.iter().any(|rows| {
+                rows.iter().any(|(j, row)| {
+                    let next = rows.row(j + 1);
+                    let mut short = row.iter().filter(is_short);
+                    short.any(|a| next.iter().filter(is_short).any(|b| a.overlaps(*b)))
+                })
+            }))
+}
+
+/// Cuts off the places where two passes of the loops of this `depth` are too near to each other, and
+/// whether there are any.
+#[must_use]
+pub fn open(loops: Vec<Contour>, depth: u32, params: &WallParams) -> (Vec<Contour>, bool) {
+    let half = (params.least_apart(depth) / 2).max(1);
+    let short = SHORT * f64::from(params.line_width);
+    // Shrunk by half, the passes of a thin place would meet or vanish. If none do, nothing is thin.
+    if polygon::keep_shape(&loops, half, short) {
+        return (loops, false);
+    }
+    let opened = polygon::outset(&polygon::inset(&loops, half), half + ROUNDING);
+    let mut thin = polygon::difference(&loops, &opened, ROUNDING);
+    thin.retain(|c| edges(c).map(|(p, q)| p.distance(q)).sum::<f64>() >= 2.0 * short);
+    if thin.is_empty() {
+        return (loops, false);
+    }
+    (polygon::difference(&loops, &polygon::outset(&thin, ROUNDING), 2 * ROUNDING), true)
+}
+
+impl WallParams {
+    /// Minimum distance of the two passes of a loop of this depth. The outermost one takes over
+    /// where a single bead would be too wide, inner ones where there is room for [`ONE_MORE`] line.
+    fn least_apart(&self, depth: u32) -> Coord {
+        let room = if depth == 0 { self.widest } else { ONE_MORE };
+        nearest((room - 1.0) * f64::from(self.line_width)) as Coord + LIMIT
+    }
+
+    /// Inset at which the room inside all walls vanishes where one bead can fill it.
+    fn inset_of_narrow(&self) -> Coord {
+        self.inset_of(self.count + 1) + self.least_apart(self.count) / 2
+    }
+}
