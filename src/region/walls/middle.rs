@@ -14,7 +14,7 @@
 //! 4. Join arcs whose ends meet, and drop short ones.
 
 use super::{Layout, Share, Wall};
-use crate::geom::segment::along;
+use crate::geom::segment::{along, dot, way};
 use crate::geom::{Contour, Point, edges, side};
 use crate::region::near::Near;
 use crate::region::taper::{Place, distance, tapered};
@@ -38,6 +38,9 @@ const CLEAR: f64 = 0.8;
 /// Shorter beads are dropped, in line widths: the outermost ones, and those between loops. They
 /// leave less open than a start and a stop spoil; a letter's dot is longer.
 const SHORT: [f64; 2] = [0.4, 2.0];
+
+/// Where two neighbouring samples are further apart, in line widths, a corner may lie between them.
+const CORNER: f64 = 0.6;
 
 /// Samples nearer than this part of their bead's width to an arc already have their bead.
 const SAME: f64 = 0.6;
@@ -73,6 +76,7 @@ pub(super) fn beads(layout: &Layout<'_>) -> Vec<Wall> {
     let left = laps.iter().flat_map(|lap| arcs(lap, w, is_left));
     all.extend(left.filter(|arc| length(arc) >= w));
     join(&mut all, w);
+    all.iter_mut().for_each(|arc| sharpen(arc, w));
     all.iter().filter(|arc| is_long(arc, w)).map(|arc| wall(arc)).collect()
 }
 
@@ -210,6 +214,45 @@ fn nearest(arcs: &[Arc], k: usize, most: f64) -> Option<(usize, (bool, bool))> {
         }
     }
     best.map(|(_, j, turn)| (j, turn))
+}
+
+/// Adds the corners that samples leave out: near the outside of a corner nothing is opposite.
+fn sharpen(arc: &mut Arc, w: f64) {
+    let at = |arc: &Arc, k: usize| arc[k].place.at;
+    let mut k = 1;
+    while k + 2 < arc.len() {
+        let (a, b) = (at(arc, k), at(arc, k + 1));
+        let (before, after) = (way(at(arc, k - 1), a), way(b, at(arc, k + 2)));
+        if distance(a, b) > CORNER * w
+            && let Some(corner) = meet(a, before, b, after, NEIGHBOURS * w)
+        {
+            let width = f64::midpoint(arc[k].place.width, arc[k + 1].place.width);
+            arc.insert(k + 1, Sample { place: Place { at: corner, width }, ..arc[k] });
+            k += 1;
+        }
+        k += 1;
+    }
+}
+
+/// Where the way from `a` on along `before` meets the way that leads to `b` along `after`, both at
+/// most `most` long.
+fn meet(
+    a: [f64; 2],
+    before: [f64; 2],
+    b: [f64; 2],
+    after: [f64; 2],
+    most: f64,
+) -> Option<[f64; 2]> {
+    let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+    let between = way(a, b);
+    let turn = cross(before, after);
+    if turn.abs() < 0.2 * (dot(before, before) * dot(after, after)).sqrt() {
+        return None;
+    }
+    let (ahead, back) = (cross(between, after) / turn, cross(between, before) / turn);
+    let corner = along(a, ahead, before);
+    let near = distance(a, corner).at_least(distance(b, corner)) <= most;
+    (ahead > 0.0 && back < 0.0 && near).then_some(corner)
 }
 
 fn length(arc: &Arc) -> f64 {

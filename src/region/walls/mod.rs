@@ -99,7 +99,7 @@ fn levels(
         let mut level = if distance > 0 { polygon::inset(outer, distance) } else { outer.to_vec() };
         if may_be_thin {
             let cut;
-            (level, cut) = thin::open(level, depth, params);
+            (level, cut) = thin::open(level, (outer, distance), depth, params);
             whole &= !cut && level.len() == contours.len();
         }
         levels.push(level);
@@ -128,8 +128,8 @@ const BEYOND: f64 = 0.15;
 /// lines, are not decided by rounding.
 const LEAST_MIDDLE: f64 = 0.54;
 
-/// Rooms thinner than the least by this much (1 µm) still count: rounding.
-const ROUNDING: f64 = 10.0;
+/// Rooms thinner than the least by this much (5 µm) still count: rounding.
+const ROUNDING: f64 = 50.0;
 
 /// All that decides how beads lie at a place.
 struct Layout<'a> {

@@ -5,7 +5,7 @@
 //! one bead ([`super::middle`]).
 
 use crate::geom::spans::{Rows, Span};
-use crate::geom::{Contour, edges, polygon};
+use crate::geom::{Contour, edges, encloses, polygon};
 use crate::region::params::WallParams;
 use crate::units::{Coord, nearest};
 
@@ -53,22 +53,47 @@ pub fn may_be_thin(contours: &[Contour], insides: [&Rows; 2], params: &WallParam
 }
 
 /// Cuts off the places where two passes of the loops of this `depth` are too near to each other, and
-/// whether there are any.
+/// whether there are any. `outer` is what the loops are insets of, by `distance`.
 #[must_use]
-pub fn open(loops: Vec<Contour>, depth: u32, params: &WallParams) -> (Vec<Contour>, bool) {
+pub fn open(
+    mut loops: Vec<Contour>,
+    (outer, distance): (&[Contour], Coord),
+    depth: u32,
+    params: &WallParams,
+) -> (Vec<Contour>, bool) {
     let half = (params.least_apart(depth) / 2).max(1);
     let short = SHORT * f64::from(params.line_width);
     // Shrunk by half, the passes of a thin place would meet or vanish. If none do, nothing is thin.
     if polygon::keep_shape(&loops, half, short) {
         return (loops, false);
     }
-    let opened = polygon::outset(&polygon::inset(&loops, half), half + ROUNDING);
+    let shrunk = polygon::inset(&loops, half);
+    let is_bulge = |path: &Contour| {
+        perimeter(path) < 2.0 * short
+            && !shrunk.iter().any(|inner| encloses(edges(path), inner[0]))
+            && !is_dot(path, outer, distance)
+    };
+    let before = loops.len();
+    loops.retain(|path| !is_bulge(path));
+    let cut = loops.len() < before;
+    let opened = polygon::outset(&shrunk, half + ROUNDING);
     let mut thin = polygon::difference(&loops, &opened, ROUNDING);
-    thin.retain(|c| edges(c).map(|(p, q)| p.distance(q)).sum::<f64>() >= 2.0 * short);
+    thin.retain(|c| perimeter(c) >= 2.0 * short);
     if thin.is_empty() {
-        return (loops, false);
+        return (loops, cut);
     }
     (polygon::difference(&loops, &polygon::outset(&thin, ROUNDING), 2 * ROUNDING), true)
+}
+
+/// Whether a short loop is all there is inside a contour of `outer`, and not a bulge of a strip. Around
+/// a convex contour the way is longer by at most eight times the `distance`.
+fn is_dot(path: &Contour, outer: &[Contour], distance: Coord) -> bool {
+    let most = perimeter(path) + 10.0 * f64::from(distance);
+    outer.iter().any(|c| perimeter(c) <= most && encloses(edges(c), path[0]))
+}
+
+fn perimeter(contour: &Contour) -> f64 {
+    edges(contour).map(|(p, q)| p.distance(q)).sum()
 }
 
 impl WallParams {
