@@ -99,7 +99,7 @@ pub enum Refusal {
     },
     /// No line fits anywhere.
     #[error(
-        "nothing to print: everything is thinner than a line of {line_width_mm} mm; use a smaller \
+        "nothing to print: everything is too thin for a line of {line_width_mm} mm; use a smaller \
          --line-width, a larger --scale or another --unit"
     )]
     TooThin {

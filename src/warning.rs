@@ -98,8 +98,8 @@ impl fmt::Display for Warning {
             ),
             Self::ThinPlaces { layers, area_mm2 } => write!(
                 f,
-                "left out {area_mm2:.1} mm² on {} that are thinner than one line; use a smaller \
-                 --line-width",
+                "left out {area_mm2:.1} mm² on {} that are too thin for a bead; use a smaller \
+                 min_feature or nozzle",
                 plural(*layers as u64, "layer")
             ),
             Self::PartHangs { length_mm } => write!(

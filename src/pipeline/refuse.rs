@@ -8,7 +8,7 @@
 //!   nearly every mesh, is not looked at. Of any other mesh the open contours are cut once more,
 //!   block by block, and forgotten: this takes no memory that grows with the layers, and less
 //!   time than cutting whole layers does.
-//! - Everything is thinner than a line. This is only known when all layers are planned. So the
+//! - Everything is too thin for a bead. This is only known when all layers are planned. So the
 //!   writer keeps what it has until the first line is extruded, which is in the first layer of
 //!   nearly every print. A layer without lines takes a few bytes until then.
 //!

@@ -287,7 +287,7 @@ fn a_refused_job_writes_neither_to_a_pipe_nor_to_files() {
     let folder = folder();
     write_block(&folder.path().join("block.stl"));
     let words = ["block.stl", "--scale", "0.03", "-q", "-o"];
-    let says = "everything is thinner than a line";
+    let says = "everything is too thin for a line";
     fails(&folder, &[&words[..], &["-"]].concat(), 3, says);
     fails(&folder, &[&words[..], &["a.gcode"]].concat(), 3, says);
     fails(&folder, &[&words[..], &["-", "--report", "a.json"]].concat(), 3, says);

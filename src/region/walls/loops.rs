@@ -90,7 +90,8 @@ fn corner(before: &Sampled, after: &Sampled) -> Place {
     let (Some(a), Some(b)) = (before.samples.last(), after.samples.first()) else {
         return Place { at: after.from, width: 0.0 };
     };
-    let width = f64::midpoint(a.width, b.width);
+    // A short side, such as the end of a bar, must not change the width all along a long one.
+    let width = if before.samples.len() > after.samples.len() { a.width } else { b.width };
     let (m, n) = (before.normal, after.normal);
     let cross = m[0] * n[1] - m[1] * n[0];
     let by = if cross.abs() < STRAIGHT {

@@ -31,9 +31,10 @@ const TURN: f64 = 0.26;
 /// smaller value breaks beads on the outside of bends, a larger one bridges gaps.
 const NEIGHBOURS: f64 = 1.5;
 
-/// How far a bead stays away from the end of its strip, as a part of half the strip's width. The
-/// bead's round end then covers as much as its square end misses.
-const CLEAR: f64 = 0.8;
+/// How far a bead stays away from the end of its strip, as a part of half the strip's width. At 0.8
+/// its round end covers as much as its square end misses, but the corners of the strip stay open; at
+/// 0 it sticks out by half its width.
+const CLEAR: f64 = 0.5;
 
 /// Shorter beads are dropped, in line widths: the outermost ones, and those between loops. They
 /// leave less open than a start and a stop spoil; a letter's dot is longer.
@@ -76,7 +77,12 @@ pub(super) fn beads(layout: &Layout<'_>) -> Vec<Wall> {
     let left = laps.iter().flat_map(|lap| arcs(lap, w, is_left));
     all.extend(left.filter(|arc| length(arc) >= w));
     join(&mut all, w);
-    all.iter_mut().for_each(|arc| sharpen(arc, w));
+    for arc in &mut all {
+        sharpen(arc, w);
+        reach_end(arc, layout);
+        arc.reverse();
+        reach_end(arc, layout);
+    }
     all.iter().filter(|arc| is_long(arc, w)).map(|arc| wall(arc)).collect()
 }
 
@@ -214,6 +220,26 @@ fn nearest(arcs: &[Arc], k: usize, most: f64) -> Option<(usize, (bool, bool))> {
         }
     }
     best.map(|(_, j, turn)| (j, turn))
+}
+
+/// Moves the last place of an arc on to the end of its strip: samples lie up to a step before it.
+fn reach_end(arc: &mut Arc, layout: &Layout<'_>) {
+    let [.., before, last] = &mut arc[..] else { return };
+    let ahead = way(before.place.at, last.place.at);
+    let length = dot(ahead, ahead).sqrt().at_least(1.0);
+    let clear = CLEAR * last.place.width / 2.0 * f64::from(2 * last.loops + 1);
+    let at = |far: f64| along(last.place.at, far / length, ahead);
+    let step = STEP * layout.line_width;
+    // Where there is still room, the strip does not end: it runs into another.
+    if layout.outline.is_free(at(step), clear) {
+        return;
+    }
+    let mut far = 0.0;
+    for part in [0.5, 0.25, 0.125, 0.0625] {
+        let further = far + part * step;
+        far = if layout.outline.is_free(at(further), clear) { further } else { far };
+    }
+    last.place.at = at(far);
 }
 
 /// Adds the corners that samples leave out: near the outside of a corner nothing is opposite.

@@ -1,1 +1,185 @@
+//! Laws over walls, tubes, crosses and wedges of many widths: how much plastic they get, and where.
 
+use super::*;
+use crate::geom::frame::Frame;
+use crate::geom::raster::Raster;
+use crate::geom::{Point, double_area, edges, segment};
+use crate::profile;
+use crate::region::RegionParams;
+use crate::region::scan::Scan;
+use crate::units::{nearest, sin_cos};
+use proptest::prelude::*;
+
+const W: f64 = 4_000.0;
+
+fn params(count: u32) -> WallParams {
+    let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
+    settings.walls = count;
+    RegionParams::new(&settings).walls
+}
+
+fn at(x: f64, y: f64, degrees: f64) -> Point {
+    let (sin, cos) = sin_cos(degrees);
+    Point { x: nearest(x * cos - y * sin) as Coord, y: nearest(x * sin + y * cos) as Coord }
+}
+
+/// A bar 24 mm long, `first` wide at its left end and `last` at its right one.
+fn bar(first: f64, last: f64, degrees: f64) -> Vec<Contour> {
+    let (l, a, b) = (120_000.0, first / 2.0, last / 2.0);
+    vec![[(-l, -a), (l, -b), (l, b), (-l, a)].map(|(x, y)| at(x, y, degrees)).to_vec()]
+}
+
+/// A tube with the outer radius 8 mm.
+fn tube(wall: f64, corners: usize) -> Vec<Contour> {
+    let ring = |radius: f64| -> Contour {
+        (0..corners).map(|k| at(radius, 0.0, 360.0 * k as f64 / corners as f64)).collect()
+    };
+    vec![ring(80_000.0), ring(80_000.0 - wall).into_iter().rev().collect()]
+}
+
+/// Two bars that cross at right angles.
+fn cross(width: f64, degrees: f64) -> Vec<Contour> {
+    let (l, a) = (60_000.0, width / 2.0);
+    let arm = |turn: f64| [(l, -a), (l, a), (a, a)].map(|(x, y)| at(x, y, degrees + turn));
+    vec![[0.0, 90.0, 180.0, 270.0].into_iter().flat_map(arm).collect()]
+}
+
+fn made(contours: &[Contour], params: &WallParams) -> Walls {
+    let inside = |degrees| {
+        let raster = Raster { frame: Frame::new(degrees), pitch: params.line_width };
+        Scan::new(contours, raster).inside().clone()
+    };
+    let (rows, columns) = (inside(45.0), inside(135.0));
+    let thin = thin::may_be_thin(contours, [&rows, &columns], params);
+    walls(contours, thin, params)
+}
+
+fn sides(wall: &Wall) -> Vec<(Point, Point, f64)> {
+    let width = |k: usize| wall.widths.get(k).map_or(W, |&w| f64::from(w));
+    let mut out: Vec<_> =
+        wall.path.windows(2).enumerate().map(|(k, p)| (p[0], p[1], width(k + 1))).collect();
+    if wall.closed {
+        out.extend(wall.path.last().zip(wall.path.first()).map(|(&p, &q)| (p, q, width(0))));
+    }
+    out
+}
+
+/// Plastic over solid, both as areas.
+fn filled(contours: &[Contour], walls: &[Wall]) -> f64 {
+    let solid: f64 = contours.iter().map(|c| double_area(c) as f64 / 2.0).sum();
+    walls.iter().flat_map(sides).map(|(p, q, w)| p.distance(q) * w).sum::<f64>() / solid
+}
+
+/// The part of the contours that lies at most 60 µm beside a bead.
+fn covered(contours: &[Contour], walls: &[Wall]) -> f64 {
+    let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
+    let beads: Vec<_> = walls.iter().flat_map(sides).collect();
+    let (mut all, mut near) = (0, 0);
+    for (p, q) in contours.iter().flat_map(|c| edges(c)) {
+        let steps = (p.distance(q) / 1_000.0).ceil();
+        for k in 0..steps as usize {
+            let t = (k as f64 + 0.5) / steps;
+            let place = segment::along(float(p), t, segment::way(float(p), float(q)));
+            let is_near = |(a, b, w): &(Point, Point, f64)| {
+                segment::distance2(place, [float(*a), float(*b)]).sqrt() <= w / 2.0 + 600.0
+            };
+            all += 1;
+            near += usize::from(beads.iter().any(is_near));
+        }
+    }
+    f64::from(near as u32) / f64::from(all as u32)
+}
+
+/// Widths that walls alone can fill: up to one bead more than passes.
+fn width(count: u32) -> impl Strategy<Value = f64> {
+    3_400.0..(2.0 * f64::from(count) + 1.45) * W
+}
+
+fn case() -> impl Strategy<Value = (u32, f64)> {
+    (1..=3_u32).prop_flat_map(|count| (Just(count), width(count)))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    fn bars_are_full_and_their_outline_is_covered((count, width) in case(), degrees in 0.0..180.0) {
+        let bar = bar(width, width, degrees);
+        let Walls { walls, .. } = made(&bar, &params(count));
+        let filled = filled(&bar, &walls);
+        prop_assert!((0.93..1.04).contains(&filled), "{filled}");
+        prop_assert!(covered(&bar, &walls) > 0.99, "{}", covered(&bar, &walls));
+    }
+
+    #[test]
+    fn tubes_are_full((count, width) in case(), corners in 24..200_usize) {
+        let tube = tube(width, corners);
+        let Walls { walls, .. } = made(&tube, &params(count));
+        let filled = filled(&tube, &walls);
+        prop_assert!((0.92..1.05).contains(&filled), "{filled}");
+        prop_assert!(covered(&tube, &walls) > 0.99);
+    }
+
+    #[test]
+    fn crosses_are_full((count, width) in case(), degrees in 0.0..90.0) {
+        let cross = cross(width, degrees);
+        let Walls { walls, .. } = made(&cross, &params(count));
+        let filled = filled(&cross, &walls);
+        prop_assert!((0.9..1.06).contains(&filled), "{filled}");
+        prop_assert!(covered(&cross, &walls) > 0.98, "{}", covered(&cross, &walls));
+    }
+
+    #[test]
+    fn wedges_have_no_holes_and_no_doubled_beads(
+        count in 1..=3_u32,
+        first in 3_400.0..6_000.0,
+        degrees in 0.0..180.0,
+    ) {
+        let wedge = bar(first, (2.0 * f64::from(count) + 1.4) * W, degrees);
+        let Walls { walls, .. } = made(&wedge, &params(count));
+        let filled = filled(&wedge, &walls);
+        prop_assert!((0.94..1.04).contains(&filled), "{filled}");
+        prop_assert!(covered(&wedge, &walls) > 0.985, "{}", covered(&wedge, &walls));
+    }
+
+    #[test]
+    fn no_bead_is_narrower_than_asked_for((count, width) in case(), degrees in 0.0..180.0) {
+        let Walls { walls, .. } = made(&bar(width, width, degrees), &params(count));
+        let widths = walls.iter().flat_map(sides).map(|(_, _, width)| width);
+        prop_assert!(widths.fold(f64::MAX, f64::min) >= 0.7 * W);
+    }
+}
+
+#[test]
+fn a_bar_gets_the_number_of_beads_that_its_room_is_for() {
+    // One wall: one bead up to 0.7 mm, two up to 1.016 mm, then three; from 1.4 mm there is a core.
+    for (width, loops, open, core) in [
+        (1_000.0, 0, 1, false),
+        (4_000.0, 0, 1, false),
+        (7_000.0, 0, 1, false),
+        (7_200.0, 1, 0, false),
+        (10_000.0, 1, 0, false),
+        (10_400.0, 1, 1, false),
+        (13_900.0, 1, 1, false),
+        (14_500.0, 1, 0, true),
+    ] {
+        let made = made(&bar(width, width, 20.0), &params(1));
+        let closed = made.walls.iter().filter(|w| w.closed).count();
+        assert_eq!((closed, made.walls.len() - closed), (loops, open), "{width}");
+        assert_eq!(made.core.is_none_or(|core| !core.is_empty()), core, "{width}");
+    }
+}
+
+#[test]
+fn a_thick_part_keeps_its_plain_loops() {
+    let made = made(&bar(100_000.0, 100_000.0, 30.0), &params(3));
+    assert!(made.core.is_none());
+    assert!(made.walls.len() == 3 && made.walls.iter().all(|w| w.closed && w.widths.is_empty()));
+}
+
+#[test]
+fn what_is_thinner_than_the_least_feature_is_lost_and_reported() {
+    let made = made(&bar(800.0, 800.0, 0.0), &params(2));
+    assert!(made.walls.is_empty());
+    assert!((made.lost_mm2 - 24.0 * 0.08).abs() < 0.01, "{}", made.lost_mm2);
+}

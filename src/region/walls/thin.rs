@@ -34,6 +34,10 @@ const ONE_MORE: f64 = 1.5;
 pub fn may_be_thin(contours: &[Contour], insides: [&Rows; 2], params: &WallParams) -> bool {
     let limit = f64::from(2 * params.inset_of_narrow()) * std::f64::consts::SQRT_2;
     let is_short = |s: &&Span| (s.len() as f64) < limit;
+    // A strip that rows cross at 45° or steeper moves on by at most their distance from row to row.
+    let meets = |a: &Span, b: &Span| {
+        a.start - params.line_width <= b.end && b.start - params.line_width <= a.end
+    };
     let is_small = |contour: &Contour| {
         let extent = |of: fn(&crate::geom::Point) -> Coord| {
             let (low, high) = (contour.iter().map(of).min(), contour.iter().map(of).max());
@@ -47,7 +51,7 @@ pub fn may_be_thin(contours: &[Contour], insides: [&Rows; 2], params: &WallParam
                 rows.iter().any(|(j, row)| {
                     let next = rows.row(j + 1);
                     let mut short = row.iter().filter(is_short);
-                    short.any(|a| next.iter().filter(is_short).any(|b| a.overlaps(*b)))
+                    short.any(|a| next.iter().filter(is_short).any(|b| meets(a, b)))
                 })
             }))
 }
