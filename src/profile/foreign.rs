@@ -36,6 +36,8 @@ const KEYS: &[(&str, &[&str])] = &[
     ("tolerance", &["resolution", "gcode_resolution", "meshfix_maximum_resolution", "meshfix_maximum_deviation"]),
     ("walls", &["perimeters", "wall_loops", "wall_line_count", "wall_count", "wall_thickness", "shells"]),
     ("outer_wall_inset", &["wall_0_inset"]),
+    ("min_feature", &["min_feature_size", "thin_walls", "detect_thin_wall", "fill_outline_gaps"]),
+    ("min_bead_width", &["min_even_wall_line_width", "min_odd_wall_line_width", "min_wall_line_width"]),
     ("wall_order", &["external_perimeters_first", "wall_sequence", "wall_infill_order", "inset_direction", "outer_inset_first"]),
     ("seam", &["seam_position", "z_seam_type"]),
     ("skin_layers", &["solid_layers", "top_bottom_thickness"]),

@@ -83,7 +83,7 @@ pub(super) fn beads(layout: &Layout<'_>) -> Vec<Wall> {
         arc.reverse();
         reach_end(arc, layout);
     }
-    all.iter().filter(|arc| is_long(arc, w)).map(|arc| wall(arc)).collect()
+    all.iter().filter(|arc| is_long(arc, w)).map(wall).collect()
 }
 
 fn is_long(arc: &Arc, w: f64) -> bool {
