@@ -67,6 +67,10 @@ impl Error {
 /// across a shorter gap is about as long as the lines are wide.
 pub const MOST_GAP_MM: f64 = 2.0;
 
+/// A body that begins no higher than this, mm, may be set down by cutting off the bottom of all. More
+/// would spoil the others.
+const MOST_SINK_MM: f64 = 1.0;
+
 /// Why a model that can be read is not printed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -106,6 +110,75 @@ pub enum Refusal {
         /// Width of a line, mm.
         line_width_mm: f64,
     },
+    /// The print would begin in the air.
+    #[error("{0}")]
+    Hanging(Hanging),
+}
+
+/// What of a print hangs in the air, judged on what would be printed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Hanging {
+    /// Nothing is printed on some layers, but on others above them.
+    #[error(
+        "nothing is printed on {}, so that what is above would hang {gap_mm:.2} mm over the {}: the \
+         part is missing or too thin there; print with --support{}",
+        layers(*.from, *.until),
+        if *.from_bed { "bed" } else { "layer below" },
+        if *.from_bed { format!(", or cut off the bottom with --sink {gap_mm:.2}") } else { String::new() }
+    )]
+    EmptyLayers {
+        /// The first of these layers, counted from 1.
+        from: usize,
+        /// The last of them.
+        until: usize,
+        /// Their height, mm.
+        gap_mm: f64,
+        /// They lie on the bed.
+        from_bed: bool,
+    },
+    /// A whole body stands on nothing.
+    #[error(
+        "a body begins in the air on layer {layer}, {above_bed_mm:.2} mm above the bed at x {:.1} y \
+         {:.1}, and stands on nothing: print with --support{}",
+        .at_mm[0], .at_mm[1],
+        if *.above_bed_mm > MOST_SINK_MM { String::new() } else {
+            format!(", or cut off the bottom with --sink {above_bed_mm:.2}")
+        }
+    )]
+    Body {
+        /// The layer, counted from 1.
+        layer: usize,
+        /// Top of the layer, mm.
+        z_mm: f64,
+        /// Bottom of the layer, mm.
+        above_bed_mm: f64,
+        /// Place in the machine's coordinates, mm.
+        at_mm: [f64; 2],
+    },
+    /// Islands begin in the air that meet the part further up.
+    #[error(
+        "{length_mm:.0} mm of lines begin in the air at {}, first on layer {layer} at {z_mm:.2} mm, x \
+         {:.1} y {:.1}: print with --support, or turn the part with --rotate",
+        plural(*.places as u64, "place"), .at_mm[0], .at_mm[1]
+    )]
+    Places {
+        /// Number of islands.
+        places: usize,
+        /// Length of their lines, mm.
+        length_mm: f64,
+        /// Layer of the first one, counted from 1.
+        layer: usize,
+        /// Top of that layer, mm.
+        z_mm: f64,
+        /// Its place in the machine's coordinates, mm.
+        at_mm: [f64; 2],
+    },
+}
+
+/// Such as `layer 3` or `layers 3 to 5`.
+fn layers(from: usize, until: usize) -> String {
+    if from == until { format!("layer {from}") } else { format!("layers {from} to {until}") }
 }
 
 impl From<progress::Cancelled> for Error {

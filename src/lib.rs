@@ -73,8 +73,9 @@ pub use job::{Job, Model, NAME};
 pub use pipeline::place::{bed, place};
 pub use pipeline::spool::slice_to;
 
-use error::{Error, Result};
+use error::{Error, Refusal, Result};
 use pipeline::batches::{self, Setup};
+use pipeline::footing::Footing;
 use pipeline::place::{bed_corners, print_facts};
 use pipeline::refuse;
 use pipeline::thumbnails::thumbnails;
@@ -83,8 +84,9 @@ use units::to_units;
 /// Slices `job` and writes the G-code to `out`, which is empty yet.
 ///
 /// # Errors
-/// Every [`error::Error`]. A job that is refused is refused before anything is written. What a
-/// run that was cancelled, or that cannot write on, has written until then is no usable G-code.
+/// Every [`error::Error`]. A job is refused before anything is written, but for
+/// [`Refusal::Hanging`], which is only known at the end. What a run that was refused so, that was
+/// cancelled, or that cannot write on, has written until then is no usable G-code.
 pub fn slice(
     job: &Job,
     out: &mut dyn gcode::Output,
@@ -119,7 +121,8 @@ pub fn slice_placed(
     // they are drawn while the first batches are planned.
     let setup = Setup::new(&settings, &heights);
     let corners = bed_corners(&bed(&settings.machine), placed.offset);
-    let mut planner = setup.planner(&slicer, corners);
+    let footing = Footing::new(&settings, placed.offset);
+    let mut planner = setup.planner(&slicer, corners, footing);
     let (pictures, planned) = rayon::join(|| thumbnails(&settings, placed), || planner.ahead());
 
     // Toolpaths -> text, one batch while the next is planned.
@@ -127,9 +130,12 @@ pub fn slice_placed(
     let facts = print_facts(placed, &heights);
     let mut writer = gcode::Writer::new(out, &settings, facts, placed.offset, &pictures)?;
     batches::write(&mut writer, planned, &mut planner, progress)?;
+    let (audits, tally, footing) = planner.finish();
+    let hangs = footing.finish().map_err(Refusal::Hanging)?;
     // Nothing is written if nothing is extruded.
     let sums = writer.finish()?.ok_or_else(|| refuse::thin(&settings))?;
 
-    let (audits, tally) = planner.finish();
-    Ok(report::make::report(job, placed, &heights, &sums, &audits, &tally))
+    let mut report = report::make::report(job, placed, &heights, &sums, &audits, &tally);
+    report.warnings.extend(hangs);
+    Ok(report)
 }

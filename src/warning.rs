@@ -37,6 +37,19 @@ pub enum Warning {
         /// The area left out, mm², summed over the layers.
         area_mm2: f64,
     },
+    /// Islands that begin in the air and meet the part further up.
+    BeginsInTheAir {
+        /// Number of islands.
+        places: usize,
+        /// Length of their lines, mm.
+        length_mm: f64,
+        /// Layer of the first one, counted from 1.
+        layer: usize,
+        /// Top of that layer, mm.
+        z_mm: f64,
+        /// Its place in the machine's coordinates, mm.
+        at_mm: [f64; 2],
+    },
     /// Lines that are printed in the air, since the part has nothing below them.
     PartHangs {
         /// Their length, mm.
@@ -101,6 +114,12 @@ impl fmt::Display for Warning {
                 "left out {area_mm2:.1} mm² on {} that are too thin for a bead; use a smaller \
                  min_feature or nozzle",
                 plural(*layers as u64, "layer")
+            ),
+            Self::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm: [x, y] } => write!(
+                f,
+                "{length_mm:.0} mm of lines begin in the air at {}, first on layer {layer} at \
+                 {z_mm:.2} mm, x {x:.1} y {y:.1}; use --support, or turn the part with --rotate",
+                plural(*places as u64, "place")
             ),
             Self::PartHangs { length_mm } => write!(
                 f,

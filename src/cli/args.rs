@@ -1,7 +1,7 @@
 //! Words of the command line -> Arguments: every flag, its help, and the settings it stands for.
 
 use super::preview::PreviewArgs;
-use super::words::{UNITS, factor, numbers, parts, triangles, unit, words};
+use super::words::{UNITS, factor, numbers, parts, sunk, triangles, unit, words};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
@@ -300,6 +300,9 @@ pub(crate) struct PlaceArgs {
     /// Turn the models about x, then y, then z, degrees
     #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", value_parser = numbers::<3>, allow_hyphen_values = true)]
     rotate: [f64; 3],
+    /// Cut this much off the bottom of the models, mm
+    #[arg(long, value_name = "MM", default_value = "0", value_parser = sunk, allow_negative_numbers = true)]
+    sink: f64,
     /// Put the middle of the layout here, mm [default: middle of the bed]
     #[arg(long, value_name = "X,Y", value_parser = numbers::<2>, allow_hyphen_values = true)]
     at: Option<[f64; 2]>,
@@ -324,6 +327,7 @@ impl PlaceArgs {
             unit: unit(&self.unit),
             scale: self.scale,
             rotate: self.rotate,
+            sink: self.sink,
             at: self.at,
             copies: self.copies,
             max_triangles: self.max_triangles,

@@ -51,6 +51,16 @@ pub(super) fn factor(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
+/// A length that is not negative.
+pub(super) fn sunk(text: &str) -> std::result::Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "it must be a number, such as 0.5".to_owned())?;
+    if value.is_finite() && value >= 0.0 {
+        Ok(value)
+    } else {
+        Err("it must be 0 or more".to_owned())
+    }
+}
+
 /// `N` finite numbers with commas between them.
 pub(super) fn numbers<const N: usize>(text: &str) -> std::result::Result<[f64; N], String> {
     let wrong = || format!("it must be {N} numbers with commas between them");

@@ -3,6 +3,7 @@
 //! All code that names the numbers of `region`, `fill` and `plan` stands here and in no other file of
 //! the pipeline.
 
+use super::footing::{Footing, Footprint, footprint};
 use crate::error::Result;
 use crate::fill::{self, FillParams};
 use crate::gcode::Writer;
@@ -49,7 +50,12 @@ impl Setup {
 
     /// Ready to plan the layers of `slicer`; support stands within these corners of the bed.
     #[must_use]
-    pub fn planner<'a>(&'a self, slicer: &'a Slicer<'a>, bed: (Point, Point)) -> Planner<'a> {
+    pub fn planner<'a>(
+        &'a self,
+        slicer: &'a Slicer<'a>,
+        bed: (Point, Point),
+        footing: Footing,
+    ) -> Planner<'a> {
         let supports = self
             .support
             .map(|s| window::Support { pattern: s.pattern(), rows: supports(slicer, &s, bed) });
@@ -59,6 +65,7 @@ impl Setup {
             plan: &self.plan,
             head: Head::default(),
             tally: Tally::default(),
+            footing,
         };
         Planner { window, regions: None, orderer }
     }
@@ -78,11 +85,11 @@ impl Planner<'_> {
         self.by_ref().take(AHEAD).collect()
     }
 
-    /// What dual injection did, and what the layers add up to.
+    /// What dual injection did, what the layers add up to, and what they stand on.
     #[must_use]
-    pub fn finish(self) -> (Vec<Audit>, Tally) {
+    pub fn finish(self) -> (Vec<Audit>, Tally, Footing) {
         let Self { mut window, orderer, .. } = self;
-        (window.audits(), orderer.tally)
+        (window.audits(), orderer.tally, orderer.footing)
     }
 }
 
@@ -106,21 +113,25 @@ struct Orderer<'a> {
     /// Where the head is after the layers so far.
     head: Head,
     tally: Tally,
+    footing: Footing,
 }
 
 impl Orderer<'_> {
     fn toolpaths(&mut self, regions: &[Region]) -> Vec<Toolpath> {
         let (fill, plan) = (self.fill, self.plan);
-        let unordered =
-            |region: &Region| Unordered::new(fill::paths(region, fill), &region.layer.contours);
-        let unordered: Vec<Unordered> = regions.par_iter().map(unordered).collect();
+        let unordered = |region: &Region| {
+            let paths = fill::paths(region, fill);
+            (footprint(region, &paths), Unordered::new(paths, &region.layer.contours))
+        };
+        let unordered: Vec<(Footprint, Unordered)> = regions.par_iter().map(unordered).collect();
         // The end of a layer decides where the next begins, so that they are ordered in sequence.
         let mut ordered = Vec::with_capacity(regions.len());
-        for (region, paths) in regions.iter().zip(unordered) {
+        for (region, (footprint, paths)) in regions.iter().zip(unordered) {
             let paths = order::order(paths, self.head.at.unwrap_or_default(), plan);
             let next = self.head.after(&region.layer, &paths);
             ordered.push((region, std::mem::replace(&mut self.head, next), paths));
             self.tally.layer(region);
+            self.footing.layer(footprint, region);
         }
         let toolpaths = ordered.into_par_iter();
         toolpaths.map(|(r, from, paths)| travel::toolpath(&r.layer, paths, from, plan)).collect()

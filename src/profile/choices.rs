@@ -125,6 +125,18 @@ pub enum DualRemainder {
     Drop,
 }
 
+/// See [`Settings::floating`](super::Settings::floating).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Floating {
+    /// Empty layers and bodies that stand on nothing are refused, other places warned of.
+    Refuse,
+    /// Every place that begins in the air is refused.
+    RefuseAll,
+    /// All of it is only warned of.
+    Warn,
+}
+
 /// See [`Support::stands_on`](super::Support::stands_on).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -22,7 +22,8 @@
 
 use super::choices::{
     Angle, DialectName, DualDirection, DualMode, DualPart, DualRatio, DualRemainder,
-    ExtrusionModel, JunctionRule, Origin, Pattern, RetractWhen, Seam, SupportBase, WallOrder,
+    ExtrusionModel, Floating, JunctionRule, Origin, Pattern, RetractWhen, Seam, SupportBase,
+    WallOrder,
 };
 use super::sizes::{self, PictureSize};
 use schemars::JsonSchema;
@@ -76,6 +77,11 @@ pub struct Settings {
     /// Where a wall begins.
     #[schemars(extend("default" = "rear"))]
     pub seam: Seam,
+
+    /// What happens to a print that begins in the air: refused if layers are empty or a whole body
+    /// stands on nothing, refused wherever it does, or only warned of.
+    #[schemars(extend("default" = "refuse"))]
+    pub floating: Floating,
 
     /// Solid layers at the top and at the bottom.
     #[schemars(range(min = 0, max = 10_000), extend("unit" = "layers", "default" = 3))]

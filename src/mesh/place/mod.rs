@@ -162,6 +162,7 @@ mod tests {
 
     const BED: Bed = Bed { min: [-100.0, -50.0], max: [100.0, 50.0], height: 80.0 };
     const PLAIN: Placement = Placement {
+        sink: 0.0,
         unit: Unit::Mm,
         scale: 1.0,
         rotate: [0.0; 3],

@@ -33,7 +33,7 @@ pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Par
     let mut points = points(model, placement);
     let [low, high] = bounds(&points);
     check_size((high - low).into(), &model.report.file, placement, bed)?;
-    let (vertices, mut size) = on_grid(&points);
+    let (vertices, mut size) = on_grid(&points, placement.sink);
     let mut mesh = Mesh { vertices, triangles: std::mem::take(&mut model.triangles) };
     refuse_flat(&mesh, size, &model.report.file)?;
     let mut mended = match placement.policy {
@@ -56,7 +56,7 @@ pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Par
     if !model.report.mended.is_empty() {
         // The outermost triangles may have been dropped: then the middle and size are others.
         keep_used(model, &mut points, &mut mesh);
-        (mesh.vertices, size) = on_grid(&points);
+        (mesh.vertices, size) = on_grid(&points, placement.sink);
         refuse_flat(&mesh, size, &model.report.file)?;
     }
     model.report.triangles = mesh.triangles.len();
@@ -89,11 +89,11 @@ fn bounds(points: &[Vector3<f64>]) -> [Vector3<f64>; 2] {
     points.par_iter().map(|point| [*point; 2]).reduce(|| [first; 2], both)
 }
 
-/// The points as they stand on the bed, and the size of the whole, grid units.
-fn on_grid(points: &[Vector3<f64>]) -> (Vec<[i32; 3]>, [i64; 3]) {
+/// The points as they stand on the bed, `sink` mm in it, and the size of what is above, grid units.
+fn on_grid(points: &[Vector3<f64>], sink: f64) -> (Vec<[i32; 3]>, [i64; 3]) {
     let [low, high] = bounds(points);
     // In this order, so that a mirrored model gives exactly the mirrored middle.
-    let zero = Vector3::new((low.x + high.x) / 2.0, (low.y + high.y) / 2.0, low.z);
+    let zero = Vector3::new((low.x + high.x) / 2.0, (low.y + high.y) / 2.0, low.z + sink);
     let rounded = |point: &Vector3<f64>| <[f64; 3]>::from(point - zero).map(to_units);
     // The middle of the box is at 0, so that opposite sides round alike.
     let half = rounded(&high).map(i64::from);
@@ -104,7 +104,7 @@ fn on_grid(points: &[Vector3<f64>]) -> (Vec<[i32; 3]>, [i64; 3]) {
 fn refuse_flat(mesh: &Mesh, size: [i64; 3], file: &str) -> Result<()> {
     let what = if mesh.triangles.len() < 4 {
         Flat::FewTriangles
-    } else if size[2] == 0 {
+    } else if size[2] <= 0 {
         Flat::NoHeight
     } else if size[0] == 0 || size[1] == 0 || !has_area(mesh) {
         Flat::NoArea

@@ -12,6 +12,8 @@ pub struct Placement {
     pub scale: f64,
     /// Turns about x, then y, then z, degrees, counter-clockwise seen against the axis.
     pub rotate: [f64; 3],
+    /// How much is cut off the bottom of each model, mm.
+    pub sink: f64,
     /// Where the middle of the layout goes, in the machine's coordinates, mm; the bed's middle if `None`.
     pub at: Option<[f64; 2]>,
     /// How many times each model is printed.
@@ -29,6 +31,7 @@ impl Default for Placement {
             unit: Unit::Mm,
             scale: 1.0,
             rotate: [0.0; 3],
+            sink: 0.0,
             at: None,
             copies: 1,
             max_triangles: DEFAULT_MAX_TRIANGLES,
