@@ -29,6 +29,10 @@ use crate::units::{Coord, to_units};
 use rounding::Rounding;
 use variable_width::LineParams;
 
+/// Corners of skin are rounded with at most a line's width divided by this. A larger radius leaves the
+/// corners between line and wall open; a smaller one makes the nozzle stop at each.
+const SKIN_ROUNDING: Coord = 8;
+
 /// The numbers that this stage needs, in grid units.
 #[derive(Debug, Clone)]
 pub struct FillParams {
@@ -52,7 +56,7 @@ impl FillParams {
             line_width,
             lines: LineParams::new(settings),
             rounding: Rounding { radius },
-            skin_rounding: Rounding { radius: radius.min(line_width / 2) },
+            skin_rounding: Rounding { radius: radius.min(line_width / SKIN_ROUNDING) },
             tool: u8::try_from(settings.machine.tool).unwrap_or(u8::MAX),
         }
     }
@@ -93,7 +97,7 @@ impl Maker<'_> {
     fn skin(&mut self, skin: &Skin) {
         let (frame, rounding) = (skin.raster.frame, self.params.skin_rounding);
         let (lines, slivers) = gap_closing::close(&skin.crossed(), &self.params.lines);
-        let lines = skin::zigzags(&lines, &self.params.lines, rounding.radius);
+        let lines = skin::zigzags(&lines, &self.params.lines);
         for polyline in lines.iter().chain(&skin.beads).chain(&slivers) {
             self.polyline(Role::Skin, skin.layers, frame, polyline, rounding);
         }

@@ -3,31 +3,23 @@
 use super::variable_width::{self, Joined, Line, LineParams};
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::pattern::zigzag::{Side, link};
-use crate::units::Coord;
+use crate::units::{Coord, nearest};
 
 /// Maximum distance that a join runs along its lines, in line widths. A longer join would lie on
 /// the ends of neighbouring lines; a smaller limit cuts zigzags at slanted walls.
 const LONGEST_JOIN: Coord = 2;
 
-/// Width of a join, in line widths. The round ends of the lines fill most of what it covers. A
-/// larger value overfills each turn, a smaller one leaves it open.
-const JOIN_WIDTH: f64 = 0.25;
-
-/// Width of a join where turns are rounded. It is less because arcs cover more than corners do.
-const ROUND_JOIN_WIDTH: f64 = 0.1;
-
-/// Lines that turn in an arc are lengthened by the arc's radius divided by this. The arc cuts off
-/// the corner; this moves it outwards to cover the same area. A smaller value presses plastic
-/// into the wall, a larger one leaves open corners.
-const REACH: Coord = 4;
-
 /// Shorter lines are skipped (50 µm): the ends of their neighbours cover them.
 const LEAST: i64 = 500;
 
-/// Joins the lines of a skin, already closed up to the walls, to zigzags. `radius` is that with
-/// which their turns will be rounded.
+/// Joins the lines of a skin, already closed up to the walls, to zigzags.
+///
+/// A join is a bead of full width along the wall. Lines reach into the wall with their round ends, so
+/// that a join between two ends would lie in it. Both ends are moved back by the overlap, measured
+/// at right angles to the join: then its edge lies at the wall's, and the room of both lines up to
+/// the wall is exactly filled.
 #[must_use]
-pub fn zigzags(lines: &[Line], params: &LineParams, radius: Coord) -> Vec<Polyline> {
+pub fn zigzags(lines: &[Line], params: &LineParams) -> Vec<Polyline> {
     let pitch = params.line_width;
     let rows: Vec<&[Line]> = lines.chunk_by(|a, b| a.row == b.row).collect();
     let solid = |line: &Line| Some(line.span).filter(|s| s.len() >= LEAST);
@@ -41,45 +33,52 @@ pub fn zigzags(lines: &[Line], params: &LineParams, radius: Coord) -> Vec<Polyli
         .into_iter()
         .map(|zigzag| {
             let mut polyline = Vec::with_capacity(2 * zigzag.len());
+            let mut back = 0;
             for (k, link) in zigzag.iter().enumerate() {
                 let mut joined = Joined::default();
                 if k > 0 {
                     joined.below(link.from == Side::Left);
                 }
-                if k + 1 < zigzag.len() {
+                let mut next_back = 0;
+                if let Some(next) = zigzag.get(k + 1) {
                     joined.above(link.from == Side::Right);
+                    let run = link.from.other().of(link.span) - next.from.of(next.span);
+                    next_back = moved_back(run, params);
                 }
                 let mut points = variable_width::points(line(link.row, link.index), joined, params);
                 if link.from == Side::Right {
                     points.reverse();
                 }
-                let ends = (k > 0, k + 1 < zigzag.len());
-                extend_ends(&mut points, ends, link.from, radius);
-                append_line(points, &mut polyline, pitch, radius);
+                move_ends(&mut points, (back, next_back));
+                append_line(points, &mut polyline);
+                back = next_back;
             }
             polyline
         })
         .collect()
 }
 
-/// Moves the joined ends of a line outwards, so that the arcs there cover the area up to their
-/// corners. `points` is entered from `side`; `joined` is for its first and last point.
-fn extend_ends(points: &mut [LinePoint], joined: (bool, bool), side: Side, radius: Coord) {
-    let by = if side == Side::Left { radius / REACH } else { -radius / REACH };
+/// How far two ends, `run` apart along their lines, are moved back from the wall.
+fn moved_back(run: Coord, params: &LineParams) -> Coord {
+    let (run, rise) = (f64::from(run), f64::from(params.line_width));
+    nearest(f64::from(params.overlap) * (run * run + rise * rise).sqrt() / rise) as Coord
+}
+
+/// Moves the first and the last point of a line inwards, at most to a third of its length.
+fn move_ends(points: &mut [LinePoint], (first_back, last_back): (Coord, Coord)) {
     if let [first, .., last] = points {
-        first.u -= if joined.0 { by } else { 0 };
-        last.u += if joined.1 { by } else { 0 };
+        let way = last.u - first.u;
+        let back = |by: Coord| by.min(way.abs() / 3) * way.signum();
+        (first.u, last.u) = (first.u + back(first_back), last.u - back(last_back));
     }
 }
 
 /// Appends a line to a polyline. The line has the widths at its points; those of the polyline
 /// hold for the segment before each point.
-fn append_line(points: Vec<LinePoint>, polyline: &mut Polyline, line_width: Coord, radius: Coord) {
-    let share = if radius > 0 { ROUND_JOIN_WIDTH } else { JOIN_WIDTH };
-    let join = (f64::from(line_width) * share) as Coord;
-    let mut before = None;
+fn append_line(points: Vec<LinePoint>, polyline: &mut Polyline) {
+    let mut before: Option<Coord> = polyline.last().map(|p: &LinePoint| p.width);
     for point in points {
-        let width = before.map_or(join, |b: Coord| (b + point.width) / 2);
+        let width = before.map_or(point.width, |b| (b + point.width) / 2);
         before = Some(point.width);
         polyline.push(LinePoint { width, ..point });
     }

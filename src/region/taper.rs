@@ -16,7 +16,7 @@ const MOST_STEP: f64 = 800.0;
 /// Divisor for changes of width when they are compared with changes of place. A wrong width is
 /// shared by both sides of the bead and shows less. At 3 a bar of one width may get 6 % too much
 /// plastic; at 1 there are more points than the plastic tells.
-const WIDTH_TO_PLACE: f64 = 1.5;
+const WIDTH_TO_PLACE: f64 = 2.0;
 
 /// A place on the centre line of a bead.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,7 @@
 //! one bead ([`super::middle`]).
 
 use crate::geom::spans::{Rows, Span};
-use crate::geom::{Contour, edges, encloses, polygon};
+use crate::geom::{Contour, double_area, edges, encloses, polygon};
 use crate::region::params::WallParams;
 use crate::units::{Coord, nearest};
 
@@ -72,14 +72,18 @@ pub fn open(
         return (loops, false);
     }
     let shrunk = polygon::inset(&loops, half);
-    let is_bulge = |path: &Contour| {
-        perimeter(path) < 2.0 * short
+    // Of a loop without anything left inside it, all is thin: a strip, a bulge of one, or a dot.
+    let vanishes = |path: &Contour| {
+        double_area(path) > 0
             && !shrunk.iter().any(|inner| encloses(edges(path), inner[0]))
-            && !is_dot(path, outer, distance)
+            && (perimeter(path) >= 2.0 * short || !is_dot(path, outer, distance))
     };
-    let before = loops.len();
-    loops.retain(|path| !is_bulge(path));
-    let cut = loops.len() < before;
+    let vanished: Vec<bool> = loops.iter().map(vanishes).collect();
+    let cut = vanished.contains(&true);
+    if cut {
+        let kept = (0..loops.len()).filter(|&k| !vanished[around(&loops, k)]);
+        loops = kept.map(|k| loops[k].clone()).collect();
+    }
     let opened = polygon::outset(&shrunk, half + ROUNDING);
     let mut thin = polygon::difference(&loops, &opened, ROUNDING);
     thin.retain(|c| perimeter(c) >= 2.0 * short);
@@ -87,6 +91,17 @@ pub fn open(
         return (loops, cut);
     }
     (polygon::difference(&loops, &polygon::outset(&thin, ROUNDING), 2 * ROUNDING), true)
+}
+
+/// The index of the smallest loop around the hole `k`; an outer loop's own.
+fn around(loops: &[Contour], k: usize) -> usize {
+    let path = &loops[k];
+    if double_area(path) > 0 {
+        return k;
+    }
+    let outer = loops.iter().enumerate().filter(|(_, c)| double_area(c) > 0);
+    let holds = outer.filter(|(_, c)| encloses(edges(c), path[0]));
+    holds.min_by_key(|(j, c)| (double_area(c), *j)).map_or(k, |(j, _)| j)
 }
 
 /// Whether a short loop is all there is inside a contour of `outer`, and not a bulge of a strip. Around
