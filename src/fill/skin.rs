@@ -9,15 +9,18 @@ use crate::units::{Coord, nearest};
 /// the ends of neighbouring lines; a smaller limit cuts zigzags at slanted walls.
 const LONGEST_JOIN: Coord = 2;
 
+/// Share of the overlap by which joins are moved back from the wall. At 1 their plastic fills the room
+/// exactly, but their round corners leave notches at the wall; at 0 the whole join lies in the wall.
+const MOVED_BACK: f64 = 0.75;
+
 /// Shorter lines are skipped (50 µm): the ends of their neighbours cover them.
 const LEAST: i64 = 500;
 
 /// Joins the lines of a skin, already closed up to the walls, to zigzags.
 ///
 /// A join is a bead of full width along the wall. Lines reach into the wall with their round ends, so
-/// that a join between two ends would lie in it. Both ends are moved back by the overlap, measured
-/// at right angles to the join: then its edge lies at the wall's, and the room of both lines up to
-/// the wall is exactly filled.
+/// that a join between two ends would lie in it. Both ends are moved back by most of the
+/// overlap, measured at right angles to the join: then its edge lies near the wall's.
 #[must_use]
 pub fn zigzags(lines: &[Line], params: &LineParams) -> Vec<Polyline> {
     let pitch = params.line_width;
@@ -61,7 +64,8 @@ pub fn zigzags(lines: &[Line], params: &LineParams) -> Vec<Polyline> {
 /// How far two ends, `run` apart along their lines, are moved back from the wall.
 fn moved_back(run: Coord, params: &LineParams) -> Coord {
     let (run, rise) = (f64::from(run), f64::from(params.line_width));
-    nearest(f64::from(params.overlap) * (run * run + rise * rise).sqrt() / rise) as Coord
+    nearest(MOVED_BACK * f64::from(params.overlap) * (run * run + rise * rise).sqrt() / rise)
+        as Coord
 }
 
 /// Moves the first and the last point of a line inwards, at most to a third of its length.

@@ -148,7 +148,9 @@ struct Begin {
 #[derive(Debug)]
 pub struct Footing {
     rule: Floating,
-    /// Layers between support and what it carries, and some more.
+    /// Layers that stay open between support and the part.
+    gap: usize,
+    /// Layers whose support may carry an island.
     reach: usize,
     below: Footprint,
     /// For each island the number of another of its body, or its own.
@@ -168,9 +170,12 @@ impl Footing {
     /// Nothing is printed yet. `offset` is the middle of the layout in the machine's coordinates.
     #[must_use]
     pub fn new(settings: &Settings, offset: [f64; 2]) -> Self {
-        let gap = (settings.support.z_distance / settings.layer_height).round() as usize;
+        let support = &settings.support;
+        let gap = (support.z_distance / settings.layer_height).round() as usize;
+        let gap = if support.enabled { gap } else { 0 };
         Self {
             rule: settings.floating,
+            gap,
             reach: gap + settings.dual_ratio().max(1) as usize + 1,
             below: Footprint::default(),
             bodies: Vec::new(),
@@ -290,15 +295,17 @@ impl Footing {
         Ok(Some(Warning::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm }))
     }
 
-    /// Layers without plastic below the first one with plastic, or between two.
+    /// Layers without plastic below the first one with plastic, or between two. Where support carries
+    /// the part, a gap is meant.
     fn empty_layers(&self) -> Option<Hanging> {
-        let first = self.printed.iter().position(|printed| *printed)?;
-        let last = self.printed.iter().rposition(|printed| *printed)?;
-        let gap = (first..=last).find(|&k| !self.printed[k]);
-        let (from, until) = match (first, gap) {
-            (0, None) => return None,
-            (0, Some(gap)) => (gap, (gap..=last).find(|&k| self.printed[k]).unwrap_or(last) - 1),
-            (first, _) => (0, first - 1),
+        let mut printed = (0..self.printed.len()).filter(|&k| self.printed[k]);
+        let first = printed.next()?;
+        let (from, until) = if first > 0 {
+            (0, first - 1)
+        } else {
+            let steps = std::iter::once(0).chain(printed.clone()).zip(printed);
+            let (before, after) = steps.into_iter().find(|(a, b)| b - a > 1 + self.gap)?;
+            (before + 1, after - 1)
         };
         let bottom = from.checked_sub(1).map_or(0, |k| self.tops[k]);
         let gap_mm = to_mm(self.tops[until] - bottom);

@@ -286,7 +286,7 @@ fn the_product_is_the_same_on_stdout_and_on_any_number_of_threads() {
 fn a_refused_job_writes_neither_to_a_pipe_nor_to_files() {
     let folder = folder();
     write_block(&folder.path().join("block.stl"));
-    let words = ["block.stl", "--scale", "0.03", "-q", "-o"];
+    let words = ["block.stl", "--scale", "0.03", "--set", "min_feature=1", "-q", "-o"];
     let says = "everything is too thin for a line";
     fails(&folder, &[&words[..], &["-"]].concat(), 3, says);
     fails(&folder, &[&words[..], &["a.gcode"]].concat(), 3, says);

@@ -65,7 +65,7 @@ fn slice(
     let job = Job {
         models: vec![Model::bytes("model.stl", stl)],
         placement: placement.clone(),
-        settings: settings("generic-marlin", &[]),
+        settings: settings("generic-marlin", &[("min_feature", "1")]),
         profile: "test".to_owned(),
     };
     slicer::slice(&job, out, progress)

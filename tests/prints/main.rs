@@ -4,6 +4,7 @@
 mod common;
 
 mod fixtures;
+mod floating;
 mod golden;
 mod gpx;
 mod library;

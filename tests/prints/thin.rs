@@ -150,8 +150,13 @@ fn a_wedge_is_full_all_along() {
 }
 
 #[test]
-fn one_wall_is_left_as_it_is() {
-    let run = sliced(&plate(1.2, 1.2), 1, 0.0, &[]);
-    let beads = run.print.beads().filter(|m| m.layer == Some(LAYERS[1]));
-    assert!(beads.into_iter().all(|m| m.kind == Kind::OuterWall));
+fn a_plate_of_one_line_is_one_bead_on_every_layer() {
+    for thickness in [0.35, 0.4, 0.5, 0.69] {
+        let run = sliced(&plate(thickness, thickness), 1, 45.0, &[]);
+        for layer in 0..15 {
+            let beads: Vec<_> = run.print.beads().filter(|m| m.layer == Some(layer)).collect();
+            assert_eq!(beads.len(), 1, "{thickness} mm, layer {layer}");
+            assert!((beads[0].width - thickness).abs() < 0.02, "{}", beads[0].width);
+        }
+    }
 }
