@@ -3,6 +3,10 @@
 use super::Point;
 use crate::units::{Coord, nearest, sin_cos};
 
+/// Lines whose directions differ by less than this sine are parallel: rounding of decimals gives
+/// 1e-15, and no key has a step as small as this.
+const PARALLEL: f64 = 1e-9;
+
 /// A rotation that makes raster lines horizontal. Exact for multiples of 90°.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
@@ -29,6 +33,12 @@ impl Frame {
     #[must_use]
     pub fn leave(&self, p: Point) -> Point {
         self.turn(p, self.sin)
+    }
+
+    /// Whether the lines of both frames run in the same direction.
+    #[must_use]
+    pub fn is_parallel(&self, other: Self) -> bool {
+        (self.sin * other.cos - self.cos * other.sin).abs() < PARALLEL
     }
 
     fn turn(&self, p: Point, sin: f64) -> Point {

@@ -4,6 +4,7 @@ pub mod cells;
 pub mod decimate;
 pub mod follow;
 pub mod frame;
+pub mod islands;
 pub mod parallel;
 pub mod polygon;
 pub mod polyline;

@@ -106,6 +106,10 @@ pub struct Settings {
     /// auto takes the direction with the fewest turns.
     #[schemars(extend("unit" = "degrees", "default" = "auto"))]
     pub angle: Angle,
+    /// Whether the first skin above sparse infill runs across the lines below it, whatever its
+    /// layer; off, the direction alternates with the layer alone.
+    #[schemars(extend("default" = true))]
+    pub skin_across_infill: bool,
     /// How far skin and infill lines reach into the innermost wall.
     #[schemars(range(min = 0, max = 1), extend("unit" = "line widths", "default" = 0.4))]
     pub infill_overlap: f64,

@@ -19,6 +19,7 @@ pub mod classify;
 pub mod crossed;
 pub mod divide;
 pub mod dual;
+pub mod first_skin;
 mod near;
 pub mod params;
 pub mod per_raster;

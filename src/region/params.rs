@@ -67,6 +67,8 @@ pub struct SkinParams {
     pub reach: Coord,
     /// Width of a line.
     pub line_width: Coord,
+    /// The first skin above sparse infill runs across the lines below.
+    pub across_infill: bool,
 }
 
 /// How beads along walls are laid.
@@ -123,6 +125,7 @@ impl RegionParams {
                 bottom: settings.bottom_skins() as usize,
                 reach: to_units(settings.skin_reach),
                 line_width,
+                across_infill: settings.skin_across_infill,
             },
             beads: BeadParams {
                 line_width,

@@ -19,6 +19,7 @@ use super::dual;
 use super::dual::audit::Audit;
 use super::dual::groups::{Block, Grouping};
 use super::dual::inner_skin::Skins;
+use super::first_skin::{self, Turn};
 use super::params::RegionParams;
 use super::per_raster::skin_turn;
 use super::prepare::{LayerRows, Own, prepare};
@@ -193,23 +194,51 @@ impl<'a> Window<'a> {
         dual::support(block, rows, &support.pattern, self.grouping, line_width)
     }
 
-    /// The skins of layer `k`, which must be divided.
+    /// The skins of layer `k`, which must be divided. The first has the raster of the layer's beads.
     fn skins(&self, k: usize) -> Vec<Skin> {
         let Some(areas) = self.areas.get(k) else { return Vec::new() };
         let (along, across) = skin_turn(k);
-        if !self.grouping.shares(DualPart::InnerSkin) {
-            let skin = |r: usize| areas.skin(r).skin.clone();
-            return vec![self.skin(k, 1, areas, skin(along), skin(across))];
+        let mut printed = Vec::new();
+        if self.grouping.shares(DualPart::InnerSkin) {
+            let ((thick, thin), (thick_across, thin_across)) =
+                (self.share_skin(k, along), self.share_skin(k, across));
+            printed.push((1, [thin, thin_across].map(Arc::new)));
+            for (layers, rows) in thick {
+                let columns = thick_across.iter().find(|(count, _)| *count == layers);
+                let columns = columns.map(|(_, rows)| rows.clone()).unwrap_or_default();
+                printed.push((layers, [rows, columns].map(Arc::new)));
+            }
+        } else {
+            printed.push((1, [along, across].map(|r| areas.skin(r).skin.clone())));
         }
-        let ((thick, thin), (thick_across, thin_across)) =
-            (self.share_skin(k, along), self.share_skin(k, across));
-        let mut skins = vec![self.skin(k, 1, areas, thin.into(), thin_across.into())];
-        for (layers, rows) in thick {
-            let columns = thick_across.iter().find(|(count, _)| *count == layers);
-            let columns = columns.map(|(_, rows)| rows.clone()).unwrap_or_default();
-            skins.push(self.skin(k, layers, areas, rows.into(), columns.into()));
-        }
-        skins
+        let skins = printed.into_iter().flat_map(|(layers, skin)| {
+            let (kept, turned) = match self.along(k, layers) {
+                Some(below) => {
+                    let turn = Turn { pitch: self.params.skins.line_width, left: along == 0 };
+                    first_skin::divide(skin, below, turn)
+                }
+                None => (skin, None),
+            };
+            let kept = Self::skin(self.params, (along, across), layers, areas, kept);
+            let turned = turned.map(|[rows, columns]| {
+                Self::skin(self.params, (across, along), layers, areas, [columns, rows])
+            });
+            std::iter::once(kept).chain(turned)
+        });
+        skins.collect()
+    }
+
+    /// The sparse infill below what layer `k` prints for `layers`, if its lines run in the direction
+    /// that skin has on layer `k`.
+    fn along(&self, k: usize, layers: u32) -> Option<&Rows> {
+        let below = k.checked_sub(layers as usize).filter(|_| self.params.skins.across_infill)?;
+        let block = self.grouping.block(below, self.count());
+        let frame = self.params.rasters.skin(skin_turn(k).0).frame;
+        let patterns = dual::patterns(&block, self.grouping, &self.params.sparse);
+        let alike =
+            !patterns.is_empty() && patterns.iter().all(|p| p.raster().frame.is_parallel(frame));
+        let areas = self.areas.get(below).filter(|_| alike)?;
+        Some(&areas.skin(skin_turn(k).0).infill)
     }
 
     /// The skin of layer `k` on raster `r` of skins: that printed for several layers, and that for
@@ -225,20 +254,18 @@ impl<'a> Window<'a> {
         skins.share(k)
     }
 
-    /// The skin of layer `k` on these rows and columns. Its beads are added later.
+    /// Skin on the rasters `along` its lines and across. Its beads are added later.
     fn skin(
-        &self,
-        k: usize,
+        params: &RegionParams,
+        (along, across): (usize, usize),
         layers: u32,
         areas: &LayerAreas,
-        rows: Arc<Rows>,
-        columns: Arc<Rows>,
+        [rows, columns]: first_skin::Both,
     ) -> Skin {
-        let (along, across) = skin_turn(k);
         let fill = |r: usize| areas.skin(r).fill.clone();
         Skin {
             layers,
-            raster: self.params.rasters.skin(along),
+            raster: params.rasters.skin(along),
             rows: SkinRows { skin: rows, fill: fill(along) },
             columns: SkinRows { skin: columns, fill: fill(across) },
             left_turn: along == 0,
@@ -264,7 +291,8 @@ impl<'a> Window<'a> {
         let done = self.own.start();
         let below = self.skin_reach();
         let deepest = self.params.skins.bottom.max(if below > 0 { below + 1 } else { 0 });
-        self.areas.forget(done.saturating_sub(below));
+        // The next layer's skin looks at the infill below it.
+        self.areas.forget(done.saturating_sub(below + 1));
         self.rows.forget(done.saturating_sub(below + deepest));
         regions
     }

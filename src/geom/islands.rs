@@ -1,0 +1,133 @@
+//! Rows -> Islands: which spans hang together from row to row.
+//!
+//! Spans of neighbouring rows belong together if they share a place along the lines. Ends that only
+//! touch count: rounding must not split an island.
+
+use super::spans::{Rows, Span};
+use crate::units::Coord;
+
+/// The spans of some rows, divided into islands.
+#[derive(Debug)]
+pub struct Islands<'a> {
+    rows: &'a Rows,
+    /// Number of spans before each row.
+    before: Vec<usize>,
+    /// The island of each span, in the order of the rows.
+    labels: Vec<usize>,
+    count: usize,
+}
+
+impl<'a> Islands<'a> {
+    /// Divides `rows`. Islands are numbered in the order of their first spans.
+    #[must_use]
+    pub fn new(rows: &'a Rows) -> Self {
+        let (mut before, mut parents) = (Vec::with_capacity(rows.range().len()), Vec::new());
+        let mut last: (usize, &[Span]) = (0, &[]);
+        for (_, row) in rows.iter() {
+            let first = parents.len();
+            before.push(first);
+            parents.extend(first..first + row.len());
+            meet(last, (first, row), &mut parents);
+            last = (first, row);
+        }
+        let mut labels = vec![0; parents.len()];
+        let mut count = 0;
+        // A parent never comes after its children.
+        for k in 0..parents.len() {
+            let root = root(&mut parents, k);
+            labels[k] = if root == k { count } else { labels[root] };
+            count += usize::from(root == k);
+        }
+        Self { rows, before, labels, count }
+    }
+
+    /// Number of islands.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The islands of row `j`, span by span.
+    #[must_use]
+    pub fn row(&self, j: i32) -> &[usize] {
+        let index = usize::try_from(j - self.rows.range().start).ok();
+        let Some(&first) = index.and_then(|k| self.before.get(k)) else { return &[] };
+        &self.labels[first..first + self.rows.row(j).len()]
+    }
+
+    /// The island at `u` on row `j`.
+    #[must_use]
+    pub fn at(&self, j: i32, u: Coord) -> Option<usize> {
+        let row = self.rows.row(j);
+        let k = row.partition_point(|s| s.end < u);
+        row.get(k).filter(|s| s.start <= u).map(|_| self.row(j)[k])
+    }
+
+    /// The rows of the islands that `keep` accepts.
+    #[must_use]
+    pub fn select(&self, keep: impl Fn(usize) -> bool) -> Rows {
+        let mut out = Rows::with_room_of(self.rows, self.rows.range().start);
+        for (j, row) in self.rows.iter() {
+            let kept = row.iter().zip(self.row(j)).filter(|(_, island)| keep(**island));
+            out.push_row(|spans| spans.extend(kept.map(|(span, _)| *span)));
+        }
+        out
+    }
+}
+
+/// Joins the spans of two neighbouring rows that meet. Each row comes with the number of its first
+/// span.
+fn meet((a, lower): (usize, &[Span]), (b, upper): (usize, &[Span]), parents: &mut [usize]) {
+    let (mut i, mut j) = (0, 0);
+    while let (Some(p), Some(q)) = (lower.get(i), upper.get(j)) {
+        if p.start <= q.end && q.start <= p.end {
+            let (x, y) = (root(parents, a + i), root(parents, b + j));
+            parents[x.max(y)] = x.min(y);
+        }
+        if p.end <= q.end {
+            i += 1;
+        } else {
+            j += 1;
+        }
+    }
+}
+
+fn root(parents: &mut [usize], mut k: usize) -> usize {
+    while parents[k] != k {
+        parents[k] = parents[parents[k]];
+        k = parents[k];
+    }
+    k
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(rows: &[&[(Coord, Coord)]]) -> Rows {
+        let mut out = Rows::starting_at(3);
+        for row in rows {
+            out.push_row(|spans| spans.extend(row.iter().map(|&(start, end)| Span { start, end })));
+        }
+        out
+    }
+
+    #[test]
+    fn a_fork_is_one_island_and_what_lies_beside_it_another() {
+        let rows = rows(&[&[(0, 9), (20, 29), (50, 60)], &[(0, 29)], &[(0, 5), (55, 60)]]);
+        let islands = Islands::new(&rows);
+        assert_eq!(islands.count(), 3);
+        assert_eq!(
+            [3, 4, 5].map(|j| islands.row(j).to_vec()),
+            [vec![0, 0, 1], vec![0], vec![0, 2]]
+        );
+        assert_eq!((islands.at(3, 55), islands.at(3, 40), islands.at(9, 0)), (Some(1), None, None));
+        assert_eq!(islands.select(|k| k == 0).total(), 9 + 9 + 29 + 5);
+    }
+
+    #[test]
+    fn rows_that_only_touch_hang_together() {
+        let rows = rows(&[&[(0, 10)], &[(10, 20)], &[], &[(10, 20)]]);
+        assert_eq!(Islands::new(&rows).count(), 2, "an empty row separates");
+    }
+}
