@@ -25,7 +25,7 @@ use crate::geom::polyline::{LinePoint, Polyline};
 use crate::profile::Settings;
 use crate::region::{Region, Skin, Sparse, walls::Wall};
 use crate::slice::Heights;
-use crate::units::{Coord, to_units};
+use crate::units::{Coord, nearest, to_units};
 use rounding::Rounding;
 use variable_width::LineParams;
 
@@ -41,6 +41,8 @@ pub struct FillParams {
     lines: LineParams,
     rounding: Rounding,
     skin_rounding: Rounding,
+    /// Plastic of the lines of bridges: 1 fills their distance.
+    bridge_flow: f64,
     tool: u8,
 }
 
@@ -57,6 +59,7 @@ impl FillParams {
             lines: LineParams::new(settings),
             rounding: Rounding { radius },
             skin_rounding: Rounding { radius: radius.min(line_width / SKIN_ROUNDING) },
+            bridge_flow: settings.bridge.flow / 100.0,
             tool: u8::try_from(settings.machine.tool).unwrap_or(u8::MAX),
         }
     }
@@ -96,10 +99,12 @@ impl Maker<'_> {
 
     fn skin(&mut self, skin: &Skin) {
         let (frame, rounding) = (skin.raster.frame, self.params.skin_rounding);
-        let (lines, slivers) = gap_closing::close(&skin.crossed(), &self.params.lines);
-        let lines = skin::zigzags(&lines, &self.params.lines);
+        let params = LineParams { line_width: skin.raster.pitch, ..self.params.lines };
+        let (lines, slivers) = gap_closing::close(&skin.crossed(), &params);
+        let lines = skin::zigzags(&lines, &params);
+        let role = if skin.bridges { Role::Bridge } else { Role::Skin };
         for polyline in lines.iter().chain(&skin.beads).chain(&slivers) {
-            self.polyline(Role::Skin, skin.layers, frame, polyline, rounding);
+            self.polyline(role, skin.layers, frame, polyline, rounding);
         }
     }
 
@@ -127,7 +132,11 @@ impl Maker<'_> {
             width,
             height,
         };
-        let points = rounding.round(polyline.iter().map(place).collect());
+        let mut points = rounding.round(polyline.iter().map(place).collect());
+        if role == Role::Bridge {
+            let flow = self.params.bridge_flow;
+            points.iter_mut().for_each(|p| p.width = nearest(f64::from(p.width) * flow) as Coord);
+        }
         self.push(role, Shape::Open, layers, points);
     }
 

@@ -12,6 +12,8 @@ pub enum Role {
     InnerWall,
     /// Solid lines at tops and bottoms.
     Skin,
+    /// Solid lines over places where nothing is printed below.
+    Bridge,
     /// Sparse infill.
     Infill,
     /// Support.
@@ -50,8 +52,8 @@ pub struct RoleFacts {
 
 impl Role {
     /// All roles, in the order of reports.
-    pub const ALL: [Self; 5] =
-        [Self::OuterWall, Self::InnerWall, Self::Skin, Self::Infill, Self::Support];
+    pub const ALL: [Self; 6] =
+        [Self::OuterWall, Self::InnerWall, Self::Skin, Self::Bridge, Self::Infill, Self::Support];
 
     /// What is particular to it.
     #[must_use]
@@ -80,6 +82,14 @@ impl Role {
                 speed_keys: Both::same("speed.skin"),
                 speed: |speed| Both::same(speed.skin),
                 factor: |extrusion| extrusion.skin_factor,
+            },
+            Self::Bridge => RoleFacts {
+                name: "bridge",
+                annotation: "Bridge infill",
+                may_be_thick: false,
+                speed_keys: Both::same("speed.bridge"),
+                speed: |speed| Both::same(speed.bridge),
+                ..Self::Skin.facts()
             },
             Self::Infill => RoleFacts {
                 name: "infill",

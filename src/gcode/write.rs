@@ -41,6 +41,8 @@ pub struct WriteParams {
     dialect: Dialect,
     relative_e: bool,
     fan: f64,
+    /// Power of the fan on bridges.
+    bridge_fan: f64,
     fan_from_layer: usize,
     tool: u32,
 }
@@ -53,6 +55,7 @@ impl WriteParams {
             dialect: Dialect::new(settings.machine.dialect),
             relative_e: settings.machine.relative_e,
             fan: settings.filament.fan,
+            bridge_fan: settings.cooling.bridge_fan,
             fan_from_layer: settings.filament.fan_from_layer as usize,
             tool: settings.machine.tool,
         }
@@ -75,6 +78,7 @@ impl WriteParams {
             cuts.push(text.out.len());
         }
         layer.moves[done..].iter().for_each(|step| text.step(step));
+        text.blow(None);
         LayerText { text: text.out, cuts }
     }
 
@@ -105,6 +109,8 @@ struct Text<'a> {
     z: Option<Coord>,
     feed: u32,
     role: Option<Role>,
+    /// The fan's speed if this layer is printed with the fan on.
+    fan: Option<f64>,
     width: Coord,
     height: Coord,
 }
@@ -121,6 +127,7 @@ impl<'a> Text<'a> {
             z: None,
             feed: 0,
             role: None,
+            fan: None,
             width: 0,
             height: 0,
         }
@@ -145,6 +152,7 @@ impl<'a> Text<'a> {
             let words = self.params.dialect.fan(fan, self.params.tool);
             self.line(&words);
         }
+        self.fan = (layer.layer >= from).then_some(fan);
         self.restart_e();
         self.at = layer.from;
     }
@@ -153,6 +161,17 @@ impl<'a> Text<'a> {
     fn restart_e(&mut self) {
         if self.params.dialect.restarts_e() && !self.params.relative_e {
             self.line("G92 E0");
+        }
+    }
+
+    /// Sets the fan to what `role` needs; at the end of a layer to what is usual.
+    fn blow(&mut self, role: Option<Role>) {
+        let wanted =
+            if role == Some(Role::Bridge) { self.params.bridge_fan } else { self.params.fan };
+        if self.fan.is_some_and(|fan| (fan - wanted).abs() > f64::EPSILON) {
+            let words = self.params.dialect.fan(wanted, self.params.tool);
+            self.line(&words);
+            self.fan = Some(wanted);
         }
     }
 
@@ -191,6 +210,7 @@ impl<'a> Text<'a> {
     fn announce(&mut self, bead: &Bead) {
         if self.role != Some(bead.role) {
             self.role = Some(bead.role);
+            self.blow(self.role);
             self.out.extend_from_slice(b";TYPE:");
             self.line(bead.role.facts().annotation);
             self.width = 0;

@@ -29,6 +29,7 @@ impl Settings {
         let mut speeds = vec![
             ("speed.wall", speed.wall),
             ("speed.skin", speed.skin),
+            ("speed.bridge", speed.bridge),
             ("speed.infill", speed.infill),
             ("speed.thick_infill", speed.thick_infill),
             ("speed.support", speed.support),

@@ -122,6 +122,8 @@ pub struct Settings {
     pub dual: Dual,
     /// Support under overhangs.
     pub support: Support,
+    /// Skin that spans places where nothing is printed below.
+    pub bridge: Bridge,
     /// How fast the nozzle moves.
     pub speed: Speed,
     /// How much filament a line takes.
@@ -130,6 +132,8 @@ pub struct Settings {
     pub retraction: Retraction,
     /// The material.
     pub filament: Filament,
+    /// The fan on what needs more of it.
+    pub cooling: Cooling,
     /// The printer.
     pub machine: Machine,
     /// What the printer's planner holds itself to. It changes no move, only estimates of time.
@@ -189,6 +193,25 @@ pub struct Support {
     pub stands_on: SupportBase,
 }
 
+/// `[bridge]`: skin that spans places where nothing is printed below.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Bridge {
+    /// Whether skin over nothing is laid in the direction in which its lines hold best; off, it is
+    /// laid as any other skin.
+    #[schemars(extend("default" = true))]
+    pub enabled: bool,
+    /// How far its lines reach into what carries them.
+    #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 2))]
+    pub anchor: f64,
+    /// Distance between its lines.
+    #[schemars(range(min = 1, max = 2), extend("unit" = "line widths", "default" = 1.125))]
+    pub spacing: f64,
+    /// Plastic of its lines; 100 is as much as fills their distance.
+    #[schemars(range(min = 20, max = 200), extend("unit" = "%", "default" = 100))]
+    pub flow: f64,
+}
+
 /// `[speed]`: how fast the nozzle moves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -199,6 +222,9 @@ pub struct Speed {
     /// Speed of skins.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 50))]
     pub skin: f64,
+    /// Speed of bridges.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 25))]
+    pub bridge: f64,
     /// Speed of sparse infill that is one layer high.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 60))]
     pub infill: f64,
@@ -298,6 +324,16 @@ pub struct Filament {
     /// Price of the material; 0 means unknown.
     #[schemars(range(min = 0, max = 1_000_000), extend("unit" = "money/kg", "default" = 0))]
     pub cost: f64,
+}
+
+/// `[cooling]`: the fan on what needs more of it than `filament.fan`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cooling {
+    /// Power of the fan on bridges, from filament.fan_from_layer on; filament.fan comes back
+    /// after them.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 100))]
+    pub bridge_fan: f64,
 }
 
 /// `[machine]`: the printer.

@@ -1,5 +1,7 @@
-//! Layer and its neighbours -> Areas and beads: narrow skin as wall beads, the rest as skin or infill.
+//! Layer and its neighbours -> Divided: narrow skin as wall beads, bridges, the rest as skin or infill.
 
+use super::Skin;
+use super::bridge::{self, Pair};
 use super::classify::{Areas, areas, areas_beside, exposed};
 use super::crossed::Crossed;
 use super::params::RegionParams;
@@ -10,25 +12,39 @@ use crate::geom::Contour;
 use crate::geom::polyline::Polyline;
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
+use crate::slice::Layer;
 
 /// Areas of one layer on both rasters of skins, and on the others that were requested.
 pub type LayerAreas = PerRaster<Areas>;
 
-/// Divides the layer `own`, one of `layers`. Returns its areas on both rasters of skins and on
-/// `more`, and its wall beads in the frame of its skin's raster. `layers(k)` is `None` outside
-/// the part.
+/// What a layer is divided into.
+pub struct Divided {
+    /// Its areas.
+    pub areas: LayerAreas,
+    /// Its wall beads, in the frame of its skin's raster.
+    pub beads: Vec<Polyline>,
+    /// Its bridges.
+    pub bridges: Vec<Skin>,
+}
+
+/// Divides the layer `own`, one of `layers`. Its areas are on both rasters of skins and on `more`.
+/// `layers(k)` is `None` outside the part; `below` is the layer below.
 #[must_use]
 pub fn divide<'a>(
     own: &Own,
     more: impl Iterator<Item = Raster>,
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+    below: Option<&Layer>,
     params: &RegionParams,
-) -> (LayerAreas, Vec<Polyline>) {
+) -> Divided {
     let k = own.layer.index;
     let exposed = |raster| exposed(k, raster, layers, &params.skins);
     let skins = [0, 1].map(|r| exposed(params.rasters.skin(r)));
     let fill = |raster| layers(k)?.on(raster).map(|rows| &rows.fill);
     let beads = beads(own, &skins, layers, params);
+    let bridges =
+        below.map(|below| bridge::bridges(Pair { own, below, beads: &beads }, layers, params));
+    let bridges = bridges.unwrap_or_default();
     let along = params.rasters.skin(skin_turn(k).0);
     let areas_on = |raster: Raster| {
         let Some(fill) = fill(raster) else { return Areas::default() };
@@ -40,14 +56,17 @@ pub fn divide<'a>(
                 &other
             }
         };
-        if beads.is_empty() {
+        if beads.is_empty() && bridges.is_empty() {
             return areas(fill, uncovered, raster.pitch, &params.skins);
         }
-        let taken = taken(&beads, along.frame, raster, &params.beads);
+        let mut taken = taken(&beads, along.frame, raster, &params.beads);
+        if !bridges.is_empty() {
+            taken = taken.or(&bridge::taken(&bridges, raster, params));
+        }
         areas_beside(&taken, fill, uncovered, raster.pitch, &params.skins)
     };
     let areas = PerRaster::new(&params.rasters, more, areas_on);
-    (areas, beads)
+    Divided { areas, beads, bridges }
 }
 
 /// The beads of a layer along its innermost walls, where the exposed `skins` are narrow.

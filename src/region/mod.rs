@@ -15,6 +15,7 @@
 //! filled, and what to do where a line does not fit, is up to [`crate::fill`].
 
 pub mod angle;
+pub mod bridge;
 pub mod classify;
 pub mod crossed;
 pub mod divide;
@@ -49,10 +50,10 @@ use walls::Wall;
 #[derive(Debug)]
 pub struct Region {
     /// The layer.
-    pub layer: Layer,
+    pub layer: Arc<Layer>,
     /// Its walls.
     pub walls: Vec<Wall>,
-    /// Its skin: first that for this layer alone, then that printed for several.
+    /// Its skin: first that for this layer alone, then that printed for several, then bridges.
     pub skins: Vec<Skin>,
     /// Its sparse infill.
     pub infill: Vec<Sparse>,
@@ -77,6 +78,8 @@ pub struct Skin {
     pub left_turn: bool,
     /// Beads along walls where the skin is narrow, in the frame of its raster.
     pub beads: Vec<Polyline>,
+    /// Its lines span places where nothing is printed below.
+    pub bridges: bool,
 }
 
 /// Skin on one raster.

@@ -21,6 +21,8 @@ pub struct RegionParams {
     pub skins: SkinParams,
     /// For beads along walls.
     pub beads: BeadParams,
+    /// For bridges.
+    pub bridges: BridgeParams,
     /// All rasters in use.
     pub rasters: Rasters,
     /// The patterns of the sparse infill.
@@ -82,6 +84,17 @@ pub struct BeadParams {
     pub overlap: Coord,
 }
 
+/// How bridges are laid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BridgeParams {
+    /// How far lines reach into what carries them; `None` lays no bridges.
+    pub anchor: Option<Coord>,
+    /// Distance between lines.
+    pub pitch: Coord,
+    /// Direction of the skin of even layers, degrees.
+    pub angle: f64,
+}
+
 impl RegionParams {
     /// Derives the numbers from `settings`.
     #[must_use]
@@ -131,6 +144,11 @@ impl RegionParams {
                 line_width,
                 wall_to_fill: insets.fill - walls.inset_of(walls.count),
                 overlap: to_units(overlap * w),
+            },
+            bridges: BridgeParams {
+                anchor: settings.bridge.enabled.then(|| to_units(settings.bridge.anchor)),
+                pitch: to_units(settings.bridge.spacing * w),
+                angle: settings.angle.degrees(),
             },
             rasters: Rasters::new([skin(0.0), skin(90.0)], sparse.rasters()),
             sparse,

@@ -7,6 +7,7 @@ use super::params::{Insets, RegionParams};
 use super::per_raster::PerRaster;
 use super::scan::Scan;
 use super::walls::{self, Wall, Walls, thin};
+use crate::geom::Contour;
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
 use crate::slice::Layer;
@@ -16,9 +17,11 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Own {
     /// The layer.
-    pub layer: Layer,
+    pub layer: Arc<Layer>,
     /// Its walls.
     pub walls: Vec<Wall>,
+    /// The room for lines of skin and infill, where it is not all that the walls enclose.
+    pub core: Option<Vec<Contour>>,
     /// Area that is too thin for any bead, mm².
     pub thin_mm2: f64,
 }
@@ -44,16 +47,23 @@ pub fn prepare(layer: Layer, params: &RegionParams) -> (Own, LayerRows) {
     let may_be_thin = thin::may_be_thin(&layer.contours, skins.map(Scan::inside), &params.walls);
     let Walls { walls, core, lost_mm2: thin_mm2 } =
         walls::walls(&layer.contours, may_be_thin, &params.walls);
-    let Insets { fill, cover, core: overlap } = params.insets;
-    let rows = |raster: Raster, scan: &Scan| {
-        let mut rows = scan.inset(fill);
-        if let Some(core) = &core {
-            rows = rows.and(&Scan::new(core, raster).outset(overlap));
-        }
-        PreparedRows { fill: Arc::new(rows), cover: scan.inset(cover) }
+    let rows = |raster: Raster, scan: &Scan| PreparedRows {
+        fill: Arc::new(fill(scan, core.as_deref(), raster, &params.insets)),
+        cover: scan.inset(params.insets.cover),
     };
     let rows = PerRaster::new(&params.rasters, params.rasters.iter(), |raster| {
         scans.on(raster).map_or_else(PreparedRows::default, |scan| rows(raster, scan))
     });
-    (Own { layer, walls, thin_mm2 }, rows)
+    (Own { layer: Arc::new(layer), walls, core, thin_mm2 }, rows)
+}
+
+/// Where lines of skin or infill may run on `raster`: the scanned contours inset by their walls, and
+/// within the `core` that these leave.
+#[must_use]
+pub fn fill(scan: &Scan, core: Option<&[Contour]>, raster: Raster, insets: &Insets) -> Rows {
+    let rows = scan.inset(insets.fill);
+    match core {
+        Some(core) => rows.and(&Scan::new(core, raster).outset(insets.core)),
+        None => rows,
+    }
 }

@@ -14,7 +14,7 @@
 //! once, when its region is handed on. So memory holds a batch and a few layers, whatever the
 //! height of the print.
 
-use super::divide::{LayerAreas, divide};
+use super::divide::{Divided, LayerAreas, divide};
 use super::dual;
 use super::dual::audit::Audit;
 use super::dual::groups::{Block, Grouping};
@@ -30,7 +30,7 @@ use crate::geom::polyline::Polyline;
 use crate::geom::spans::Rows;
 use crate::pattern::Pattern;
 use crate::profile::DualPart;
-use crate::slice::Slicer;
+use crate::slice::{Layer, Slicer};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -45,8 +45,10 @@ pub struct Window<'a> {
     batch: usize,
     /// What belongs to each layer alone.
     own: Queue<Own>,
-    /// Wall beads of the layers that are divided.
-    beads: Queue<Vec<Polyline>>,
+    /// The layers themselves, as long as one above is not divided.
+    layers: Queue<Arc<Layer>>,
+    /// Wall beads and bridges of the layers that are divided.
+    beads: Queue<(Vec<Polyline>, Vec<Skin>)>,
     /// Rows of the layers that are prepared.
     rows: Queue<LayerRows>,
     /// Areas of the layers that are divided.
@@ -88,6 +90,7 @@ impl<'a> Window<'a> {
             support,
             batch: 0,
             own: Queue::default(),
+            layers: Queue::default(),
             beads: Queue::default(),
             rows: Queue::default(),
             areas: Queue::default(),
@@ -118,25 +121,29 @@ impl<'a> Window<'a> {
         let prepared: Vec<(Own, LayerRows)> =
             layers.into_par_iter().map(|layer| prepare(layer, self.params)).collect();
         let (own, rows): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
+        self.layers.extend(own.iter().map(|own| own.layer.clone()));
         self.own.extend(own);
         self.rows.extend(rows);
         let known = self.rows.end();
         let all = self.batch == self.slicer.blocks();
         let until = if all { known } else { known.saturating_sub(self.params.skins.top.max(1)) };
-        let divided: Vec<(LayerAreas, Vec<Polyline>)> =
+        let divided: Vec<Divided> =
             (self.areas.end()..until).into_par_iter().filter_map(|k| self.divide(k)).collect();
-        let (areas, beads): (Vec<_>, Vec<_>) = divided.into_iter().unzip();
-        self.areas.extend(areas);
-        self.beads.extend(beads);
+        for Divided { areas, beads, bridges } in divided {
+            self.areas.extend([areas]);
+            self.beads.extend([(beads, bridges)]);
+        }
+        self.layers.forget(until.saturating_sub(1));
     }
 
-    /// The areas of layer `k` on both rasters of skins and on those of its block's infill, and its
-    /// wall beads. `None` if the layer is not in the window.
-    fn divide(&self, k: usize) -> Option<(LayerAreas, Vec<Polyline>)> {
+    /// Layer `k`, divided on both rasters of skins and on those of its block's infill. `None` if the
+    /// layer is not in the window.
+    fn divide(&self, k: usize) -> Option<Divided> {
         let block = self.grouping.block(k, self.count());
         let patterns = dual::patterns(&block, self.grouping, &self.params.sparse);
         let rasters = patterns.iter().map(|pattern| pattern.raster());
-        Some(divide(self.own.get(k)?, rasters, &|k| self.rows.get(k), self.params))
+        let below = k.checked_sub(1).and_then(|k| self.layers.get(k)).map(|layer| &**layer);
+        Some(divide(self.own.get(k)?, rasters, &|k| self.rows.get(k), below, self.params))
     }
 
     /// The next blocks that can be filled.
@@ -270,19 +277,21 @@ impl<'a> Window<'a> {
             columns: SkinRows { skin: columns, fill: fill(across) },
             left_turn: along == 0,
             beads: Vec::new(),
+            bridges: false,
         }
     }
 
     /// Joins `fillings` with what belongs to their layers, and drops what no layer needs any more.
     fn hand_on(&mut self, fillings: Vec<Filling>) -> Vec<Region> {
         let own = std::iter::from_fn(|| self.own.take().zip(self.beads.take()));
-        let regions = fillings.into_iter().zip(own).map(|(filling, (own, beads))| {
+        let regions = fillings.into_iter().zip(own).map(|(filling, (own, (beads, bridges)))| {
             let Filling { mut skins, infill, support, walls: printed } = filling;
             // Wall beads are for this layer alone.
             if let Some(skin) = skins.first_mut() {
                 skin.beads = beads;
             }
-            let Own { layer, walls, thin_mm2 } = own;
+            skins.extend(bridges);
+            let Own { layer, walls, thin_mm2, .. } = own;
             let printed = walls.into_iter().zip(printed).filter(|(_, layers)| *layers > 0);
             let walls = printed.map(|(wall, layers)| Wall { layers, ..wall }).collect();
             Region { layer, walls, skins, infill, support, thin_mm2 }

@@ -1,0 +1,178 @@
+//! An island of open skin -> the direction in which its lines hold best.
+//!
+//! Words: *open* and *carrier* as in [`super`]. A *run* is what one line has of the island. A run's
+//! end *holds* if the carrier, or a wall on it, begins there.
+//!
+//! Algorithm: draw the island and the carrier around it into a small grid of cells. For each of
+//! the directions walk over the grid along parallel lines. Count what part of the runs' ends does
+//! not hold, weighted by length, and how long the runs are: the root of the mean of their lengths
+//! cubed, weighted by length, so that the longest count most. Of the directions with nearly the fewest free ends, the shortest runs win. So a
+//! bridge is laid across its gap, and a ledge that is held on one side only is laid outwards
+//! from there, in lines that each begin on the carrier.
+
+use crate::geom::islands::Islands;
+use crate::geom::spans::Rows;
+use crate::units::{Bounded as _, Coord, sin_cos};
+
+/// Number of directions that are tried. They begin with that of the layer's skin.
+pub const COUNT: usize = 24;
+
+/// From one direction to the next, degrees. The directions make half a turn.
+pub const STEP: f64 = 180.0 / COUNT as f64;
+
+/// Share of free ends that makes no difference: lines that graze an island's edge are free in any
+/// direction. A larger value lets a short direction without hold win; at 0 noise decides.
+const ALIKE: f64 = 0.05;
+
+/// Runs must be shorter by this factor for another direction than the first ones to win. Equal
+/// directions differ by the cells' size; the raster of the skin gives the neatest edges.
+const GAIN: f64 = 0.97;
+
+/// Most lines of one direction. The lines of a large island lie further apart: the choice is the
+/// same, and its time stays bounded.
+const MOST_LINES: usize = 64;
+
+/// An island on the raster of the layer's skin.
+#[derive(Debug, Clone, Copy)]
+pub struct Site<'a> {
+    /// Number of the island.
+    pub island: usize,
+    /// All islands.
+    pub islands: &'a Islands<'a>,
+    /// What is printed below.
+    pub carrier: &'a Rows,
+    /// Distance of the rows.
+    pub pitch: Coord,
+}
+
+/// The best direction for the lines of an island, as a number of [`STEP`]s from the rows. Walls
+/// lie within `walls` beyond its edge.
+#[must_use]
+pub fn best(site: &Site<'_>, walls: Coord) -> usize {
+    let Some(grid) = Grid::new(site, walls) else { return 0 };
+    // Along and across the rows first: of equal directions they give the neatest edges.
+    let half = COUNT / 2;
+    let others = (1..COUNT).filter(|turn| *turn != half);
+    let tried: Vec<(usize, Hold)> =
+        [0, half].into_iter().chain(others).map(|turn| (turn, grid.hold(turn))).collect();
+    let fewest = tried.iter().map(|(_, hold)| hold.free).fold(f64::MAX, f64::at_most);
+    let good = tried.iter().filter(|(_, hold)| hold.free <= fewest + ALIKE);
+    let best = good.copied().reduce(
+        |best, next| {
+            if next.1.length < GAIN * best.1.length { next } else { best }
+        },
+    );
+    best.map_or(0, |(turn, _)| turn)
+}
+
+/// How well an island holds in one direction.
+#[derive(Debug, Clone, Copy)]
+struct Hold {
+    /// Share of the ends that do not hold.
+    free: f64,
+    /// How long the runs are, in cells.
+    length: f64,
+}
+
+/// What a cell holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cell {
+    Nothing,
+    Open,
+    Carrier,
+}
+
+/// The island and what is around it, in square cells.
+struct Grid {
+    cells: Vec<Cell>,
+    width: usize,
+    height: usize,
+    /// How far beyond the island's edge the carrier still holds a line, in cells.
+    reach: usize,
+}
+
+impl Grid {
+    fn new(site: &Site<'_>, walls: Coord) -> Option<Self> {
+        let Site { island, islands, carrier, pitch } = *site;
+        let open = islands.select(|k| k == island);
+        let rows = || open.iter().filter(|(_, row)| !row.is_empty());
+        let (first, last) = (rows().next()?.0, rows().last()?.0);
+        let ends = || rows().flat_map(|(_, row)| row);
+        let (low, high) = (ends().map(|s| s.start).min()?, ends().map(|s| s.end).max()?);
+        let reach = usize::try_from(walls / pitch).ok()? + 1;
+        let margin = reach as i32 + 1;
+        let left = low.div_euclid(pitch) - margin;
+        let width = usize::try_from(high.div_euclid(pitch) + margin + 1 - left).ok()?;
+        let height = usize::try_from(last - first + 2 * margin + 1).ok()?;
+        let mut cells = vec![Cell::Nothing; width * height];
+        for (row, j) in cells.chunks_mut(width).zip(first - margin..) {
+            for (rows, cell) in [(carrier, Cell::Carrier), (&open, Cell::Open)] {
+                for span in rows.row(j) {
+                    // A cell counts if its middle is in the span.
+                    let index = |u: Coord| (u + pitch / 2).div_euclid(pitch) - left;
+                    let clamp = |k: i32| k.clamp(0, width as i32) as usize;
+                    row[clamp(index(span.start))..clamp(index(span.end))].fill(cell);
+                }
+            }
+        }
+        Some(Self { cells, width, height, reach })
+    }
+
+    fn at(&self, [x, y]: [f64; 2]) -> Cell {
+        if x < 0.0 || y < 0.0 {
+            return Cell::Nothing;
+        }
+        let (x, y) = (x as usize, y as usize);
+        if x < self.width && y < self.height {
+            self.cells[y * self.width + x]
+        } else {
+            Cell::Nothing
+        }
+    }
+
+    /// How the island holds in direction `turn`.
+    fn hold(&self, turn: usize) -> Hold {
+        let (sin, cos) = sin_cos(STEP * turn as f64);
+        let middle = [self.width as f64 / 2.0, self.height as f64 / 2.0];
+        let radius = (middle[0] * middle[0] + middle[1] * middle[1]).sqrt();
+        let lines = (2.0 * radius).at_most(MOST_LINES as f64) as usize;
+        // Two steps a cell, so that no cell is jumped over.
+        let steps = (4.0 * radius) as usize;
+        let (mut free, mut sum, mut cubes) = (0.0, 0.0, 0.0);
+        let mut line = Vec::with_capacity(steps);
+        for n in 0..lines {
+            let aside = (2.0 * n as f64 + 1.0 - lines as f64) * radius / lines as f64;
+            line.clear();
+            line.extend((0..steps).map(|step| {
+                let on = step as f64 / 2.0 - radius;
+                self.at([middle[0] + on * cos - aside * sin, middle[1] + on * sin + aside * cos])
+            }));
+            for (length, ends) in runs(&line, 2 * self.reach) {
+                let length = length as f64 / 2.0;
+                free += length * ends as f64 / 2.0;
+                sum += length;
+                cubes += length.powi(4);
+            }
+        }
+        let sum = sum.at_least(1.0);
+        Hold { free: free / sum, length: libm::cbrt(cubes / sum) }
+    }
+}
+
+/// The runs of open cells of a line: their lengths, and how many of their ends do not hold. The
+/// carrier holds an end if it begins within `reach` cells from it.
+fn runs(line: &[Cell], reach: usize) -> Vec<(usize, usize)> {
+    let mut out = Vec::new();
+    let mut from = 0;
+    for run in line.chunk_by(|a, b| a == b) {
+        let to = from + run.len();
+        if run[0] == Cell::Open {
+            let before = line[..from].iter().rev().take(reach).any(|c| *c == Cell::Carrier);
+            let after = line[to..].iter().take(reach).any(|c| *c == Cell::Carrier);
+            let free = usize::from(!before) + usize::from(!after);
+            out.push((run.len(), free));
+        }
+        from = to;
+    }
+    out
+}

@@ -1,0 +1,219 @@
+//! Layer + the one below -> bridges: skin over nothing, with lines that run from hold to hold.
+//!
+//! Words: a place is *open* if the layer below does not cover it. A *bridge* is an island of open
+//! skin with a line so long that it would sag. The *carrier* is what is printed below beside it.
+//! The *anchor* is the stretch of a line that lies on the carrier.
+//!
+//! Algorithm, for each layer:
+//! 1. Find the open places on the raster of the layer's skin. On most layers there are none, or
+//!    only short ones along walls: then this is all.
+//! 2. Divide them into islands. For each bridge choose the direction of its lines ([`direction`]).
+//! 3. For each direction, scan the contours of both layers with a raster of that direction, and
+//!    find the open places of its bridges again: exactly, at the lines' own ends.
+//! 4. Lengthen each line by the anchor at both ends, and add a line on both sides.
+//!
+//! The lines of a bridge take their place from the layer's skin and infill, like wall beads.
+
+pub mod direction;
+
+use super::params::RegionParams;
+use super::per_raster::skin_turn;
+use super::prepare::{self, LayerRows, Own};
+use super::scan::{Scan, around};
+use super::wall_beads;
+use super::{Skin, SkinRows};
+use crate::geom::Point;
+use crate::geom::frame::Frame;
+use crate::geom::islands::Islands;
+use crate::geom::polyline::Polyline;
+use crate::geom::raster::Raster;
+use crate::geom::spans::{Rows, Span, merge};
+use crate::slice::Layer;
+use crate::units::{Coord, nearest};
+use direction::{STEP, Site};
+use std::sync::Arc;
+
+/// Shorter open spans are dropped as noise of the contours (50 µm), as `LEAST_SKIN` in `classify`.
+const LEAST_OPEN: Coord = 500;
+
+/// An island is a bridge if one of its lines is free for longer than this (2 mm). Shorter lines hold
+/// in any direction. A larger value leaves lines that sag; a smaller one makes bridges, with their
+/// slow lines, of every flat slope.
+const MOST_FREE: Coord = 20_000;
+
+/// A layer and the one below, with what is known of them.
+#[derive(Debug, Clone, Copy)]
+pub struct Pair<'a> {
+    /// The layer.
+    pub own: &'a Own,
+    /// The layer below.
+    pub below: &'a Layer,
+    /// Its wall beads, in the frame of its skin's raster. No bridge takes their place.
+    pub beads: &'a [Polyline],
+}
+
+/// The bridges of the upper layer of a pair. `layers(k)` is `None` outside the part.
+#[must_use]
+pub fn bridges<'a>(
+    pair: Pair<'_>,
+    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+    params: &RegionParams,
+) -> Vec<Skin> {
+    let k = pair.own.layer.index;
+    let along = skin_turn(k).0;
+    let raster = params.rasters.skin(along);
+    let rows = |k: usize| layers(k)?.on(raster);
+    let (Some(anchor), Some(here), Some(below)) =
+        (params.bridges.anchor, rows(k), k.checked_sub(1).and_then(rows))
+    else {
+        return Vec::new();
+    };
+    let is_long = |span: Span| span.len() > i64::from(MOST_FREE);
+    let mut open = here.fill.minus(&below.cover);
+    if params.skins.bottom == 0 || !open.iter().any(|(_, row)| row.iter().any(|s| is_long(*s))) {
+        return Vec::new();
+    }
+    if !pair.beads.is_empty() {
+        open = open.minus(&pair.taken(raster, params));
+    }
+    let open = open.filter(|_, span| span.len() >= i64::from(LEAST_OPEN));
+    let islands = Islands::new(&open);
+    let mut long = vec![false; islands.count()];
+    for (j, row) in open.iter() {
+        for (span, island) in row.iter().zip(islands.row(j)) {
+            long[*island] |= is_long(*span);
+        }
+    }
+    // The direction of each bridge, and each direction once, in the order of the islands.
+    let direction = |island: usize| {
+        let site = Site { island, islands: &islands, carrier: &below.cover, pitch: raster.pitch };
+        long[island].then(|| direction::best(&site, params.insets.fill))
+    };
+    let directions: Vec<Option<usize>> = (0..islands.count()).map(direction).collect();
+    let mut out = Vec::new();
+    for turn in 0..direction::COUNT {
+        if directions.contains(&Some(turn)) {
+            let is_open = |island: usize| directions[island] == Some(turn);
+            let holds = Holds { islands: &islands, raster, is_open };
+            let degrees = params.bridges.angle + 90.0 * along as f64 + STEP * turn as f64;
+            out.push(lay(pair, degrees, anchor, &holds, &out, params));
+        }
+    }
+    out
+}
+
+/// What the lines of `bridges` take of a layer, on `raster`: no other line may end in it.
+#[must_use]
+pub fn taken(bridges: &[Skin], raster: Raster, params: &RegionParams) -> Rows {
+    // As a wall bead: a line that ends there reaches into it as into a wall.
+    let more = (params.beads.line_width / 2 - params.beads.overlap).max(0);
+    let edges = bridges.iter().flat_map(|bridge| {
+        let Raster { frame, pitch } = bridge.raster;
+        let spans = bridge.rows.skin.iter();
+        spans.flat_map(move |(j, row)| {
+            let end = move |x| raster.frame.enter(frame.leave(Point { x, y: j * pitch }));
+            row.iter().map(move |s| (end(s.start), end(s.end), pitch / 2 + more))
+        })
+    });
+    around(&edges.collect::<Vec<_>>(), raster)
+}
+
+impl Pair<'_> {
+    /// What the wall beads take, on `raster`.
+    fn taken(&self, raster: Raster, params: &RegionParams) -> Rows {
+        let along = params.rasters.skin(skin_turn(self.own.layer.index).0);
+        wall_beads::taken(self.beads, along.frame, raster, &params.beads)
+    }
+}
+
+/// The islands that are laid in one direction.
+struct Holds<'a, F> {
+    islands: &'a Islands<'a>,
+    raster: Raster,
+    is_open: F,
+}
+
+impl<F: Fn(usize) -> bool> Holds<'_, F> {
+    /// Whether `span` of row `j` of `raster` is part of one of the islands. It is part of one island
+    /// at most, but their rows may miss its first places.
+    fn holds(&self, raster: Raster, j: i32, span: Span) -> bool {
+        let at = |u: Coord| {
+            let p = raster.frame.leave(Point { x: u, y: j * raster.pitch });
+            let p = self.raster.frame.enter(p);
+            let row = nearest(f64::from(p.y) / f64::from(self.raster.pitch)) as i32;
+            [row, row + 1, row - 1].into_iter().find_map(|j| self.islands.at(j, p.x))
+        };
+        let places = (span.start..=span.end).step_by(self.raster.pitch.max(2) as usize / 2);
+        places.filter_map(at).next().is_some_and(&self.is_open)
+    }
+}
+
+/// The bridges of one direction as skin. `others` are bridges that are laid already.
+fn lay(
+    pair: Pair<'_>,
+    degrees: f64,
+    anchor: Coord,
+    holds: &Holds<'_, impl Fn(usize) -> bool>,
+    others: &[Skin],
+    params: &RegionParams,
+) -> Skin {
+    let pitch = params.bridges.pitch;
+    let rasters = [0.0, 90.0].map(|turn| Raster { frame: Frame::new(degrees + turn), pitch });
+    let [(fill, open), (fill_across, open_across)] = rasters.map(|raster| {
+        let scan = Scan::new(&pair.own.layer.contours, raster);
+        let mut fill = prepare::fill(&scan, pair.own.core.as_deref(), raster, &params.insets);
+        let cover = Scan::new(&pair.below.contours, raster).inset(params.insets.cover);
+        if !pair.beads.is_empty() {
+            fill = fill.minus(&pair.taken(raster, params));
+        }
+        if !others.is_empty() {
+            fill = fill.minus(&taken(others, raster, params));
+        }
+        let keep = |j, s: Span| s.len() >= i64::from(LEAST_OPEN) && holds.holds(raster, j, s);
+        let open = fill.minus(&cover).filter(keep).dilate(params.skins.line_width, pitch);
+        (fill, open)
+    });
+    // The open places are grown by a line's width on all sides.
+    let more = (anchor - params.skins.line_width).max(0);
+    let skin = lengthened(&open, more).and(&fill);
+    // A line never jumps over a hole to reach its anchor.
+    let skin = skin.filter(|j, span| open.row(j).iter().any(|s| s.overlaps(span)));
+    let columns = widened(&open_across, (more + pitch / 2) / pitch).and(&fill_across);
+    let columns = columns.filter(|_, span| span.len() >= i64::from(pitch));
+    Skin {
+        layers: 1,
+        raster: rasters[0],
+        rows: SkinRows { skin: Arc::new(skin), fill: Arc::new(fill) },
+        columns: SkinRows { skin: Arc::new(columns), fill: Arc::new(fill_across) },
+        left_turn: true,
+        beads: Vec::new(),
+        bridges: true,
+    }
+}
+
+/// `rows` with each span longer by `by` at both ends.
+fn lengthened(rows: &Rows, by: Coord) -> Rows {
+    let mut out = Rows::with_room_of(rows, rows.range().start);
+    for (_, row) in rows.iter() {
+        let longer = |s: &Span| Span { start: s.start - by, end: s.end + by };
+        let mut spans: Vec<Span> = row.iter().map(longer).collect();
+        out.push_row(|out| merge(&mut spans, out));
+    }
+    out
+}
+
+/// `rows` united with the `by` rows before and after each.
+fn widened(rows: &Rows, by: i32) -> Rows {
+    let range = rows.range();
+    let mut out = Rows::starting_at(range.start - by);
+    if range.is_empty() {
+        return out;
+    }
+    let mut spans = Vec::new();
+    for j in range.start - by..range.end + by {
+        spans.clear();
+        (j - by..=j + by).for_each(|j| spans.extend_from_slice(rows.row(j)));
+        out.push_row(|out| merge(&mut spans, out));
+    }
+    out
+}
