@@ -74,8 +74,7 @@ fn sampled(path: &Contour, depth: u32, layout: &Layout<'_>) -> Vec<Sampled> {
 fn sample(at: [f64; 2], normal: [f64; 2], depth: u32, layout: &Layout<'_>) -> Sample {
     let inset = layout.inset(depth);
     let foot = along(at, -inset, normal);
-    let opposite = layout.outline.opposite(foot, normal);
-    let share = opposite.and_then(|o| layout.share(foot, normal, o.radius));
+    let share = layout.share(foot, normal).map(|(share, _)| share);
     match share.filter(|share| share.loops > depth) {
         Some(share) => {
             let middle = (f64::from(depth) + 0.5) * share.width - layout.outside();

@@ -144,8 +144,7 @@ fn fan((before, corner): (Point, Point), to: [f64; 2], mut at: impl FnMut([f64; 
 
 /// The middle bead opposite to a place of the contour, if there is one.
 fn sample(at: [f64; 2], normal: [f64; 2], index: u32, layout: &Layout<'_>) -> Option<Sample> {
-    let opposite = layout.outline.opposite(at, normal)?;
-    let share = layout.share(at, normal, opposite.radius).filter(|share| share.middle)?;
+    let (share, opposite) = layout.share(at, normal).filter(|(share, _)| share.middle)?;
     let Share { width, loops, .. } = share;
     let middle = along(at, opposite.radius, normal);
     let clear = layout.outline.is_free(middle, CLEAR * opposite.radius);

@@ -32,9 +32,10 @@ pub use share::share;
 
 use super::near::Near;
 use super::params::WallParams;
+use crate::geom::segment::along;
 use crate::geom::{Contour, polygon};
 use crate::units::Coord;
-use room::Outline;
+use room::{Opposite, Outline};
 
 /// One wall.
 #[derive(Debug, Clone, PartialEq)]
@@ -178,21 +179,27 @@ impl<'a> Layout<'a> {
         f64::from(self.params.inset_of(depth + 1))
     }
 
-    /// How beads lie where the contour runs through `at`, the part lies towards `normal`, and the
-    /// circle that touches it has `radius`. `None` if loops and core lie there as everywhere, or
-    /// nothing fits.
-    fn share(&self, at: [f64; 2], normal: [f64; 2], radius: f64) -> Option<Share> {
-        let place = |depth: u32| [0, 1].map(|k| at[k] + self.inset(depth) * normal[k]);
-        let has = |depth: u32| {
-            let near = &self.levels[depth as usize];
-            self.inset(depth) < radius + BESIDE * self.line_width
-                && !near.is_free([place(depth)], BESIDE * self.line_width)
-        };
-        let loops = (0..=self.params.count).take_while(|&depth| has(depth)).count() as u32;
-        if loops > self.params.count {
+    /// How beads lie where the contour runs through `at` and the part lies towards `normal`, and
+    /// what is opposite. `None` if loops and core lie there as everywhere, or nothing fits.
+    fn share(&self, at: [f64; 2], normal: [f64; 2]) -> Option<(Share, Opposite)> {
+        // Nearly everywhere the core is there: nothing else is asked for.
+        if self.has(self.params.count, at, normal) {
             return None;
         }
-        share_room(2.0 * (radius + self.outside()), loops, self.params)
+        let opposite = self.outline.opposite(at, normal)?;
+        let reaches = |depth: u32| {
+            self.inset(depth) < opposite.radius + BESIDE * self.line_width
+                && self.has(depth, at, normal)
+        };
+        let loops = (0..self.params.count).take_while(|&depth| reaches(depth)).count() as u32;
+        let room = 2.0 * (opposite.radius + self.outside());
+        Some((share_room(room, loops, self.params)?, opposite))
+    }
+
+    /// Whether a loop of this depth, or the core, runs beside the place `at` of the contour.
+    fn has(&self, depth: u32, at: [f64; 2], normal: [f64; 2]) -> bool {
+        let place = along(at, self.inset(depth), normal);
+        !self.levels[depth as usize].is_free([place], BESIDE * self.line_width)
     }
 }
 

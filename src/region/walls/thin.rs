@@ -84,6 +84,9 @@ pub fn open(
         let kept = (0..loops.len()).filter(|&k| !vanished[around(&loops, k)]);
         loops = kept.map(|k| loops[k].clone()).collect();
     }
+    if cut && polygon::keep_shape(&loops, half, short) {
+        return (loops, true);
+    }
     let opened = polygon::outset(&shrunk, half + ROUNDING);
     let mut thin = polygon::difference(&loops, &opened, ROUNDING);
     thin.retain(|c| perimeter(c) >= 2.0 * short);
