@@ -58,23 +58,32 @@ pub(super) fn share(wall: &mut Wall, layout: &Layout<'_>) {
 
 fn sampled(path: &Contour, depth: u32, layout: &Layout<'_>) -> Vec<Sampled> {
     let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
+    let mut guess = layout.line_width;
     let sides = edges(path).filter(|(p, q)| p != q).map(|(p, q)| {
         let (from, length) = (float(p), p.distance(q));
         let way = way(from, float(q));
         let normal = [-way[1] / length, way[0] / length];
         let count = (length / layout.line_width).ceil();
-        let sample =
-            |i: usize| sample(along(from, (i as f64 + 0.5) / count, way), normal, depth, layout);
+        let sample = |i: usize| {
+            let at = along(from, (i as f64 + 0.5) / count, way);
+            sample(at, normal, depth, layout, &mut guess)
+        };
         Sampled { from, way, normal, samples: (0..count as usize).map(sample).collect() }
     });
     sides.collect()
 }
 
 /// The bead of a loop of this `depth` at the place `at` of its nominal centre line.
-fn sample(at: [f64; 2], normal: [f64; 2], depth: u32, layout: &Layout<'_>) -> Sample {
+fn sample(
+    at: [f64; 2],
+    normal: [f64; 2],
+    depth: u32,
+    layout: &Layout<'_>,
+    guess: &mut f64,
+) -> Sample {
     let inset = layout.inset(depth);
     let foot = along(at, -inset, normal);
-    let share = layout.share(foot, normal).map(|(share, _)| share);
+    let share = layout.share(foot, normal, guess).map(|(share, _)| share);
     match share.filter(|share| share.loops > depth) {
         Some(share) => {
             let middle = (f64::from(depth) + 0.5) * share.width - layout.outside();

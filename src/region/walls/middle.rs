@@ -22,7 +22,7 @@ use crate::units::Bounded as _;
 
 /// Distance of samples along the contour, in line widths. A larger value cuts corners; a smaller
 /// one costs time.
-const STEP: f64 = 0.5;
+const STEP: f64 = 0.75;
 
 /// Turn between two samples at a corner, radians: 15°. See [`STEP`].
 const TURN: f64 = 0.26;
@@ -109,6 +109,7 @@ fn wall(arc: &Arc) -> Wall {
 fn lap(contour: &Contour, first: u32, layout: &Layout<'_>) -> Vec<Option<Sample>> {
     let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
     let n = contour.len();
+    let mut guess = layout.line_width;
     let mut out = Vec::new();
     for (index, (k, (p, q))) in (first..).zip(edges(contour).enumerate()) {
         if p == q {
@@ -119,12 +120,14 @@ fn lap(contour: &Contour, first: u32, layout: &Layout<'_>) -> Vec<Option<Sample>
         let normal = [-along_side[1], along_side[0]];
         let before = contour[(k + n - 1) % n];
         if side(before, p, q) < 0 {
-            fan((before, p), normal, |normal| out.push(sample(float(p), normal, index, layout)));
+            fan((before, p), normal, |normal| {
+                out.push(sample(float(p), normal, index, layout, &mut guess))
+            });
         }
         let count = (length / (STEP * layout.line_width)).ceil();
         out.extend((0..count as usize).map(|i| {
             let at = along(float(p), (i as f64 + 0.5) / count * length, along_side);
-            sample(at, normal, index, layout)
+            sample(at, normal, index, layout, &mut guess)
         }));
     }
     out
@@ -143,8 +146,14 @@ fn fan((before, corner): (Point, Point), to: [f64; 2], mut at: impl FnMut([f64; 
 }
 
 /// The middle bead opposite to a place of the contour, if there is one.
-fn sample(at: [f64; 2], normal: [f64; 2], index: u32, layout: &Layout<'_>) -> Option<Sample> {
-    let (share, opposite) = layout.share(at, normal).filter(|(share, _)| share.middle)?;
+fn sample(
+    at: [f64; 2],
+    normal: [f64; 2],
+    index: u32,
+    layout: &Layout<'_>,
+    guess: &mut f64,
+) -> Option<Sample> {
+    let (share, opposite) = layout.share(at, normal, guess).filter(|(share, _)| share.middle)?;
     let Share { width, loops, .. } = share;
     let middle = along(at, opposite.radius, normal);
     let clear = layout.outline.is_free(middle, CLEAR * opposite.radius);

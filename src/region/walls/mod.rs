@@ -180,13 +180,14 @@ impl<'a> Layout<'a> {
     }
 
     /// How beads lie where the contour runs through `at` and the part lies towards `normal`, and
-    /// what is opposite. `None` if loops and core lie there as everywhere, or nothing fits.
-    fn share(&self, at: [f64; 2], normal: [f64; 2]) -> Option<(Share, Opposite)> {
+    /// what is opposite. `None` if loops and core lie there as everywhere, or nothing fits. `guess`
+    /// is as for [`Outline::opposite`].
+    fn share(&self, at: [f64; 2], normal: [f64; 2], guess: &mut f64) -> Option<(Share, Opposite)> {
         // Nearly everywhere the core is there: nothing else is asked for.
         if self.has(self.params.count, at, normal) {
             return None;
         }
-        let opposite = self.outline.opposite(at, normal)?;
+        let opposite = self.outline.opposite(at, normal, guess)?;
         let reaches = |depth: u32| {
             self.inset(depth) < opposite.radius + BESIDE * self.line_width
                 && self.has(depth, at, normal)

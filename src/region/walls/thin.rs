@@ -84,16 +84,28 @@ pub fn open(
         let kept = (0..loops.len()).filter(|&k| !vanished[around(&loops, k)]);
         loops = kept.map(|k| loops[k].clone()).collect();
     }
-    if cut && polygon::keep_shape(&loops, half, short) {
-        return (loops, true);
+    // The library is slow: it gets only the loops, with their holes, that are thin somewhere.
+    let groups = loops.iter().enumerate().map(|(k, path)| (around(&loops, k), path.clone()));
+    let mut groups: Vec<(usize, Contour)> = groups.collect();
+    groups.sort_by_key(|(k, _)| *k);
+    let (mut kept, mut rest) = (Vec::new(), Vec::new());
+    for group in groups.chunk_by(|a, b| a.0 == b.0) {
+        let group: Vec<Contour> = group.iter().map(|(_, path)| path.clone()).collect();
+        let whole = polygon::keep_shape(&group, half, short);
+        if whole { &mut kept } else { &mut rest }.extend(group);
     }
-    let opened = polygon::outset(&shrunk, half + ROUNDING);
-    let mut thin = polygon::difference(&loops, &opened, ROUNDING);
+    if rest.is_empty() {
+        return (kept, cut);
+    }
+    let opened = polygon::outset(&polygon::inset(&rest, half), half + ROUNDING);
+    let mut thin = polygon::difference(&rest, &opened, ROUNDING);
     thin.retain(|c| perimeter(c) >= 2.0 * short);
     if thin.is_empty() {
-        return (loops, cut);
+        kept.extend(rest);
+        return (kept, cut);
     }
-    (polygon::difference(&loops, &polygon::outset(&thin, ROUNDING), 2 * ROUNDING), true)
+    kept.extend(polygon::difference(&rest, &polygon::outset(&thin, ROUNDING), 2 * ROUNDING));
+    (kept, true)
 }
 
 /// The index of the smallest loop around the hole `k`; an outer loop's own.
