@@ -81,7 +81,7 @@ impl Outline {
             })
             .collect();
         let w = f64::from(params.line_width);
-        let most = w * (f64::from(params.count) + 1.0) + w / 2.0 - f64::from(params.outer_inset);
+        let most = w * (f64::from(params.count) + 0.85) + w / 2.0 - f64::from(params.outer_inset);
         let area = Area::around(sides.iter().map(|s| s.from), most);
         let grid = Grid::new(area, 2.0 * w);
         let end = |s: &Side| along(s.from, s.length, s.along);
