@@ -60,7 +60,7 @@ pub fn may_be_thin(contours: &[Contour], insides: [&Rows; 2], params: &WallParam
 /// whether there are any. `outer` is what the loops are insets of, by `distance`.
 #[must_use]
 pub fn open(
-    mut loops: Vec<Contour>,
+    loops: Vec<Contour>,
     (outer, distance): (&[Contour], Coord),
     depth: u32,
     params: &WallParams,
@@ -71,33 +71,24 @@ pub fn open(
     if polygon::keep_shape(&loops, half, short) {
         return (loops, false);
     }
-    let shrunk = polygon::inset(&loops, half);
+    let (mut kept, mut rest) = sorted_out(loops, |group| polygon::keep_shape(group, half, short));
+    let shrunk = polygon::inset(&rest, half);
     // Of a loop without anything left inside it, all is thin: a strip, a bulge of one, or a dot.
     let vanishes = |path: &Contour| {
         double_area(path) > 0
             && !shrunk.iter().any(|inner| encloses(edges(path), inner[0]))
             && (perimeter(path) >= 2.0 * short || !is_dot(path, outer, distance))
     };
-    let vanished: Vec<bool> = loops.iter().map(vanishes).collect();
+    let vanished: Vec<bool> = rest.iter().map(vanishes).collect();
     let cut = vanished.contains(&true);
     if cut {
-        let kept = (0..loops.len()).filter(|&k| !vanished[around(&loops, k)]);
-        loops = kept.map(|k| loops[k].clone()).collect();
-    }
-    // The library is slow: it gets only the loops, with their holes, that are thin somewhere.
-    let groups = loops.iter().enumerate().map(|(k, path)| (around(&loops, k), path.clone()));
-    let mut groups: Vec<(usize, Contour)> = groups.collect();
-    groups.sort_by_key(|(k, _)| *k);
-    let (mut kept, mut rest) = (Vec::new(), Vec::new());
-    for group in groups.chunk_by(|a, b| a.0 == b.0) {
-        let group: Vec<Contour> = group.iter().map(|(_, path)| path.clone()).collect();
-        let whole = polygon::keep_shape(&group, half, short);
-        if whole { &mut kept } else { &mut rest }.extend(group);
+        let left = (0..rest.len()).filter(|&k| !vanished[around(&rest, k)]);
+        rest = left.map(|k| rest[k].clone()).collect();
     }
     if rest.is_empty() {
         return (kept, cut);
     }
-    let opened = polygon::outset(&polygon::inset(&rest, half), half + ROUNDING);
+    let opened = polygon::outset(&shrunk, half + ROUNDING);
     let mut thin = polygon::difference(&rest, &opened, ROUNDING);
     thin.retain(|c| perimeter(c) >= 2.0 * short);
     if thin.is_empty() {
@@ -106,6 +97,23 @@ pub fn open(
     }
     kept.extend(polygon::difference(&rest, &polygon::outset(&thin, ROUNDING), 2 * ROUNDING));
     (kept, true)
+}
+
+/// Sorts loops, with their holes, into those that are `good` and the rest. The library is slow: it
+/// gets only the rest.
+fn sorted_out(
+    loops: Vec<Contour>,
+    good: impl Fn(&[Contour]) -> bool,
+) -> (Vec<Contour>, Vec<Contour>) {
+    let own: Vec<usize> = (0..loops.len()).map(|k| around(&loops, k)).collect();
+    let mut groups: Vec<(usize, Contour)> = own.into_iter().zip(loops).collect();
+    groups.sort_by_key(|(k, _)| *k);
+    let (mut kept, mut rest) = (Vec::new(), Vec::new());
+    for group in groups.chunk_by(|a, b| a.0 == b.0) {
+        let group: Vec<Contour> = group.iter().map(|(_, path)| path.clone()).collect();
+        if good(&group) { &mut kept } else { &mut rest }.extend(group);
+    }
+    (kept, rest)
 }
 
 /// The index of the smallest loop around the hole `k`; an outer loop's own.
