@@ -84,6 +84,21 @@ pub enum Refusal {
         /// Height of the highest model, mm.
         height_mm: f64,
     },
+    /// The last layer, with the nozzle lifted above it, ends above the machine's height.
+    #[error(
+        "the print would end at {top_mm:.2} mm{}, where the machine ends at {height_mm} mm; use \
+         another --layer-height, a smaller --scale{}",
+        if *.hop_mm > 0.0 { format!(" with the nozzle lifted by {} mm", .hop_mm) } else { String::new() },
+        if *.hop_mm > 0.0 { " or a smaller retraction.z_hop" } else { "" }
+    )]
+    TooTall {
+        /// Top of the last layer and the lift above it, mm.
+        top_mm: f64,
+        /// How far the nozzle is lifted above the last layer, mm.
+        hop_mm: f64,
+        /// Height of the machine, mm.
+        height_mm: f64,
+    },
     /// Contours are open by more than [`MOST_GAP_MM`].
     #[error(
         "{}: the mesh cannot be mended: contours are open on {}, most on layer {layer} by \

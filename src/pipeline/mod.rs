@@ -32,13 +32,13 @@ pub fn settle(settings: &Settings, mesh: &Mesh) -> Settings {
 /// The layers that the models are cut into, at least one.
 ///
 /// # Errors
-/// [`Refusal::TooLow`].
+/// [`Refusal::TooLow`], [`Refusal::TooTall`].
 pub fn heights(settings: &Settings, placed: &Placed) -> Result<Heights, Refusal> {
     let (first, other) = (to_units(settings.first_layer_height), to_units(settings.layer_height));
     let heights = Heights::even(first, other, placed.mesh.top());
-    if heights.count() > 0 {
-        Ok(heights)
-    } else {
-        Err(Refusal::TooLow { height_mm: placed.size_mm[2] })
+    if heights.count() == 0 {
+        return Err(Refusal::TooLow { height_mm: placed.size_mm[2] });
     }
+    refuse::tall(settings, &heights)?;
+    Ok(heights)
 }

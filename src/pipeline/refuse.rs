@@ -1,8 +1,9 @@
 //! Job + model -> Refusal: jobs that cannot be printed, found out before anything is written.
 //!
-//! There are three causes, and each is known at another time:
+//! There are four causes, and each is known at another time:
 //!
-//! - The model is lower than half a layer: known from its height, see [`heights`](super::heights).
+//! - The model is lower than half a layer, or its last layer ends above the machine: known from
+//!   its height, see [`heights`](super::heights).
 //! - The mesh is open, and a contour would have to be closed by a line that is too long. Contours
 //!   can only be open where a triangle has no neighbour. A mesh without such triangles, which is
 //!   nearly every mesh, is not looked at. Of any other mesh the open contours are cut once more,
@@ -20,8 +21,28 @@ use crate::mesh::Policy;
 use crate::mesh::place::Placed;
 use crate::profile::Settings;
 use crate::progress::Progress;
-use crate::slice::Slicer;
-use crate::units::{Coord, to_mm};
+use crate::slice::{Heights, Slicer};
+use crate::units::{Coord, to_mm, to_units};
+
+/// Refuses a print that ends above the machine. The model itself fits, or it would not have been
+/// placed, but its last layer is counted as soon as its middle is inside the model, and the nozzle
+/// is lifted above it to travel.
+///
+/// # Errors
+/// [`Refusal::TooTall`].
+pub fn tall(settings: &Settings, heights: &Heights) -> Result<(), Refusal> {
+    let Some(last) = heights.count().checked_sub(1) else { return Ok(()) };
+    let hop = to_units(settings.retraction.z_hop);
+    let top = heights.top(last).saturating_add(hop);
+    if top <= to_units(settings.machine.bed_height) {
+        return Ok(());
+    }
+    Err(Refusal::TooTall {
+        top_mm: to_mm(top),
+        hop_mm: to_mm(hop),
+        height_mm: settings.machine.bed_height,
+    })
+}
 
 /// Refuses layers whose contours are open too far. Nothing is looked at if the mesh is closed, or
 /// is to be sliced as it is.
@@ -60,4 +81,29 @@ pub fn gaps(job: &Job, placed: &Placed, slicer: &Slicer<'_>, progress: &Progress
 #[must_use]
 pub fn thin(settings: &Settings) -> Refusal {
     Refusal::TooThin { line_width_mm: settings.line_width }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile;
+
+    #[test]
+    fn a_print_ends_below_the_machine_or_is_refused() {
+        let profile = |hop: f64| {
+            let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
+            settings.retraction.z_hop = hop;
+            settings
+        };
+        let layers = |height: Coord, count: usize| Heights::new(std::iter::repeat_n(height, count));
+        let limit = to_units(profile(0.0).machine.bed_height);
+        assert_eq!(tall(&profile(0.0), &layers(limit / 100, 100)), Ok(()));
+        let refusal = tall(&profile(0.0), &layers(limit / 100 + 1, 100)).unwrap_err();
+        assert!(refusal.to_string().contains("--layer-height"), "{refusal}");
+        let refusal = tall(&profile(0.4), &layers(limit / 100, 100)).unwrap_err();
+        let text = refusal.to_string();
+        for part in ["lifted by 0.4 mm", "retraction.z_hop", "--scale"] {
+            assert!(text.contains(part), "{text}");
+        }
+    }
 }
