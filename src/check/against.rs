@@ -202,17 +202,14 @@ impl Judge<'_> {
         let areas = found.iter().map(|blob| (blob, blob.pixels as f64 * self.grid.area()));
         let large = areas.filter(|(_, area)| *area >= LEAST_AREA);
         large
-            .map(|(blob, area)| Finding {
-                code,
-                place: Place {
+            .map(|(blob, area)| {
+                let place = Place {
                     line: None,
                     layer: Some(index + 1),
                     z_mm: Some(short(layer.z)),
                     at_mm: Some(self.grid.middle(blob.at[0], blob.at[1]).map(short)),
-                },
-                measure: area,
-                unit: "mm²",
-                text: text(short(area)),
+                };
+                Finding::of(code, area, "mm²", text(short(area))).at(place)
             })
             .collect()
     }

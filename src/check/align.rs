@@ -5,6 +5,7 @@ use super::against::{PRINTABLE, SOME_WIDTH, is_of_part, share_in};
 use super::finding::{Code, Finding, Findings, short};
 use super::part::Part;
 use super::raster::Grid;
+use super::stack::gap_below;
 use super::{extent, median};
 use crate::geom::segment;
 use crate::reader::print::{Layer, Step};
@@ -55,8 +56,10 @@ pub(super) fn place(
     has_roles: bool,
     (found, notes): (&mut Findings, &mut Vec<String>),
 ) -> Option<Part> {
+    // A layer above a gap is no higher than its lines.
+    let layers = print.layers.iter().enumerate();
     let heights: Vec<(f64, f64)> =
-        print.layers.iter().map(|layer| (layer.z, layer.height)).collect();
+        layers.map(|(index, layer)| (layer.z, layer.height - gap_below(print, index))).collect();
     let mut part = match Part::new(model.mesh, model.offset, &heights) {
         Ok(part) => part,
         Err(layer) => {

@@ -1,4 +1,4 @@
-//! Print + Terms -> findings of amounts: lines with odd amounts of plastic, and the file's own sums.
+//! Print + Terms -> findings of amounts: lines with odd plastic, narrow lines, and the file's own sums.
 
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::median;
@@ -22,6 +22,13 @@ const MOST_WITHOUT_WIDTH: f64 = 4.0;
 
 /// Least number of lines of a role: of fewer none is usual.
 const LEAST_LINES: usize = 20;
+
+/// A line narrower than this many nozzles is drawn thinner than it can be laid: it breaks, or curls
+/// up. The thinnest that slicers lay on purpose are 0.85 wide.
+const NARROW: f64 = 0.7;
+
+/// So much of a line may be narrow, mm: where it tapers.
+const LEAST_NARROW: f64 = 1.0;
 
 /// How far the file's own sums may be off: a part of 1, and mm. Some count primed filament.
 const SUM_SLACK: (f64, f64) = (0.01, 1.0);
@@ -60,6 +67,32 @@ pub(super) fn odd(print: &Print, terms: &Terms, found: &mut Findings) {
                 let finding = Finding::of(Code::OddBead, measure, "times", text);
                 found.add(Finding { place: place(layer, step), ..finding });
             }
+        }
+    }
+}
+
+/// Lines that stay too narrow for the nozzle. Their width is that of a box of the same height and
+/// plastic, whatever the file says.
+pub(super) fn narrow(print: &Print, terms: &Terms, found: &mut Findings) {
+    let Some(nozzle) = terms.nozzle else { return };
+    let width = |step: &Step| {
+        f64::from(step.filament) * terms.filament_area / step.length() / f64::from(step.height)
+    };
+    let is_narrow = |step: &Step| step.is_line() && width(step) < NARROW * nozzle;
+    for (layer, one) in print.layers.iter().enumerate() {
+        let steps = print.moves_of(one);
+        let runs = steps.chunk_by(|a, b| is_narrow(a) && is_narrow(b) && a.to == b.from);
+        for run in runs.filter(|run| is_narrow(&run[0])) {
+            let length: f64 = run.iter().map(Step::length).sum();
+            if length <= LEAST_NARROW {
+                continue;
+            }
+            let mean = run.iter().map(|step| width(step) * step.length()).sum::<f64>() / length;
+            let role = run[0].role.name();
+            let text = format!("{} mm of {role} are {} mm wide", short(length), short(mean));
+            let middle = &run[run.len() / 2];
+            let finding = Finding::warning(Code::NarrowBead, length, "mm", text);
+            found.add(finding.at(place(layer, middle)));
         }
     }
 }

@@ -4,6 +4,9 @@
 //! code the findings with the largest measures are listed, at most [`MOST_LISTED`], and all are
 //! counted: a wrong file has thousands, and the first hundred show what is wrong.
 //!
+//! Most are errors: the print would fail, or is not the part. A *warning* is a weak place of a print
+//! that can be made: it fails no run.
+//!
 //! A place has the line of the file and the layer, both from 1, and x, y and z in the machine's
 //! coordinates, so that one finds it in the file and in a preview.
 //!
@@ -40,8 +43,23 @@ pub enum Code {
     FallingZ,
     /// Lines have nothing under them and hang on nothing.
     InTheAir,
+    /// A body, or an island of one, begins above what is printed below. An error where nothing of
+    /// the whole body ever stands, else a warning.
+    Floating,
+    /// A line over nothing with a free end, or parallel to what it should rest on.
+    Unanchored,
     /// A line lies on a line of the same layer.
     PrintedTwice,
+    /// Walls and skins take more plastic at a place than they have room.
+    Overfilled,
+    /// Walls and skins leave room open at a place, or fill it too thinly.
+    Underfilled,
+    /// A line is much narrower than the nozzle.
+    NarrowBead,
+    /// A piece of support is too high for its width.
+    SlenderSupport,
+    /// The sparse infill hardly touches the walls.
+    LooseInfill,
     /// The file's own sums of filament or layers are wrong.
     WrongSums,
     /// The print is larger or smaller than the part.
@@ -60,7 +78,7 @@ pub enum Code {
 
 impl Code {
     /// All of them.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 24] = [
         Self::UnknownCode,
         Self::OutsideVolume,
         Self::ColdExtrusion,
@@ -70,7 +88,14 @@ impl Code {
         Self::OddBead,
         Self::FallingZ,
         Self::InTheAir,
+        Self::Floating,
+        Self::Unanchored,
         Self::PrintedTwice,
+        Self::Overfilled,
+        Self::Underfilled,
+        Self::NarrowBead,
+        Self::SlenderSupport,
+        Self::LooseInfill,
         Self::WrongSums,
         Self::WrongSize,
         Self::OpenOutline,
@@ -93,7 +118,14 @@ impl Code {
             Self::OddBead => "odd-bead",
             Self::FallingZ => "falling-z",
             Self::InTheAir => "in-the-air",
+            Self::Floating => "floating",
+            Self::Unanchored => "unanchored",
             Self::PrintedTwice => "printed-twice",
+            Self::Overfilled => "overfilled",
+            Self::Underfilled => "underfilled",
+            Self::NarrowBead => "narrow-bead",
+            Self::SlenderSupport => "slender-support",
+            Self::LooseInfill => "loose-infill",
             Self::WrongSums => "wrong-sums",
             Self::WrongSize => "wrong-size",
             Self::OpenOutline => "open-outline",
@@ -103,6 +135,16 @@ impl Code {
             Self::WrongVolume => "wrong-volume",
         }
     }
+}
+
+/// How bad a finding is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Severity {
+    /// The print fails, or is not the part.
+    Error,
+    /// A weak place; the print can be made.
+    Warning,
 }
 
 /// Where something is.
@@ -127,6 +169,8 @@ pub struct Place {
 pub struct Finding {
     /// Its kind.
     pub code: Code,
+    /// How bad it is.
+    pub severity: Severity,
     /// Where it is.
     #[serde(flatten)]
     pub place: Place,
@@ -139,15 +183,27 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// One whose place is filled in later.
+    /// An error whose place is filled in later.
     pub(super) fn of(code: Code, measure: f64, unit: &'static str, text: String) -> Self {
-        Self { code, place: Place::default(), measure, unit, text }
+        let (severity, place) = (Severity::Error, Place::default());
+        Self { code, severity, place, measure, unit, text }
+    }
+
+    /// A warning whose place is filled in later.
+    pub(super) fn warning(code: Code, measure: f64, unit: &'static str, text: String) -> Self {
+        Self { severity: Severity::Warning, ..Self::of(code, measure, unit, text) }
+    }
+
+    /// The same at a place.
+    pub(super) fn at(self, place: Place) -> Self {
+        Self { place, ..self }
     }
 }
 
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}{}", self.code.name(), self.place, self.text)
+        let kind = if self.severity == Severity::Warning { "warning: " } else { "" };
+        write!(f, "{kind}{}: {}{}", self.code.name(), self.place, self.text)
     }
 }
 
@@ -199,18 +255,24 @@ impl Findings {
         self.found.extend(findings);
     }
 
-    /// The findings by kind, in each the largest first, and of how many each kind was.
+    /// The findings by kind, in each errors first and the largest first, and of how many each kind
+    /// was.
     pub(super) fn sorted(mut self) -> (Vec<Finding>, Vec<Count>) {
         let by_size = |a: &Finding, b: &Finding| b.measure.total_cmp(&a.measure);
         // Stable: of equals the first of the file.
-        self.found.sort_by(|a, b| a.code.cmp(&b.code).then_with(|| by_size(a, b)));
+        let kind = |one: &Finding| (one.code, one.severity);
+        self.found.sort_by(|a, b| kind(a).cmp(&kind(b)).then_with(|| by_size(a, b)));
         let mut counts: Vec<Count> = Vec::new();
         self.found.retain(|finding| {
-            match counts.last_mut() {
-                Some(last) if last.code == finding.code => last.count += 1,
-                _ => counts.push(Count { code: finding.code, count: 1 }),
+            let code = finding.code;
+            if counts.last().is_none_or(|last| last.code != code) {
+                counts.push(Count { code, count: 0, errors: 0 });
             }
-            counts.last().is_some_and(|last| last.count <= MOST_LISTED)
+            counts.last_mut().is_some_and(|last| {
+                last.count += 1;
+                last.errors += usize::from(finding.severity == Severity::Error);
+                last.count <= MOST_LISTED
+            })
         });
         (self.found, counts)
     }
@@ -232,6 +294,8 @@ pub struct Count {
     pub code: Code,
     /// How many.
     pub count: usize,
+    /// How many of them are errors.
+    pub errors: usize,
 }
 
 #[cfg(test)]
@@ -259,16 +323,21 @@ mod tests {
     fn of_each_kind_the_largest_are_listed_and_all_counted() {
         let mut findings = Findings::default();
         for k in 0..150 {
-            findings.add(Finding {
-                code: Code::OddBead,
-                place: Place::default(),
-                measure: f64::from(k),
-                unit: "mm",
-                text: String::new(),
-            });
+            findings.add(Finding::of(Code::OddBead, f64::from(k), "mm", String::new()));
         }
         let (listed, counts) = findings.sorted();
         assert_eq!((listed.len(), listed[0].measure), (MOST_LISTED, 149.0));
-        assert_eq!(counts, [Count { code: Code::OddBead, count: 150 }]);
+        assert_eq!(counts, [Count { code: Code::OddBead, count: 150, errors: 150 }]);
+    }
+
+    #[test]
+    fn errors_of_a_kind_come_before_its_warnings() {
+        let mut findings = Findings::default();
+        findings.add(Finding::warning(Code::Floating, 9.0, "mm", "9 mm".to_owned()));
+        findings.add(Finding::of(Code::Floating, 1.0, "mm", "1 mm".to_owned()));
+        let (listed, counts) = findings.sorted();
+        let texts: Vec<String> = listed.iter().map(ToString::to_string).collect();
+        assert_eq!(texts, ["floating: 1 mm", "warning: floating: 9 mm"]);
+        assert_eq!(counts, [Count { code: Code::Floating, count: 2, errors: 1 }]);
     }
 }

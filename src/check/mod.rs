@@ -6,15 +6,19 @@
 
 mod against;
 mod align;
+mod anchors;
 mod beads;
 mod blobs;
+mod bodies;
 mod capsule;
 mod dialect;
 pub mod finding;
 mod heat;
 mod moves;
 mod part;
+mod pile;
 mod raster;
+mod runs;
 mod samples;
 mod stack;
 mod surfaces;
@@ -52,7 +56,7 @@ pub struct Verdict {
     pub layers: usize,
     /// Moves of the file.
     pub moves: usize,
-    /// What is wrong: by kind, the largest of each first, at most [`finding::MOST_LISTED`] of each.
+    /// What is wrong: by kind, errors and the largest of each first, at most [`finding::MOST_LISTED`] of each.
     pub findings: Vec<Finding>,
     /// How many findings there are of each kind.
     pub counts: Vec<Count>,
@@ -85,6 +89,14 @@ pub struct Measures {
     pub infill: Option<f64>,
 }
 
+impl Verdict {
+    /// Whether something is wrong that is more than a weak place.
+    #[must_use]
+    pub fn fails(&self) -> bool {
+        self.counts.iter().any(|count| count.errors > 0)
+    }
+}
+
 /// Judges a file. `model` is what it was made from, if that is known.
 #[must_use]
 pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict {
@@ -94,6 +106,7 @@ pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict 
 
     moves::check(print, terms, &mut found, &mut not_judged);
     beads::odd(print, terms, &mut found);
+    beads::narrow(print, terms, &mut found);
     beads::sums(print, &mut found);
     // A print wider than any machine is not checked place by place: its map would fill the memory.
     let absurd = is_absurd(print, &mut found);

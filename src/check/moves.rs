@@ -59,12 +59,9 @@ pub(super) fn check(print: &Print, terms: &Terms, found: &mut Findings, notes: &
 /// Commands that the machine does not know.
 fn codes(print: &Print, terms: &Terms, found: &mut Findings, notes: &mut Vec<String>) {
     let Some(machine) = &terms.machine else { return };
-    let finding = |line, text| Finding {
-        code: Code::UnknownCode,
-        place: Place { line: Some(line), ..Place::default() },
-        measure: 1.0,
-        unit: "lines",
-        text,
+    let finding = |line, text| {
+        let place = Place { line: Some(line), ..Place::default() };
+        Finding::of(Code::UnknownCode, 1.0, "lines", text).at(place)
     };
     let firmware = match machine.dialect {
         DialectName::Makerbot => "GPX",

@@ -28,8 +28,11 @@ pub(super) struct Part {
     /// In the machine's coordinates, mm.
     vertices: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
-    /// Height of each layer's cut, mm, rising.
+    /// Heights of all cuts, mm, rising: of each layer's, and of one below each layer that lies higher
+    /// than on the one before.
     planes: Vec<f64>,
+    /// The plane of each layer.
+    of_layer: Vec<usize>,
     /// Triangles that each plane cuts.
     cut: Cells<u32>,
     /// Heights of level faces, mm, rising.
@@ -50,12 +53,22 @@ impl Part {
     /// # Errors
     /// The layer, from 0, that does not lie above the one before.
     pub(super) fn new(mesh: &Mesh, offset: [f64; 2], layers: &[(f64, f64)]) -> Result<Self, usize> {
-        let planes: Vec<f64> = layers
-            .iter()
-            .map(|(top, height)| ((top - height / 2.0) * PLANE_STEPS).round() / PLANE_STEPS)
-            .collect();
-        if let Some(falls) = planes.windows(2).position(|two| two[0] >= two[1]) {
-            return Err(falls + 1);
+        let (mut planes, mut of_layer) = (Vec::new(), Vec::with_capacity(layers.len()));
+        let mut below = 0.0;
+        for (layer, (top, height)) in layers.iter().enumerate() {
+            let plane = |at: f64| (at * PLANE_STEPS).round() / PLANE_STEPS;
+            let here = plane(top - height / 2.0);
+            let last = planes.last().copied().unwrap_or(0.0);
+            if layer > 0 && here <= last {
+                return Err(layer);
+            }
+            let under = plane(top - 1.5 * height);
+            if top - height > below + NEAR_LEVEL && under > last {
+                planes.push(under);
+            }
+            of_layer.push(planes.len());
+            planes.push(here);
+            below = *top;
         }
         let vertices: Vec<[f64; 3]> = mesh
             .vertices
@@ -65,7 +78,7 @@ impl Part {
         let triangles = mesh.triangles.clone();
         let cut = cut(&vertices, &triangles, &planes);
         let levels = levels(&vertices, &triangles);
-        Ok(Self { vertices, triangles, planes, cut, levels })
+        Ok(Self { vertices, triangles, planes, of_layer, cut, levels })
     }
 
     /// Moves it, mm.
@@ -78,14 +91,15 @@ impl Part {
 
     /// Whether a layer is cut along a level face, where other slicers' rules may differ.
     pub(super) fn is_along_a_face(&self, layer: usize) -> bool {
-        let Some(plane) = self.planes.get(layer) else { return false };
+        let Some(&plane) = self.of_layer.get(layer) else { return false };
+        let plane = self.planes[plane];
         let next = self.levels.partition_point(|level| *level < plane - NEAR_LEVEL);
         self.levels.get(next).is_some_and(|level| *level <= plane + NEAR_LEVEL)
     }
 
     /// Number of layers.
     pub(super) fn layers(&self) -> usize {
-        self.planes.len()
+        self.of_layer.len()
     }
 
     /// Height of the model above the bed, mm.
@@ -100,13 +114,13 @@ impl Part {
 
     /// Lowest and highest x and y of a layer's cut, mm.
     pub(super) fn extent_of(&self, layer: usize) -> Option<([f64; 2], [f64; 2])> {
-        extent_of(self.segments(layer).flatten())
+        extent_of(self.segments(self.of_layer[layer]).flatten())
     }
 
-    /// The outline of a layer's cut.
-    fn segments(&self, layer: usize) -> impl Iterator<Item = Segment> {
-        let plane = self.planes[layer];
-        let cut = self.cut.of(layer..layer + 1);
+    /// The outline of a cut.
+    fn segments(&self, plane: usize) -> impl Iterator<Item = Segment> {
+        let cut = self.cut.of(plane..plane + 1);
+        let plane = self.planes[plane];
         cut.iter().filter_map(move |&triangle| self.segment(triangle, plane))
     }
 
@@ -144,7 +158,7 @@ impl Part {
         }
         // Row, place along it, and which way the outline goes.
         let mut crossings: Vec<(usize, f64, i32)> = Vec::new();
-        for [from, to] in self.segments(layer) {
+        for [from, to] in self.segments(self.of_layer[layer]) {
             let (low, high, sign) = if from[1] < to[1] { (from, to, 1) } else { (to, from, -1) };
             for row in grid.span(1, low[1], high[1]) {
                 let y = grid.middle(0, row)[1];
@@ -167,11 +181,21 @@ impl Part {
         (bits, closes)
     }
 
-    /// Whether a place of a layer has nothing of the model on the layer below.
+    /// The plane below that of a layer: of the layer before, or nearer where there is a gap.
+    fn below(&self, layer: usize) -> Option<usize> {
+        self.of_layer.get(layer)?.checked_sub(1)
+    }
+
+    /// Whether a layer lies above a gap that is empty in the model, too.
+    pub(super) fn is_empty_below(&self, layer: usize) -> bool {
+        let before = layer.checked_sub(1).map(|before| self.of_layer[before]);
+        let below = self.below(layer).filter(|below| Some(*below) != before);
+        below.is_some_and(|below| self.segments(below).next().is_none())
+    }
+
+    /// Whether a place of a layer has nothing of the model below it.
     pub(super) fn hangs(&self, layer: usize, at: [f64; 2]) -> bool {
-        let Some(below) = layer.checked_sub(1).filter(|below| *below < self.layers()) else {
-            return false;
-        };
+        let Some(below) = self.below(layer) else { return false };
         let mut winding = 0;
         for [from, to] in self.segments(below) {
             let (low, high, sign) = if from[1] < to[1] { (from, to, 1) } else { (to, from, -1) };

@@ -17,6 +17,8 @@ pub struct Terms {
     /// How much more plastic than width times height lines take by settings of the file's own:
     /// walls, skins, sparse infill.
     pub flow: [f64; 3],
+    /// Diameter of the nozzle, mm, if it is known.
+    pub nozzle: Option<f64>,
     /// Density of the sparse infill asked for, as a part of 1, if it is known.
     pub infill: Option<f64>,
 }
@@ -36,6 +38,9 @@ pub struct Machine {
     pub flow: f64,
 }
 
+/// Keys under which slicers write the nozzle's diameter, mm; with several tools a list.
+const NOZZLE_KEYS: &[&str] = &["nozzle_diameter"];
+
 /// Keys under which slicers write the density of infill, %.
 const DENSITY_KEYS: &[&str] = &["infill", "fill_density", "sparse_infill_density"];
 
@@ -50,11 +55,18 @@ impl Terms {
             let percent: f64 = text.trim_end_matches('%').trim().parse().ok()?;
             (percent.is_finite() && percent >= 0.0).then_some(percent / 100.0)
         };
+        let of = |settings: &Settings| settings.machine.nozzle_diameter;
+        let nozzle = || {
+            let text = NOZZLE_KEYS.iter().find_map(|key| print.value(key))?;
+            let first: f64 = text.split([',', ';']).next()?.trim().parse().ok()?;
+            (first > 0.0).then_some(first)
+        };
         Self {
             machine: settings.map(Machine::new),
             filament_area: PI * diameter * diameter / 4.0,
             is_own: own.is_some(),
             flow: own.map_or([1.0; 3], flow),
+            nozzle: own.map(of).or_else(nozzle).or_else(|| settings.map(of)),
             infill: by_file(),
         }
     }

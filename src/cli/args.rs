@@ -38,7 +38,7 @@ Only the product goes to standard output, everything else to standard error.
 A run that fails leaves no file behind.";
 
 const CHECK_CODES: &str = "\
-Exit codes: 0 clean, 1 findings, 2 wrong arguments or profile, 3 a file cannot be read, prints
+Exit codes: 0 clean or warnings, 1 findings, 2 wrong arguments or profile, 3 a file cannot be read, prints
 nothing, or a model does not fit the machine. What could not be judged is listed and no finding.";
 
 /// Slices STL models into G-code

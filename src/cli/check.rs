@@ -4,7 +4,7 @@ use super::args::CheckArgs;
 use super::words;
 use super::{Outcome, input, output};
 use anyhow::Result;
-use slicer::check::finding::Code;
+use slicer::check::finding::{Code, Count};
 use slicer::check::terms::Terms;
 use slicer::check::{self, Measures, Model, Verdict};
 use slicer::mesh::Bed;
@@ -20,7 +20,7 @@ const DIAMETER: f64 = 1.75;
 /// Findings of a kind that people get to read.
 const MOST_SHOWN: usize = 5;
 
-/// What standard output gets, and 1 if there are findings.
+/// What standard output gets, and 1 if there are findings that are more than warnings.
 ///
 /// # Errors
 /// A profile or setting that is wrong, a file or model that cannot be read, a file without a move.
@@ -49,7 +49,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     };
     let model = placed.as_ref().map(|placed| Model { mesh: &placed.mesh, offset: placed.offset });
     let verdict = check::check(&print, &terms, model);
-    let code = u8::from(!verdict.findings.is_empty());
+    let code = u8::from(verdict.fails());
     let text = if args.json {
         output::json(&verdict, Path::new("-"))?
     } else {
@@ -69,10 +69,17 @@ fn judged_by(given: Option<&Profile>, own: Option<&Profile>, models: &[String]) 
     if models.is_empty() { by } else { format!("{by}, against {}", models.join(", ")) }
 }
 
-/// `clean` or how many findings, of how much.
+/// `clean` or how many findings and warnings, of how much.
 fn headline(verdict: &Verdict) -> String {
-    let count: usize = verdict.counts.iter().map(|one| one.count).sum();
-    let found = if count == 0 { "clean".to_owned() } else { plural(count as u64, "finding") };
+    let sum = |of: fn(&Count) -> usize| verdict.counts.iter().map(of).sum::<usize>() as u64;
+    let (errors, all) = (sum(|one| one.errors), sum(|one| one.count));
+    let (findings, warnings) = (plural(errors, "finding"), plural(all - errors, "warning"));
+    let found = match (errors, all - errors) {
+        (0, 0) => "clean".to_owned(),
+        (0, _) => format!("clean but for {warnings}"),
+        (_, 0) => findings,
+        _ => format!("{findings} and {warnings}"),
+    };
     let layers = plural(verdict.layers as u64, "layer");
     format!("{found} in {layers} and {}", plural(verdict.moves as u64, "move"))
 }

@@ -43,7 +43,7 @@ pub(super) fn run(args: &SliceArgs) -> Result<u8> {
     let report_sink = report_sink.transpose()?;
 
     let report = work(args, out, profile, &mut sink)?;
-    let is_good = report.check.as_ref().is_none_or(|verdict| verdict.findings.is_empty());
+    let is_good = report.check.as_ref().is_none_or(|verdict| !verdict.fails());
     if !args.quiet {
         say(&summary::notes(&report));
     }

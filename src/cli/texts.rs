@@ -12,7 +12,17 @@ Findings, each with a stable code, a place and a measure:
   odd-bead             under 0.55 or over 1.6 times the plastic that the role takes for its size
   falling-z            a line lower than what is printed already
   in-the-air           lines that hold on to one another, but stand on nothing
+  floating             lines that begin a body, or an island of one, with nothing printed below; an
+                       error where no part of that body ever stands on the bed, else a warning
+  unanchored         * over 3 mm of a line over nothing with a free end, along a void that it should
+                       cross, or, of a wall, in a bow
   printed-twice        a line on the middle of another of its layer, over 10 mm or most of it
+  overfilled         * over 1.25 times the plastic that walls and skins have room for, on one layer
+                       within 4 by 4 mm
+  underfilled        * under 0.75 times that, or a fifth of the room between them left open
+  narrow-bead        * over 1 mm of a line narrower than 70 % of the nozzle
+  slender-support    * support over 10 times as high as it is thick
+  loose-infill       * the sparse infill touches under a quarter of the innermost walls
   wrong-sums           the file states another amount of filament or number of layers
   wrong-size           the walls do not lie along the part's outline, or the height differs
   open-outline         0.6 mm² or more of the outline is not printed
@@ -20,6 +30,9 @@ Findings, each with a stable code, a place and a measure:
   outside-part         0.6 mm² or more is printed over 0.3 mm beside the part
   wrong-infill         another density of the infill than asked for, or none on some layers
   wrong-volume         walls and skins take under 80 or over 125 % of the plastic they have room for
+
+A kind marked * is a warning: a weak place of a print that can be made. Warnings are listed after
+`warning:` and fail neither `check` nor --check.
 
 The part is cut anew at the middle of every layer and laid under pixels of 0.05 mm, larger ones
 where a layer would have more than 30 million. Places narrower than 1.2 lines need not be printed.

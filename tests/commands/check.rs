@@ -123,7 +123,10 @@ fn json_is_stable() {
     let json: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert_eq!((&json["schema"], &json["layers"]), (&1.into(), &100.into()));
     assert_eq!(json["counts"][0]["code"], "unknown-code");
-    assert_eq!(json["counts"][1], serde_json::json!({"code": "open-surface", "count": 1}));
+    assert_eq!(
+        json["counts"][1],
+        serde_json::json!({"code": "open-surface", "count": 1, "errors": 1})
+    );
     let findings = json["findings"].as_array().unwrap();
     assert_eq!((&findings[0]["line"], &findings[0]["code"]), (&1.into(), &"unknown-code".into()));
     let surface = &findings[1];
@@ -146,8 +149,9 @@ fn json_is_stable() {
     let json: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert!(code == 0 && json["findings"].as_array().unwrap().is_empty(), "{out}");
     let names = "unknown-code outside-volume cold-extrusion too-fast too-much-flow \
-                 unpaired-retraction odd-bead falling-z in-the-air printed-twice wrong-sums \
-                 wrong-size open-outline open-surface outside-part wrong-infill wrong-volume";
+                 unpaired-retraction odd-bead falling-z in-the-air floating unanchored \
+                 printed-twice overfilled underfilled narrow-bead slender-support loose-infill \
+                 wrong-sums wrong-size open-outline open-surface outside-part wrong-infill wrong-volume";
     assert_eq!(Code::ALL.map(Code::name).join(" "), names);
 }
 

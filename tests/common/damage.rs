@@ -1,7 +1,7 @@
 //! Good G-code + a change of its moves -> G-code with that fault, and what `check` finds in it.
 
 use super::{Kind, Move, Print, as_it_is, fixtures, slice_placed};
-use slicer::check::finding::{Code, Finding};
+use slicer::check::finding::{Code, Finding, Severity};
 use slicer::check::terms::Terms;
 use slicer::check::{self, Model, Verdict};
 use slicer::mesh::Placement;
@@ -83,9 +83,21 @@ pub(crate) fn judge(text: &str, stl: &str, placement: &Placement) -> Verdict {
     check::check(&print, &terms, Some(Model { mesh: &placed.mesh, offset: placed.offset }))
 }
 
-/// The kinds of findings, in their order.
+/// The kinds of errors, in their order.
 pub(crate) fn kinds(verdict: &Verdict) -> Vec<Code> {
-    verdict.counts.iter().map(|count| count.code).collect()
+    let errors = verdict.counts.iter().filter(|count| count.errors > 0);
+    errors.map(|count| count.code).collect()
+}
+
+/// The errors.
+pub(crate) fn errors(verdict: &Verdict) -> impl Iterator<Item = &Finding> {
+    verdict.findings.iter().filter(|finding| finding.severity == Severity::Error)
+}
+
+/// The kinds of warnings, in their order.
+pub(crate) fn warned(verdict: &Verdict) -> Vec<Code> {
+    let warnings = verdict.counts.iter().filter(|count| count.errors < count.count);
+    warnings.map(|count| count.code).collect()
 }
 
 /// The largest finding of a kind.
@@ -93,11 +105,11 @@ pub(crate) fn largest(verdict: &Verdict, code: Code) -> &Finding {
     verdict.findings.iter().find(|finding| finding.code == code).unwrap()
 }
 
-/// Asserts that exactly these kinds are found. Returns the largest finding of the first kind.
+/// Asserts that exactly these kinds of errors are found. Returns the largest finding of the first.
 #[track_caller]
 pub(crate) fn only<'v>(verdict: &'v Verdict, codes: &[Code]) -> &'v Finding {
     assert_eq!(kinds(verdict), codes, "{}", listed(verdict));
-    &verdict.findings[0]
+    largest(verdict, codes[0])
 }
 
 /// The findings without wrong sums, which follow from many faults.

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use crate::common::damage::{Good, judge, kinds, largest, listed, only, without_sums};
+use crate::common::damage::{Good, errors, judge, kinds, largest, listed, only, without_sums};
 use crate::common::{Kind, Move, as_it_is};
 use proptest::prelude::*;
 use slicer::check::finding::Code;
@@ -163,7 +163,7 @@ fn a_wall_that_is_missing() {
         let found = only(&verdict, &[Code::OpenOutline]);
         assert_eq!((found.place.layer, found.place.z_mm), (Some(MIDDLE + 1), Some(10.2)));
         // All around, 0.3 mm wide: where the second wall or the infill do not lie.
-        let area: f64 = verdict.findings.iter().map(|finding| finding.measure).sum();
+        let area: f64 = errors(&verdict).map(|finding| finding.measure).sum();
         assert!((15.0..24.5).contains(&area), "{area}");
     }
 }
@@ -177,7 +177,7 @@ fn a_layer_of_walls_that_is_missing() {
     let layer = bare.unwrap();
     let verdict = PAIR.judge(&PAIR.with(|m| m.layer != Some(layer) || !m.is_bead()));
     assert_ne!(kinds(&verdict), [], "layer {}", layer + 1);
-    let places = verdict.findings.iter().filter_map(|finding| finding.place.layer);
+    let places = errors(&verdict).filter_map(|finding| finding.place.layer);
     assert!(places.into_iter().all(|found| found.abs_diff(layer + 1) <= 1), "{}", listed(&verdict));
 }
 
@@ -210,7 +210,7 @@ fn a_layer_that_is_missing() {
             let found = only(&verdict, &[Code::InTheAir]);
             assert_eq!(found.place.layer, Some(layer + 1), "{found}");
             // Four walls of a loop of 80 mm in all, and more.
-            let length: f64 = verdict.findings.iter().map(|finding| finding.measure).sum();
+            let length: f64 = errors(&verdict).map(|finding| finding.measure).sum();
             assert!(length > 150.0, "{}", listed(&verdict));
         }
     }
@@ -256,7 +256,7 @@ fn a_loop_that_is_printed_twice() {
         let verdict = good.judge(&text);
         let found = only(&verdict, &[Code::PrintedTwice]);
         assert_eq!(found.place.layer, Some(MIDDLE + 1));
-        let length: f64 = verdict.findings.iter().map(|finding| finding.measure).sum();
+        let length: f64 = errors(&verdict).map(|finding| finding.measure).sum();
         assert!((70.0..80.0).contains(&length), "{}", listed(&verdict));
     }
 }
@@ -380,7 +380,7 @@ fn a_move_beyond_the_bed() {
         }));
         let kinds = kinds(&verdict);
         assert_eq!(kinds[0], Code::OutsideVolume);
-        let found = &verdict.findings[0];
+        let found = errors(&verdict).next().unwrap();
         assert_eq!(found.place.line, Some(travel as u64), "{found}");
         assert!((found.measure - out).abs() < 20.0, "{found}");
     }
