@@ -5,8 +5,7 @@
 //! above it or below it; *closed* is what walls and skins cover; a *stray* is a line so far from its
 //! layer's height that it is judged with the layer it lies at.
 //!
-//! Everything is drawn into bit maps of the bed with a twentieth of a mm a pixel, one set for each
-//! layer, and compared there:
+//! Everything is drawn into rows a twentieth of a mm apart, one set for each layer, and compared there:
 //! - rim less what is printed, in patches that are wide and large enough: an open outline;
 //! - exposed less closed, away from the rim: an open surface;
 //! - lines less the cut, grown by what lines may stick out: lines outside the part.
@@ -14,13 +13,13 @@
 //! Only places that are wide enough for a line count. Thick lines, and lines that vary in height,
 //! also cover the layers that they reach down into. Volumes of plastic are summed up on the way.
 
-use super::blobs::blobs;
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Place, short};
-use super::part::Part;
-use super::raster::{Bits, Grid};
+use super::part::{Part, Section};
+use super::rows::Lattice;
 use super::samples::Samples;
 use super::terms::Terms;
+use crate::geom::spans::Rows;
 use crate::reader::print::{Layer, Step};
 use crate::reader::{Print, Role};
 
@@ -85,9 +84,11 @@ pub(super) struct Areas {
 pub(super) struct Judge<'a> {
     pub(super) print: &'a Print,
     pub(super) part: &'a Part,
-    pub(super) grid: Grid,
+    pub(super) lattice: Lattice,
     /// Usual width of a wall, mm.
     pub(super) line_width: f64,
+    /// How high each layer's lines are, mm.
+    pub(super) heights: &'a [f64],
     /// For each layer where it and all above it reach down to, mm.
     pub(super) floors: &'a [f64],
     /// For each layer the lines of other layers that lie at its height: places in the moves.
@@ -105,46 +106,50 @@ pub(super) fn is_of_part(step: &Step, has_roles: bool) -> bool {
 
 impl Judge<'_> {
     /// Judges layer `index`, whose cut and those below and above are given.
-    pub(super) fn layer(&self, index: usize, [below, here, above]: [&Bits; 3]) -> Verdict {
-        let layer = &self.print.layers[index];
+    pub(super) fn layer(&self, index: usize, [below, cut, above]: [&Section; 3]) -> Verdict {
+        let lattice = self.lattice;
         let lines = || self.lines_at(index);
-        let (mut solid, mut sparse) = (Bits::new(self.grid.size), Bits::new(self.grid.size));
-        for step in lines() {
-            let into = if step.role == Role::Infill { &mut sparse } else { &mut solid };
-            Capsule::of(step, 1.0).draw(&self.grid, into);
-        }
-        let own = sparse.or(&solid);
+        let draw = |is_sparse: bool| {
+            let some = lines().filter(move |step| (step.role == Role::Infill) == is_sparse);
+            lattice.draw(some.map(|step| Capsule::of(step, 1.0)))
+        };
+        let (solid, sparse) = (draw(false), draw(true));
+        let (here, own) = (&cut.inside, sparse.or(&solid));
         let reaching = self.reaching_down(index);
-        let (printed, closed) = (own.clone().or(&reaching), solid.clone().or(&reaching));
-        let printable = here.opened(self.grid.pixels(self.line_width * PRINTABLE / 2.0));
+        let (printed, closed) = (own.or(&reaching), solid.or(&reaching));
+        let printable = cut.opened(lattice, self.line_width * PRINTABLE / 2.0);
+        let along = cut.along(lattice, RIM);
 
         let mut verdict = Verdict::default();
-        let rim = here.clone().minus(&here.shrunk(self.grid.pixels(RIM))).and(&printable);
-        let open = rim.clone().minus(&printed);
+        let rim = here.and(&along).and(&printable);
+        let open = rim.minus(&printed);
         verdict.areas.rim = self.shares(&rim, &open);
-        let patches = self.patches(&open, index, layer, Code::OpenOutline, |area| {
+        let patches = self.patches(&open, index, Code::OpenOutline, |area| {
             format!("{area} mm² along the outline are not printed")
         });
         verdict.findings.extend(patches);
 
-        let exposed = here.clone().minus(above).or(&here.clone().minus(below)).and(&printable);
-        let open = exposed.clone().minus(&closed);
+        let bare = here.minus(&above.inside).or(&here.minus(&below.inside));
+        let exposed = bare.and(&printable);
+        let open = exposed.minus(&closed);
         verdict.areas.surface = self.shares(&exposed, &open);
         // What the outline lacks is reported already.
         let open = open.minus(&rim);
-        let patches = self.patches(&open, index, layer, Code::OpenSurface, |area| {
+        let patches = self.patches(&open, index, Code::OpenSurface, |area| {
             format!("{area} mm² of a top or bottom surface are not closed")
         });
         verdict.findings.extend(patches);
 
         if self.has_roles {
-            let out = own.minus(&here.grown(self.grid.pixels(MOST_OUT)));
-            let patches = self.patches(&out, index, layer, Code::OutsidePart, |area| {
+            let near = if RIM == MOST_OUT { along } else { cut.along(lattice, MOST_OUT) };
+            let out = own.minus(&here.or(&near));
+            let patches = self.patches(&out, index, Code::OutsidePart, |area| {
                 format!("{area} mm² are printed beside the part")
             });
             verdict.findings.extend(patches);
         }
-        self.amounts((lines(), layer.height), here, [&solid, &closed], &mut verdict.areas);
+        let height = self.heights[index];
+        self.amounts((lines(), height), here, [&solid, &closed], &mut verdict.areas);
         verdict
     }
 
@@ -159,10 +164,10 @@ impl Judge<'_> {
 
     /// What walls and skins of the layers above cover of this one: thick ones, and those that vary
     /// in height.
-    fn reaching_down(&self, index: usize) -> Bits {
+    fn reaching_down(&self, index: usize) -> Rows {
         let layer = &self.print.layers[index];
         let (top, bottom) = (layer.z - SAME_HEIGHT, layer.z - layer.height + SAME_HEIGHT);
-        let mut bits = Bits::new(self.grid.size);
+        let mut capsules = Vec::new();
         for above in index + 1..self.print.layers.len() {
             if self.floors[above] >= top {
                 break;
@@ -172,67 +177,58 @@ impl Judge<'_> {
                 step.role != Role::Infill && low - f64::from(step.height) < top && high > bottom
             };
             let steps = self.print.moves_of(&self.print.layers[above]).iter();
-            steps
-                .filter(|step| is_of_part(step, self.has_roles))
-                .filter(reaches)
-                .for_each(|step| Capsule::of(step, 1.0).draw(&self.grid, &mut bits));
+            let steps = steps.filter(|step| is_of_part(step, self.has_roles)).filter(reaches);
+            capsules.extend(steps.map(|step| Capsule::of(step, 1.0)));
         }
-        bits
+        self.lattice.draw(capsules.into_iter())
     }
 
     /// An area, and it less what is open of it, mm².
-    fn shares(&self, all: &Bits, open: &Bits) -> [f64; 2] {
-        let area = self.grid.area();
-        [all.count() as f64 * area, (all.count() - open.count()) as f64 * area]
+    fn shares(&self, all: &Rows, open: &Rows) -> [f64; 2] {
+        let area = self.lattice.area(all);
+        [area, area - self.lattice.area(open)]
     }
 
     /// The patches that are wide and large enough to be faults.
     fn patches(
         &self,
-        bits: &Bits,
+        open: &Rows,
         index: usize,
-        layer: &Layer,
         code: Code,
         text: impl Fn(f64) -> String,
     ) -> Vec<Finding> {
-        if bits.is_empty() {
+        if self.lattice.area(open) < LEAST_AREA {
             return Vec::new();
         }
-        let found = blobs(&bits.opened(self.grid.pixels(NARROW)));
-        let areas = found.iter().map(|blob| (blob, blob.pixels as f64 * self.grid.area()));
-        let large = areas.filter(|(_, area)| *area >= LEAST_AREA);
-        large
-            .map(|(blob, area)| {
-                let place = Place {
-                    line: None,
-                    layer: Some(index + 1),
-                    z_mm: Some(short(layer.z)),
-                    at_mm: Some(self.grid.middle(blob.at[0], blob.at[1]).map(short)),
-                };
-                Finding::of(code, area, "mm²", text(short(area))).at(place)
-            })
-            .collect()
+        let found = self.lattice.patches(&self.lattice.opened(open, NARROW));
+        let large = found.iter().filter(|patch| patch.area >= LEAST_AREA);
+        let place = |at: [f64; 2]| Place {
+            line: None,
+            layer: Some(index + 1),
+            z_mm: Some(short(self.print.layers[index].z)),
+            at_mm: Some(at.map(short)),
+        };
+        let finding = |area: f64| Finding::of(code, area, "mm²", text(short(area)));
+        large.map(|patch| finding(patch.area).at(place(patch.at))).collect()
     }
 
     /// Areas and plastic of walls and skins, and of sparse infill away from them.
     fn amounts<'s>(
         &self,
         (lines, height): (impl Iterator<Item = &'s Step>, f64),
-        here: &Bits,
-        [solid, closed]: [&Bits; 2],
+        here: &Rows,
+        [solid, closed]: [&Rows; 2],
         areas: &mut Areas,
     ) {
-        let half = self.grid.pixels(LEAST_WIDE / 2.0);
-        let inside = here.clone().minus(closed);
-        let core = inside.squares(half, self.grid.pixels(FROM_WALLS));
-        let area = self.grid.area();
-        areas.part = here.count() as f64 * area;
-        areas.solid[0] = solid.count() as f64 * area;
-        areas.sparse[0] = core.count() as f64 * area;
+        let lattice = self.lattice;
+        let core = lattice.squares(&here.minus(closed), LEAST_WIDE / 2.0, FROM_WALLS);
+        areas.part = lattice.area(here);
+        areas.solid[0] = lattice.area(solid);
+        areas.sparse[0] = lattice.area(&core);
         for step in lines {
             let plastic = self.terms.plastic(step);
             if step.role == Role::Infill {
-                areas.sparse[1] += plastic * share_in(step, &self.grid, &core);
+                areas.sparse[1] += plastic * share_in(step, lattice, &core);
             } else {
                 // Of a thick line this layer's part: the rest lies in layers below.
                 areas.solid[1] += plastic * (height / f64::from(step.height)).min(1.0);
@@ -278,8 +274,10 @@ pub(super) fn floors(print: &Print) -> Vec<f64> {
 }
 
 /// What part of a line lies in an area.
-pub(super) fn share_in(step: &Step, grid: &Grid, area: &Bits) -> f64 {
-    let is_in = |at| grid.pixel(at).is_some_and(|[x, y]| area.has(x, y));
-    let inside = Samples::of(step, PIECE).filter(|piece| is_in(piece.at)).count();
+pub(super) fn share_in(step: &Step, lattice: Lattice, area: &Rows) -> f64 {
+    if area.is_empty() {
+        return 0.0;
+    }
+    let inside = Samples::of(step, PIECE).filter(|piece| lattice.has(area, piece.at)).count();
     inside as f64 / Samples::of(step, PIECE).count() as f64
 }

@@ -1,10 +1,10 @@
 //! Print + Mesh -> Part where it was printed, and whether it is as large.
 
 use super::Model;
-use super::against::{PRINTABLE, SOME_WIDTH, is_of_part, share_in};
+use super::against::{SOME_WIDTH, is_of_part, share_in};
 use super::finding::{Code, Finding, Findings, short};
 use super::part::Part;
-use super::raster::Grid;
+use super::rows::Lattice;
 use super::stack::gap_below;
 use super::{extent, median};
 use crate::geom::segment;
@@ -26,8 +26,8 @@ const LEAST_FIT: f64 = 0.75;
 /// Layers on which that is measured, spread over the print.
 const LAYERS_LOOKED_AT: usize = 16;
 
-/// Side of a pixel for that, mm, and pixels at most.
-const PIXELS: (f64, f64) = (0.1, 4e6);
+/// Distance of rows for that, mm, and rows at most.
+const ROWS: (f64, f64) = (0.1, 3000.0);
 
 /// Sizes that differ by less are the same, mm: a line and a half.
 const SIZE_SLACK: f64 = 0.6;
@@ -37,6 +37,10 @@ const HEIGHT_SLACK: f64 = 1.01;
 
 /// Layers above the last that are searched for something that should be printed.
 const MOST_ABOVE: usize = 200;
+
+/// What is narrower than this many lines need not be printed above the last layer: the thinnest beads
+/// that slicers lay on purpose.
+const LEAST_LINE: f64 = 0.85;
 
 /// Patches of a cut that are too small to print, mm².
 const LEAST_AREA: f64 = 1.0;
@@ -109,14 +113,14 @@ pub(super) fn place(
 /// What part of the outer walls lies along the model's outline.
 fn fit(print: &Print, part: &Part, has_roles: bool) -> f64 {
     let Some((low, high)) = part.extent() else { return 0.0 };
-    let grid = Grid::over(low, high, 2.0, PIXELS.0, PIXELS.1);
+    let lattice = Lattice::new(ROWS.0, high[1] - low[1], ROWS.1);
     let every = print.layers.len().div_ceil(LAYERS_LOOKED_AT).max(1);
     let looked_at = print.layers.iter().enumerate().step_by(every);
     let shares = looked_at.map(|(index, layer)| {
-        let (cut, _) = part.section(index, &grid);
-        let mut band = cut.grown(grid.pixels(BAND[0]));
+        let cut = part.section(index, lattice);
+        let mut band = cut.inside.or(&cut.along(lattice, BAND[0]));
         if has_roles {
-            band = band.minus(&cut.shrunk(grid.pixels(BAND[1])));
+            band = band.minus(&cut.inside.minus(&cut.along(lattice, BAND[1])));
         }
         let walls = print
             .moves_of(layer)
@@ -124,7 +128,7 @@ fn fit(print: &Print, part: &Part, has_roles: bool) -> f64 {
             .filter(|step| step.is_line() && (step.role == Role::OuterWall || !has_roles));
         walls.fold([0.0; 2], |[along, all], step| {
             let length = step.length();
-            [along + length * share_in(step, &grid, &band), all + length]
+            [along + length * share_in(step, lattice, &band), all + length]
         })
     });
     let [along, all] = shares.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
@@ -186,9 +190,9 @@ fn height(print: &Print, model: Model<'_>, part: &Part, found: &mut Findings) {
         (1..=above).map(|k| (top + k as f64 * last.height, last.height)).collect();
     let Ok(rest) = Part::new(model.mesh, model.offset, &layers) else { return };
     let Some((low, high)) = rest.extent() else { return };
-    let grid = Grid::over(low, high, 1.0, PIXELS.0, PIXELS.1);
-    let line = grid.pixels(SOME_WIDTH * PRINTABLE / 2.0);
-    let area = |layer| rest.section(layer, &grid).0.opened(line).count() as f64 * grid.area();
+    let lattice = Lattice::new(ROWS.0, high[1] - low[1], ROWS.1);
+    let line = SOME_WIDTH * LEAST_LINE / 2.0;
+    let area = |layer| lattice.area(&rest.section(layer, lattice).opened(lattice, line));
     if (0..above).any(|layer| area(layer) >= LEAST_AREA) {
         report("lower");
     }

@@ -1,6 +1,7 @@
-//! A line with round ends -> the pixels it covers, row by row.
+//! A line with round ends -> what it covers, row by row.
 
-use super::raster::{Bits, Grid};
+use super::grid::Grid;
+use super::rows::Lattice;
 use crate::reader::print::Step;
 use nalgebra::Vector2;
 
@@ -41,9 +42,14 @@ impl Capsule {
         }
     }
 
-    /// Sets its pixels.
-    pub(super) fn draw(&self, grid: &Grid, bits: &mut Bits) {
-        self.rows(grid, |y, span| bits.set(y, span));
+    /// Hands what it covers of each row to `sink`: from and to, mm.
+    pub(super) fn chords(&self, lattice: Lattice, mut sink: impl FnMut(i32, f64, f64)) {
+        let (low, high) = self.extent();
+        for row in lattice.range(low[1], high[1]) {
+            if let Some((from, to)) = self.chord(lattice.middle(row)) {
+                sink(row, from, to);
+            }
+        }
     }
 
     /// What of the line at height `y` lies within: one stretch, since the shape has no dents.
@@ -90,33 +96,4 @@ fn limits(slope: f64, rest: f64, low: f64, high: f64) -> Option<(f64, f64)> {
     }
     let (a, b) = ((low - rest) / slope, (high - rest) / slope);
     Some((a.min(b), a.max(b)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geom::segment;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn a_capsule_covers_the_pixels_near_its_line(
-            from in [0.0..8.0_f64, 0.0..8.0_f64],
-            to in [0.0..8.0_f64, 0.0..8.0_f64],
-            radius in 0.05..1.0_f64,
-        ) {
-            let grid = Grid::over([0.0; 2], [8.0; 2], 1.5, 0.1, 1e9);
-            let mut bits = Bits::new(grid.size);
-            Capsule { from, to, radius }.draw(&grid, &mut bits);
-            for y in 0..grid.size[1] {
-                for x in 0..grid.size[0] {
-                    let at = grid.middle(x, y);
-                    let distance = segment::distance2(at, [from, to]).sqrt();
-                    if (distance - radius).abs() > 1e-6 {
-                        prop_assert_eq!(bits.has(x, y), distance < radius);
-                    }
-                }
-            }
-        }
-    }
 }

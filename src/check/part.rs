@@ -1,23 +1,28 @@
-//! Mesh + heights -> Part: the model cut at the middle of each layer, as pixels.
+//! Mesh + heights -> Part: the model cut at the middle of each layer, as rows of spans.
 //!
 //! Words used here: a *plane* is the height of a layer's cut; a *crossing* is where an outline crosses
-//! a row of pixels; a *level* is the height of a face that lies flat.
+//! the middle of a row; a *level* is the height of a face that lies flat.
 //!
 //! A cut of its own, so that a fault of the slicer is not repeated here:
 //! 1. Triangles are sorted by the planes that they cross.
 //! 2. A plane cuts a triangle in a segment, directed so that the solid lies on the same side of all.
-//! 3. Segments cross rows of pixels; each crossing is +1 or -1 by the segment's direction.
+//! 3. Segments cross rows; each crossing is +1 or -1 by the segment's direction.
 //! 4. Along a row, inside is where the sum of the crossings so far is not 0 (the winding number).
 //!
 //! What lies on a plane or row counts as above it, so that each outline closes and no corner counts
 //! twice. An outline that does not close (the sum at the end of a row is not 0) makes the layer
 //! unsure.
+//!
+//! What lies within a distance of the outline is what capsules around its segments cover: an area is
+//! grown and shrunk by an exact distance that way.
 
-use super::raster::{Bits, Grid};
+use super::capsule::Capsule;
+use super::rows::{Lattice, united};
 use crate::geom::cells::Cells;
 use crate::geom::segment;
+use crate::geom::spans::{Rows, Span};
 use crate::mesh::Mesh;
-use crate::units::{UNITS_PER_MM, to_mm};
+use crate::units::{UNITS_PER_MM, to_mm, to_units};
 
 /// Planes lie on a grid with this many steps a mm: half of the mesh's units, so that a plane at a
 /// vertex's height is exactly the same number.
@@ -45,6 +50,33 @@ const NEAR_LEVEL: f64 = 1.5e-3;
 
 /// A stretch of an outline; the solid lies on the same side of all of them.
 type Segment = [[f64; 2]; 2];
+
+/// A cut of the model.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Section {
+    pub(super) inside: Rows,
+    outline: Vec<Segment>,
+    /// Whether the outline closes.
+    pub(super) closes: bool,
+}
+
+impl Section {
+    /// Nothing, where the model is not.
+    pub(super) fn empty() -> Self {
+        Self { closes: true, ..Self::default() }
+    }
+
+    /// All places within `mm` of the outline.
+    pub(super) fn along(&self, lattice: Lattice, mm: f64) -> Rows {
+        let capsules = self.outline.iter().map(|&[from, to]| Capsule { from, to, radius: mm });
+        lattice.draw(capsules)
+    }
+
+    /// What is wide enough for a disc of radius `mm`.
+    pub(super) fn opened(&self, lattice: Lattice, mm: f64) -> Rows {
+        lattice.grown(&self.inside.minus(&self.along(lattice, mm)), mm)
+    }
+}
 
 impl Part {
     /// Cuts `mesh`, moved by `offset` mm, in the middle of each layer; `layers` are their tops and
@@ -148,37 +180,37 @@ impl Part {
         [x, y]
     }
 
-    /// What of the bed the model covers at a layer, nothing beyond the last; and whether its
-    /// outline closes.
-    pub(super) fn section(&self, layer: usize, grid: &Grid) -> (Bits, bool) {
-        let mut bits = Bits::new(grid.size);
-        let mut closes = true;
-        if layer >= self.layers() {
-            return (bits, closes);
-        }
+    /// What of the bed the model covers at a layer; nothing beyond the last.
+    pub(super) fn section(&self, layer: usize, lattice: Lattice) -> Section {
+        let Some(&plane) = self.of_layer.get(layer) else {
+            return Section::empty();
+        };
+        let outline: Vec<Segment> = self.segments(plane).collect();
         // Row, place along it, and which way the outline goes.
-        let mut crossings: Vec<(usize, f64, i32)> = Vec::new();
-        for [from, to] in self.segments(self.of_layer[layer]) {
+        let mut crossings: Vec<(i32, f64, i32)> = Vec::new();
+        for &[from, to] in &outline {
             let (low, high, sign) = if from[1] < to[1] { (from, to, 1) } else { (to, from, -1) };
-            for row in grid.span(1, low[1], high[1]) {
-                let y = grid.middle(0, row)[1];
+            for row in lattice.range(low[1], high[1]) {
+                let y = lattice.middle(row);
                 let x = low[0] + (y - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
                 crossings.push((row, x, sign));
             }
         }
         crossings
             .sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        let (mut closes, mut spans) = (true, Vec::with_capacity(crossings.len() / 2));
         for row in crossings.chunk_by(|a, b| a.0 == b.0) {
             let mut winding = 0;
             for two in row.windows(2) {
                 winding += two[0].2;
                 if winding != 0 {
-                    bits.set(two[0].0, grid.span(0, two[0].1, two[1].1));
+                    let span = Span::new(to_units(two[0].1), to_units(two[1].1));
+                    spans.extend(span.map(|span| (two[0].0, span)));
                 }
             }
             closes &= winding + row.last().map_or(0, |last| last.2) == 0;
         }
-        (bits, closes)
+        Section { inside: united(&spans), outline, closes }
     }
 
     /// The plane below that of a layer: of the layer before, or nearer where there is a gap.
@@ -272,18 +304,40 @@ mod tests {
             let layers = [(0.2, 0.2), (0.4, 0.2), (0.6, 0.2)];
             let part = Part::new(&solid([4.0, 2.0, 0.5], turned), [10.0, 5.0], &layers).unwrap();
             assert_eq!(part.extent(), Some(([10.0, 5.0], [14.0, 7.0])));
-            let grid = Grid::over([10.0, 5.0], [14.0, 7.0], 1.0, 0.1, 1e9);
+            let lattice = Lattice::new(0.1, 2.0, 1e4);
             // The last plane lies on the upper face, which counts as above it: it cuts nothing higher.
             for layer in 0..3 {
-                assert_eq!(part.section(layer, &grid).0.count(), 40 * 20, "{layer}");
+                let area = lattice.area(&part.section(layer, lattice).inside);
+                assert!((area - 8.0).abs() < 1e-6, "{layer}: {area}");
             }
-            assert!(part.section(3, &grid).0.is_empty());
-            assert!(
-                part.section(1, &grid).1 && part.is_along_a_face(2) && !part.is_along_a_face(1)
-            );
+            assert!(part.section(3, lattice).inside.is_empty());
+            assert!(part.section(1, lattice).closes);
+            assert!(part.is_along_a_face(2) && !part.is_along_a_face(1));
             assert!(part.hangs(1, [9.9, 6.0]) && !part.hangs(1, [10.1, 6.0]));
             assert!(!part.hangs(0, [0.0, 0.0]));
         }
         assert_eq!(Part::new(&Mesh::default(), [0.0; 2], &[(0.2, 0.2), (0.2, 0.2)]).err(), Some(1));
+    }
+
+    #[test]
+    fn a_section_is_opened_by_an_exact_distance() {
+        let part = Part::new(&solid([4.0, 2.0, 0.5], false), [0.0; 2], &[(0.2, 0.2)]).unwrap();
+        let lattice = Lattice::new(0.05, 2.0, 1e4);
+        let section = part.section(0, lattice);
+        // Round corners are missing.
+        let area = lattice.area(&section.opened(lattice, 0.5));
+        assert!((area - (8.0 - 0.215)).abs() < 0.05, "{area}");
+        assert!(section.opened(lattice, 1.01).is_empty());
+        let along = lattice.area(&section.inside.and(&section.along(lattice, 0.3)));
+        assert!((along - (8.0 - 3.4 * 1.4)).abs() < 0.05, "{along}");
+    }
+
+    #[test]
+    fn a_layer_above_a_gap_hangs_where_nothing_is_just_below() {
+        let layers = [(0.2, 0.2), (1.4, 0.2)];
+        let part = Part::new(&solid([4.0, 2.0, 2.0], false), [0.0; 2], &layers).unwrap();
+        assert!(!part.hangs(1, [1.0, 1.0]) && !part.is_empty_below(1));
+        let part = Part::new(&solid([4.0, 2.0, 0.5], false), [0.0; 2], &layers).unwrap();
+        assert!(part.hangs(1, [1.0, 1.0]) && part.is_empty_below(1) && !part.is_empty_below(0));
     }
 }

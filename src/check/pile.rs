@@ -10,8 +10,8 @@
 //! each other.
 
 use super::capsule::Capsule;
+use super::grid::Grid;
 use super::moves::ROUNDING;
-use super::raster::Grid;
 use super::samples::Sample;
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};

@@ -12,18 +12,19 @@
 
 use super::against::{Areas, Judge, SOME_WIDTH, Verdict, floors, is_of_part, strays};
 use super::finding::{Code, Finding, Findings, Place, short};
-use super::part::{Part, extent_of};
-use super::raster::{Bits, Grid};
+use super::part::{Part, Section, extent_of};
+use super::rows::Lattice;
+use super::stack::gap_below;
 use super::terms::Terms;
 use super::{extent, median};
 use crate::reader::{Print, Role};
 use rayon::prelude::*;
 
-/// Side of a pixel, mm: an eighth of a usual line.
+/// Distance of rows, mm: an eighth of a usual line.
 const PITCH: f64 = 0.05;
 
-/// Pixels of a layer at most; larger prints get larger pixels.
-const MOST_PIXELS: f64 = 3e7;
+/// Rows of a layer at most; larger prints get rows further apart.
+const MOST_ROWS: f64 = 6000.0;
 
 /// Layers that are cut at a time, so that few are held.
 const BATCH: usize = 32;
@@ -75,10 +76,13 @@ pub(super) fn check(
     let corners = both.into_iter().flatten().flat_map(|(low, high)| [low, high]);
     let Some((low, high)) = extent_of(corners) else { return Sums::default() };
     let (floors, strays) = (floors(print), strays(print));
+    let layers = print.layers.iter().enumerate();
+    let heights: Vec<f64> = layers.map(|(k, one)| one.height - gap_below(print, k)).collect();
     let judge = Judge {
         print,
         part,
-        grid: Grid::over(low, high, 1.0, PITCH, MOST_PIXELS),
+        lattice: Lattice::new(PITCH, high[1] - low[1], MOST_ROWS),
+        heights: &heights,
         line_width: line_width(print),
         floors: &floors,
         strays: &strays,
@@ -102,27 +106,27 @@ pub(super) fn check(
         found.extend(std::mem::take(&mut verdict.findings));
     }
     let areas: Vec<Areas> = layers.iter().map(|verdict| verdict.areas).collect();
-    sums(print, terms, (&areas, has_roles), found)
+    sums(print, (terms, &heights), (&areas, has_roles), found)
 }
 
 /// Judges some layers side by side.
 fn batch(judge: &Judge<'_>, layers: std::ops::Range<usize>) -> Vec<Verdict> {
     // From the layer below the first to that above the last.
-    let cuts: Vec<(Bits, bool)> = (layers.start..layers.end + 2)
+    let cuts: Vec<Section> = (layers.start..layers.end + 2)
         .into_par_iter()
         .map(|above| match above.checked_sub(1) {
-            Some(layer) => judge.part.section(layer, &judge.grid),
-            None => (Bits::new(judge.grid.size), true),
+            Some(layer) => judge.part.section(layer, judge.lattice),
+            None => Section::empty(),
         })
         .collect();
     let judged = layers.clone().into_par_iter().map(|index| {
         let k = index - layers.start;
         let three = &cuts[k..k + 3];
-        let is_sure = three.iter().all(|(_, closes)| *closes)
+        let is_sure = three.iter().all(|cut| cut.closes)
             && (judge.terms.is_own
                 || !(index.saturating_sub(1)..=index + 1).any(|k| judge.part.is_along_a_face(k)));
         if is_sure {
-            judge.layer(index, [&three[0].0, &three[1].0, &three[2].0])
+            judge.layer(index, [&three[0], &three[1], &three[2]])
         } else {
             Verdict { is_unsure: true, ..Verdict::default() }
         }
@@ -139,12 +143,11 @@ fn line_width(print: &Print) -> f64 {
 /// Adds up, and judges the amounts.
 fn sums(
     print: &Print,
-    terms: &Terms,
+    (terms, heights): (&Terms, &[f64]),
     (areas, has_roles): (&[Areas], bool),
     found: &mut Findings,
 ) -> Sums {
     let mut sums = Sums::default();
-    let heights = print.layers.iter().map(|layer| layer.height);
     for (areas, height) in areas.iter().zip(heights) {
         let total = &mut sums.total;
         total.part += areas.part * height;

@@ -1,0 +1,368 @@
+//! Capsules -> Rows: what lines cover of the bed, as spans of rows; and how to grow and shrink it.
+//!
+//! Words used here: the rows of a *lattice* lie a *pitch* apart, row `j` from `j` to `j + 1` pitches;
+//! what its middle line crosses counts for the row; to *open* an area is to shrink and grow it
+//! again: what is narrower disappears; a *patch* is an area whose spans touch, corners included.
+//!
+//! Along a row spans are exact to a tenth of a micrometre; across, an area is as exact as the rows are
+//! dense. A section of a model has few spans in a row, however wide it is: booleans, and all that
+//! grows and shrinks, cost what there are edges, not what there is area.
+
+use super::capsule::Capsule;
+use crate::geom::spans::{Rows, Span, intersect, merge};
+use crate::units::{Coord, UNITS_PER_MM, to_mm, to_units};
+
+/// Where rows lie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Lattice {
+    /// Distance of the rows, grid units.
+    pitch: Coord,
+}
+
+/// A patch of spans that touch one another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Patch {
+    /// mm².
+    pub(super) area: f64,
+    /// A place in it: the middle of its longest span, mm.
+    pub(super) at: [f64; 2],
+    longest: i64,
+}
+
+impl Lattice {
+    /// Rows `pitch` mm apart, or more if `side` mm of them were more than `most`.
+    pub(super) fn new(pitch: f64, side: f64, most: f64) -> Self {
+        Self { pitch: to_units(pitch.max(side / most)).max(1) }
+    }
+
+    /// Distance of the rows, mm.
+    pub(super) fn pitch(self) -> f64 {
+        to_mm(self.pitch)
+    }
+
+    /// The rows whose middles lie in `from..to`, mm.
+    pub(super) fn range(self, from: f64, to: f64) -> std::ops::Range<i32> {
+        let first = |at: f64| (at / self.pitch() - 0.5).ceil() as i32;
+        first(from)..first(to)
+    }
+
+    /// Where the middle of a row lies, mm.
+    pub(super) fn middle(self, j: i32) -> f64 {
+        (f64::from(j) + 0.5) * self.pitch()
+    }
+
+    /// Area, mm².
+    pub(super) fn area(self, rows: &Rows) -> f64 {
+        rows.total() as f64 / UNITS_PER_MM * self.pitch()
+    }
+
+    /// Whether an area holds a place.
+    pub(super) fn has(self, rows: &Rows, at: [f64; 2]) -> bool {
+        let row = rows.row((at[1] / self.pitch()).floor() as i32);
+        let x = to_units(at[0]);
+        let next = row.partition_point(|span| span.end <= x);
+        row.get(next).is_some_and(|span| span.start <= x)
+    }
+
+    /// What capsules cover.
+    pub(super) fn draw(self, capsules: impl Iterator<Item = Capsule>) -> Rows {
+        let mut chords = Vec::new();
+        for capsule in capsules {
+            capsule.chords(self, |j, from, to| {
+                let span = Span::new(to_units(from), to_units(to));
+                chords.extend(span.map(|span| (j, span)));
+            });
+        }
+        united(&chords)
+    }
+
+    /// All places within `mm` of an area.
+    pub(super) fn grown(self, rows: &Rows, mm: f64) -> Rows {
+        rows.dilate(to_units(mm), self.pitch)
+    }
+
+    /// All places of an area with everything within `mm` in it.
+    pub(super) fn shrunk(self, rows: &Rows, mm: f64) -> Rows {
+        let reach = (mm / self.pitch() + 1e-9) as i32;
+        let chord = |m: i32| {
+            let away = f64::from(m) * self.pitch();
+            to_units((mm * mm - away * away).max(0.0).sqrt())
+        };
+        let chords: Vec<Coord> = (0..=reach).map(chord).collect();
+        let range = rows.range();
+        let mut out = Rows::with_room_of(rows, range.start);
+        let (mut left, mut cut, mut next) = (Vec::new(), Vec::new(), Vec::new());
+        for j in range {
+            left.clear();
+            narrowed(rows.row(j), chords[0], &mut left);
+            for away in 1..=reach {
+                for side in [-away, away] {
+                    if left.is_empty() {
+                        break;
+                    }
+                    cut.clear();
+                    narrowed(rows.row(j + side), chords[away as usize], &mut cut);
+                    next.clear();
+                    intersect(&left, &cut, &mut next);
+                    std::mem::swap(&mut left, &mut next);
+                }
+            }
+            out.push_row(|spans| spans.extend_from_slice(&left));
+        }
+        out
+    }
+
+    /// What a disc of radius `mm` reaches that stays within an area.
+    pub(super) fn opened(self, rows: &Rows, mm: f64) -> Rows {
+        if rows.is_empty() { Rows::default() } else { self.grown(&self.shrunk(rows, mm), mm) }
+    }
+
+    /// What a square of side `2 × half` mm reaches that stays within an area, shrunk by `less` mm.
+    pub(super) fn squares(self, rows: &Rows, half: f64, less: f64) -> Rows {
+        let by = to_units(half);
+        let mut thin = Rows::with_room_of(rows, rows.range().start);
+        for (_, row) in rows.iter() {
+            thin.push_row(|spans| narrowed(row, by, spans));
+        }
+        let window = |mm: f64| 2 * (mm / self.pitch()).round() as i32 + 1;
+        let low = stacked(&thin, window(half), Rows::and);
+        if low.is_empty() {
+            return low;
+        }
+        let by = to_units(half - less);
+        let high = stacked(&low, window(half - less), Rows::or);
+        let mut out = Rows::with_room_of(&high, high.range().start);
+        let mut grown = Vec::new();
+        for (_, row) in high.iter() {
+            grown.clear();
+            grown.extend(row.iter().map(|s| Span { start: s.start - by, end: s.end + by }));
+            out.push_row(|spans| merge(&mut grown, spans));
+        }
+        out
+    }
+
+    /// The patches of an area, in the order of their first rows.
+    pub(super) fn patches(self, rows: &Rows) -> Vec<Patch> {
+        let mut union = Union::default();
+        let mut above: Vec<(Span, usize)> = Vec::new();
+        for (j, row) in rows.iter() {
+            let mut here = Vec::with_capacity(row.len());
+            for &span in row {
+                let middle = (i64::from(span.start) + span.len() / 2) as f64 / UNITS_PER_MM;
+                let patch = union.add(Patch {
+                    area: span.len() as f64 / UNITS_PER_MM * self.pitch(),
+                    at: [middle, self.middle(j)],
+                    longest: span.len(),
+                });
+                for (other, root) in &above {
+                    if other.start <= span.end && span.start <= other.end {
+                        union.join(*root, patch);
+                    }
+                }
+                here.push((span, patch));
+            }
+            above = here;
+        }
+        union.patches()
+    }
+}
+
+/// A row with each span shorter by `by` at both ends.
+fn narrowed(row: &[Span], by: Coord, out: &mut Vec<Span>) {
+    out.extend(row.iter().filter_map(|span| Span::new(span.start + by, span.end - by)));
+}
+
+/// Each row joined with those around it, `window` rows in all, an odd number.
+fn stacked(rows: &Rows, window: i32, join: fn(&Rows, &Rows) -> Rows) -> Rows {
+    let mut out = rows.clone();
+    let mut done = 1;
+    while done < window {
+        // What `done` rows from each row on gave, joined with the same some rows further.
+        let step = done.min(window - done);
+        out = join(&out, &shifted(&out, -step));
+        done += step;
+    }
+    shifted(&out, window / 2)
+}
+
+/// The same rows, moved.
+fn shifted(rows: &Rows, by: i32) -> Rows {
+    let mut out = Rows::with_room_of(rows, rows.range().start + by);
+    for (_, row) in rows.iter() {
+        out.push_row(|spans| spans.extend_from_slice(row));
+    }
+    out
+}
+
+/// Rows of spans that come in any order and may overlap.
+pub(super) fn united(chords: &[(i32, Span)]) -> Rows {
+    let first = chords.iter().map(|chord| chord.0).min().unwrap_or(0);
+    let count = chords.iter().map(|chord| chord.0 - first + 1).max().unwrap_or(0) as usize;
+    let mut starts = vec![0_u32; count + 1];
+    for (j, _) in chords {
+        starts[(j - first) as usize + 1] += 1;
+    }
+    for k in 0..count {
+        starts[k + 1] += starts[k];
+    }
+    let mut ends = starts.clone();
+    let mut sorted = vec![Span::default(); chords.len()];
+    for (j, span) in chords {
+        let end = &mut ends[(j - first) as usize];
+        sorted[*end as usize] = *span;
+        *end += 1;
+    }
+    let mut rows = Rows::with_room(first, count, chords.len());
+    for two in starts.windows(2) {
+        rows.push_row(|out| merge(&mut sorted[two[0] as usize..two[1] as usize], out));
+    }
+    rows
+}
+
+/// Patches that grow together.
+#[derive(Default)]
+struct Union {
+    patches: Vec<Patch>,
+    /// The patch that each has become a part of; itself if none.
+    parents: Vec<usize>,
+}
+
+impl Union {
+    fn add(&mut self, patch: Patch) -> usize {
+        self.patches.push(patch);
+        self.parents.push(self.parents.len());
+        self.parents.len() - 1
+    }
+
+    fn root(&mut self, mut one: usize) -> usize {
+        while self.parents[one] != one {
+            self.parents[one] = self.parents[self.parents[one]];
+            one = self.parents[one];
+        }
+        one
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        if a == b {
+            return;
+        }
+        // The older one stays, so that the order is that of the rows.
+        let (old, young) = (a.min(b), a.max(b));
+        self.parents[young] = old;
+        let part = self.patches[young];
+        let whole = &mut self.patches[old];
+        whole.area += part.area;
+        if part.longest > whole.longest {
+            (whole.longest, whole.at) = (part.longest, part.at);
+        }
+    }
+
+    fn patches(self) -> Vec<Patch> {
+        let roots = self.parents.iter().enumerate().filter(|(k, parent)| k == *parent);
+        roots.map(|(k, _)| self.patches[k]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::segment;
+    use proptest::prelude::*;
+
+    /// Rows 1 mm apart of spans in mm.
+    fn rows(spans: &[(i32, i32, i32)]) -> Rows {
+        let mm = |at: i32| to_units(f64::from(at));
+        let chords: Vec<(i32, Span)> = spans
+            .iter()
+            .filter_map(|&(j, from, to)| Some((j, Span::new(mm(from), mm(to))?)))
+            .collect();
+        united(&chords)
+    }
+
+    const WHOLE: Lattice = Lattice { pitch: 10_000 };
+
+    fn has(rows: &Rows, x: i32, y: i32) -> bool {
+        WHOLE.has(rows, [f64::from(x) + 0.5, f64::from(y) + 0.5])
+    }
+
+    #[test]
+    fn rows_cover_what_their_middles_cross() {
+        let fine = Lattice::new(0.1, 1.0, 1e4);
+        assert_eq!(fine.range(0.0, 0.4), 0..4);
+        assert_eq!(fine.range(-0.06, 0.04), -1..0);
+        assert!((Lattice::new(0.1, 1000.0, 1000.0).pitch() - 1.0).abs() < 1e-9);
+        let line = Capsule { from: [0.0, 0.2], to: [10.0, 0.2], radius: 0.2 };
+        let area = fine.area(&fine.draw(std::iter::once(line)));
+        assert!((4.0..4.13).contains(&area), "{area}");
+    }
+
+    #[test]
+    fn patches_are_separated() {
+        // A U, and a dot beside it that touches nothing.
+        let found = WHOLE.patches(&rows(&[(0, 0, 3), (0, 9, 11), (1, 3, 10), (1, 20, 21)]));
+        assert_eq!(found.len(), 2);
+        assert_eq!((found[0].area, found[0].at), (12.0, [6.5, 1.5]));
+        assert_eq!((found[1].area, found[1].at), (1.0, [20.5, 1.5]));
+        assert!(WHOLE.patches(&Rows::default()).is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn a_capsule_covers_the_rows_near_its_line(
+            from in [0.0..8.0_f64, 0.0..8.0_f64],
+            to in [0.0..8.0_f64, 0.0..8.0_f64],
+            radius in 0.05..1.0_f64,
+        ) {
+            let lattice = Lattice::new(0.1, 8.0, 1e4);
+            let drawn = lattice.draw(std::iter::once(Capsule { from, to, radius }));
+            for j in -15..95 {
+                for k in -15..95 {
+                    let at = [f64::from(k) * 0.1, lattice.middle(j)];
+                    let distance = segment::distance2(at, [from, to]).sqrt();
+                    if (distance - radius).abs() > 1e-3 {
+                        prop_assert_eq!(lattice.has(&drawn, at), distance < radius);
+                    }
+                }
+            }
+        }
+
+        #[test]
+        fn shrinking_keeps_what_a_disc_fits_in(
+            spans in prop::collection::vec((0..12, 0..40, 1..30), 0..25),
+            radius in 1..5_i32,
+        ) {
+            let spans: Vec<_> = spans.iter().map(|&(j, from, by)| (j, from, from + by)).collect();
+            let area = rows(&spans);
+            let shrunk = WHOLE.shrunk(&area, f64::from(radius));
+            for y in -1..13 {
+                for x in -2..75 {
+                    // On each row of the disc all of its chord.
+                    let fits = (-radius..=radius).all(|m| {
+                        let half = f64::from(radius * radius - m * m).sqrt();
+                        let row = area.row(y + m);
+                        let (low, high) = (f64::from(x) + 0.5 - half, f64::from(x) + 0.5 + half);
+                        row.iter().any(|s| to_mm(s.start) <= low + 1e-3 && high <= to_mm(s.end) + 1e-3)
+                    });
+                    prop_assert_eq!(has(&shrunk, x, y), fits, "{} {}", x, y);
+                }
+            }
+        }
+
+        #[test]
+        fn squares_reach_what_is_wide_enough(
+            (x, y, w, h) in (0..60_i32, 0..20_i32, 1..80_i32, 1..20_i32),
+            half in 1..8_i32,
+            less in 0..3_i32,
+        ) {
+            let spans: Vec<_> = (y..y + h).map(|j| (j, x, x + w)).collect();
+            let less = less.min(half);
+            let found = WHOLE.squares(&rows(&spans), f64::from(half), f64::from(less));
+            let area = WHOLE.area(&found);
+            // Rows are counted by their middles, so that a square has one more.
+            let fits = w > 2 * half && h > 2 * half;
+            let expected = if fits { (w - 2 * less) * (h - 2 * less) } else { 0 };
+            prop_assert_eq!(area, f64::from(expected));
+        }
+    }
+}
