@@ -259,20 +259,6 @@ pub(super) fn strays(print: &Print) -> Vec<Vec<usize>> {
     strays
 }
 
-/// For each layer where the lines of it and all above it reach down to, mm.
-pub(super) fn floors(print: &Print) -> Vec<f64> {
-    let mut floor = f64::INFINITY;
-    let mut floors: Vec<f64> = Vec::with_capacity(print.layers.len());
-    for layer in print.layers.iter().rev() {
-        let lines = print.moves_of(layer).iter().filter(|step| step.is_line());
-        let lows = lines.map(|step| step.heights()[0] - f64::from(step.height));
-        floor = lows.fold(floor, f64::min);
-        floors.push(floor);
-    }
-    floors.reverse();
-    floors
-}
-
 /// What part of a line lies in an area.
 pub(super) fn share_in(step: &Step, lattice: Lattice, area: &Rows) -> f64 {
     if area.is_empty() {

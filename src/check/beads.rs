@@ -75,10 +75,7 @@ pub(super) fn odd(print: &Print, terms: &Terms, found: &mut Findings) {
 /// plastic, whatever the file says.
 pub(super) fn narrow(print: &Print, terms: &Terms, found: &mut Findings) {
     let Some(nozzle) = terms.nozzle else { return };
-    let width = |step: &Step| {
-        f64::from(step.filament) * terms.filament_area / step.length() / f64::from(step.height)
-    };
-    let is_narrow = |step: &Step| step.is_line() && width(step) < NARROW * nozzle;
+    let is_narrow = |step: &Step| step.is_line() && terms.box_width(step) < NARROW * nozzle;
     for (layer, one) in print.layers.iter().enumerate() {
         let steps = print.moves_of(one);
         let runs = steps.chunk_by(|a, b| is_narrow(a) && is_narrow(b) && a.to == b.from);
@@ -87,7 +84,8 @@ pub(super) fn narrow(print: &Print, terms: &Terms, found: &mut Findings) {
             if length <= LEAST_NARROW {
                 continue;
             }
-            let mean = run.iter().map(|step| width(step) * step.length()).sum::<f64>() / length;
+            let mean =
+                run.iter().map(|step| terms.box_width(step) * step.length()).sum::<f64>() / length;
             let role = run[0].role.name();
             let text = format!("{} mm of {role} are {} mm wide", short(length), short(mean));
             let middle = &run[run.len() / 2];

@@ -34,6 +34,8 @@ pub(super) struct Start {
 struct Body {
     parent: u32,
     stands: bool,
+    /// Whether some of it is more than support.
+    is_part: bool,
     /// mm.
     length: f64,
 }
@@ -65,6 +67,7 @@ impl Bodies {
             self.bodies[young as usize].parent = old;
             let whole = &mut self.bodies[old as usize];
             whole.stands |= part.stands;
+            whole.is_part |= part.is_part;
             whole.length += part.length;
         }
         old
@@ -72,9 +75,13 @@ impl Bodies {
 
     /// Adds a patch, `length` mm long, that stands on these chains, counted from 1; 0 is the bed.
     /// Returns its body.
-    pub(super) fn add(&mut self, length: f64, carriers: impl Iterator<Item = u32>) -> u32 {
+    pub(super) fn add(
+        &mut self,
+        (length, is_part): (f64, bool),
+        carriers: impl Iterator<Item = u32>,
+    ) -> u32 {
         let mut body = self.bodies.len() as u32;
-        self.bodies.push(Body { parent: body, stands: false, length });
+        self.bodies.push(Body { parent: body, stands: false, is_part, length });
         for carrier in carriers {
             match (carrier as usize).checked_sub(1) {
                 Some(chain) => body = self.join(body, self.of_chain[chain]),
@@ -117,7 +124,9 @@ impl Bodies {
                     short(whole.length),
                     short(start.bottom),
                 );
-                found.add(Finding::of(Code::Floating, whole.length, "mm", text).at(start.place));
+                // Support that falls over costs a surface, not the print.
+                let of = if whole.is_part { Finding::of } else { Finding::warning };
+                found.add(of(Code::Floating, whole.length, "mm", text).at(start.place));
             }
         }
     }
@@ -136,7 +145,7 @@ mod tests {
     fn judged(patches: &[(f64, &[u32])]) -> Vec<(Severity, f64)> {
         let mut bodies = Bodies::default();
         for (length, carriers) in patches {
-            let body = bodies.add(*length, carriers.iter().copied());
+            let body = bodies.add((*length, true), carriers.iter().copied());
             bodies.chain(body);
             if carriers.is_empty() {
                 bodies.begin(body, start(*length));

@@ -1,7 +1,6 @@
 //! A line with round ends -> what it covers, row by row.
 
 use super::grid::Grid;
-use super::rows::Lattice;
 use crate::reader::print::Step;
 use nalgebra::Vector2;
 
@@ -21,6 +20,12 @@ impl Capsule {
         Self { from: flat(step.from), to: flat(step.to), radius }
     }
 
+    /// The same with x and y exchanged.
+    pub(super) fn flipped(self) -> Self {
+        let flip = |[x, y]: [f64; 2]| [y, x];
+        Self { from: flip(self.from), to: flip(self.to), ..self }
+    }
+
     /// Lowest and highest x and y.
     pub(super) fn extent(&self) -> ([f64; 2], [f64; 2]) {
         let (from, to) = (Vector2::from(self.from), Vector2::from(self.to));
@@ -30,10 +35,9 @@ impl Capsule {
 
     /// Hands each row's pixels to `sink`.
     pub(super) fn rows(&self, grid: &Grid, mut sink: impl FnMut(usize, std::ops::Range<usize>)) {
-        let (low, high) = self.extent();
+        let ((low, high), flanks) = (self.extent(), self.flanks());
         for row in grid.span(1, low[1], high[1]) {
-            let y = grid.middle(0, row)[1];
-            if let Some((from, to)) = self.chord(y) {
+            if let Some((from, to)) = flanks.chord(grid.middle(0, row)[1]) {
                 let span = grid.span(0, from, to);
                 if !span.is_empty() {
                     sink(row, span);
@@ -42,58 +46,59 @@ impl Capsule {
         }
     }
 
-    /// Hands what it covers of each row to `sink`: from and to, mm.
-    pub(super) fn chords(&self, lattice: Lattice, mut sink: impl FnMut(i32, f64, f64)) {
-        let (low, high) = self.extent();
-        for row in lattice.range(low[1], high[1]) {
-            if let Some((from, to)) = self.chord(lattice.middle(row)) {
-                sink(row, from, to);
-            }
-        }
-    }
-
-    /// What of the line at height `y` lies within: one stretch, since the shape has no dents.
-    fn chord(&self, y: f64) -> Option<(f64, f64)> {
-        let mut found: Option<(f64, f64)> = None;
-        let mut join = |from: f64, to: f64| {
-            let (low, high) = found.unwrap_or((from, to));
-            found = Some((low.min(from), high.max(to)));
+    /// Its borders.
+    pub(super) fn flanks(&self) -> Flanks {
+        let (low, high) =
+            if self.from[1] <= self.to[1] { (self.from, self.to) } else { (self.to, self.from) };
+        let [run, rise] = [high[0] - low[0], high[1] - low[1]];
+        let length = (run * run + rise * rise).sqrt();
+        let (slope, shift, lift) = if rise > 0.0 {
+            (run / rise, self.radius * length / rise, self.radius * run / length)
+        } else {
+            (0.0, 0.0, 0.0)
         };
-        for end in [self.from, self.to] {
-            let square = self.radius * self.radius - (y - end[1]) * (y - end[1]);
-            if square > 0.0 {
-                let half = square.sqrt();
-                join(end[0] - half, end[0] + half);
-            }
-        }
-        if let Some((from, to)) = self.chord_between(y) {
-            join(from, to);
-        }
-        found
-    }
-
-    /// As [`Self::chord`], of the rectangle between the ends.
-    fn chord_between(&self, y: f64) -> Option<(f64, f64)> {
-        let way = [self.to[0] - self.from[0], self.to[1] - self.from[1]];
-        let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
-        if length == 0.0 {
-            return None;
-        }
-        let along = way.map(|side| side / length);
-        let up = y - self.from[1];
-        // Along the line between its ends, and across it within the radius.
-        let (a, b) = limits(along[0], along[1] * up, 0.0, length)?;
-        let (c, d) = limits(-along[1], along[0] * up, -self.radius, self.radius)?;
-        let (from, to) = (a.max(c), b.min(d));
-        (from < to).then_some((self.from[0] + from, self.from[0] + to))
+        Flanks { low, high, square: self.radius * self.radius, slope, shift, lift }
     }
 }
 
-/// Where `low <= slope · x + rest <= high`; all x, without end, if the slope is 0 and it holds.
-fn limits(slope: f64, rest: f64, low: f64, high: f64) -> Option<(f64, f64)> {
-    if slope.abs() < 1e-12 {
-        return (low..=high).contains(&rest).then_some((f64::NEG_INFINITY, f64::INFINITY));
+/// A capsule by its borders to the left and to the right: each is a straight line between the places
+/// where it touches the circles around the ends, and an arc beyond.
+pub(super) struct Flanks {
+    /// The ends; `low` has the lesser y.
+    low: [f64; 2],
+    high: [f64; 2],
+    /// The radius, squared.
+    square: f64,
+    /// Run per rise; 0 for a line along x.
+    slope: f64,
+    /// Distance along x from the middle line to the straight border.
+    shift: f64,
+    /// How much lower than the ends the straight part of the right border ends; the left: higher.
+    lift: f64,
+}
+
+impl Flanks {
+    /// What of the line at height `y` lies within: one stretch, since the shape has no dents.
+    pub(super) fn chord(&self, y: f64) -> Option<(f64, f64)> {
+        let circle = |end: [f64; 2]| {
+            let away = y - end[1];
+            (self.square - away * away).max(0.0).sqrt()
+        };
+        let (from, to) = if self.low[1] == self.high[1] {
+            let half = circle(self.low);
+            (self.low[0].min(self.high[0]) - half, self.low[0].max(self.high[0]) + half)
+        } else {
+            let flank = |lift: f64, side: f64| {
+                if y < self.low[1] - lift {
+                    self.low[0] + side * circle(self.low)
+                } else if y > self.high[1] - lift {
+                    self.high[0] + side * circle(self.high)
+                } else {
+                    self.low[0] + (y - self.low[1]) * self.slope + side * self.shift
+                }
+            };
+            (flank(-self.lift, -1.0), flank(self.lift, 1.0))
+        };
+        (from < to).then_some((from, to))
     }
-    let (a, b) = ((low - rest) / slope, (high - rest) / slope);
-    Some((a.min(b), a.max(b)))
 }

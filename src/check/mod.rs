@@ -10,13 +10,17 @@ mod anchors;
 mod beads;
 mod bodies;
 mod capsule;
+mod contact;
 mod dialect;
+mod filled;
+mod fills;
 pub mod finding;
 mod grid;
 mod heat;
 mod moves;
 mod part;
 mod pile;
+mod posts;
 mod rows;
 mod runs;
 mod samples;
@@ -27,6 +31,7 @@ pub mod terms;
 use crate::mesh::Mesh;
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};
+use filled::Filled;
 use finding::{Code, Count, Finding, Findings};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -117,14 +122,24 @@ pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict 
     let looked_at = if absurd { &Print::default() } else { print };
     // Side by side, each with findings of its own: how lines lie on each other, and on the part.
     let mut piled = Findings::default();
-    let (stacked, sums) = rayon::join(
+    let (stacked, (sums, places)) = rayon::join(
         || stack::check(looked_at, part.as_ref(), &mut piled),
         || {
+            let filled = Filled::new(looked_at);
+            let mut places = Findings::default();
+            if has_roles {
+                fills::check(&filled, terms, &mut places);
+                contact::check(&filled, terms, &mut places);
+                posts::check(&filled, &mut places);
+            }
             let say = (&mut found, &mut not_judged);
-            part.as_ref().map(|part| surfaces::check(print, part, terms, has_roles, say))
+            let part = part.as_ref();
+            let sums = part.map(|part| surfaces::check(&filled, part, terms, has_roles, say));
+            (sums, places)
         },
     );
     found.extend(piled);
+    found.extend(places);
 
     let filament: f64 = print.lines().map(|step| f64::from(step.filament)).sum();
     let share = |[all, some]: [f64; 2]| if all > 0.0 { some / all } else { 1.0 };

@@ -111,9 +111,9 @@ impl Pile {
         [0.0, -side / 2.0, side / 2.0, -side, side].into_iter().find_map(at)
     }
 
-    /// What stands so high at a place; beyond the map that is the bed.
+    /// What stands so high at a place; beyond the map nothing does.
     pub(super) fn standing(&self, at: [f64; 2], needed: f64) -> Option<u32> {
-        let Some(top) = self.at(&self.tops, at) else { return Some(0) };
+        let top = self.at(&self.tops, at)?;
         (f64::from(top.z) >= needed).then_some(top.owner)
     }
 
@@ -195,10 +195,12 @@ impl Pile {
     }
 }
 
-/// How high plastic must stand to carry a line at this height of the nozzle, mm.
+/// How high plastic must stand to carry a line at this height of the nozzle, mm. Support stands on the
+/// part with the gap that the part has above it.
 pub(super) fn lower_side(step: &Step, z: f64) -> f64 {
     let height = f64::from(step.height);
-    z - height - GAP * height.min(0.3) - 1e-3
+    let gap = if step.role == Role::Support { SUPPORT_GAP } else { GAP * height.min(0.3) };
+    z - height - gap - 1e-3
 }
 
 /// Height of the nozzle in the middle of a line, mm.

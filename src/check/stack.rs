@@ -20,7 +20,7 @@ use super::bodies::{Bodies, Start};
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::moves::{ROUNDING, fallen};
 use super::part::Part;
-use super::pile::Pile;
+use super::pile::{Pile, lower_side};
 use super::runs::{Runs, Twice};
 use super::samples::{Sample, Samples};
 use crate::reader::print::Step;
@@ -32,6 +32,9 @@ const LEAST_GAP: f64 = 0.4;
 
 /// A patch with shorter lines in all is no layer that is missing below, but a blob, mm.
 const LEAST_PATCH: f64 = 4.0;
+
+/// Layers that may be missing below lines, by which that differs from a body that begins.
+const MOST_MISSING: f64 = 2.0;
 
 /// Length behind the nozzle that does not count as laid, mm: a line may turn back within it.
 const BEHIND: f64 = 1.5;
@@ -79,33 +82,32 @@ pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) ->
 /// How much higher a layer lies than its walls are, above the layer or the bed below, mm. Only walls
 /// are compared, since infill may be as thick as several layers.
 pub(super) fn gap_below(print: &Print, layer: usize) -> f64 {
-    let walls = |layer: usize| {
-        let steps = print.moves_of(&print.layers[layer]).iter();
-        steps.filter(|step| step.is_line() && step.role == Role::OuterWall)
-    };
-    // A raft or support below ends lower on purpose.
-    let is_above_walls = layer.checked_sub(1).is_none_or(|below| walls(below).next().is_some());
-    if !print.has_heights || !is_above_walls {
+    let one = &print.layers[layer];
+    if !print.has_heights {
         return 0.0;
     }
-    let height = walls(layer).map(|step| f64::from(step.height)).fold(0.0, f64::max);
-    let missing = print.layers[layer].height - height;
+    let height = walls(print, layer).map(|step| f64::from(step.height)).fold(0.0, f64::max);
+    let missing = one.height - height;
     if height > 0.0 && missing > LEAST_GAP * height { missing } else { 0.0 }
+}
+
+fn walls(print: &Print, layer: usize) -> impl Iterator<Item = &Step> {
+    let steps = print.moves_of(&print.layers[layer]).iter();
+    steps.filter(|step| step.is_line() && step.role == Role::OuterWall)
 }
 
 /// Reports a layer whose walls are less high than it lies above the one below: a layer between is
 /// missing, unless the part has nothing there either.
 fn gap(print: &Print, (layer, part): (usize, Option<&Part>), found: &mut Findings) {
     let missing = gap_below(print, layer);
-    // Above the bed the patches are judged.
-    if layer == 0 || missing == 0.0 || part.is_some_and(|part| part.is_empty_below(layer)) {
-        return;
+    // Above the bed the patches are judged. A raft or support below ends lower on purpose.
+    let is_above_walls = layer.checked_sub(1).is_some_and(|k| walls(print, k).next().is_some());
+    let is_of_part = part.is_some_and(|part| part.is_empty_below(layer));
+    let (Some(first), true) = (walls(print, layer).next(), is_above_walls) else { return };
+    if missing > 0.0 && !is_of_part {
+        let text = format!("the layer lies {} mm too high above the one before", short(missing));
+        found.add(Finding::of(Code::InTheAir, missing, "mm", text).at(place(layer, first)));
     }
-    let text = format!("the layer lies {} mm too high above the one before", short(missing));
-    let finding = Finding::of(Code::InTheAir, missing, "mm", text);
-    let steps = print.moves_of(&print.layers[layer]);
-    let first = steps.iter().find(|step| step.is_line() && step.role == Role::OuterWall);
-    found.extend(first.map(|first| finding.at(place(layer, first))));
 }
 
 /// An unbroken line once it is laid.
@@ -197,22 +199,23 @@ impl Judge<'_> {
         let mut of_line = vec![0; lines.len()];
         for patch in order.chunk_by(|&a, &b| roots[a] == roots[b]) {
             let lines: Vec<&Line> = patch.iter().map(|&line| &lines[line]).collect();
-            let body = self.patch(&lines);
+            let body = self.patch(&lines, pile);
             patch.iter().for_each(|&line| of_line[line] = body);
         }
         of_line.into_iter().for_each(|body| self.bodies.chain(body));
     }
 
     /// Judges a patch; returns its body.
-    fn patch(&mut self, lines: &[&Line]) -> u32 {
+    fn patch(&mut self, lines: &[&Line], pile: &Pile) -> u32 {
         let length = lines.iter().map(|line| line.length).sum();
         let carriers = || lines.iter().flat_map(|line| line.carriers.iter().copied());
-        let body = self.bodies.add(length, carriers());
+        let is_part = lines.iter().any(|line| line.first.role != Role::Support);
+        let body = self.bodies.add((length, is_part), carriers());
         for line in lines {
             self.measured.longest_bridge = self.measured.longest_bridge.max(line.longest_bridge);
         }
         if carriers().next().is_none() {
-            self.begins(lines, length, body);
+            self.begins(lines, length, (body, pile));
             return body;
         }
         for line in lines {
@@ -230,12 +233,19 @@ impl Judge<'_> {
         body
     }
 
-    /// A patch hangs: a layer below is missing, unless the part itself hangs there.
-    fn begins(&mut self, lines: &[&Line], length: f64, body: u32) {
+    /// A patch hangs: a layer below is missing, unless the part itself hangs there. Where that is
+    /// not known, plastic a layer or two lower tells.
+    fn begins(&mut self, lines: &[&Line], length: f64, (body, pile): (u32, &Pile)) {
         let samples = || lines.iter().flat_map(|line| line.ends.iter().flatten().copied());
-        let (by_part, own): (Vec<Sample>, Vec<Sample>) = samples()
-            .partition(|sample| self.part.is_none_or(|part| part.hangs(self.layer, sample.at)));
         let step = &lines[0].first;
+        let hangs = |sample: &Sample| match self.part {
+            Some(part) => part.hangs(self.layer, sample.at),
+            None => {
+                let low = lower_side(step, sample.z) - MOST_MISSING * f64::from(step.height);
+                low <= 0.0 || pile.standing(sample.at, low).is_none()
+            }
+        };
+        let (by_part, own): (Vec<Sample>, Vec<Sample>) = samples().partition(hangs);
         let middle = |of: &[Sample]| of.get(of.len() / 2).map(|sample| sample.at.map(short));
         let at = |of: &[Sample]| Place { at_mm: middle(of), ..place(self.layer, step) };
         if length >= LEAST_PATCH && self.part.is_some() {

@@ -10,11 +10,11 @@
 //!   the whole print against what the file asks for, and for blocks of layers against the whole
 //!   print. Thick lines fill several layers, so that a single layer has no density.
 
-use super::against::{Areas, Judge, SOME_WIDTH, Verdict, floors, is_of_part, strays};
+use super::against::{Areas, Judge, SOME_WIDTH, Verdict, is_of_part, strays};
+use super::filled::Filled;
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::part::{Part, Section, extent_of};
 use super::rows::Lattice;
-use super::stack::gap_below;
 use super::terms::Terms;
 use super::{extent, median};
 use crate::reader::{Print, Role};
@@ -65,26 +65,25 @@ pub(super) struct Sums {
 
 /// Judges all layers by the part.
 pub(super) fn check(
-    print: &Print,
+    filled: &Filled<'_>,
     part: &Part,
     terms: &Terms,
     has_roles: bool,
     (found, notes): (&mut Findings, &mut Vec<String>),
 ) -> Sums {
+    let print = filled.print;
     let lines = print.moves.iter().filter(|step| is_of_part(step, has_roles));
     let both = [extent(lines), part.extent()];
     let corners = both.into_iter().flatten().flat_map(|(low, high)| [low, high]);
     let Some((low, high)) = extent_of(corners) else { return Sums::default() };
-    let (floors, strays) = (floors(print), strays(print));
-    let layers = print.layers.iter().enumerate();
-    let heights: Vec<f64> = layers.map(|(k, one)| one.height - gap_below(print, k)).collect();
+    let strays = strays(print);
     let judge = Judge {
         print,
         part,
         lattice: Lattice::new(PITCH, high[1] - low[1], MOST_ROWS),
-        heights: &heights,
+        heights: &filled.heights,
         line_width: line_width(print),
-        floors: &floors,
+        floors: &filled.floors,
         strays: &strays,
         terms,
         has_roles,
@@ -106,7 +105,7 @@ pub(super) fn check(
         found.extend(std::mem::take(&mut verdict.findings));
     }
     let areas: Vec<Areas> = layers.iter().map(|verdict| verdict.areas).collect();
-    sums(print, (terms, &heights), (&areas, has_roles), found)
+    sums(print, (terms, &filled.heights), (&areas, has_roles), found)
 }
 
 /// Judges some layers side by side.

@@ -71,6 +71,12 @@ impl Terms {
         }
     }
 
+    /// Width of a box of a line's height and plastic, mm, whatever the file says.
+    pub(super) fn box_width(&self, step: &Step) -> f64 {
+        let room = step.length() * f64::from(step.height);
+        f64::from(step.filament) * self.filament_area / room
+    }
+
     /// A line's plastic, mm³, less what settings make of it on purpose.
     pub(super) fn plastic(&self, step: &Step) -> f64 {
         let flow = match step.role {

@@ -19,7 +19,7 @@ Findings, each with a stable code, a place and a measure:
   printed-twice        a line on the middle of another of its layer, over 10 mm or most of it
   overfilled         * over 1.25 times the plastic that walls and skins have room for, on one layer
                        within 4 by 4 mm
-  underfilled        * under 0.75 times that, or a fifth of the room between them left open
+  underfilled        * under 0.7 times that, or a fifth of the room between them left open
   narrow-bead        * over 1 mm of a line narrower than 70 % of the nozzle
   slender-support    * support over 10 times as high as it is thick
   loose-infill       * the sparse infill touches under a quarter of the innermost walls
@@ -34,10 +34,10 @@ Findings, each with a stable code, a place and a measure:
 A kind marked * is a warning: a weak place of a print that can be made. Warnings are listed after
 `warning:` and fail neither `check` nor --check.
 
-The part is cut anew at the middle of every layer and laid under pixels of 0.05 mm, larger ones
-where a layer would have more than 30 million. Places narrower than 1.2 lines need not be printed.
-A part that itself begins in the air gives a warning. A file without comments does not tell what
-its lines are for: what cannot be judged is listed.";
+The part is cut anew at the middle of every layer, and compared with what is printed along rows
+0.05 mm apart, wider apart in a print deeper than 300 mm. Places narrower than 1.2 lines need not
+be printed. A file without comments does not tell what its lines are for: what cannot be judged is
+listed.";
 
 /// What is done about a broken mesh.
 pub(super) const MENDING: &str = "\

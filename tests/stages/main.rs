@@ -13,3 +13,4 @@ mod reader;
 mod rounding;
 mod stl;
 mod tour;
+mod weak;

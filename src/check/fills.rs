@@ -1,0 +1,283 @@
+//! Filled -> findings of plastic and room, layer by layer and place by place.
+//!
+//! Words used here: a *cell* is a square of the bed; the *room* of walls and skins in a cell is what
+//! they cover of it; a *gap* is a stretch between two of them that is too narrow for sparse infill.
+//!
+//! In each cell of a layer
+//! - the plastic of walls and skins is compared with the room that they cover: lines that lie on one
+//!   another share the room, and overfill it; thin ones leave it half empty. Of a thick line the
+//!   share counts that lies in the layer;
+//! - gaps are compared with that room. They are looked for along rows and along columns, and only
+//!   inside the closed loops of the outer walls, so that air between two parts is none.
+//!
+//! Sums over a whole file hide such places: a wall that is printed twice disappears among good ones.
+
+use super::capsule::Capsule;
+use super::filled::Filled;
+use super::finding::{Code, Finding, Findings, Place, short};
+use super::part::extent_of;
+use super::rows::{Lattice, united};
+use super::samples::Samples;
+use super::terms::Terms;
+use crate::geom::segment;
+use crate::geom::spans::{Rows, Span};
+use crate::reader::Role;
+use crate::reader::print::Step;
+use crate::units::{to_mm, to_units};
+use rayon::prelude::*;
+
+/// Distance of rows, mm: an eighth of a usual line, so that a line along a row is covered by eight.
+const PITCH: f64 = 0.05;
+
+/// Rows of a layer at most; larger prints get rows further apart.
+const MOST_ROWS: f64 = 6000.0;
+
+/// Side of a cell, mm: ten lines, so that a single bad line shows and a corner does not.
+const CELL: f64 = 4.0;
+
+/// Cells along a side at most; larger prints get larger cells.
+const MOST_CELLS: f64 = 256.0;
+
+/// Plastic over room: neighbours of other slicers overlap by a tenth, ends of lines in walls by
+/// another; the model of a bead with round ends leaves 0.79 of the thinnest.
+const BOUNDS: [f64; 2] = [0.7, 1.25];
+
+/// Room by which plastic is judged, mm²: too little and too much of it.
+const LEAST_ROOM: [f64; 2] = [2.0, 1.2];
+
+/// What must be too much to count, mm² of a layer: three quarters of a mm of a line.
+const LEAST_EXCESS: f64 = 0.3;
+
+/// Narrower stretches between walls or skins are gaps, mm, two lines: wider rooms are left to sparse
+/// infill on purpose.
+const GAP: f64 = 0.8;
+
+/// Open part of gaps and room from which on a place is underfilled, and least area, mm².
+const OPEN: f64 = 0.2;
+const LEAST_OPEN: f64 = 0.6;
+
+/// Loops whose ends lie nearer than this are closed, mm: seams leave gaps.
+const CLOSED: f64 = 1.0;
+
+/// Length of the pieces in which plastic is counted, mm.
+const PIECE: f64 = 0.4;
+
+/// Plastic of a round thread over that of a box around it: π/4 = 0.79, and what some widen it by.
+const ROUND: f64 = 0.86;
+
+/// Lanes side by side in which a line's plastic is counted: it may run along a border of cells.
+const LANES: usize = 4;
+
+/// Judges all layers.
+pub(super) fn check(filled: &Filled<'_>, terms: &Terms, found: &mut Findings) {
+    let ends = filled
+        .print
+        .lines()
+        .filter(|step| is_solid(step))
+        .flat_map(|step| [step.from, step.to].map(|at| [f64::from(at[0]), f64::from(at[1])]));
+    let Some((low, high)) = extent_of(ends) else { return };
+    let sides = [high[0] - low[0], high[1] - low[1]];
+    let longest = sides[0].max(sides[1]);
+    let side = CELL.max(longest / MOST_CELLS);
+    let judge = Judge {
+        filled,
+        terms,
+        lattice: Lattice::new(PITCH, longest, MOST_ROWS),
+        // One more around, for what lines cover beyond their ends.
+        low: low.map(|low| low - side),
+        side,
+        count: sides.map(|length| (length / side) as usize + 3),
+    };
+    let layers = (0..filled.print.layers.len()).into_par_iter();
+    let judged: Vec<Vec<Finding>> = layers.map(|layer| judge.layer(layer)).collect();
+    found.extend(judged.into_iter().flatten());
+}
+
+fn is_solid(step: &Step) -> bool {
+    matches!(step.role, Role::OuterWall | Role::InnerWall | Role::Skin)
+}
+
+/// Whether a line is a round thread, as bridges are: it hangs, and fills no room of its layer.
+fn is_thread(step: &Step, terms: &Terms) -> bool {
+    step.height >= 0.9 * step.width && terms.box_width(step) <= ROUND * f64::from(step.width)
+}
+
+struct Judge<'a> {
+    filled: &'a Filled<'a>,
+    terms: &'a Terms,
+    lattice: Lattice,
+    /// Lowest corner of the cells, mm.
+    low: [f64; 2],
+    /// Side of a cell, mm.
+    side: f64,
+    count: [usize; 2],
+}
+
+/// What is measured in a cell: mm², and plastic in mm³.
+#[derive(Clone, Copy, Default)]
+struct Cell {
+    room: f64,
+    plastic: f64,
+    /// Open gaps along rows, and along columns.
+    open: [f64; 2],
+}
+
+impl Judge<'_> {
+    fn layer(&self, layer: usize) -> Vec<Finding> {
+        let mut cells = vec![Cell::default(); self.count[0] * self.count[1]];
+        let own = &self.filled.print.layers[layer].moves;
+        let own = &self.filled.print.moves[own.clone()];
+        let lines: Vec<(&Step, f64)> =
+            self.filled.lines(layer).filter(|(step, _)| !is_thread(step, self.terms)).collect();
+        let threads = || own.iter().filter(|step| step.is_line() && is_thread(step, self.terms));
+        for &(step, share) in lines.iter().filter(|(step, _)| is_solid(step)) {
+            let pieces = Samples::of(step, PIECE);
+            let plastic = self.terms.plastic(step) * share / step.length();
+            let lane = f64::from(step.width) / LANES as f64;
+            for piece in pieces {
+                for k in 0..LANES {
+                    let aside = (k as f64 + 0.5 - LANES as f64 / 2.0) * lane;
+                    let at = segment::along(piece.at, aside, piece.across);
+                    if let Some(cell) = self.cell(at).and_then(|k| cells.get_mut(k)) {
+                        cell.plastic += plastic * piece.length / LANES as f64;
+                    }
+                }
+            }
+        }
+        for flipped in [false, true] {
+            let draw = |solid: bool| {
+                let some = lines.iter().filter(|(step, _)| {
+                    if solid { is_solid(step) } else { step.role == Role::Infill }
+                });
+                let capsules = some.map(|(step, _)| Capsule::of(step, 1.0));
+                self.lattice.draw(capsules.map(|one| if flipped { one.flipped() } else { one }))
+            };
+            let (solid, sparse) = (draw(true), draw(false));
+            if !flipped {
+                self.share(&solid, flipped, |k, area| cells[k].room += area);
+            }
+            let inside = self.inside(layer, flipped);
+            let hung = threads().map(|step| Capsule::of(step, 1.0));
+            let hung = self.lattice.draw(hung.map(|one| if flipped { one.flipped() } else { one }));
+            let open = gaps(&solid, &inside).minus(&sparse).minus(&hung);
+            self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
+        }
+        let judged = cells.iter().enumerate().filter_map(|(k, cell)| {
+            let finding = self.judged(cell, self.filled.heights[layer])?;
+            let [x, y] = [k % self.count[0], k / self.count[0]];
+            let middle = |low: f64, k: usize| short(low + (k as f64 + 0.5) * self.side);
+            Some(finding.at(Place {
+                line: None,
+                layer: Some(layer + 1),
+                z_mm: Some(short(self.filled.print.layers[layer].z)),
+                at_mm: Some([middle(self.low[0], x), middle(self.low[1], y)]),
+            }))
+        });
+        judged.collect()
+    }
+
+    /// The cell of a place.
+    fn cell(&self, at: [f64; 2]) -> Option<usize> {
+        let [x, y] = [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.side);
+        let is_in = x >= 0.0 && y >= 0.0 && x < self.count[0] as f64 && y < self.count[1] as f64;
+        is_in.then_some(x as usize + y as usize * self.count[0])
+    }
+
+    /// Hands each cell's part of an area to `sink`, mm².
+    fn share(&self, rows: &Rows, flipped: bool, mut sink: impl FnMut(usize, f64)) {
+        let (along, across) = if flipped { (1, 0) } else { (0, 1) };
+        let strides = [1, self.count[0]];
+        for (j, row) in rows.iter().filter(|(_, row)| !row.is_empty()) {
+            let y = (self.lattice.middle(j) - self.low[across]) / self.side;
+            if y < 0.0 || y >= self.count[across] as f64 {
+                continue;
+            }
+            let base = y as usize * strides[across];
+            for span in row {
+                let [mut from, to] = [span.start, span.end]
+                    .map(|at| ((to_mm(at) - self.low[along]) / self.side).max(0.0));
+                while from < to {
+                    let k = from as usize;
+                    let end = to.min((k + 1) as f64);
+                    if k < self.count[along] {
+                        let area = (end - from) * self.side * self.lattice.pitch();
+                        sink(base + k * strides[along], area);
+                    }
+                    from = end;
+                }
+            }
+        }
+    }
+
+    /// What the closed loops of a layer's outer walls enclose, between the middles of their lines.
+    fn inside(&self, layer: usize, flipped: bool) -> Rows {
+        let print = self.filled.print;
+        let steps = print.moves_of(&print.layers[layer]);
+        let is_wall = |step: &Step| step.is_line() && step.role == Role::OuterWall;
+        let mut crossings: Vec<(i32, f64)> = Vec::new();
+        for chain in steps.chunk_by(|a, b| is_wall(a) && is_wall(b) && a.to == b.from) {
+            let (first, last) = (&chain[0], &chain[chain.len() - 1]);
+            let [x, y] = [0, 1].map(|axis| f64::from(first.from[axis] - last.to[axis]));
+            if !is_wall(first) || x * x + y * y > CLOSED * CLOSED {
+                continue;
+            }
+            let closing = std::iter::once((last.to, first.from));
+            for (from, to) in chain.iter().map(|step| (step.from, step.to)).chain(closing) {
+                let at = |at: [f32; 3]| {
+                    let [x, y] = [f64::from(at[0]), f64::from(at[1])];
+                    if flipped { [y, x] } else { [x, y] }
+                };
+                let (a, b) = (at(from), at(to));
+                let (low, high) = if a[1] < b[1] { (a, b) } else { (b, a) };
+                for row in self.lattice.range(low[1], high[1]) {
+                    let part = (self.lattice.middle(row) - low[1]) / (high[1] - low[1]);
+                    crossings.push((row, low[0] + part * (high[0] - low[0])));
+                }
+            }
+        }
+        crossings.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let rows = crossings.chunk_by(|a, b| a.0 == b.0);
+        let spans: Vec<(i32, Span)> = rows
+            .flat_map(|row| row.chunks_exact(2))
+            .filter_map(|two| Some((two[0].0, Span::new(to_units(two[0].1), to_units(two[1].1))?)))
+            .collect();
+        united(&spans)
+    }
+
+    /// Judges a cell of a layer of this height, mm.
+    fn judged(&self, cell: &Cell, height: f64) -> Option<Finding> {
+        let room = cell.room * height;
+        let fills = cell.plastic / room;
+        let percent = short(100.0 * fills);
+        let excess = (cell.plastic - room) / height;
+        if cell.room >= LEAST_ROOM[1] && fills > BOUNDS[1] && excess >= LEAST_EXCESS {
+            let text =
+                format!("walls and skins take {percent} % of the plastic that they have room for");
+            return Some(Finding::warning(Code::Overfilled, percent, "%", text));
+        }
+        let open = cell.open[0].max(cell.open[1]);
+        if open >= LEAST_OPEN && open > OPEN * (open + cell.room) {
+            let text = format!("{} mm² between walls or skins are open", short(open));
+            return Some(Finding::warning(Code::Underfilled, open, "mm²", text));
+        }
+        let lacks = -excess;
+        (cell.room >= LEAST_ROOM[0] && fills < BOUNDS[0]).then(|| {
+            let text =
+                format!("walls and skins take {percent} % of the plastic that they have room for");
+            Finding::warning(Code::Underfilled, lacks, "mm²", text)
+        })
+    }
+}
+
+/// The gaps of each row inside an area.
+fn gaps(solid: &Rows, inside: &Rows) -> Rows {
+    let most = i64::from(to_units(GAP));
+    let mut between = Rows::with_room_of(solid, solid.range().start);
+    for (_, row) in solid.iter() {
+        between.push_row(|spans| {
+            let gaps = row.windows(2).filter_map(|two| Span::new(two[0].end, two[1].start));
+            spans.extend(gaps.filter(|gap| gap.len() <= most));
+        });
+    }
+    between.and(inside)
+}
