@@ -129,7 +129,7 @@ impl Print {
                 "Custom" => Kind::Custom,
                 "External perimeter" => Kind::OuterWall,
                 "Perimeter" => Kind::InnerWall,
-                "Solid infill" => Kind::Skin,
+                "Solid infill" | "Bridge infill" => Kind::Skin,
                 "Internal infill" => Kind::Infill,
                 "Support material" => Kind::Support,
                 other => return Err(format!("unknown type {other}")),
