@@ -9,7 +9,7 @@
 //! - *Highest* is the greatest z printed so far. It is above the layer only after a path that rose.
 //!
 //! For each path, in order:
-//! 1. Retract if the plan says so, and lift by the z-hop.
+//! 1. Retract if the plan says so, wipe, and lift by the z-hop.
 //! 2. Lift over everything that is printed, travel, and go down to the first point.
 //! 3. Write a move for each pair of points. Filament is length x width x height x rate of the role.
 //! 4. Where width or height change, compute the feed again, clamped to the flow limit.
@@ -17,7 +17,7 @@
 use super::flow::{FlowLimit, Flows, Lowered, feed, whole_feed};
 use crate::fill::{Both, Path, PathPoint, Role, RoleTable};
 use crate::geom::Point;
-use crate::plan::Toolpath;
+use crate::plan::{PrintMove, Toolpath};
 use crate::profile::{ExtrusionModel, Settings};
 use crate::units::{Coord, Thousandths, UNITS_PER_MM, to_mm, to_units};
 
@@ -144,7 +144,7 @@ impl MoveParams {
         for next in &layer.moves {
             let Some(first) = next.path.points.first() else { continue };
             walk.out.paths.push(walk.out.moves.len());
-            walk.approach(first, next.retract);
+            walk.approach(first, next);
             walk.path(&next.path);
         }
         walk.out
@@ -197,12 +197,14 @@ impl<'a> Walk<'a> {
     }
 
     /// Adds the approach to the first point of a path.
-    fn approach(&mut self, to: &PathPoint, retract: bool) {
+    fn approach(&mut self, to: &PathPoint, PrintMove { retract, wipe, via, .. }: &PrintMove) {
+        let retract = *retract;
         let z = self.out.z + to.z;
         // The height of the travel. On a flat layer that is the layer's own.
         let over = z.max(self.highest);
         if retract {
             self.pull(-self.params.retract, Kind::Retract);
+            wipe.iter().for_each(|&at| self.travel(at));
             if self.params.hop > 0 {
                 self.lift(over + self.params.hop);
             }
@@ -213,6 +215,7 @@ impl<'a> Walk<'a> {
         if self.at.is_some() && self.z.is_none_or(|now| now < over && goes) {
             self.lift(over);
         }
+        via.iter().for_each(|&at| self.travel(at));
         self.travel(to.at);
         if self.z != Some(z) {
             self.lift(z);
@@ -303,7 +306,7 @@ mod tests {
     use crate::fill::Shape;
     use crate::gcode::times::Timer;
     use crate::motion::Limits;
-    use crate::plan::{Head, PrintMove};
+    use crate::plan::Head;
     use crate::profile;
 
     fn path(places: &[(Coord, Coord)], y: Coord) -> Path {
@@ -321,7 +324,7 @@ mod tests {
     fn hill(highest: Coord) -> Toolpath {
         let rising = path(&[(0, 0), (4_000, 3_000), (100_000, 3_000)], 0);
         let flat = path(&[(100_000, 0), (0, 0)], 50_000);
-        let moves = [rising, flat].map(|path| PrintMove { retract: false, path }).to_vec();
+        let moves = [rising, flat].map(|path| PrintMove::to(path)).to_vec();
         let from = Head { at: Some(Point { x: 0, y: 0 }), highest };
         Toolpath { layer: 4, z: 10_000, height: 2_000, from, moves }
     }

@@ -34,15 +34,19 @@ impl Usage {
     #[must_use]
     pub fn of(layer: &Moves) -> Self {
         let mut usage = Self { flows: layer.flows.clone(), ..Self::default() };
+        let mut on_its_way = false;
         for step in &layer.moves {
             match step.kind {
                 Kind::Extrude(bead) => {
+                    on_its_way = false;
                     let used = usage.roles[bead.role].of_mut(bead.thick);
                     used.length += step.length;
                     used.filament += step.filament;
                 }
                 Kind::Travel => {
-                    usage.travels += 1;
+                    // A travel may have corners.
+                    usage.travels += usize::from(!on_its_way);
+                    on_its_way = true;
                     usage.travel_length += step.length;
                 }
                 Kind::Retract => usage.retractions += 1,

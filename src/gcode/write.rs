@@ -306,7 +306,8 @@ mod tests {
         let wall = path(Role::OuterWall, 1, &[0, 100_000], 0);
         let thick = path(Role::Infill, 2, &[100_000, 0], 20_000);
         let moves = [(true, wall), (false, thick)];
-        let moves = moves.map(|(retract, path)| PrintMove { retract, path }).to_vec();
+        let moves =
+            moves.map(|(retract, path)| PrintMove { retract, ..PrintMove::to(path) }).to_vec();
         Toolpath { layer: 3, z: 8_000, height: 2_000, from: Head::default(), moves }
     }
 

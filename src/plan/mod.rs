@@ -1,19 +1,23 @@
-//! Paths -> Toolpaths: sorts a layer's paths for printing, and decides which travels retract.
+//! Paths -> Toolpaths: sorts a layer's paths for printing, and decides how travels go.
 //!
 //! 1. [`order::Unordered`] divides paths among islands. An *island* is one outer contour with
 //!    everything that is printed inside it.
 //! 2. [`mod@order`] sorts the paths of each island, nearest first.
 //! 3. [`tour`] reorders runs of them where that saves time.
-//! 4. [`travel`] decides for each path whether the travel to it retracts.
+//! 4. [`travel`] decides for each path how the travel to it goes: straight or round a corner, with or
+//!    without a retraction.
 //!
 //! Of a path's role only its [`Place`](crate::fill::Place) matters here.
 //!
 //! Guaranteed to the next stage: every path comes once, in the order of printing.
 
+mod crossings;
+mod detour;
 pub mod order;
 mod params;
 pub mod tour;
 pub mod travel;
+mod wipe;
 
 pub use params::PlanParams;
 
@@ -22,13 +26,26 @@ use crate::geom::Point;
 use crate::slice::Layer;
 use crate::units::Coord;
 
-/// A path, and whether the travel to it retracts.
+/// A path, and how the travel to it goes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PrintMove {
     /// The travel to the path retracts.
     pub retract: bool,
+    /// Once the filament is pulled back, the nozzle first goes to these points, at the height where
+    /// it is.
+    pub wipe: Vec<Point>,
+    /// The travel goes over these points.
+    pub via: Vec<Point>,
     /// The path.
     pub path: Path,
+}
+
+impl PrintMove {
+    /// A path with a straight travel to it that does not retract.
+    #[must_use]
+    pub fn to(path: Path) -> Self {
+        Self { retract: false, wipe: Vec::new(), via: Vec::new(), path }
+    }
 }
 
 /// The paths of one layer in the order of printing.

@@ -1,5 +1,6 @@
 //! Settings -> PlanParams: converts the settings that the plan stage needs.
 
+use super::detour::DetourParams;
 use crate::profile::{RetractWhen, Seam, Settings, WallOrder};
 use crate::units::{Bounded as _, Coord, UNITS_PER_MM, to_units};
 
@@ -14,6 +15,12 @@ pub struct PlanParams {
     pub(super) retract_always: bool,
     /// Travels shorter than this never retract, grid units.
     pub(super) min_travel: Coord,
+    /// Longer travels retract wherever they go, grid units; `None` without a limit.
+    pub(super) max_travel: Option<Coord>,
+    /// For travels that go round what they would cross; `None` if all go straight.
+    pub(super) detour: Option<DetourParams>,
+    /// How far the nozzle goes over the last line after a retraction, grid units.
+    pub(super) wipe: Coord,
     /// The retraction length is above zero.
     pub(super) retracts: bool,
     /// For the time of travels.
@@ -29,6 +36,9 @@ impl PlanParams {
             seam_rear: settings.seam == Seam::Rear,
             retract_always: settings.retraction.when == RetractWhen::Always,
             min_travel: to_units(settings.retraction.min_travel),
+            max_travel: Some(to_units(settings.retraction.max_travel)).filter(|&most| most > 0),
+            detour: detour(settings),
+            wipe: to_units(settings.retraction.wipe),
             retracts: settings.retraction.length > 0.0,
             times: Times {
                 feed: settings.speed.travel * UNITS_PER_MM,
@@ -37,6 +47,20 @@ impl PlanParams {
             },
         }
     }
+}
+
+/// Ways lie a line's width inside the contours, where walls are. They come no nearer than a third of
+/// that: the outer wall's middle lies at half of it, and travels begin and end there.
+fn detour(settings: &Settings) -> Option<DetourParams> {
+    let (travel, retraction) = (&settings.travel, &settings.retraction);
+    let wanted = travel.avoid_crossing && retraction.when == RetractWhen::Crossing;
+    let limit = Some(to_units(retraction.max_travel)).filter(|&most| most > 0);
+    wanted.then(|| DetourParams {
+        most_more: to_units(travel.max_detour),
+        longest: limit.unwrap_or(Coord::MAX),
+        rail: to_units(settings.line_width),
+        clearance: to_units(settings.line_width / 3.0),
+    })
 }
 
 /// Estimates the time of travels.

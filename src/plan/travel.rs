@@ -1,38 +1,65 @@
-//! Ordered paths -> print moves: improves the order, and decides which travels retract.
+//! Ordered paths -> print moves: improves the order, and decides for each travel how it goes.
 //!
 //! Plastic that oozes inside the part stays hidden. A travel that crosses an outer wall draws a
 //! string on the outside. So travels retract if they cross a contour of the layer or lie outside
-//! all of them.
+//! all of them. What oozes on a long way is missing where the next line begins, so that long travels
+//! retract as well.
 //!
-//! The edges of a layer are sorted into bands of y. A travel is tested only against the edges of the
-//! bands that it passes through.
+//! A travel that would cross a contour goes round it instead, if that way is short enough to need no
+//! retraction; see [`mod@detour`]. Else it goes straight, after wiping the nozzle on the last line.
+//!
+//! The order is improved with the cost of straight travels. Detours would seldom change it, and each
+//! costs many times as much to find as a crossing.
 
+use super::crossings::Crossings;
+use super::detour::detour;
 use super::tour::{self, Cost};
+use super::wipe::wipe;
 use super::{Head, PlanParams, PrintMove, Toolpath};
 use crate::fill::Path;
-use crate::geom::cells::Cells;
-use crate::geom::{Contour, Point, edges, encloses, side};
+use crate::geom::{Contour, Point};
 use crate::slice::Layer;
-use crate::units::Coord;
-
-/// Most bands of a layer. A trade-off: with more bands a travel is tested against fewer edges, but a
-/// steep edge is stored in each band that it reaches into. The result does not depend on it.
-const MOST_BANDS: usize = 256;
 
 /// The travels of one layer.
 struct Travels<'a> {
+    contours: &'a [Contour],
     crossings: Crossings,
     params: &'a PlanParams,
 }
 
 impl Travels<'_> {
-    /// Whether a travel retracts.
+    /// Whether a straight travel retracts.
     fn retracts(&self, from: Point, to: Point) -> bool {
+        let square = from.distance2(to);
         let least = i64::from(self.params.min_travel).pow(2);
+        let most = self.params.max_travel.map(|most| i64::from(most).pow(2));
         self.params.retracts
             && from != to
-            && from.distance2(to) >= least
-            && (self.params.retract_always || self.crossings.leaves(from, to))
+            && square >= least
+            && (self.params.retract_always
+                || most.is_some_and(|most| square > most)
+                || self.crossings.leaves(from, to))
+    }
+
+    /// The way round, if that saves the retraction of a travel.
+    fn detour(&self, from: Point, to: Point) -> Option<Vec<Point>> {
+        let params = self.params.detour.as_ref()?;
+        detour((from, to), self.contours, &self.crossings, params)
+    }
+
+    /// The travel to `path` from where the head is; `last` is the path before it.
+    fn to(&self, path: Path, at: Option<Point>, last: Option<&Path>) -> PrintMove {
+        let Some(from) = at else {
+            return PrintMove { retract: self.params.retracts, ..PrintMove::to(path) };
+        };
+        if !self.retracts(from, path.start()) {
+            return PrintMove::to(path);
+        }
+        if let Some(via) = self.detour(from, path.start()) {
+            return PrintMove { via, ..PrintMove::to(path) };
+        }
+        let wipe = last.map(|last| wipe(last, self.params.wipe)).unwrap_or_default();
+        PrintMove { retract: true, wipe, ..PrintMove::to(path) }
     }
 }
 
@@ -58,115 +85,20 @@ pub fn toolpath(layer: &Layer, paths: Vec<Path>, from: Head, params: &PlanParams
     Toolpath { layer: layer.index, z: layer.z, height: layer.height, from, moves }
 }
 
-/// Improves the order of the paths, starting from `at`, and decides for each whether the travel to
-/// it retracts.
+/// Improves the order of the paths, starting from `at`, and decides for each how the travel to it
+/// goes.
 fn moves(
     paths: Vec<Path>,
     contours: &[Contour],
-    mut at: Option<Point>,
+    at: Option<Point>,
     params: &PlanParams,
 ) -> Vec<PrintMove> {
-    let travels = Travels { crossings: Crossings::new(contours), params };
-    tour::improve(paths, at, &travels)
-        .into_iter()
-        .map(|path| {
-            let to = path.start();
-            let retract = match at {
-                Some(from) => travels.retracts(from, to),
-                None => params.retracts,
-            };
-            at = Some(path.end());
-            PrintMove { retract, path }
-        })
-        .collect()
-}
-
-/// A layer's edges in bands of y: finds those that a travel may cross.
-struct Crossings {
-    low: Coord,
-    /// Each band is 2 to the power of `shift` high.
-    shift: u32,
-    bands: Cells<(Point, Point)>,
-}
-
-impl Crossings {
-    fn new(contours: &[Contour]) -> Self {
-        let points = || contours.iter().flatten();
-        let low = points().map(|p| p.y).min().unwrap_or(0);
-        let high = points().map(|p| p.y).max().unwrap_or(0);
-        let wished = points().count().div_ceil(4).clamp(1, MOST_BANDS);
-        let shift = (0..Coord::BITS).find(|&shift| ((high - low) >> shift) < wished as Coord);
-        let shift = shift.unwrap_or_default();
-        let band = |y: Coord| ((y - low) >> shift) as usize;
-        let edges = || contours.iter().flat_map(|c| edges(c));
-        let reach = |(a, b): (Point, Point)| band(a.y.min(b.y))..band(a.y.max(b.y)) + 1;
-        Self { low, shift, bands: Cells::new(band(high) + 1, edges, reach) }
+    let travels = Travels { contours, crossings: Crossings::new(contours), params };
+    let mut moves: Vec<PrintMove> = Vec::with_capacity(paths.len());
+    for path in tour::improve(paths, at, &travels) {
+        let last = moves.last().map(|last| &last.path);
+        let next = travels.to(path, last.map(Path::end).or(at), last);
+        moves.push(next);
     }
-
-    /// Whether the travel from `a` to `b` crosses an edge or lies outside the contours.
-    fn leaves(&self, a: Point, b: Point) -> bool {
-        let last = self.bands.count() - 1;
-        let band = |y: Coord| (((y - self.low).max(0) >> self.shift) as usize).min(last);
-        let touched = self.bands.of(band(a.y.min(b.y))..band(a.y.max(b.y)) + 1);
-        touched.iter().any(|&(p, q)| meet(a, b, p, q)) || !self.holds(a)
-    }
-
-    /// Whether `p` is inside the contours, which do not overlap.
-    fn holds(&self, p: Point) -> bool {
-        let Ok(k) = usize::try_from((p.y - self.low) >> self.shift) else { return false };
-        k < self.bands.count() && encloses(self.bands.of(k..k + 1).iter().copied(), p)
-    }
-}
-
-/// Whether segments a–b and p–q share a point.
-fn meet(a: Point, b: Point, p: Point, q: Point) -> bool {
-    let (x1, x2) = (a.x.min(b.x), a.x.max(b.x));
-    if p.x.max(q.x) < x1 || p.x.min(q.x) > x2 {
-        return false;
-    }
-    let (y1, y2) = (a.y.min(b.y), a.y.max(b.y));
-    if p.y.max(q.y) < y1 || p.y.min(q.y) > y2 {
-        return false;
-    }
-    let (p_side, q_side) = (side(a, b, p).signum(), side(a, b, q).signum());
-    let (a_side, b_side) = (side(p, q, a).signum(), side(p, q, b).signum());
-    p_side * q_side <= 0 && a_side * b_side <= 0
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn square(low: Coord, high: Coord, hole: bool) -> Contour {
-        let p = |x, y| Point { x, y };
-        let mut square = vec![p(low, low), p(high, low), p(high, high), p(low, high)];
-        if hole {
-            square.reverse();
-        }
-        square
-    }
-
-    #[test]
-    fn travels_leave_if_they_cross_a_contour_or_lie_outside() {
-        let crossings = Crossings::new(&[square(0, 1000, false), square(400, 600, true)]);
-        let p = |x, y| Point { x, y };
-        for (a, b, leaves) in [
-            (p(100, 100), p(900, 100), false),
-            (p(100, 100), p(100, 900), false),
-            (p(100, 500), p(900, 500), true),
-            (p(100, 100), p(1100, 100), true),
-            (p(-200, 500), p(-100, 500), true),
-            (p(450, 450), p(550, 550), true),
-            (p(-500, -500), p(5000, -400), true),
-        ] {
-            assert_eq!(crossings.leaves(a, b), leaves, "{a:?} to {b:?}");
-            assert_eq!(crossings.leaves(b, a), leaves, "{b:?} to {a:?}");
-        }
-    }
-
-    #[test]
-    fn without_contours_every_travel_lies_outside() {
-        let crossings = Crossings::new(&[]);
-        assert!(crossings.leaves(Point { x: 1, y: 2 }, Point { x: 3, y: -4 }));
-    }
+    moves
 }
