@@ -19,9 +19,9 @@ pub mod variable_width;
 pub use path::{Path, PathPoint, Shape};
 pub use role::{Both, Place, Role, RoleFacts, RoleTable};
 
-use crate::geom::Point;
 use crate::geom::frame::Frame;
 use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::{Contour, Point};
 use crate::profile::Settings;
 use crate::region::{Region, Skin, Sparse, walls::Wall};
 use crate::slice::Heights;
@@ -72,7 +72,10 @@ pub fn paths(region: &Region, params: &FillParams) -> Vec<Path> {
     region.walls.iter().for_each(|wall| maker.wall(wall));
     region.skins.iter().for_each(|skin| maker.skin(skin));
     region.infill.iter().for_each(|sparse| maker.sparse(Role::Infill, sparse));
-    region.support.iter().for_each(|sparse| maker.sparse(Role::Support, sparse));
+    let support = &region.support;
+    support.outlines.iter().for_each(|outline| maker.outline(outline));
+    support.body.iter().for_each(|sparse| maker.sparse(Role::Support, sparse));
+    support.interface.iter().for_each(|sparse| maker.sparse(Role::SupportInterface, sparse));
     maker.out
 }
 
@@ -114,6 +117,14 @@ impl Maker<'_> {
         for strand in pattern.strands(rows, *width, self.params.line_width) {
             self.polyline(role, *layers, frame, &strand, rounding);
         }
+    }
+
+    /// Adds a bead around support. Its beginning does not matter, so it is an open path.
+    fn outline(&mut self, outline: &Contour) {
+        let (width, height) = (self.params.line_width, self.height(1));
+        let corners = outline.iter().chain(outline.first());
+        let points = corners.map(|&at| PathPoint { at, z: 0, width, height }).collect();
+        self.push(Role::Support, Shape::Open, 1, points);
     }
 
     /// Adds a polyline given in `frame`, with its corners rounded.

@@ -18,6 +18,8 @@ pub enum Role {
     Infill,
     /// Support.
     Support,
+    /// Dense support next to the part.
+    SupportInterface,
 }
 
 /// Where a role has its place in the order of a layer.
@@ -52,8 +54,15 @@ pub struct RoleFacts {
 
 impl Role {
     /// All roles, in the order of reports.
-    pub const ALL: [Self; 6] =
-        [Self::OuterWall, Self::InnerWall, Self::Skin, Self::Bridge, Self::Infill, Self::Support];
+    pub const ALL: [Self; 7] = [
+        Self::OuterWall,
+        Self::InnerWall,
+        Self::Skin,
+        Self::Bridge,
+        Self::Infill,
+        Self::Support,
+        Self::SupportInterface,
+    ];
 
     /// What is particular to it.
     #[must_use]
@@ -108,6 +117,12 @@ impl Role {
                 speed_keys: Both::same("speed.support"),
                 speed: |speed| Both::same(speed.support),
                 factor: |extrusion| extrusion.support_factor,
+            },
+            Self::SupportInterface => RoleFacts {
+                name: "support interface",
+                annotation: "Support material interface",
+                may_be_thick: false,
+                ..Self::Support.facts()
             },
         }
     }

@@ -58,7 +58,7 @@ impl Setup {
     ) -> Planner<'a> {
         let supports = self
             .support
-            .map(|s| window::Support { pattern: s.pattern(), rows: supports(slicer, &s, bed) });
+            .map(|s| window::Support { patterns: s.patterns(), layers: supports(slicer, &s, bed) });
         let window = Window::new(slicer, &self.region, &self.grouping, supports);
         let orderer = Orderer {
             fill: &self.fill,

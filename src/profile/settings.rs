@@ -190,6 +190,22 @@ pub struct Support {
     /// Distance to the part above and below, rounded to whole layers.
     #[schemars(range(min = 0, max = 5), extend("unit" = "mm", "default" = 0.2))]
     pub z_distance: f64,
+    /// Dense layers at the top of support, and at the bottom where it stands on the part.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "layers", "default" = 2))]
+    pub interface_layers: u32,
+    /// Gap between the lines of dense layers.
+    #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.2))]
+    pub interface_spacing: f64,
+    /// Support grows to this width, or to a fifth of its height if that is more, to stand; 0 leaves
+    /// it as narrow as the overhang.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 4))]
+    pub min_width: f64,
+    /// Whether a line runs around the lines of support.
+    #[schemars(extend("default" = true))]
+    pub outline: bool,
+    /// How far the lowest layer of support reaches further out, to hold on to the bed.
+    #[schemars(range(min = 0, max = 50), extend("unit" = "mm", "default" = 2))]
+    pub brim: f64,
     /// Where support may stand.
     #[schemars(extend("default" = "everywhere"))]
     pub stands_on: SupportBase,

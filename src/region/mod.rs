@@ -36,6 +36,7 @@ pub mod window;
 
 pub use params::RegionParams;
 
+use crate::geom::Contour;
 use crate::geom::polyline::Polyline;
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
@@ -58,9 +59,20 @@ pub struct Region {
     /// Its sparse infill.
     pub infill: Vec<Sparse>,
     /// Its support.
-    pub support: Vec<Sparse>,
+    pub support: SupportLines,
     /// Area that is too thin for a wall and so not printed, mm².
     pub thin_mm2: f64,
+}
+
+/// Support of one layer.
+#[derive(Debug, Default)]
+pub struct SupportLines {
+    /// Its sparse lines.
+    pub body: Vec<Sparse>,
+    /// Dense lines next to the part.
+    pub interface: Vec<Sparse>,
+    /// Beads around what is sparse.
+    pub outlines: Vec<Contour>,
 }
 
 /// Skin of one layer, on its raster and on the one across.

@@ -24,11 +24,11 @@ use super::params::RegionParams;
 use super::per_raster::skin_turn;
 use super::prepare::{LayerRows, Own, prepare};
 use super::queue::Queue;
+use super::support::{SupportLayer, SupportPatterns};
 use super::walls::{self, Wall};
-use super::{Region, Skin, SkinRows, Sparse};
+use super::{Region, Skin, SkinRows, Sparse, SupportLines};
 use crate::geom::polyline::Polyline;
 use crate::geom::spans::Rows;
-use crate::pattern::Pattern;
 use crate::profile::DualPart;
 use crate::slice::{Layer, Slicer};
 use rayon::prelude::*;
@@ -59,17 +59,17 @@ pub struct Window<'a> {
 /// The support of a print.
 #[derive(Debug)]
 pub struct Support {
-    /// The pattern that fills it.
-    pub pattern: Pattern,
+    /// The patterns that fill it.
+    pub patterns: SupportPatterns,
     /// Where it stands, by layer.
-    pub rows: Vec<Rows>,
+    pub layers: Vec<SupportLayer>,
 }
 
 /// What is decided for one layer of a block, before its walls and beads are added.
 struct Filling {
     skins: Vec<Skin>,
     infill: Vec<Sparse>,
-    support: Vec<Sparse>,
+    support: SupportLines,
     /// How many layers each wall is printed for.
     walls: Vec<u32>,
 }
@@ -192,13 +192,24 @@ impl<'a> Window<'a> {
     }
 
     /// The support of each layer of a block.
-    fn share_support(&self, block: &Block) -> (Vec<Vec<Sparse>>, Option<Audit>) {
-        let Some(support) = &self.support else {
-            return (vec![Vec::new(); block.layers.len()], None);
+    fn share_support(&self, block: &Block) -> (Vec<SupportLines>, Option<Audit>) {
+        let Some(Support { patterns, layers }) = &self.support else {
+            return (block.layers.clone().map(|_| SupportLines::default()).collect(), None);
         };
-        let rows = &support.rows[block.layers.clone()];
-        let line_width = self.params.walls.line_width;
-        dual::support(block, rows, &support.pattern, self.grouping, line_width)
+        let layers = &layers[block.layers.clone()];
+        let width = self.params.walls.line_width;
+        let rows: Vec<Rows> = layers.iter().map(|layer| layer.body.clone()).collect();
+        let (bodies, audit) = dual::support(block, &rows, &patterns.body, self.grouping, width);
+        // What carries the part is printed layer by layer, as finely as the part.
+        let lines = |(layer, body): (&SupportLayer, Vec<Sparse>)| {
+            let dense = patterns.interface.iter().zip(&layer.interface);
+            let interface = dense.filter(|(_, rows)| !rows.is_empty()).map(|(pattern, rows)| {
+                Sparse { pattern: pattern.clone(), rows: rows.clone(), layers: 1, width }
+            });
+            let interface = interface.collect();
+            SupportLines { body, interface, outlines: layer.outlines.clone() }
+        };
+        (layers.iter().zip(bodies).map(lines).collect(), audit)
     }
 
     /// The skins of layer `k`, which must be divided. The first has the raster of the layer's beads.

@@ -1,0 +1,132 @@
+//! Layers, from the top down -> Columns: where support stands on each layer.
+//!
+//! With the overhang `O(k)` of layer `k`, grown by the outset, the contours `L(k)` and the support
+//! `S(k)`: `S(k) = (O(k+1+gap) ∪ S(k+1)) − outset(L(k), clearance)`, less the layers within the gap.
+//! So support goes down until it reaches the bed or the part. A window keeps only the layers within
+//! the gap.
+//!
+//! Two versions go down side by side: the *reach*, which is just that, and the support itself, in
+//! which thin posts grow ([`mod@super::posts`]). Where the reach ends on a layer it carries an
+//! overhang; where a grown post ends it carries nothing.
+
+use super::overhangs::{LayerView, Overhang, overhang};
+use super::params::SupportParams;
+use super::posts::Posts;
+use crate::geom::spans::{Rows, Span, subtract};
+use crate::slice::Heights;
+use crate::units::Coord;
+use std::collections::VecDeque;
+
+/// The support of one layer.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Column {
+    /// Where support stands.
+    pub(super) all: Rows,
+    /// Where it stands, without what thin posts have grown.
+    pub(super) reach: Rows,
+}
+
+/// The layers around the one whose support is computed, from the top down.
+pub(super) struct Window<'a> {
+    params: &'a SupportParams,
+    heights: &'a Heights,
+    /// Highest first.
+    layers: VecDeque<LayerView>,
+    /// Overhangs that wait for the layer where their support begins, highest first.
+    overhangs: VecDeque<Overhang>,
+    /// The reach of the layer above.
+    reach: Rows,
+    /// The support of the layer above.
+    posts: Posts,
+    /// Number of layers in the window that are done.
+    done: usize,
+}
+
+impl<'a> Window<'a> {
+    /// A window at the top.
+    pub(super) fn new(params: &'a SupportParams, heights: &'a Heights) -> Self {
+        Self {
+            params,
+            heights,
+            layers: VecDeque::new(),
+            overhangs: VecDeque::new(),
+            reach: Rows::default(),
+            posts: Posts::default(),
+            done: 0,
+        }
+    }
+
+    /// Takes the next layer down and computes the support of the one `gap` layers above it.
+    pub(super) fn push(&mut self, layer: LayerView, out: &mut [Column]) {
+        let gap = self.params.gap;
+        if let Some(over) = self.layers.back() {
+            self.overhangs.push_back(overhang(over, &layer, self.params));
+        }
+        self.layers.push_back(layer);
+        if self.layers.len() > gap {
+            self.support(self.layers.len() - 1 - gap, out);
+        }
+        // A layer is needed until the one `gap` below it is done.
+        if self.layers.len() > 2 * gap + 1 {
+            self.layers.pop_front();
+            self.done -= 1;
+        }
+    }
+
+    /// Computes the support of the lowest layers, which have fewer than `gap` below them.
+    pub(super) fn flush(&mut self, out: &mut [Column]) {
+        while self.done < self.layers.len() {
+            self.support(self.done, out);
+        }
+    }
+
+    /// Computes the support of the layer at index `at` of the window.
+    fn support(&mut self, at: usize, out: &mut [Column]) {
+        let (params, gap) = (self.params, self.params.gap);
+        let layer = &self.layers[at];
+        let k = layer.index;
+        // Support of the overhang of layer k + 1 + gap begins at layer k.
+        let begins = self.overhangs.front().is_some_and(|o| o.layer > k + gap);
+        let new = if begins { self.overhangs.pop_front() } else { None };
+        let new = new.map(|overhang| overhang.all).unwrap_or_default();
+        let around = at.saturating_sub(gap)..(at + gap + 1).min(self.layers.len());
+        let others: Vec<&Rows> =
+            around.filter(|&n| n != at).map(|n| &self.layers[n].inside).collect();
+        // What begins in the air within the gap above the bed is carried without a gap: it would
+        // have nothing below it otherwise.
+        let low = self.overhangs.iter().find(|o| o.layer == k + 1 && k < gap);
+        let low = low.map(|overhang| overhang.islands.minus(&layer.near)).unwrap_or_default();
+        let cut = |rows: Rows| {
+            let rows = join_gaps(&rows.minus(&layer.near), layer, params.least);
+            others.iter().fold(rows, |rows, other| rows.minus(other)).or(&low)
+        };
+        self.reach = cut(self.reach.or(&new));
+        let wanted = cut(self.posts.rows().or(&new));
+        self.posts.next(wanted, self.heights.top(k), params, cut);
+        out[k] = Column { all: self.posts.rows().clone(), reach: self.reach.clone() };
+        self.done = at + 1;
+    }
+}
+
+/// Joins support on both sides of a gap that is at most two lines wide and free of the part. Such
+/// a gap is left over from something above and only costs travels.
+fn join_gaps(rows: &Rows, layer: &LayerView, line_width: Coord) -> Rows {
+    let mut out = Rows::starting_at(rows.range().start);
+    let mut free = Vec::new();
+    for (j, row) in rows.iter() {
+        out.push_row(|spans| {
+            let base = spans.len();
+            for &span in row {
+                let gap = spans[base..].last().and_then(|last| Span::new(last.end, span.start));
+                free.clear();
+                subtract(gap.as_slice(), layer.near.row(j), &mut free);
+                let narrow = gap.is_none_or(|gap| gap.len() <= 2 * i64::from(line_width));
+                match spans[base..].last_mut() {
+                    Some(last) if narrow && free == gap.as_slice() => last.end = span.end,
+                    _ => spans.push(span),
+                }
+            }
+        });
+    }
+    out
+}

@@ -1,0 +1,103 @@
+//! Settings -> SupportParams: the numbers and patterns of support, and what is decided for a layer.
+
+use crate::geom::Contour;
+use crate::geom::raster::Raster;
+use crate::geom::spans::Rows;
+use crate::pattern::{Lines, Pattern};
+use crate::profile::{Settings, SupportBase};
+use crate::units::{Coord, to_units};
+use std::sync::Arc;
+
+/// The numbers of support, in grid units.
+#[derive(Debug, Clone, Copy)]
+pub struct SupportParams {
+    /// The lines, on rows fine enough to find every overhang.
+    pub(super) lines: Lines,
+    /// The lines of the interface in the same direction, and across.
+    pub(super) interface: [Lines; 2],
+    /// How far a layer may reach out without support, for each unit of its height.
+    pub(super) lean: f64,
+    pub(super) outset: Coord,
+    /// Distance from the part to the middle of a support line, sideways.
+    pub(super) clearance: Coord,
+    /// Layers left open above and below support.
+    pub(super) gap: usize,
+    pub(super) bed_only: bool,
+    /// Width of a line.
+    pub(super) least: Coord,
+    /// Thinner islands of a layer are not printed.
+    pub(super) thinnest: Coord,
+    pub(super) interface_layers: usize,
+    pub(super) interface_pitch: Coord,
+    /// Least width of a post, 0 for any.
+    pub(super) min_width: Coord,
+    pub(super) has_outline: bool,
+    /// How far the lowest layer reaches further out.
+    pub(super) brim: Coord,
+}
+
+/// The patterns of support.
+#[derive(Debug)]
+pub struct SupportPatterns {
+    /// Of what is sparse.
+    pub body: Pattern,
+    /// Of what is dense: in the same direction, and across.
+    pub interface: [Pattern; 2],
+}
+
+/// The support of one layer.
+#[derive(Debug, Clone, Default)]
+pub struct SupportLayer {
+    /// Where its sparse lines run.
+    pub body: Rows,
+    /// The outlines of what is sparse.
+    pub outlines: Vec<Contour>,
+    /// Where its dense lines run, by pattern.
+    pub interface: [Rows; 2],
+}
+
+impl SupportParams {
+    /// The patterns that fill support.
+    #[must_use]
+    pub fn patterns(&self) -> SupportPatterns {
+        let pattern = |lines| -> Pattern { Arc::new(lines) };
+        SupportPatterns { body: pattern(self.lines), interface: self.interface.map(pattern) }
+    }
+
+    /// The raster on whose rows support is computed.
+    pub(super) fn raster(&self) -> Raster {
+        self.lines.raster
+    }
+
+    /// Derives the numbers from `settings`; `None` if support is off.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Option<Self> {
+        let support = &settings.support;
+        let (w, spacing) = (to_units(settings.line_width), to_units(support.spacing));
+        let degrees = settings.angle.degrees();
+        // Lines that end at an outline are not joined: their joins would lie on it.
+        let lines =
+            Lines { joined: !support.outline, ..Lines::new(degrees, spacing, (w / 2).max(1)) };
+        let pitch = w + to_units(support.interface_spacing);
+        let interface = [0.0, 90.0].map(|turn| Lines::new(degrees + turn, pitch, pitch));
+        let angle = support.threshold_angle.to_radians();
+        let lean =
+            if support.threshold_angle >= 90.0 { 0.0 } else { libm::cos(angle) / libm::sin(angle) };
+        support.enabled.then(|| Self {
+            lines,
+            interface,
+            lean,
+            outset: to_units(support.expansion),
+            clearance: to_units(support.xy_distance) + w / 2,
+            gap: (support.z_distance / settings.layer_height).round() as usize,
+            bed_only: support.stands_on == SupportBase::Bed,
+            least: w,
+            thinnest: to_units(2.0 * settings.outer_wall_inset * settings.line_width),
+            interface_layers: support.interface_layers as usize,
+            interface_pitch: pitch,
+            min_width: to_units(support.min_width),
+            has_outline: support.outline,
+            brim: to_units(support.brim),
+        })
+    }
+}

@@ -1,0 +1,187 @@
+//! Rows -> Pieces: which spans hang together, and how wide each piece is.
+//!
+//! Words: two spans on neighbouring rows *touch* if they overlap. A *piece* is all spans that hang
+//! together by touching. A piece *holds a disc* if a circle of that radius has room in it.
+
+use crate::geom::spans::{Rows, Span, subtract};
+use crate::units::Coord;
+
+/// The piece of each span, in the order of [`Rows::iter`].
+pub(super) struct Pieces {
+    labels: Vec<usize>,
+    count: usize,
+}
+
+impl Pieces {
+    /// Finds the pieces of `rows`.
+    pub(super) fn new(rows: &Rows) -> Self {
+        let mut parents: Vec<usize> = (0..rows.iter().map(|(_, row)| row.len()).sum()).collect();
+        let (mut before, mut first): (&[Span], usize) = (&[], 0);
+        for (_, row) in rows.iter() {
+            let next = first + before.len();
+            touching(before, row, |a, b| unite(&mut parents, first + a, next + b));
+            (before, first) = (row, next);
+        }
+        let mut names = vec![usize::MAX; parents.len()];
+        let mut count = 0;
+        let labels = (0..parents.len()).map(|k| {
+            let name = &mut names[root(&mut parents, k)];
+            if *name == usize::MAX {
+                *name = count;
+                count += 1;
+            }
+            *name
+        });
+        Self { labels: labels.collect(), count }
+    }
+
+    /// Number of pieces.
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Of the rows that the pieces were found in, those pieces that `keep` accepts.
+    pub(super) fn keep(&self, rows: &Rows, keep: impl Fn(usize) -> bool) -> Rows {
+        let mut out = Rows::with_room_of(rows, rows.range().start);
+        let mut labels = self.labels.iter();
+        for (_, row) in rows.iter() {
+            let kept = row.iter().zip(labels.by_ref()).filter(|(_, label)| keep(**label));
+            out.push_row(|spans| spans.extend(kept.map(|(span, _)| *span)));
+        }
+        out
+    }
+
+    /// Tells `meet` of each piece and each span of `others` that overlap on the same row. `meet`
+    /// gets the piece and the index of the other span, in the order of [`Rows::iter`].
+    pub(super) fn meeting(&self, rows: &Rows, others: &Rows, mut meet: impl FnMut(usize, usize)) {
+        let from = others.range().start;
+        let starts: Vec<usize> = others
+            .iter()
+            .scan(0, |sum, (_, row)| Some(std::mem::replace(sum, *sum + row.len())))
+            .collect();
+        let mut first = 0;
+        for (j, row) in rows.iter() {
+            let index = usize::try_from(j - from).ok().and_then(|k| starts.get(k));
+            if let Some(&start) = index {
+                touching(row, others.row(j), |a, b| meet(self.labels[first + a], start + b));
+            }
+            first += row.len();
+        }
+    }
+
+    /// The label of a span, by its index in the order of [`Rows::iter`].
+    pub(super) fn of(&self, span: usize) -> usize {
+        self.labels[span]
+    }
+
+    /// The length of the spans of each piece, grid units.
+    pub(super) fn lengths(&self, rows: &Rows) -> Vec<i64> {
+        let mut sums = vec![0; self.count];
+        let spans = rows.iter().flat_map(|(_, row)| row);
+        spans.zip(&self.labels).for_each(|(span, label)| sums[*label] += span.len());
+        sums
+    }
+}
+
+/// Calls `meet` with the indices of all spans of two rows that overlap.
+fn touching(a: &[Span], b: &[Span], mut meet: impl FnMut(usize, usize)) {
+    let (mut i, mut j) = (0, 0);
+    while let (Some(p), Some(q)) = (a.get(i), b.get(j)) {
+        if p.overlaps(*q) {
+            meet(i, j);
+        }
+        if p.end <= q.end {
+            i += 1;
+        } else {
+            j += 1;
+        }
+    }
+}
+
+fn root(parents: &mut [usize], mut k: usize) -> usize {
+    while parents[k] != k {
+        parents[k] = parents[parents[k]];
+        k = parents[k];
+    }
+    k
+}
+
+/// The lesser index becomes the root, so that labels do not depend on the order of calls.
+fn unite(parents: &mut [usize], a: usize, b: usize) {
+    let (a, b) = (root(parents, a), root(parents, b));
+    parents[a.max(b)] = a.min(b);
+}
+
+/// What of `rows`, which are `pitch` apart, lies at least `radius` inside them: where the middle of
+/// a disc has room.
+pub(super) fn erode(rows: &Rows, radius: Coord, pitch: Coord) -> Rows {
+    let spans = || rows.iter().flat_map(|(_, row)| row);
+    let (Some(low), Some(high)) = (spans().map(|s| s.start).min(), spans().map(|s| s.end).max())
+    else {
+        return Rows::default();
+    };
+    let whole = [Span { start: low - radius - 1, end: high + radius + 1 }];
+    let reach = radius / pitch + 1;
+    let range = rows.range();
+    let mut outside = Rows::starting_at(range.start - reach);
+    for j in range.start - reach..range.end + reach {
+        outside.push_row(|out| subtract(&whole, rows.row(j), out));
+    }
+    rows.minus(&outside.dilate(radius, pitch))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn rows(list: &[&[(Coord, Coord)]]) -> Rows {
+        let mut rows = Rows::starting_at(0);
+        for row in list {
+            rows.push_row(|out| out.extend(row.iter().map(|&(start, end)| Span { start, end })));
+        }
+        rows
+    }
+
+    #[test]
+    fn arms_that_meet_are_one_piece() {
+        let fork = rows(&[&[(0, 10), (20, 30)], &[(0, 30), (50, 60)], &[(40, 50)]]);
+        let pieces = Pieces::new(&fork);
+        assert_eq!(pieces.labels, [0, 0, 0, 1, 2]);
+        assert_eq!(pieces.lengths(&fork), [50, 10, 10]);
+        assert_eq!(pieces.keep(&fork, |label| label == 1), rows(&[&[], &[(50, 60)], &[]]));
+    }
+
+    #[test]
+    fn a_square_is_eroded_on_all_sides() {
+        let square = rows(&[&[(0, 100)] as &[_]; 10]);
+        let core = erode(&square, 25, 10);
+        let first = core.iter().find(|(_, row)| !row.is_empty());
+        assert_eq!(first, Some((2, &[Span { start: 25, end: 75 }][..])));
+        assert!(erode(&square, 60, 10).is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn pieces_touch_no_other(masks in prop::collection::vec(any::<u16>(), 1..8)) {
+            let mut all = Rows::starting_at(-2);
+            for mask in masks {
+                let cells = (0..16).filter(|i| mask >> i & 1 == 1);
+                let mut cells: Vec<Span> =
+                    cells.map(|i| Span { start: 2 * i, end: 2 * i + 2 }).collect();
+                all.push_row(|out| crate::geom::spans::merge(&mut cells, out));
+            }
+            let pieces = Pieces::new(&all);
+            let each: Vec<Rows> =
+                (0..pieces.count()).map(|one| pieces.keep(&all, |label| label == one)).collect();
+            prop_assert_eq!(each.iter().map(Rows::total).sum::<i64>(), all.total());
+            for (k, one) in each.iter().enumerate() {
+                prop_assert_eq!(Pieces::new(one).count(), 1);
+                for other in &each[k + 1..] {
+                    let both = Pieces::new(&one.or(other));
+                    prop_assert_eq!(both.count(), 2);
+                }
+            }
+        }
+    }
+}

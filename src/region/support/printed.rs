@@ -1,0 +1,67 @@
+//! Contours -> contours: those islands of a layer that have room for a bead.
+//!
+//! An island thinner than the thinnest bead is not printed. What stands on it hangs, and support may
+//! stand where it would have been.
+
+use crate::geom::{Contour, Point, double_area, edges, encloses, polygon};
+use crate::units::Coord;
+use std::borrow::Cow;
+
+/// The islands of `contours` in which a disc of diameter `least` has room somewhere.
+pub(super) fn printed(contours: &[Contour], least: Coord) -> Cow<'_, [Contour]> {
+    // A shape has room for a disc of the radius area / perimeter. So most layers, with a single
+    // island, need no more than these two sums.
+    let outer = || contours.iter().filter(|contour| double_area(contour) > 0);
+    if outer().count() == 1 && is_roomy(contours, least) {
+        return Cow::Borrowed(contours);
+    }
+    let islands: Vec<Vec<Contour>> = outer().map(|outer| island(outer, contours)).collect();
+    let has_room = |island: &&Vec<Contour>| {
+        is_roomy(island, least) || !polygon::inset(island, (least / 2).max(1)).is_empty()
+    };
+    let kept: Vec<&Vec<Contour>> = islands.iter().filter(has_room).collect();
+    if kept.len() == islands.len() {
+        return Cow::Borrowed(contours);
+    }
+    Cow::Owned(kept.into_iter().flatten().cloned().collect())
+}
+
+/// Whether an area is so large for its outline that a disc must have room.
+fn is_roomy(contours: &[Contour], least: Coord) -> bool {
+    let area: i128 = contours.iter().map(|contour| double_area(contour)).sum();
+    let around: f64 = contours.iter().flat_map(|c| edges(c)).map(|(p, q)| p.distance(q)).sum();
+    area as f64 >= f64::from(least) * around
+}
+
+/// An outer contour with the holes in it. Those of islands inside a hole are in it as well, which
+/// makes it seem smaller than it is: then the exact test decides.
+fn island(outer: &Contour, contours: &[Contour]) -> Vec<Contour> {
+    let holds = |p: Point| encloses(edges(outer), p);
+    let holes = contours.iter().filter(|c| double_area(c) < 0);
+    let inside = holes.filter(|hole| hole.first().is_some_and(|&p| holds(p)));
+    std::iter::once(outer).chain(inside).cloned().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_island_thinner_than_a_bead_is_not_printed() {
+        let block = |x: Coord, wide: Coord| -> Contour {
+            [(x, 0), (x + wide, 0), (x + wide, 50_000), (x, 50_000)]
+                .map(|(x, y)| Point { x, y })
+                .to_vec()
+        };
+        let all = [block(0, 50_000), block(60_000, 3_000), block(70_000, 5_000)];
+        let kept = |least| printed(&all, least).len();
+        assert_eq!([2_000, 4_000, 6_000].map(kept), [3, 2, 1]);
+        // A ring with a thin wall has a large outline and a large hole.
+        let mut hole = block(61_000, 48_000);
+        hole.iter_mut().for_each(|p| p.y = p.y.clamp(1_000, 49_000));
+        hole.reverse();
+        let ring = [block(60_000, 50_000), hole];
+        assert_eq!(printed(&ring, 900).len(), 2);
+        assert!(printed(&ring, 1_200).is_empty());
+    }
+}
