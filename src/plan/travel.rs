@@ -1,8 +1,8 @@
 //! Ordered paths -> print moves: improves the order, and decides for each travel how it goes.
 //!
 //! Plastic that oozes inside the part stays hidden. A travel that crosses an outer wall draws a
-//! string on the outside. So travels retract if they cross a contour of the layer or lie outside
-//! all of them. What oozes on a long way is missing where the next line begins, so that long travels
+//! string on the outside. So travels retract if they cross a contour of the layer. Strings from one
+//! piece of support to another do no harm. What oozes on a long way is missing where the next line begins, so that long travels
 //! retract as well.
 //!
 //! A travel that would cross a contour goes round it instead, if that way is short enough to need no

@@ -200,7 +200,13 @@ pub struct Support {
     /// it as narrow as the overhang.
     #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 4))]
     pub min_width: f64,
-    /// Whether a line runs around the lines of support.
+    /// Whether bridges get support, however short.
+    #[schemars(extend("default" = false))]
+    pub bridges: bool,
+    /// Longer bridges get support in any case.
+    #[schemars(range(min = 0, max = 500), extend("unit" = "mm", "default" = 20))]
+    pub max_bridge: f64,
+    /// Whether a line runs around the lines of support where they would stand alone.
     #[schemars(extend("default" = true))]
     pub outline: bool,
     /// How far the lowest layer of support reaches further out, to hold on to the bed.

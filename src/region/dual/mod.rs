@@ -75,21 +75,24 @@ pub fn infill(
 }
 
 /// The support of each layer of `block`, and the audit of its lines if they may be shared. `rows`
-/// is where each layer has support.
+/// is where each layer has support, by pattern.
 #[must_use]
 pub fn support(
     block: &Block,
-    rows: &[Rows],
-    pattern: &Pattern,
+    rows: &[Vec<Rows>],
+    patterns: &[Pattern],
     grouping: &Grouping,
     line_width: Coord,
 ) -> (Vec<Vec<Sparse>>, Option<Audit>) {
     if !grouping.shares(DualPart::Support) {
-        let thin = |rows: &Rows| thin(pattern, rows.clone(), line_width);
-        return (rows.iter().map(|rows| vec![thin(rows)]).collect(), None);
+        let each = |n: usize| patterns.iter().zip(rows).map(move |(p, rows)| (p, &rows[n]));
+        let thin = |n| each(n).map(|(p, rows)| thin(p, rows.clone(), line_width)).collect();
+        return ((0..block.layers.len()).map(thin).collect(), None);
     }
     let mut sharing = Sharing::new(DualPart::Support, block, grouping, line_width);
-    sharing.share(pattern, rows, &vec![None; rows.len()]);
+    for (pattern, rows) in patterns.iter().zip(rows) {
+        sharing.share(pattern, rows, &vec![None; rows.len()]);
+    }
     let (sparse, audit) = sharing.finish();
     (sparse, Some(audit))
 }

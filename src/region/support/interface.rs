@@ -10,17 +10,11 @@
 //! On slopes the top of support is a flight of narrow steps, each with lines too short to hold. So
 //! each is grown by a line's width, within the support.
 
+use super::body;
 use super::columns::Column;
-use super::outline::outlines;
 use super::params::{SupportLayer, SupportParams};
-use super::pieces::erode;
-use crate::geom::Contour;
-use crate::geom::spans::{Rows, Span};
-use crate::units::Coord;
-
-/// The ends of support lines lie this far inside the outline, in hundredths of a line's width: their
-/// round ends just reach into it. More leaves a gap, less piles up plastic there.
-const LINES_FROM_OUTLINE: Coord = 60;
+use super::pieces::across;
+use crate::geom::spans::Rows;
 
 /// The support of layer `k`, divided.
 pub(super) fn divide(columns: &[Column], k: usize, params: &SupportParams) -> SupportLayer {
@@ -35,7 +29,7 @@ pub(super) fn divide(columns: &[Column], k: usize, params: &SupportParams) -> Su
     let [across, along] = interface(columns, k, params);
     let along = along.minus(&across);
     let body = here.minus(&across).minus(&along);
-    let (outlines, body) = params.outline(body);
+    let (outlines, body) = body::lay(&body, params);
     SupportLayer { body, outlines, interface: [params.along(&along), params.across(&across)] }
 }
 
@@ -62,16 +56,6 @@ fn interface(columns: &[Column], k: usize, params: &SupportParams) -> [Rows; 2] 
 }
 
 impl SupportParams {
-    /// The area of support lines, and its outlines if it gets any.
-    fn outline(&self, rows: Rows) -> (Vec<Contour>, Rows) {
-        if !self.has_outline {
-            return (Vec::new(), rows);
-        }
-        let raster = self.raster();
-        let outlines = outlines(&rows, raster.pitch, raster.frame, 4 * self.least);
-        (outlines, erode(&rows, self.least * LINES_FROM_OUTLINE / 100, raster.pitch))
-    }
-
     /// `rows` on the interface's raster in the same direction.
     fn along(&self, rows: &Rows) -> Rows {
         let (from, to) = (self.raster().pitch, self.interface_pitch);
@@ -88,32 +72,8 @@ impl SupportParams {
         out
     }
 
-    /// `rows` on the interface's raster across, whose row `m` lies at `u = −m · pitch`.
+    /// `rows` on the interface's raster across.
     fn across(&self, rows: &Rows) -> Rows {
-        let (pitch, to) = (self.raster().pitch, self.interface_pitch);
-        let spans = || rows.iter().flat_map(|(_, row)| row);
-        let (Some(low), Some(high)) =
-            (spans().map(|s| s.start).min(), spans().map(|s| s.end).max())
-        else {
-            return Rows::default();
-        };
-        // Rows of the new raster that a stretch of u crosses.
-        let crossed = |s: &Span| (-s.end).div_euclid(to) + 1..(-s.start).div_euclid(to) + 1;
-        let all = crossed(&Span { start: low, end: high });
-        let mut columns: Vec<Vec<Span>> = vec![Vec::new(); all.len()];
-        for (j, row) in rows.iter() {
-            for m in row.iter().flat_map(crossed) {
-                let column = &mut columns[(m - all.start) as usize];
-                match column.last_mut() {
-                    Some(last) if last.end == (j - 1) * pitch => last.end = j * pitch,
-                    _ => column.push(Span { start: j * pitch, end: j * pitch }),
-                }
-            }
-        }
-        let mut out = Rows::starting_at(all.start);
-        for column in columns {
-            out.push_row(|out| out.extend(column.into_iter().filter(|s| s.start < s.end)));
-        }
-        out
+        across(rows, self.raster().pitch, self.interface_pitch)
     }
 }

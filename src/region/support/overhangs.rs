@@ -6,6 +6,7 @@
 //! Both layers are grown by a pitch before they are compared. So a tip, a blade or a ledge between
 //! two rows is seen by both rows beside it, and an edge hangs as far as it did before.
 
+use super::bridges::without_bridges;
 use super::params::SupportParams;
 use super::pieces::Pieces;
 use super::printed::printed;
@@ -66,6 +67,7 @@ pub(super) struct Overhang {
 pub(super) fn overhang(layer: &LayerView, below: &LayerView, params: &SupportParams) -> Overhang {
     let pitch = params.raster().pitch;
     let hanging = layer.grown.minus(&below.carries);
+    let hanging = without_bridges(&hanging, [&layer.inside, &below.inside], params);
     if hanging.is_empty() {
         return Overhang { layer: layer.index, ..Overhang::default() };
     }

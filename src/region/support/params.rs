@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// The numbers of support, in grid units.
 #[derive(Debug, Clone, Copy)]
 pub struct SupportParams {
-    /// The lines, on rows fine enough to find every overhang.
+    /// The lines, on rows fine enough to find every overhang. They are joined at their ends.
     pub(super) lines: Lines,
     /// The lines of the interface in the same direction, and across.
     pub(super) interface: [Lines; 2],
@@ -32,6 +32,8 @@ pub struct SupportParams {
     /// Least width of a post, 0 for any.
     pub(super) min_width: Coord,
     pub(super) has_outline: bool,
+    /// Overhangs that bridge so far get no support.
+    pub(super) longest_bridge: Coord,
     /// How far the lowest layer reaches further out.
     pub(super) brim: Coord,
 }
@@ -39,8 +41,8 @@ pub struct SupportParams {
 /// The patterns of support.
 #[derive(Debug)]
 pub struct SupportPatterns {
-    /// Of what is sparse.
-    pub body: Pattern,
+    /// Of what is sparse: lines that are joined at their ends, and lines that end at an outline.
+    pub body: [Pattern; 2],
     /// Of what is dense: in the same direction, and across.
     pub interface: [Pattern; 2],
 }
@@ -48,9 +50,9 @@ pub struct SupportPatterns {
 /// The support of one layer.
 #[derive(Debug, Clone, Default)]
 pub struct SupportLayer {
-    /// Where its sparse lines run.
-    pub body: Rows,
-    /// The outlines of what is sparse.
+    /// Where its sparse lines run, by pattern.
+    pub body: [Rows; 2],
+    /// The outlines at which the latter end.
     pub outlines: Vec<Contour>,
     /// Where its dense lines run, by pattern.
     pub interface: [Rows; 2],
@@ -61,7 +63,8 @@ impl SupportParams {
     #[must_use]
     pub fn patterns(&self) -> SupportPatterns {
         let pattern = |lines| -> Pattern { Arc::new(lines) };
-        SupportPatterns { body: pattern(self.lines), interface: self.interface.map(pattern) }
+        let body = [self.lines, Lines { joined: false, ..self.lines }].map(pattern);
+        SupportPatterns { body, interface: self.interface.map(pattern) }
     }
 
     /// The raster on whose rows support is computed.
@@ -75,9 +78,7 @@ impl SupportParams {
         let support = &settings.support;
         let (w, spacing) = (to_units(settings.line_width), to_units(support.spacing));
         let degrees = settings.angle.degrees();
-        // Lines that end at an outline are not joined: their joins would lie on it.
-        let lines =
-            Lines { joined: !support.outline, ..Lines::new(degrees, spacing, (w / 2).max(1)) };
+        let lines = Lines::new(degrees, spacing, (w / 2).max(1));
         let pitch = w + to_units(support.interface_spacing);
         let interface = [0.0, 90.0].map(|turn| Lines::new(degrees + turn, pitch, pitch));
         let angle = support.threshold_angle.to_radians();
@@ -92,11 +93,12 @@ impl SupportParams {
             gap: (support.z_distance / settings.layer_height).round() as usize,
             bed_only: support.stands_on == SupportBase::Bed,
             least: w,
-            thinnest: to_units(2.0 * settings.outer_wall_inset * settings.line_width),
+            thinnest: to_units(settings.min_feature),
             interface_layers: support.interface_layers as usize,
             interface_pitch: pitch,
             min_width: to_units(support.min_width),
             has_outline: support.outline,
+            longest_bridge: if support.bridges { 0 } else { to_units(support.max_bridge) },
             brim: to_units(support.brim),
         })
     }

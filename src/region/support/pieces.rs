@@ -3,7 +3,7 @@
 //! Words: two spans on neighbouring rows *touch* if they overlap. A *piece* is all spans that hang
 //! together by touching. A piece *holds a disc* if a circle of that radius has room in it.
 
-use crate::geom::spans::{Rows, Span, subtract};
+use crate::geom::spans::{Rows, Span, intersect, subtract, total};
 use crate::units::Coord;
 
 /// The piece of each span, in the order of [`Rows::iter`].
@@ -69,6 +69,19 @@ impl Pieces {
         }
     }
 
+    /// Adds to the sum of each piece the length that its spans share with `others`.
+    pub(super) fn shared(&self, rows: &Rows, others: &Rows, sums: &mut [i64]) {
+        let mut labels = self.labels.iter();
+        let mut both = Vec::new();
+        for (j, row) in rows.iter() {
+            for (span, label) in row.iter().zip(labels.by_ref()) {
+                both.clear();
+                intersect(&[*span], others.row(j), &mut both);
+                sums[*label] += total(&both);
+            }
+        }
+    }
+
     /// The label of a span, by its index in the order of [`Rows::iter`].
     pub(super) fn of(&self, span: usize) -> usize {
         self.labels[span]
@@ -128,6 +141,39 @@ pub(super) fn erode(rows: &Rows, radius: Coord, pitch: Coord) -> Rows {
         outside.push_row(|out| subtract(&whole, rows.row(j), out));
     }
     rows.minus(&outside.dilate(radius, pitch))
+}
+
+/// `rows`, which are `pitch` apart, on the raster of the same pitch that is turned by 90°: its row
+/// `m` lies at `u = −m · pitch`. Spans end on rows, so that they are shorter by up to two pitches.
+pub(super) fn turned(rows: &Rows, pitch: Coord) -> Rows {
+    across(rows, pitch, pitch)
+}
+
+/// As [`turned`], on rows that are `to` apart.
+pub(super) fn across(rows: &Rows, pitch: Coord, to: Coord) -> Rows {
+    let spans = || rows.iter().flat_map(|(_, row)| row);
+    let (Some(low), Some(high)) = (spans().map(|s| s.start).min(), spans().map(|s| s.end).max())
+    else {
+        return Rows::default();
+    };
+    // Rows of the new raster that a stretch of u crosses.
+    let crossed = |s: &Span| (-s.end).div_euclid(to) + 1..(-s.start).div_euclid(to) + 1;
+    let all = crossed(&Span { start: low, end: high });
+    let mut columns: Vec<Vec<Span>> = vec![Vec::new(); all.len()];
+    for (j, row) in rows.iter() {
+        for m in row.iter().flat_map(crossed) {
+            let column = &mut columns[(m - all.start) as usize];
+            match column.last_mut() {
+                Some(last) if last.end == (j - 1) * pitch => last.end = j * pitch,
+                _ => column.push(Span { start: j * pitch, end: j * pitch }),
+            }
+        }
+    }
+    let mut out = Rows::starting_at(all.start);
+    for column in columns {
+        out.push_row(|out| out.extend(column.into_iter().filter(|s| s.start < s.end)));
+    }
+    out
 }
 
 #[cfg(test)]
