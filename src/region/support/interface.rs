@@ -28,7 +28,9 @@ pub(super) fn divide(columns: &[Column], k: usize, params: &SupportParams) -> Su
     }
     let [across, along] = interface(columns, k, params);
     let along = along.minus(&across);
-    let body = here.minus(&across).minus(&along);
+    // Where the two meet, their outermost lines lie beside each other.
+    let dense = across.or(&along).dilate(params.least, params.raster().pitch);
+    let body = here.minus(&dense);
     let (outlines, body) = body::lay(&body, params);
     SupportLayer { body, outlines, interface: [params.along(&along), params.across(&across)] }
 }
