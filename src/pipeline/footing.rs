@@ -19,7 +19,7 @@ use crate::error::Hanging;
 use crate::fill::{Path, Place};
 use crate::geom::{Contour, Point, double_area, edges, encloses, polygon};
 use crate::profile::{Floating, Settings};
-use crate::region::{Region, Sparse};
+use crate::region::{Region, Sparse, SupportLines};
 use crate::units::{Coord, sum_mm, to_mm};
 use crate::warning::Warning;
 use std::collections::VecDeque;
@@ -157,7 +157,7 @@ pub struct Footing {
     bodies: Vec<usize>,
     /// Whether the body with this number as its root stands.
     stands: Vec<bool>,
-    support: VecDeque<Vec<Sparse>>,
+    support: VecDeque<SupportLines>,
     /// Whether each layer is printed.
     printed: Vec<bool>,
     tops: Vec<Coord>,
@@ -251,8 +251,8 @@ impl Footing {
             let row = sparse.rows.row((v + raster.pitch / 2).div_euclid(raster.pitch));
             row.iter().any(|span| span.start <= u && u <= span.end)
         };
-        let stands =
-            self.support.iter().flatten().any(|sparse| island.corners().any(|p| inside(sparse, p)));
+        let carries = |sparse: &Sparse| island.corners().any(|p| inside(sparse, p));
+        let stands = self.support.iter().any(|support| support.areas().any(carries));
         if stands {
             let root = self.root(island.number);
             self.stands[root] = true;

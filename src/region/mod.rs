@@ -65,7 +65,7 @@ pub struct Region {
 }
 
 /// Support of one layer.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct SupportLines {
     /// Its sparse lines.
     pub body: Vec<Sparse>,
@@ -73,6 +73,13 @@ pub struct SupportLines {
     pub interface: Vec<Sparse>,
     /// Beads around what is sparse.
     pub outlines: Vec<Contour>,
+}
+
+impl SupportLines {
+    /// All areas where its lines run.
+    pub fn areas(&self) -> impl Iterator<Item = &Sparse> {
+        self.body.iter().chain(&self.interface)
+    }
 }
 
 /// Skin of one layer, on its raster and on the one across.
