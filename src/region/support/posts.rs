@@ -88,12 +88,12 @@ impl Posts {
         let core = erode(rows, radius(params.min_width), pitch);
         pieces.meeting(rows, &core, |piece, _| wide[piece] = true);
         // Only posts that are taller than five times that width are looked at alone.
-        for piece in 0..pieces.count() {
+        for (piece, wide) in wide.iter_mut().enumerate().filter(|(_, wide)| **wide) {
             let asked = f64::from(height(piece)) * PART_OF_HEIGHT;
-            if wide[piece] && asked > f64::from(params.min_width) {
+            if asked > f64::from(params.min_width) {
                 let one = pieces.keep(rows, |other| other == piece);
                 let asked = asked.at_most(f64::from(MOST_WIDTH)) as Coord;
-                wide[piece] = !erode(&one, radius(asked), pitch).is_empty();
+                *wide = !erode(&one, radius(asked), pitch).is_empty();
             }
         }
         pieces.keep(rows, |piece| !wide[piece])
