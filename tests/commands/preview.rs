@@ -94,9 +94,9 @@ fn colour(kind: Kind, thick: bool) -> String {
     let role = match kind {
         Kind::OuterWall => Role::OuterWall,
         Kind::InnerWall => Role::InnerWall,
-        Kind::Skin => Role::Skin,
+        Kind::Skin | Kind::Bridge => Role::Skin,
         Kind::Infill => Role::Infill,
-        Kind::Support => Role::Support,
+        Kind::Support | Kind::SupportInterface => Role::Support,
         Kind::Custom => Role::Other,
     };
     Colour::of(role, thick).hex()

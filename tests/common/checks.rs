@@ -127,7 +127,7 @@ pub(crate) fn furthest_out(
     let mut worst = (0.0, 0);
     for &k in layers {
         let section = section(print, solid, k);
-        let beads = print.beads().filter(|m| m.layer == Some(k) && m.kind != Kind::Support);
+        let beads = print.beads().filter(|m| m.layer == Some(k) && !m.kind.is_support());
         for m in beads.filter(|m| keep(m)) {
             let steps = (m.length() / 0.2).ceil().clamp(1.0, 400.0);
             for step in 0..=steps as usize {

@@ -10,8 +10,17 @@ pub(crate) enum Kind {
     OuterWall,
     InnerWall,
     Skin,
+    Bridge,
     Infill,
     Support,
+    SupportInterface,
+}
+
+impl Kind {
+    /// Whether it is no part of the model.
+    pub(crate) fn is_support(self) -> bool {
+        matches!(self, Self::Support | Self::SupportInterface)
+    }
 }
 
 /// One `G0` or `G1`.
@@ -129,9 +138,12 @@ impl Print {
                 "Custom" => Kind::Custom,
                 "External perimeter" => Kind::OuterWall,
                 "Perimeter" => Kind::InnerWall,
-                "Solid infill" | "Bridge infill" => Kind::Skin,
+                "Solid infill" => Kind::Skin,
+                "Bridge infill" => Kind::Bridge,
                 "Internal infill" => Kind::Infill,
                 "Support material" => Kind::Support,
+                "Support material interface" => Kind::SupportInterface,
+                "Overhang perimeter" => Kind::OuterWall,
                 other => return Err(format!("unknown type {other}")),
             };
         } else if let Some(z) = note.strip_prefix("Z:") {

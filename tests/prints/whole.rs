@@ -329,7 +329,7 @@ fn support_holds_an_overhang_up_to_its_distance() {
         for side in [-1.0, 1.0] {
             let under = |m: &Move| {
                 let [x, y] = from_middle(&run, m.at(0.5));
-                m.kind == Kind::Support && (6.0..14.0).contains(&(side * x)) && y.abs() < 8.0
+                m.kind.is_support() && (6.0..14.0).contains(&(side * x)) && y.abs() < 8.0
             };
             let found = layers(&run, under);
             let highest = heads[*found.last().unwrap()].z;
@@ -352,7 +352,9 @@ fn support_lines_are_as_far_apart_as_asked_for() {
         .map(|m| (m.to[1] * 1000.0).round() as i64)
         .collect();
     let rows: Vec<i64> = rows.into_iter().collect();
-    assert!(rows.len() >= 5, "{rows:?}");
+    // The first and the last row are the outline.
+    assert!(rows.len() >= 7, "{rows:?}");
+    let rows = &rows[1..rows.len() - 1];
     assert!(rows.windows(2).all(|w| w[1] - w[0] == 3000), "{rows:?}");
 }
 
@@ -418,12 +420,13 @@ fn support_stands_on_the_part_only_where_it_may() {
         // In the machine's x the floor ends 6 mm right of the middle.
         let x = |m: &Move| from_middle(&run, m.at(0.5))[0];
         let over_floor = |m: &&Move| from_middle(&run, m.at(0.5))[1].abs() < 5.5 && x(m) < 6.0;
-        let above_floor = run.print.of(Kind::Support).filter(over_floor).count();
-        let beside = run.print.of(Kind::Support).filter(|m| x(m) > 7.0).count();
+        let support = || run.print.beads().filter(|m| m.kind.is_support());
+        let above_floor = support().filter(over_floor).count();
+        let beside = support().filter(|m| x(m) > 7.0).count();
         assert!(beside > 0, "{base}");
         assert_eq!(above_floor > 0, on_part, "{base}");
         if on_part {
-            let lowest = run.print.of(Kind::Support).filter(over_floor).map(|m| m.to[2]);
+            let lowest = support().filter(over_floor).map(|m| m.to[2]);
             let lowest = lowest.fold(f64::MAX, f64::min);
             // Its lowest layer begins the distance above the floor's top.
             assert!((lowest - 0.2 - 3.2).abs() < 1e-6, "support begins below {lowest}");
@@ -449,10 +452,11 @@ fn a_cavity_stays_hollow() {
         assert_eq!(walls, 4 * 40, "{set:?}");
         // Floor and roof of the cavity are skins.
         let over = |k: usize| {
-            let bead = |m: &&Move| m.layer == Some(k) && m.kind == Kind::Skin;
+            let is_solid = |m: &&Move| matches!(m.kind, Kind::Skin | Kind::Bridge);
             run.print
-                .of(Kind::Skin)
-                .filter(bead)
+                .beads()
+                .filter(|m| m.layer == Some(k))
+                .filter(is_solid)
                 .map(|m| clipped(m, run.middle(), 3.0, 0.0))
                 .sum::<f64>()
         };
@@ -475,7 +479,8 @@ fn overlapping_shells_have_no_wall_inside() {
     };
     assert!((high[0] - low[0] - 25.0).abs() < 1e-6);
     let both = |m: &&Move| (5.2..13.8).contains(&m.to[2]);
-    let walls = || run.print.beads().filter(|m| m.kind != Kind::Infill && m.kind != Kind::Skin);
+    let walls =
+        || run.print.beads().filter(|m| matches!(m.kind, Kind::OuterWall | Kind::InnerWall));
     assert!(walls().filter(both).count() > 0);
     for m in walls().filter(both) {
         for t in [0.0, 0.25, 0.5, 0.75, 1.0] {

@@ -320,8 +320,15 @@ fn space(run: &crate::common::Run, kind: Kind, thick: bool) -> f64 {
     beads.map(|m| m.length() * m.width * m.height).sum()
 }
 
-const KINDS: [Kind; 5] =
-    [Kind::OuterWall, Kind::InnerWall, Kind::Skin, Kind::Infill, Kind::Support];
+const KINDS: [Kind; 7] = [
+    Kind::OuterWall,
+    Kind::InnerWall,
+    Kind::Skin,
+    Kind::Bridge,
+    Kind::Infill,
+    Kind::Support,
+    Kind::SupportInterface,
+];
 
 #[test]
 fn filament_is_the_volume_of_the_beads() {
