@@ -20,10 +20,14 @@ pub use path::{Path, PathPoint, Shape};
 pub use role::{Both, Place, Role, RoleFacts, RoleTable};
 
 use crate::geom::frame::Frame;
-use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::outline::{Bounds, Columns};
+use crate::geom::polyline::{self, LinePoint, Polyline};
+use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
+use crate::pattern::Held;
 use crate::profile::Settings;
-use crate::region::{Region, Skin, Sparse, walls::Wall};
+use crate::region::crossed::Crossed;
+use crate::region::{Border, Region, Skin, Sparse, walls::Wall};
 use crate::slice::Heights;
 use crate::units::{Coord, nearest, to_units};
 use rounding::Rounding;
@@ -32,6 +36,10 @@ use variable_width::LineParams;
 /// Corners of skin are rounded with at most a line's width divided by this. A larger radius leaves the
 /// corners between line and wall open; a smaller one makes the nozzle stop at each.
 const SKIN_ROUNDING: Coord = 8;
+
+/// Shorter pieces of solid infill, in line widths, are printed as skin. A larger value gives whole
+/// rooms the speed of skin; a smaller one changes speed and role for a speck.
+const SPECK: i64 = 8;
 
 /// The numbers that this stage needs, in grid units.
 #[derive(Debug, Clone)]
@@ -79,6 +87,17 @@ pub fn paths(region: &Region, params: &FillParams) -> Vec<Path> {
     maker.out
 }
 
+/// The strands of a region that holds on to its walls.
+fn anchored<'a>(sparse: &'a Sparse, border: &'a Border, least: Coord) -> Vec<Polyline> {
+    let Border { pitch, left_turn, .. } = *border;
+    let columns = |rows: &'a Rows| Columns { rows, pitch, left_turn };
+    let bounds =
+        border.walls.iter().map(|[rows, across]| Bounds { rows, columns: columns(across) });
+    let walls: Vec<Bounds<'_>> = bounds.collect();
+    let held = Held { rows: &sparse.rows, columns: columns(&border.columns), walls: &walls };
+    sparse.pattern.anchored(&held, sparse.width, least)
+}
+
 /// Collects the paths of layer `k`.
 struct Maker<'a> {
     k: usize,
@@ -112,9 +131,20 @@ impl Maker<'_> {
     }
 
     fn sparse(&mut self, role: Role, sparse: &Sparse) {
-        let Sparse { pattern, rows, layers, width } = sparse;
-        let (frame, rounding) = (pattern.raster().frame, self.params.rounding);
-        for strand in pattern.strands(rows, *width, self.params.line_width) {
+        let Sparse { pattern, rows, layers, width, border } = sparse;
+        let frame = pattern.raster().frame;
+        let solid = pattern.is_solid();
+        let rounding = if solid { self.params.skin_rounding } else { self.params.rounding };
+        let least = self.params.line_width;
+        let strands = match border {
+            Some(border) if solid => self.solid(rows, border),
+            Some(border) => anchored(sparse, border, least),
+            None => pattern.strands(rows, *width, least),
+        };
+        for strand in strands {
+            // Specks between beads and skin hold no walls apart: they are skin.
+            let speck = solid && polyline::length(&strand) < SPECK * i64::from(least);
+            let role = if speck { Role::Skin } else { role };
             self.polyline(role, *layers, frame, &strand, rounding);
         }
     }
@@ -125,6 +155,21 @@ impl Maker<'_> {
         let corners = outline.iter().chain(outline.first());
         let points = corners.map(|&at| PathPoint { at, z: 0, width, height }).collect();
         self.push(Role::Support, Shape::Open, 1, points);
+    }
+
+    /// The lines of a region that is filled solidly, closed up to the walls.
+    fn solid(&self, rows: &Rows, border: &Border) -> Vec<Polyline> {
+        let Some([fill, fill_columns]) = border.walls.last() else { return Vec::new() };
+        let crossed = Crossed {
+            skin: rows,
+            fill,
+            columns: &border.columns,
+            fill_columns,
+            left_turn: border.left_turn,
+        };
+        let (lines, mut slivers) = gap_closing::close(&crossed, &self.params.lines);
+        slivers.extend(skin::zigzags(&lines, &self.params.lines));
+        slivers
     }
 
     /// Adds a polyline given in `frame`, with its corners rounded.

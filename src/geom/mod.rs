@@ -5,6 +5,7 @@ pub mod decimate;
 pub mod follow;
 pub mod frame;
 pub mod islands;
+pub mod outline;
 pub mod parallel;
 pub mod polygon;
 pub mod polyline;

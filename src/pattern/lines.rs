@@ -14,24 +14,18 @@
 //! edge from row to row, and its points are decimated. Where neither works, or the ends are too
 //! far apart, the strand ends.
 
+use super::anchors::{self, LONGEST_JOIN, Places, bends};
 use super::zigzag::{self, Side};
-use super::{Pattern, SparsePattern};
-use crate::geom::decimate::{decimate, most_missed};
+use super::{Held, Pattern, SparsePattern};
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span};
-use crate::geom::{Point, side};
-use crate::units::{Bounded as _, Coord};
+use crate::units::Coord;
 use std::sync::Arc;
 
 /// Maximum run of a join along the lines from one row to the next, in row distances. A flatter
 /// edge is seen by too few rows: the join could miss a hole between two of them.
 const FLATTEST_STEP: Coord = 2;
-
-/// Maximum distance of two ends that are joined, in line widths. Longer joins along a wall add
-/// more plastic than the lines there, most where lines of several directions end. A smaller value
-/// replaces joins by travels, already at higher densities.
-const LONGEST_JOIN: i64 = 12;
 
 /// Tolerance by which a straight join may leave its region (10 µm), because edges are rounded to
 /// the grid. At 0, joins along a straight edge would fail at random.
@@ -53,6 +47,13 @@ pub struct Lines {
     /// Whether neighbouring lines are joined at their ends. They are not where lines of several
     /// directions end at the same wall: their joins would lie on each other.
     pub joined: bool,
+    /// How far an end that is not joined runs along a wall, at most. At 0 joins do not run along
+    /// walls either.
+    pub anchor: Coord,
+    /// How far inside the region's border beads run along a wall.
+    pub inwards: Coord,
+    /// Whether they lie side by side, to fill a room solidly.
+    pub solid: bool,
 }
 
 impl Lines {
@@ -60,7 +61,7 @@ impl Lines {
     #[must_use]
     pub fn new(degrees: f64, spacing: Coord, width: Coord) -> Self {
         let (raster, stride) = Raster::fine(degrees, spacing, width);
-        Self { raster, offset: 0, stride, joined: true }
+        Self { raster, offset: 0, stride, joined: true, anchor: 0, inwards: 0, solid: false }
     }
 
     /// Whether line `j` is printed.
@@ -116,6 +117,20 @@ impl SparsePattern for Lines {
         };
         zigzags.into_iter().map(strand).collect()
     }
+
+    fn is_solid(&self) -> bool {
+        self.solid
+    }
+
+    fn is_anchored(&self) -> bool {
+        self.anchor > 0 || self.solid
+    }
+
+    fn anchored(&self, region: &Held<'_>, width: Coord, least: Coord) -> Vec<Polyline> {
+        let Self { raster, offset, stride, anchor, inwards, .. } = *self;
+        let places = Places { pitch: raster.pitch, offset, stride, anchor, inwards };
+        anchors::strands(places, region, width, least)
+    }
 }
 
 /// The edges of a sparse region as its fine rows show them. Ends of lines are `(u, row)`.
@@ -160,16 +175,6 @@ impl Edges<'_> {
     }
 }
 
-/// The inner `points` that remain after decimation with tolerance `least`.
-fn bends(points: &[LinePoint], least: f64) -> Vec<LinePoint> {
-    let at = |k: usize| Point { x: points[k].u, y: points[k].v };
-    let kept = decimate(points.len(), |a, b| {
-        let length = at(a).distance(at(b)).at_least(1.0);
-        most_missed(a, b, least, |k| side(at(a), at(b), at(k)).abs() as f64 / length)
-    });
-    kept[1..kept.len() - 1].iter().map(|&k| points[k]).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -180,7 +185,7 @@ mod tests {
 
     fn every(stride: i32) -> Lines {
         let raster = Raster { frame: Frame::new(0.0), pitch: W };
-        Lines { raster, offset: 0, stride, joined: true }
+        Lines { raster, offset: 0, stride, joined: true, anchor: 0, inwards: 0, solid: false }
     }
 
     /// Rows 0 to `count`, 40 mm long, without `hole` on its rows.

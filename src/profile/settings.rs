@@ -93,12 +93,15 @@ pub struct Settings {
     #[schemars(range(min = 0, max = 10_000), extend("unit" = "layers"))]
     pub bottom_layers: Option<u32>,
     /// How far a skin reaches sideways into the infill, to hold on.
-    #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 0.4))]
+    #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 1.2))]
     pub skin_reach: f64,
 
     /// Density of the sparse infill.
     #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 20))]
     pub infill: f64,
+    /// Rooms inside the walls narrower than this are filled solid.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 2))]
+    pub narrow_room: f64,
     /// Pattern of the sparse infill.
     #[schemars(extend("default" = "rectilinear"))]
     pub pattern: Pattern,
@@ -113,9 +116,13 @@ pub struct Settings {
     /// How far skin and infill lines reach into the innermost wall.
     #[schemars(range(min = 0, max = 1), extend("unit" = "line widths", "default" = 0.4))]
     pub infill_overlap: f64,
+    /// How far an end of an infill line that leads to no other runs along the wall, at most; 0 also
+    /// keeps turns from running along walls.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 20))]
+    pub infill_anchor: f64,
     /// Radius of the turns of infill, support and skin lines, where there is room; 0 leaves
     /// them sharp.
-    #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.8))]
+    #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.4))]
     pub corner_radius: f64,
 
     /// Dual injection: lines that are printed once for several layers.

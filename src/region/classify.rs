@@ -24,7 +24,9 @@ pub struct Areas {
     pub skin: Arc<Rows>,
     /// Sparse lines.
     pub infill: Rows,
-    /// Both together: the fill rows without what wall beads take.
+    /// Solid infill in rooms too narrow for sparse lines.
+    pub dense: Rows,
+    /// All together: the fill rows without what wall beads take.
     pub fill: Arc<Rows>,
 }
 
@@ -43,12 +45,23 @@ pub fn exposed<'a>(
     fill.minus(&covered).filter(|_, span| span.len() >= i64::from(LEAST_SKIN))
 }
 
-/// Divides the `fill` rows of a layer into skin and infill. `pitch` is the distance of the rows.
+/// Divides the `fill` rows of a layer into skin and infill. `pitch` is the distance of the rows;
+/// `solid` is where rooms are too narrow for sparse lines.
 #[must_use]
-pub fn areas(fill: &Arc<Rows>, exposed: &Rows, pitch: Coord, params: &SkinParams) -> Areas {
+pub fn areas(
+    fill: &Arc<Rows>,
+    exposed: &Rows,
+    solid: Option<&Rows>,
+    pitch: Coord,
+    params: &SkinParams,
+) -> Areas {
     let skin = fill.and(&exposed.dilate(params.reach, pitch));
     let infill = fill.minus(&skin);
-    bridge_gaps(fill, skin, infill, 2 * params.line_width)
+    let areas = bridge_gaps(fill, skin, infill, 2 * params.line_width);
+    match solid {
+        Some(solid) => areas.with_dense(solid),
+        None => areas,
+    }
 }
 
 /// Divides what wall beads leave of a layer. `taken` is their area, in which no line may end.
@@ -57,12 +70,31 @@ pub fn areas_beside(
     taken: &Rows,
     fill: &Rows,
     exposed: &Rows,
+    solid: Option<&Rows>,
     pitch: Coord,
     params: &SkinParams,
 ) -> Areas {
     let fill = Arc::new(fill.minus(taken));
     let left = exposed.minus(taken).filter(|_, span| span.len() >= i64::from(LEAST_SKIN));
-    areas(&fill, &left, pitch, params)
+    areas(&fill, &left, solid, pitch, params)
+}
+
+impl Areas {
+    /// These areas with the part of the infill in `solid` dense.
+    fn with_dense(self, solid: &Rows) -> Self {
+        let dense = self.infill.and(solid);
+        if dense.is_empty() {
+            return self;
+        }
+        Self { infill: self.infill.minus(&dense), dense, ..self }
+    }
+
+    /// These areas with the part of the infill in `strips` skin.
+    #[must_use]
+    pub fn with_skin(self, strips: &Rows) -> Self {
+        let skin = Arc::new(self.skin.or(&self.infill.and(strips)));
+        Self { skin, infill: self.infill.minus(strips), ..self }
+    }
 }
 
 /// The part of `fill` that all neighbours within the number of skin layers cover.
@@ -103,8 +135,9 @@ fn bridge_gaps(fill: &Arc<Rows>, skin: Rows, infill: Rows, least: Coord) -> Area
             && skin.row(j).iter().any(|s| s.start == span.end)
     };
     if !infill.iter().any(|(j, row)| row.iter().any(|&s| is_gap(j, s))) {
-        return Areas { skin: Arc::new(skin), infill, fill: fill.clone() };
+        return Areas { skin: Arc::new(skin), infill, fill: fill.clone(), ..Areas::default() };
     }
     let infill = infill.filter(|j, span| !is_gap(j, span));
-    Areas { skin: Arc::new(fill.minus(&infill)), infill, fill: fill.clone() }
+    let skin = Arc::new(fill.minus(&infill));
+    Areas { skin, infill, fill: fill.clone(), ..Areas::default() }
 }

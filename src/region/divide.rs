@@ -7,6 +7,7 @@ use super::crossed::Crossed;
 use super::params::RegionParams;
 use super::per_raster::{PerRaster, skin_turn};
 use super::prepare::{LayerRows, Own};
+use super::rooms;
 use super::wall_beads::{taken, wall_beads};
 use crate::geom::Contour;
 use crate::geom::polyline::Polyline;
@@ -41,7 +42,19 @@ pub fn divide<'a>(
     let exposed = |raster| exposed(k, raster, layers, &params.skins);
     let skins = [0, 1].map(|r| exposed(params.rasters.skin(r)));
     let fill = |raster| layers(k)?.on(raster).map(|rows| &rows.fill);
-    let beads = beads(own, &skins, layers, params);
+    let both = [0, 1].map(|r| params.rasters.skin(r));
+    let on = |narrow: &[Rows; 2], raster: Raster, region: &Rows| match both
+        .iter()
+        .position(|r| *r == raster)
+    {
+        Some(r) => narrow[r].clone(),
+        None => rooms::on_raster(narrow, both, raster, region),
+    };
+    let solid = solid(k, layers, params);
+    let beads = match &solid {
+        Some([a, b]) => beads(own, &[skins[0].or(a), skins[1].or(b)], layers, params),
+        None => beads(own, &skins, layers, params),
+    };
     let bridges =
         below.map(|below| bridge::bridges(Pair { own, below, beads: &beads }, layers, params));
     let bridges = bridges.unwrap_or_default();
@@ -56,17 +69,40 @@ pub fn divide<'a>(
                 &other
             }
         };
+        let solid = solid.as_ref().map(|solid| on(solid, raster, fill));
         if beads.is_empty() && bridges.is_empty() {
-            return areas(fill, uncovered, raster.pitch, &params.skins);
+            return areas(fill, uncovered, solid.as_ref(), raster.pitch, &params.skins);
         }
         let mut taken = taken(&beads, along.frame, raster, &params.beads);
         if !bridges.is_empty() {
             taken = taken.or(&bridge::taken(&bridges, raster, params));
         }
-        areas_beside(&taken, fill, uncovered, raster.pitch, &params.skins)
+        areas_beside(&taken, fill, uncovered, solid.as_ref(), raster.pitch, &params.skins)
     };
     let areas = PerRaster::new(&params.rasters, more, areas_on);
+    // Strips between skin and a wall in which no sparse line has room.
+    let infill = [0, 1].map(|r| &areas.skin(r).infill);
+    let skinned = (0..2).any(|r| !areas.skin(r).skin.is_empty());
+    let limit = if skinned && !params.sparse.is_empty() { params.skins.reach } else { 0 };
+    let areas = match rooms::narrow(infill, both, limit) {
+        Some(strips) => areas.map_on(|raster, its| {
+            let strips = on(&strips, raster, &its.infill);
+            its.with_skin(&strips)
+        }),
+        None => areas,
+    };
     Divided { areas, beads, bridges }
+}
+
+/// The rooms of layer `k` too narrow for sparse lines, on the rasters of skins.
+fn solid<'a>(
+    k: usize,
+    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+    params: &RegionParams,
+) -> Option<[Rows; 2]> {
+    let rows = layers(k)?;
+    let fill = [0, 1].map(|r| &*rows.skin(r).fill);
+    rooms::narrow(fill, [0, 1].map(|r| params.rasters.skin(r)), params.skins.least_room)
 }
 
 /// The beads of a layer along its innermost walls, where the exposed `skins` are narrow.

@@ -26,6 +26,7 @@ pub mod params;
 pub mod per_raster;
 pub mod prepare;
 mod queue;
+pub mod rooms;
 pub mod scan;
 pub mod support;
 mod taper;
@@ -136,6 +137,22 @@ pub struct Sparse {
     pub layers: u32,
     /// Width of its lines.
     pub width: Coord,
+    /// What its lines hold on to; `None` if the pattern does not ask for it.
+    pub border: Option<Border>,
+}
+
+/// The border of a sparse region, and the walls around it.
+#[derive(Debug, Clone)]
+pub struct Border {
+    /// The region on the raster across.
+    pub columns: Rows,
+    /// The distance of those rows.
+    pub pitch: Coord,
+    /// The raster across is turned by +90° (else by −90°).
+    pub left_turn: bool,
+    /// The fill rows of each of its layers, on both rasters. An end of the region that is also an
+    /// end here is at a wall.
+    pub walls: Vec<[Arc<Rows>; 2]>,
 }
 
 impl Sparse {

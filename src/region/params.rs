@@ -71,6 +71,8 @@ pub struct SkinParams {
     pub line_width: Coord,
     /// The first skin above sparse infill runs across the lines below.
     pub across_infill: bool,
+    /// Rooms inside the walls narrower than this are skin.
+    pub least_room: Coord,
 }
 
 /// How beads along walls are laid.
@@ -139,6 +141,8 @@ impl RegionParams {
                 reach: to_units(settings.skin_reach),
                 line_width,
                 across_infill: settings.skin_across_infill,
+                // Without infill parts are meant to be hollow.
+                least_room: if sparse.is_empty() { 0 } else { to_units(settings.narrow_room) },
             },
             beads: BeadParams {
                 line_width,

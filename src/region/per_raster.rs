@@ -71,6 +71,15 @@ impl<T> PerRaster<T> {
         PerRaster { skins, others, rasters: self.rasters }
     }
 
+    /// Changes each value.
+    #[must_use]
+    pub fn map_on(self, mut make: impl FnMut(Raster, T) -> T) -> Self {
+        let Self { skins: [a, b], others, rasters } = self;
+        let skins = [make(rasters[0], a), make(rasters[1], b)];
+        let others = others.into_iter().map(|(raster, value)| (raster, make(raster, value)));
+        Self { skins, others: others.collect(), rasters }
+    }
+
     /// The value for one of the two rasters of skins.
     #[must_use]
     pub fn skin(&self, index: usize) -> &T {
@@ -84,6 +93,14 @@ impl<T> PerRaster<T> {
             return Some(&self.skins[index]);
         }
         self.others.iter().find(|(r, _)| *r == raster).map(|(_, value)| value)
+    }
+
+    /// The value for the raster of skins across `raster`, that raster, and whether it is turned by
+    /// +90° (else by −90°); `None` if `raster` is not parallel to one of skins.
+    #[must_use]
+    pub fn across(&self, raster: Raster) -> Option<(&T, Raster, bool)> {
+        let along = self.rasters.iter().position(|r| r.frame == raster.frame)?;
+        Some((&self.skins[1 - along], self.rasters[1 - along], along == 0))
     }
 
     /// All values, those for the rasters of skins first.

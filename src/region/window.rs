@@ -204,9 +204,14 @@ impl<'a> Window<'a> {
         // What carries the part is printed layer by layer, as finely as the part.
         let lines = |(layer, body): (&SupportLayer, Vec<Sparse>)| {
             let dense = patterns.interface.iter().zip(&layer.interface);
-            let interface = dense.filter(|(_, rows)| !rows.is_empty()).map(|(pattern, rows)| {
-                Sparse { pattern: pattern.clone(), rows: rows.clone(), layers: 1, width }
-            });
+            let interface =
+                dense.filter(|(_, rows)| !rows.is_empty()).map(|(pattern, rows)| Sparse {
+                    pattern: pattern.clone(),
+                    rows: rows.clone(),
+                    layers: 1,
+                    width,
+                    border: None,
+                });
             let interface = interface.collect();
             SupportLines { body, interface, outlines: layer.outlines.clone() }
         };

@@ -20,8 +20,10 @@ pub mod groups;
 pub mod inner_skin;
 pub mod runs;
 
-use super::Sparse;
+use super::classify::Areas;
 use super::divide::LayerAreas;
+use super::{Border, Sparse};
+use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
 use crate::pattern::{Pattern, SparsePattern, Turns};
 use crate::profile::DualPart;
@@ -56,7 +58,11 @@ pub fn infill(
 ) -> (Vec<Vec<Sparse>>, Option<Audit>) {
     if !grouping.shares(DualPart::Infill) {
         let each = block.layers.clone().zip(layers);
-        return (each.map(|(k, areas)| plain(turns.of(k), areas, line_width)).collect(), None);
+        let plain = |(k, areas): (usize, &&'_ LayerAreas)| {
+            let patterns: Vec<_> = turns.of(k).iter().chain(turns.dense(k)).cloned().collect();
+            plain(&patterns, areas, line_width)
+        };
+        return (each.map(plain).collect(), None);
     }
     let kept = shortest(block, layers, grouping, turns, line_width);
     let patterns = turns.of(if grouping.shorter { block.layers.start + kept } else { block.turn });
@@ -64,11 +70,12 @@ pub fn infill(
         return dropped(block, layers, patterns, kept, line_width);
     }
     let mut sharing = Sharing::new(DualPart::Infill, block, grouping, line_width);
-    for pattern in patterns {
+    for pattern in patterns.iter().chain(turns.dense(block.turn)) {
         let rows: Vec<Rows> = layers.iter().map(|areas| rows(&**pattern, areas)).collect();
         let skin = |areas: &&'_ LayerAreas| areas.on(pattern.raster()).map(|a| a.skin.clone());
         let skins: Vec<Option<Arc<Rows>>> = layers.iter().map(skin).collect();
-        sharing.share(pattern, &rows, &skins);
+        let borders = layers.iter().map(|areas| border(&**pattern, areas)).collect();
+        sharing.share(pattern, &rows, &skins, borders);
     }
     let (sparse, audit) = sharing.finish();
     (sparse, Some(audit))
@@ -86,12 +93,12 @@ pub fn support(
 ) -> (Vec<Vec<Sparse>>, Option<Audit>) {
     if !grouping.shares(DualPart::Support) {
         let each = |n: usize| patterns.iter().zip(rows).map(move |(p, rows)| (p, &rows[n]));
-        let thin = |n| each(n).map(|(p, rows)| thin(p, rows.clone(), line_width)).collect();
+        let thin = |n| each(n).map(|(p, rows)| thin(p, rows.clone(), line_width, None)).collect();
         return ((0..block.layers.len()).map(thin).collect(), None);
     }
     let mut sharing = Sharing::new(DualPart::Support, block, grouping, line_width);
     for (pattern, rows) in patterns.iter().zip(rows) {
-        sharing.share(pattern, rows, &vec![None; rows.len()]);
+        sharing.share(pattern, rows, &vec![None; rows.len()], vec![None; rows.len()]);
     }
     let (sparse, audit) = sharing.finish();
     (sparse, Some(audit))
@@ -100,17 +107,39 @@ pub fn support(
 /// The infill of a layer on its own.
 #[must_use]
 pub fn plain(patterns: &[Pattern], areas: &LayerAreas, line_width: Coord) -> Vec<Sparse> {
-    patterns.iter().map(|pattern| thin(pattern, rows(&**pattern, areas), line_width)).collect()
+    let thin = |pattern: &Pattern| {
+        let border = border(&**pattern, areas);
+        thin(pattern, rows(&**pattern, areas), line_width, border)
+    };
+    patterns.iter().map(thin).collect()
 }
 
 /// A region that one layer prints for itself.
-fn thin(pattern: &Pattern, rows: Rows, width: Coord) -> Sparse {
-    Sparse { pattern: pattern.clone(), rows, layers: 1, width }
+fn thin(pattern: &Pattern, rows: Rows, width: Coord, border: Option<Border>) -> Sparse {
+    Sparse { pattern: pattern.clone(), rows, layers: 1, width, border }
+}
+
+/// What the sparse infill of a layer holds on to, if `pattern` asks for it.
+fn border(pattern: &dyn SparsePattern, areas: &LayerAreas) -> Option<Border> {
+    let raster = pattern.raster();
+    let (across, Raster { pitch, .. }, left_turn) =
+        areas.across(raster).filter(|_| pattern.is_anchored())?;
+    let walls = vec![[areas.on(raster)?.fill.clone(), across.fill.clone()]];
+    let columns = if pattern.is_solid() { &across.dense } else { &across.infill }.clone();
+    Some(Border { columns, pitch, left_turn, walls })
+}
+
+/// The border of what `layers` share, whose own borders are given, with its `columns`.
+fn shared(layers: &[Border], columns: Rows) -> Option<Border> {
+    let walls = layers.iter().flat_map(|border| border.walls.clone()).collect();
+    let &Border { pitch, left_turn, .. } = layers.last()?;
+    Some(Border { columns, pitch, left_turn, walls })
 }
 
 /// The sparse infill of a layer on the raster of `pattern`; empty if it was not divided there.
 fn rows(pattern: &dyn SparsePattern, areas: &LayerAreas) -> Rows {
-    areas.on(pattern.raster()).map_or_else(Rows::default, |areas| areas.infill.clone())
+    let of = |areas: &Areas| if pattern.is_solid() { &areas.dense } else { &areas.infill }.clone();
+    areas.on(pattern.raster()).map_or_else(Rows::default, of)
 }
 
 /// The layer of the block with the smallest length of lines; of equals the upper one. Each layer
@@ -175,18 +204,34 @@ impl<'a> Sharing<'a> {
 
     /// Distributes the strands of `pattern`. `rows` is its region on each layer, `skins` are the
     /// skins of the layers on the same raster.
-    fn share(&mut self, pattern: &Pattern, rows: &[Rows], skins: &[Option<Arc<Rows>>]) {
-        for lane in self.grouping.lanes(pattern) {
+    fn share(
+        &mut self,
+        pattern: &Pattern,
+        rows: &[Rows],
+        skins: &[Option<Arc<Rows>>],
+        borders: Vec<Option<Border>>,
+    ) {
+        let borders: Vec<Border> = borders.into_iter().flatten().collect();
+        let columns: Vec<Rows> = borders.iter().map(|border| border.columns.clone()).collect();
+        let lanes = match pattern.is_solid() {
+            true => vec![Lane { pattern: pattern.clone(), phase: 0 }],
+            false => self.grouping.lanes(pattern),
+        };
+        for lane in lanes {
             let first = self.block.layers.start;
             let ends = |n: usize| self.grouping.ends(lane.phase, first + n, self.block);
             let printed = runs(rows, ends, self.line_width);
+            let across = runs(&columns, ends, self.line_width);
             self.explain(&lane, rows, skins, &printed);
-            for (out, printed) in self.sparse.iter_mut().zip(printed) {
-                let sparse = |(layers, rows)| Sparse {
-                    layers,
-                    ..thin(&lane.pattern, rows, self.line_width)
+            for (n, printed) in printed.into_iter().enumerate() {
+                let sparse = |(layers, rows): (u32, Rows)| {
+                    let columns = across.get(n).and_then(|a| a.iter().find(|a| a.0 == layers));
+                    let columns = columns.map(|(_, rows)| rows.clone()).unwrap_or_default();
+                    let its = borders.get(n + 1 - layers as usize..=n).unwrap_or_default();
+                    let border = shared(its, columns);
+                    Sparse { layers, ..thin(&lane.pattern, rows, self.line_width, border) }
                 };
-                out.extend(printed.into_iter().map(sparse));
+                self.sparse[n].extend(printed.into_iter().map(sparse));
             }
         }
     }
@@ -228,7 +273,8 @@ impl<'a> Sharing<'a> {
         if thick > 0 && lost > 0 {
             let most = i64::from(w) * MOST_WIDENED / 100;
             let wider = ((i64::from(w) * lost + thick / 2) / thick).min(most) as Coord;
-            let thick = self.sparse.iter_mut().flatten().filter(|s| s.layers > 1);
+            let is_sparse = |s: &&mut Sparse| s.layers > 1 && !s.pattern.is_solid();
+            let thick = self.sparse.iter_mut().flatten().filter(is_sparse);
             thick.for_each(|sparse| sparse.width += wider);
         }
         for sparse in self.sparse.iter().flatten() {

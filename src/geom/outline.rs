@@ -1,0 +1,366 @@
+//! Rows and rows across -> Outlines: a region's border as closed polygons, exact where lines cross it.
+//!
+//! Words: a *node* is where a row and a column cross, a *cell* lies between two rows and two
+//! columns. A *run* is the nodes of one row that one span holds. *Columns* are the rows of the
+//! raster across; their pitch may be another.
+//!
+//! Algorithm: marching squares over the nodes. A node is inside if a span of its row holds it and does not end there.
+//! The outline passes between nodes inside and outside: on a row at the span's end, on a column at
+//! the end of the column's span. So it is exact on all lines, with no trigonometry and no polygon
+//! clipping. It begins at the end of a run and turns from cell to cell, with the inside on its
+//! left. Diagonal nodes are kept apart. A corner of the region lies within a cell; it is where the
+//! edges before and after it meet.
+//!
+//! What holds no node, such as a tip thinner than a cell, has no outline.
+
+use super::Point;
+use super::spans::{Rows, Span};
+use crate::units::{Coord, nearest};
+
+/// Sine of the least turn at which a corner is looked for within a cell, 40°. Flatter ones belong
+/// to curves: at a smaller value their outline gets points outside of the curve.
+const SHARP: f64 = 0.64;
+
+/// How far from its two points a corner may lie, in cells: a little more than within one.
+const FAR: f64 = 1.1;
+
+/// Limit for how far a point is moved at acute corners and along flat edges: by the inverse of
+/// this. At 0 an acute corner would be moved far into the region.
+const ACUTE: f64 = 0.35;
+
+/// Shorter edges, grid units (20 µm), have no direction of their own: rounding to the grid turns
+/// them. A larger value rounds off corners near the end of a row.
+const SHORT: f64 = 200.0;
+
+/// Rows of the raster across, as a raster sees them.
+#[derive(Debug, Clone, Copy)]
+pub struct Columns<'a> {
+    /// The rows.
+    pub rows: &'a Rows,
+    /// Their pitch.
+    pub pitch: Coord,
+    /// Their raster is turned by +90° (else by −90°).
+    pub left_turn: bool,
+}
+
+impl Columns<'_> {
+    /// Where the border crosses column `c` between `low` and `high`, with the inside above or below.
+    fn crossing(&self, c: i32, (low, high): (Coord, Coord), inside_above: bool) -> Option<Coord> {
+        // Turned left, their u is v, and column c is their row −c; else their u is −v.
+        let (j, sign) = if self.left_turn { (-c, 1) } else { (c, -1) };
+        let starts = inside_above == self.left_turn;
+        let end = |s: &Span| sign * if starts { s.start } else { s.end };
+        self.rows.row(j).iter().map(end).find(|v| (low..=high).contains(v))
+    }
+
+    /// The span of column `c` that holds `v`.
+    #[must_use]
+    pub fn chord(&self, c: i32, v: Coord) -> Option<Span> {
+        let (j, v) = if self.left_turn { (-c, v) } else { (c, -v) };
+        self.rows.row(j).iter().copied().find(|s| s.start <= v && v <= s.end)
+    }
+
+    /// The columns of all spans, with their lower and upper ends.
+    pub fn spans(&self) -> impl Iterator<Item = (i32, Coord, Coord)> {
+        let seen = |j: i32, s: &Span| match self.left_turn {
+            true => (-j, s.start, s.end),
+            false => (j, -s.end, -s.start),
+        };
+        self.rows.iter().flat_map(move |(j, row)| row.iter().map(move |s| seen(j, s)))
+    }
+}
+
+/// What lies around a region: ends of it that are also ends here are at a wall.
+#[derive(Debug, Clone, Copy)]
+pub struct Bounds<'a> {
+    /// On the rows.
+    pub rows: &'a Rows,
+    /// On the columns.
+    pub columns: Columns<'a>,
+}
+
+/// A point of an outline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Corner {
+    /// Where it is.
+    pub at: Point,
+    /// Where it was before the outline was moved, if it lies on a row: the row, and the end of a span.
+    pub end: Option<(i32, Coord)>,
+    /// Whether it is at a wall.
+    pub wall: bool,
+}
+
+/// A closed outline, with the region on its left.
+pub type Outline = Vec<Corner>;
+
+/// The outlines of `rows`, which are `pitch` apart, with `columns` of the same region. `bounds` are
+/// the walls around it; where it is at one, it is moved inwards by `inwards`.
+#[must_use]
+pub fn outlines(
+    rows: &Rows,
+    pitch: Coord,
+    columns: Columns<'_>,
+    bounds: &[Bounds<'_>],
+    inwards: Coord,
+) -> Vec<Outline> {
+    let grid = Grid::new(rows, pitch, columns, bounds);
+    let mut seen = vec![false; grid.runs.len()];
+    let mut out = Vec::new();
+    for (j, index) in grid.all_runs() {
+        if !seen[index] {
+            let outline = with_corners(&grid.walk(j, index, &mut seen), pitch.max(columns.pitch));
+            out.push(moved(&outline, f64::from(inwards)));
+        }
+    }
+    out
+}
+
+/// The nodes that a span holds.
+#[derive(Debug, Clone, Copy)]
+struct Run {
+    first: i32,
+    last: i32,
+    span: Span,
+}
+
+/// A node: its column and row.
+type Node = (i32, i32);
+
+struct Grid<'a> {
+    first: i32,
+    /// Where the runs of each row begin in `runs`, and where the last row ends.
+    starts: Vec<usize>,
+    runs: Vec<Run>,
+    pitch: Coord,
+    columns: Columns<'a>,
+    bounds: &'a [Bounds<'a>],
+}
+
+impl<'a> Grid<'a> {
+    fn new(rows: &Rows, pitch: Coord, columns: Columns<'a>, bounds: &'a [Bounds<'a>]) -> Self {
+        let mut grid = Self {
+            first: rows.range().start,
+            starts: vec![0],
+            runs: Vec::new(),
+            pitch,
+            columns,
+            bounds,
+        };
+        for (_, row) in rows.iter() {
+            let base = grid.runs.len();
+            for &span in row {
+                // A node on the border is outside: the column there may have nothing.
+                let first = span.start.div_euclid(columns.pitch) + 1;
+                let last = (span.end - 1).div_euclid(columns.pitch);
+                match grid.runs[base..].last_mut() {
+                    // No node lies in the gap before it.
+                    Some(before) if before.last + 1 >= first => {
+                        before.last = before.last.max(last);
+                        before.span.end = span.end;
+                    }
+                    _ if first <= last => grid.runs.push(Run { first, last, span }),
+                    _ => {}
+                }
+            }
+            grid.starts.push(grid.runs.len());
+        }
+        grid
+    }
+
+    /// The rows and indices of all runs.
+    fn all_runs(&self) -> impl Iterator<Item = (i32, usize)> {
+        let rows = (self.first..).zip(self.starts.windows(2));
+        rows.flat_map(|(j, ends)| (ends[0]..ends[1]).map(move |index| (j, index)))
+    }
+
+    /// The run that holds a node; `None` if the node is outside.
+    fn run(&self, (c, j): Node) -> Option<usize> {
+        let k = usize::try_from(j.checked_sub(self.first)?).ok()?;
+        let &[from, to] = self.starts.get(k..k + 2)? else { return None };
+        let index = from + self.runs[from..to].partition_point(|run| run.last < c);
+        (index < to && self.runs[index].first <= c).then_some(index)
+    }
+
+    /// The outline that passes the left end of a run of row `j`. Runs whose left ends it passes are `seen`.
+    fn walk(&self, j: i32, index: usize, seen: &mut [bool]) -> Outline {
+        let first = self.runs[index].first;
+        let start: (Node, Node) = ((first, j), (first - 1, j));
+        let (mut inside, mut outside) = start;
+        let mut out = Outline::new();
+        loop {
+            if inside.1 == outside.1 && outside.0 < inside.0 {
+                self.run(inside).into_iter().for_each(|run| seen[run] = true);
+            }
+            out.push(self.corner(inside, outside));
+            // From the outside to the inside is to the left, so ahead is a turn to the right.
+            let ahead = (inside.1 - outside.1, outside.0 - inside.0);
+            let step = |(c, j): Node| (c + ahead.0, j + ahead.1);
+            let (left, right) = (step(inside), step(outside));
+            if self.run(left).is_none() {
+                outside = left;
+            } else if self.run(right).is_some() {
+                inside = right;
+            } else {
+                (inside, outside) = (left, right);
+            }
+            if (inside, outside) == start {
+                return out;
+            }
+        }
+    }
+
+    /// The point of the border between two neighbouring nodes.
+    fn corner(&self, inside: Node, outside: Node) -> Corner {
+        let v = inside.1 * self.pitch;
+        if inside.1 == outside.1 {
+            let left = outside.0 < inside.0;
+            let span = self.run(inside).map_or_else(Span::default, |run| self.runs[run].span);
+            let end = |s: &Span| if left { s.start } else { s.end };
+            let u = end(&span);
+            let same = |b: &Bounds<'_>| b.rows.row(inside.1).iter().any(|s| end(s) == u);
+            let wall = self.bounds.iter().any(same);
+            return Corner { at: Point { x: u, y: v }, end: Some((inside.1, u)), wall };
+        }
+        let (c, above) = (inside.0, outside.1 < inside.1);
+        let between = if above { (v - self.pitch, v) } else { (v, v + self.pitch) };
+        let found = self.columns.crossing(c, between, above);
+        let same = |b: &Bounds<'_>| b.columns.crossing(c, between, above) == found;
+        let wall = found.is_some() && self.bounds.iter().any(same);
+        let at = Point { x: c * self.columns.pitch, y: found.unwrap_or(v) };
+        Corner { at, end: None, wall }
+    }
+}
+
+/// The direction from `a` to `b`, of length 1, and the distance.
+fn towards(a: Point, b: Point) -> ([f64; 2], f64) {
+    let (x, y) = (f64::from(b.x) - f64::from(a.x), f64::from(b.y) - f64::from(a.y));
+    let length = (x * x + y * y).sqrt();
+    let by = if length > 0.0 { 1.0 / length } else { 0.0 };
+    ([x * by, y * by], length)
+}
+
+/// An outline with the corners that lie within cells, and whether each point is one of these.
+fn with_corners(outline: &[Corner], cell: Coord) -> Vec<(Corner, bool)> {
+    let n = outline.len();
+    let at = |k: usize| outline[k % n];
+    let mut out = Vec::with_capacity(n + 8);
+    for k in 0..n {
+        let (before, p, q, after) = (at(k + n - 1).at, at(k), at(k + 1), at(k + 2).at);
+        out.push((p, false));
+        let ((a, _), (b, _)) = (towards(before, p.at), towards(q.at, after));
+        let ((way, length), turn) = (towards(p.at, q.at), a[0] * b[1] - a[1] * b[0]);
+        if turn.abs() < SHARP {
+            continue;
+        }
+        // p + s a = q − t b.
+        let s = length * (way[0] * b[1] - way[1] * b[0]) / turn;
+        let t = length * (a[0] * way[1] - a[1] * way[0]) / turn;
+        let near = |x: f64| x > 0.0 && x <= FAR * f64::from(cell);
+        if near(s) && near(t) {
+            let on = |x: Coord, a: f64| nearest(f64::from(x) + s * a) as Coord;
+            let at = Point { x: on(p.at.x, a[0]), y: on(p.at.y, a[1]) };
+            out.push((Corner { at, end: None, wall: p.wall && q.wall }, true));
+        }
+    }
+    out
+}
+
+/// An outline moved inwards where it is at a wall. Ends of rows stay on their row. Points on
+/// columns that a corner has passed are dropped.
+fn moved(outline: &[(Corner, bool)], inwards: f64) -> Outline {
+    let n = outline.len();
+    let at = |k: usize| outline[k % n].0.at;
+    let moved = |k: usize| {
+        let corner = outline[k].0;
+        // Very short edges have no direction of their own.
+        let far = |&other: &usize| at(k).distance(at(other)) >= SHORT;
+        let before = (1..=3).map(|m| k + 3 * n - m).find(far).unwrap_or(k + n - 1);
+        let after = (1..=3).map(|m| k + m).find(far).unwrap_or(k + 1);
+        let ((a, _), (b, _)) = (towards(at(before), at(k)), towards(at(k), at(after)));
+        // The sum of both normals to the left; both edges move by 1 if the corner moves by this.
+        let (x, y) = (-a[1] - b[1], a[0] + b[0]);
+        let by = inwards / (1.0 + a[0] * b[0] + a[1] * b[1]).max(ACUTE);
+        let (x, y) = match corner.end {
+            // The end of a row stays on it.
+            Some(_) => (inwards * 1.0_f64.copysign(x) / (x.abs() / 2.0).max(ACUTE), 0.0),
+            None => (x * by, y * by),
+        };
+        let at = Point {
+            x: nearest(f64::from(corner.at.x) + x) as Coord,
+            y: nearest(f64::from(corner.at.y) + y) as Coord,
+        };
+        if corner.wall { Corner { at, ..corner } } else { corner }
+    };
+    let all: Outline = (0..n).map(moved).collect();
+    let passed = |k: usize| {
+        let ((a, _), (b, _)) =
+            (towards(at(k), at(k + 1)), towards(all[k % n].at, all[(k + 1) % n].at));
+        a[0] * b[0] + a[1] * b[1] < 0.0
+    };
+    let stays = |&k: &usize| {
+        let (corner, inserted) = outline[k];
+        inserted || corner.end.is_some() || !(passed(k) || passed(k + n - 1))
+    };
+    (0..n).filter(stays).map(|k| all[k]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const W: Coord = 4_000;
+
+    /// The rows of a region of which `chord` gives the span at each v.
+    fn rows(chord: impl Fn(Coord) -> Option<Span>) -> Rows {
+        let mut rows = Rows::starting_at(-60);
+        for j in -60..60 {
+            rows.push_row(|out| out.extend(chord(j * W)));
+        }
+        rows
+    }
+
+    fn outline(rows: &Rows, columns: &Rows, inwards: Coord) -> Vec<Outline> {
+        // Turned right, the columns of a region that is symmetric to both axes are its rows.
+        let columns = Columns { rows: columns, pitch: W, left_turn: false };
+        outlines(rows, W, columns, &[Bounds { rows, columns }], inwards)
+    }
+
+    #[test]
+    fn a_rectangle_keeps_its_corners_and_moves_inwards_as_a_whole() {
+        let (a, b) = (50_300, 31_700);
+        let chord = |low: Coord, high: Coord| {
+            move |v: Coord| (v.abs() <= high).then_some(Span { start: -low, end: low })
+        };
+        let found = outline(&rows(chord(a, b)), &rows(chord(b, a)), 600);
+        assert_eq!(found.len(), 1);
+        let on = |p: &Corner| p.at.x.abs() == a - 600 || p.at.y.abs() == b - 600;
+        assert!(found[0].iter().all(|p| p.wall && on(p)), "{found:?}");
+        for (x, y) in [(1, 1), (1, -1), (-1, 1), (-1, -1)] {
+            let corner = Point { x: x * (a - 600), y: y * (b - 600) };
+            assert!(found[0].iter().any(|p| p.at == corner), "{corner:?}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_outline_of_a_circle_lies_on_it(radius in 20_000..200_000_i32, inwards in 0..1_000_i32) {
+            let chord = |v: Coord| {
+                let (r, v) = (f64::from(radius), f64::from(v));
+                let half = (r * r - v * v).max(0.0).sqrt() as Coord;
+                (half > 0).then_some(Span { start: -half, end: half })
+            };
+            let all = rows(chord);
+            let found = outline(&all, &all, inwards);
+            prop_assert_eq!(found.len(), 1);
+            for (k, p) in found[0].iter().enumerate() {
+                let off = p.at.distance(Point::default()) - f64::from(radius - inwards);
+                // An end of a row on a flat edge stays on its row.
+                prop_assert!(off > -500.0, "{:?} is off by {}", p, off);
+                prop_assert!(off < f64::from(inwards) + 500.0, "{:?} is off by {}", p, off);
+                let next = found[0][(k + 1) % found[0].len()].at;
+                prop_assert!(p.at.distance(next) < 2.0 * f64::from(W));
+            }
+        }
+    }
+}

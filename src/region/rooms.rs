@@ -1,0 +1,240 @@
+//! Rows of both rasters -> Narrow: places where a region is narrower than a limit, to be filled solid.
+//!
+//! Words: the *chord* of a place is the span that holds it, on its row or on its column. A *tip*
+//! is where a wide region tapers, such as a corner or the end of a circle.
+//!
+//! Sparse lines far apart miss narrow rooms on some layers and fill them on others. So do strips
+//! between skin and a wall. Both are filled with skin instead, the same on every layer.
+//!
+//! Algorithm: in a straight room of any direction, with chords `a` and `b` across each other, the
+//! width is `ab / √(a² + b²)`. Only spans shorter than √2 times the limit can be narrow, so that
+//! wide regions cost one comparison per span. Narrow spans on neighbouring rows form a stack. A
+//! low stack beside a wide place is a tip, and stays as it is. What is narrow on the columns is
+//! brought to the rows cell by cell, and the reverse, so that both rasters agree.
+
+use super::scan::around;
+use crate::geom::Point;
+use crate::geom::outline::Columns;
+use crate::geom::raster::Raster;
+use crate::geom::spans::{Rows, Span, merge};
+use crate::units::Coord;
+
+/// Height of the lowest stack beside a wide place, in limits. The tip of a right angle is half a
+/// limit high; a smaller value fills corners of wide rooms, a larger one leaves narrow ends open.
+const TIP: f64 = 0.75;
+
+/// The narrow places of a region on the two rasters of skins, of which the second is turned by
+/// +90°; `None` if there are none.
+#[must_use]
+pub fn narrow(region: [&Rows; 2], rasters: [Raster; 2], limit: Coord) -> Option<[Rows; 2]> {
+    let of = |r: usize| {
+        let (rows, raster) = (region[r], rasters[r]);
+        let columns = columns(region, rasters, r);
+        stacks(rows, raster.pitch, &columns, limit)
+    };
+    let own = [of(0), of(1)];
+    if own.iter().all(Option::is_none) {
+        return None;
+    }
+    let own = own.map(Option::unwrap_or_default);
+    let both = |r: usize| {
+        let brought = brought(&columns([&own[0], &own[1]], rasters, r), rasters[r].pitch);
+        whole(region[r], &own[r].or(&brought), rasters[1 - r].pitch)
+    };
+    Some([both(0), both(1)])
+}
+
+/// The part of `region`, on `raster`, that is narrow on the two rasters of skins.
+#[must_use]
+pub fn on_raster(narrow: &[Rows; 2], rasters: [Raster; 2], raster: Raster, region: &Rows) -> Rows {
+    let edges = |(rows, its): (&Rows, Raster)| {
+        let at = |u: Coord, j: i32| {
+            raster.frame.enter(its.frame.leave(Point { x: u, y: j * its.pitch }))
+        };
+        let edge = |(j, s): (i32, &Span)| (at(s.start, j), at(s.end, j), its.pitch / 2);
+        let spans = rows.iter().flat_map(|(j, row)| row.iter().map(move |s| (j, s)));
+        spans.map(edge).collect::<Vec<_>>()
+    };
+    let all: Vec<_> = narrow.iter().zip(rasters).flat_map(edges).collect();
+    whole(region, &around(&all, raster), rasters[0].pitch)
+}
+
+/// The rows across raster `r`.
+fn columns<'a>(rows: [&'a Rows; 2], rasters: [Raster; 2], r: usize) -> Columns<'a> {
+    Columns { rows: rows[1 - r], pitch: rasters[1 - r].pitch, left_turn: r == 0 }
+}
+
+/// A narrow span, and the stack that it belongs to.
+struct Narrow {
+    row: i32,
+    span: Span,
+    stack: usize,
+}
+
+/// A stack of narrow spans: its lowest and highest row, and whether it lies beside a wide place.
+#[derive(Clone, Copy)]
+struct Stack {
+    rows: (i32, i32),
+    tip: bool,
+}
+
+/// The narrow spans of `rows` by their own chords, without tips; `None` if there are none.
+fn stacks(rows: &Rows, pitch: Coord, columns: &Columns<'_>, limit: Coord) -> Option<Rows> {
+    let is_narrow = |j: i32, s: Span| is_narrow(j * pitch, s, columns, limit);
+    let mut spans: Vec<Narrow> = Vec::new();
+    let mut stacks: Vec<Stack> = Vec::new();
+    let (mut before, mut wide): (std::ops::Range<usize>, Vec<Span>) = (0..0, Vec::new());
+    for (row, all) in rows.iter() {
+        let first = spans.len();
+        let mut wide_here = Vec::new();
+        for &span in all {
+            if !is_narrow(row, span) {
+                wide_here.push(span);
+                let below = spans[before.clone()].iter().filter(|n| n.span.overlaps(span));
+                below.for_each(|n| stacks[n.stack].tip = true);
+                continue;
+            }
+            let stack = stacks.len();
+            let tip = wide.iter().any(|w| w.overlaps(span));
+            stacks.push(Stack { rows: (row, row), tip });
+            spans.push(Narrow { row, span, stack });
+            let below = before.clone().filter(|&k| spans[k].span.overlaps(span));
+            for k in below.collect::<Vec<_>>() {
+                let (old, now) = (spans[k].stack, spans[spans.len() - 1].stack);
+                unite(&mut spans, &mut stacks, (old, now));
+            }
+        }
+        before = first..spans.len();
+        wide = wide_here;
+    }
+    let least = (f64::from(limit) * TIP) as Coord;
+    let stays = |n: &Narrow| {
+        let Stack { rows: (low, high), tip } = stacks[n.stack];
+        !tip || (high - low + 1) * pitch >= least
+    };
+    spans.retain(stays);
+    (!spans.is_empty()).then(|| {
+        let mut rest = spans.as_slice();
+        let mut out = Rows::with_room_of(rows, rows.range().start);
+        for j in rows.range() {
+            let here = rest.iter().take_while(|n| n.row == j).count();
+            out.push_row(|row| row.extend(rest[..here].iter().map(|n| n.span)));
+            rest = &rest[here..];
+        }
+        out
+    })
+}
+
+/// Makes two stacks one: the one with the lower number.
+fn unite(spans: &mut [Narrow], stacks: &mut [Stack], (a, b): (usize, usize)) {
+    if a == b {
+        return;
+    }
+    let (keep, drop) = (a.min(b), a.max(b));
+    let (x, y) = (stacks[keep], stacks[drop]);
+    let rows = (x.rows.0.min(y.rows.0), x.rows.1.max(y.rows.1));
+    stacks[keep] = Stack { rows, tip: x.tip || y.tip };
+    spans.iter_mut().filter(|n| n.stack == drop).for_each(|n| n.stack = keep);
+}
+
+/// Whether a region is narrower than `limit` at the middle of `span`, which lies at `v`.
+fn is_narrow(v: Coord, span: Span, columns: &Columns<'_>, limit: Coord) -> bool {
+    let (a, limit) = (span.len(), i64::from(limit));
+    if a * a >= 2 * limit * limit {
+        return false;
+    }
+    let middle = span.start + (a / 2) as Coord;
+    let b = columns.chord((middle + columns.pitch / 2).div_euclid(columns.pitch), v);
+    // Longer chords make no difference, and their squares could be too large.
+    let b = b.map_or(0, Span::len).min(100 * limit);
+    let (a, b, limit) = (a as f64, b as f64, limit as f64);
+    a * a * b * b < limit * limit * (a * a + b * b)
+}
+
+/// The columns as rows `pitch` apart: each as wide as their distance.
+fn brought(columns: &Columns<'_>, pitch: Coord) -> Rows {
+    let mut cells: Vec<(i32, Span)> = Vec::new();
+    for (c, low, high) in columns.spans() {
+        let u = c * columns.pitch;
+        let (start, end) = (u - columns.pitch / 2, u - columns.pitch / 2 + columns.pitch);
+        let rows = -(-low).div_euclid(pitch)..=high.div_euclid(pitch);
+        cells.extend(rows.map(|j| (j, Span { start, end })));
+    }
+    cells.sort_unstable();
+    let Some((&(first, _), &(last, _))) = cells.first().zip(cells.last()) else {
+        return Rows::default();
+    };
+    let mut out = Rows::starting_at(first);
+    let mut rest = cells.as_slice();
+    let mut row = Vec::new();
+    for j in first..=last {
+        let here = rest.iter().take_while(|(k, _)| *k == j).count();
+        row.clear();
+        row.extend(rest[..here].iter().map(|(_, span)| *span));
+        out.push_row(|spans| merge(&mut row, spans));
+        rest = &rest[here..];
+    }
+    out
+}
+
+/// The part of `region` in `narrow`, with the bits shorter than `least` beside it.
+fn whole(region: &Rows, narrow: &Rows, least: Coord) -> Rows {
+    let inside = region.and(narrow);
+    let beside = |j: i32, s: Span| {
+        s.len() < i64::from(least)
+            && inside.row(j).iter().any(|n| n.end == s.start || n.start == s.end)
+    };
+    let bits = region.minus(&inside).filter(beside);
+    if bits.is_empty() { inside } else { inside.or(&bits) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::frame::Frame;
+    use crate::region::scan::Scan;
+    use crate::units::{sin_cos, to_units};
+    use proptest::prelude::*;
+
+    const W: Coord = 4_000;
+    const LIMIT: Coord = 20_000;
+
+    /// The share of a rectangle that is narrow, on each raster.
+    fn share(size: (f64, f64), degrees: f64) -> [f64; 2] {
+        let (sin, cos) = sin_cos(degrees);
+        let corner = |(x, y): (f64, f64)| {
+            let (x, y) = (x * size.0 / 2.0, y * size.1 / 2.0);
+            Point { x: to_units(x * cos - y * sin), y: to_units(x * sin + y * cos) }
+        };
+        let contour = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(corner).to_vec();
+        let rasters = [0.0, 90.0].map(|a| Raster { frame: Frame::new(a), pitch: W });
+        let scans = rasters.map(|r| Scan::new(std::slice::from_ref(&contour), r));
+        let rows = [scans[0].inside(), scans[1].inside()];
+        match narrow(rows, rasters, LIMIT) {
+            Some(found) => [0, 1].map(|r| found[r].total() as f64 / rows[r].total() as f64),
+            None => [0.0, 0.0],
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn bars_are_narrow_below_the_limit_and_not_above(
+            width in 0.3..4.0_f64, length in 15.0..40.0_f64, degrees in 0.0..180.0_f64
+        ) {
+            // The slanted ends of a bar hardly wider than the limit are narrow.
+            prop_assume!(width < 1.85 || width > 3.0);
+            for share in share((length, width), degrees) {
+                if width < 2.0 {
+                    prop_assert!(share > 0.97, "{}", share);
+                } else {
+                    prop_assert!(share < 0.12, "{}", share);
+                }
+            }
+        }
+
+        #[test]
+        fn wide_rooms_keep_their_corners(size in 6.0..40.0_f64, degrees in 0.0..90.0_f64) {
+            prop_assert_eq!(share((size, size), degrees), [0.0, 0.0]);
+        }
+    }
+}
