@@ -13,7 +13,7 @@
 use super::body;
 use super::columns::Column;
 use super::params::{SupportLayer, SupportParams};
-use super::pieces::across;
+use super::pieces::{across, without_specks};
 use crate::geom::spans::Rows;
 
 /// The support of layer `k`, divided.
@@ -31,7 +31,7 @@ pub(super) fn divide(columns: &[Column], k: usize, params: &SupportParams) -> Su
     // Where the two meet, their outermost lines lie beside each other.
     let dense = across.or(&along).dilate(params.least, params.raster().pitch);
     let body = here.minus(&dense);
-    let (outlines, body) = body::lay(&body, params);
+    let (outlines, body) = body::lay(&body, k, params);
     SupportLayer { body, outlines, interface: [params.along(&along), params.across(&across)] }
 }
 
@@ -54,7 +54,7 @@ fn interface(columns: &[Column], k: usize, params: &SupportParams) -> [Rows; 2] 
         let out = &mut out[(n - rank) % 2];
         *out = out.or(&wide);
     }
-    out
+    out.map(|rows| without_specks(&rows, params))
 }
 
 impl SupportParams {

@@ -37,13 +37,9 @@ use crate::geom::spans::Rows;
 use crate::slice::{Layer, Slicer};
 use columns::{Column, Window};
 use overhangs::LayerView;
-use pieces::Pieces;
+use pieces::without_specks;
 use printed::printed;
 use rayon::prelude::*;
-
-/// Smaller pieces of support on a layer are dropped, in squares of a line's width. They hold
-/// nothing, and each costs two travels.
-const LEAST_AREA: i64 = 6;
 
 /// The support of every layer, by index, on all rows of its rasters. `within` is the bed, as two
 /// opposite corners of a rectangle around the origin.
@@ -92,14 +88,6 @@ fn add_brim(slicer: &Slicer<'_>, params: &SupportParams, columns: &mut [Column])
     }
 }
 
-/// The rows without pieces that are too small to stand.
-fn without_specks(rows: &Rows, params: &SupportParams) -> Rows {
-    let pieces = Pieces::new(rows);
-    let lengths = pieces.lengths(rows);
-    let (w, pitch) = (i64::from(params.least), i64::from(params.raster().pitch));
-    pieces.keep(rows, |piece| lengths[piece] * pitch >= LEAST_AREA * w * w)
-}
-
 /// Removes support that stands on the part: everything above any layer below it.
 fn keep_to_bed(slicer: &Slicer<'_>, params: &SupportParams, columns: &mut [Column]) {
     let mut shadow = Rows::default();
@@ -118,5 +106,5 @@ fn keep_to_bed(slicer: &Slicer<'_>, params: &SupportParams, columns: &mut [Colum
 
 /// What is printed of a layer, on the rows of support.
 fn scan(layer: &Layer, params: &SupportParams) -> Scan {
-    Scan::new(&printed(&layer.contours, params.thinnest), params.raster())
+    Scan::new(&printed(&layer.contours, params.printed), params.raster())
 }

@@ -41,7 +41,7 @@ impl LayerView {
     pub(super) fn new(layer: &Layer, above: Coord, params: &SupportParams) -> Self {
         let lean = to_units((to_mm(above) * params.lean).min(MOST_LEAN_MM)) + SLACK;
         let (raster, pitch) = (params.raster(), params.raster().pitch);
-        let scan = Scan::new(&printed(&layer.contours, params.thinnest), raster);
+        let scan = Scan::new(&printed(&layer.contours, params.printed), raster);
         Self {
             index: layer.index,
             inside: scan.inside().clone(),

@@ -13,6 +13,8 @@ use std::sync::Arc;
 pub struct SupportParams {
     /// The lines, on rows fine enough to find every overhang. They are joined at their ends.
     pub(super) lines: Lines,
+    /// The same, turned by 90°.
+    pub(super) crossing: Lines,
     /// The lines of the interface in the same direction, and across.
     pub(super) interface: [Lines; 2],
     /// How far a layer may reach out without support, for each unit of its height.
@@ -25,8 +27,8 @@ pub struct SupportParams {
     pub(super) bed_only: bool,
     /// Width of a line.
     pub(super) least: Coord,
-    /// Thinner islands of a layer are not printed.
-    pub(super) thinnest: Coord,
+    /// Width of a line, and of the thinnest bead: of islands of a layer that are printed.
+    pub(super) printed: [Coord; 2],
     pub(super) interface_layers: usize,
     pub(super) interface_pitch: Coord,
     /// Least width of a post, 0 for any.
@@ -41,8 +43,8 @@ pub struct SupportParams {
 /// The patterns of support.
 #[derive(Debug)]
 pub struct SupportPatterns {
-    /// Of what is sparse: lines that are joined at their ends, and lines that end at an outline.
-    pub body: [Pattern; 2],
+    /// Of what is sparse: zigzags, zigzags across those, and lines that end at an outline.
+    pub body: [Pattern; 3],
     /// Of what is dense: in the same direction, and across.
     pub interface: [Pattern; 2],
 }
@@ -51,8 +53,8 @@ pub struct SupportPatterns {
 #[derive(Debug, Clone, Default)]
 pub struct SupportLayer {
     /// Where its sparse lines run, by pattern.
-    pub body: [Rows; 2],
-    /// The outlines at which the latter end.
+    pub body: [Rows; 3],
+    /// The outlines at which the last of them end.
     pub outlines: Vec<Contour>,
     /// Where its dense lines run, by pattern.
     pub interface: [Rows; 2],
@@ -63,8 +65,8 @@ impl SupportParams {
     #[must_use]
     pub fn patterns(&self) -> SupportPatterns {
         let pattern = |lines| -> Pattern { Arc::new(lines) };
-        let body = [self.lines, Lines { joined: false, ..self.lines }].map(pattern);
-        SupportPatterns { body, interface: self.interface.map(pattern) }
+        let body = [self.lines, self.crossing, Lines { joined: false, ..self.lines }];
+        SupportPatterns { body: body.map(pattern), interface: self.interface.map(pattern) }
     }
 
     /// The raster on whose rows support is computed.
@@ -86,6 +88,7 @@ impl SupportParams {
             if support.threshold_angle >= 90.0 { 0.0 } else { libm::cos(angle) / libm::sin(angle) };
         support.enabled.then(|| Self {
             lines,
+            crossing: Lines::new(degrees + 90.0, spacing, (w / 2).max(1)),
             interface,
             lean,
             outset: to_units(support.expansion),
@@ -93,7 +96,7 @@ impl SupportParams {
             gap: (support.z_distance / settings.layer_height).round() as usize,
             bed_only: support.stands_on == SupportBase::Bed,
             least: w,
-            thinnest: to_units(settings.min_feature),
+            printed: [w, to_units(settings.min_feature)],
             interface_layers: support.interface_layers as usize,
             interface_pitch: pitch,
             min_width: to_units(support.min_width),

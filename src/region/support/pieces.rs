@@ -3,8 +3,13 @@
 //! Words: two spans on neighbouring rows *touch* if they overlap. A *piece* is all spans that hang
 //! together by touching. A piece *holds a disc* if a circle of that radius has room in it.
 
+use super::params::SupportParams;
 use crate::geom::spans::{Rows, Span, intersect, subtract, total};
 use crate::units::Coord;
+
+/// Smaller pieces of support on a layer are dropped, in squares of a line's width. They hold
+/// nothing, and each costs two travels.
+const LEAST_AREA: i64 = 6;
 
 /// The piece of each span, in the order of [`Rows::iter`].
 pub(super) struct Pieces {
@@ -123,6 +128,14 @@ fn root(parents: &mut [usize], mut k: usize) -> usize {
 fn unite(parents: &mut [usize], a: usize, b: usize) {
     let (a, b) = (root(parents, a), root(parents, b));
     parents[a.max(b)] = a.min(b);
+}
+
+/// The rows without pieces that are too small to hold anything.
+pub(super) fn without_specks(rows: &Rows, params: &SupportParams) -> Rows {
+    let pieces = Pieces::new(rows);
+    let lengths = pieces.lengths(rows);
+    let (w, pitch) = (i64::from(params.least), i64::from(params.raster().pitch));
+    pieces.keep(rows, |piece| lengths[piece] * pitch >= LEAST_AREA * w * w)
 }
 
 /// What of `rows`, which are `pitch` apart, lies at least `radius` inside them: where the middle of
