@@ -199,7 +199,7 @@ impl<'a> Window<'a> {
         let layers = &layers[block.layers.clone()];
         let width = self.params.walls.line_width;
         let rows = |n: usize| layers.iter().map(|layer| layer.body[n].clone()).collect();
-        let rows: [Vec<Rows>; 3] = [0, 1, 2].map(rows);
+        let rows: [Vec<Rows>; 2] = [0, 1].map(rows);
         let (bodies, audit) = dual::support(block, &rows, &patterns.body, self.grouping, width);
         // What carries the part is printed layer by layer, as finely as the part.
         let lines = |(layer, body): (&SupportLayer, Vec<Sparse>)| {

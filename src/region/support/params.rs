@@ -13,8 +13,6 @@ use std::sync::Arc;
 pub struct SupportParams {
     /// The lines, on rows fine enough to find every overhang. They are joined at their ends.
     pub(super) lines: Lines,
-    /// The same, turned by 90°.
-    pub(super) crossing: Lines,
     /// The lines of the interface in the same direction, and across.
     pub(super) interface: [Lines; 2],
     /// How far a layer may reach out without support, for each unit of its height.
@@ -43,8 +41,8 @@ pub struct SupportParams {
 /// The patterns of support.
 #[derive(Debug)]
 pub struct SupportPatterns {
-    /// Of what is sparse: zigzags, zigzags across those, and lines that end at an outline.
-    pub body: [Pattern; 3],
+    /// Of what is sparse: zigzags, and lines that end at an outline.
+    pub body: [Pattern; 2],
     /// Of what is dense: in the same direction, and across.
     pub interface: [Pattern; 2],
 }
@@ -53,8 +51,8 @@ pub struct SupportPatterns {
 #[derive(Debug, Clone, Default)]
 pub struct SupportLayer {
     /// Where its sparse lines run, by pattern.
-    pub body: [Rows; 3],
-    /// The outlines at which the last of them end.
+    pub body: [Rows; 2],
+    /// The outlines at which the latter end.
     pub outlines: Vec<Contour>,
     /// Where its dense lines run, by pattern.
     pub interface: [Rows; 2],
@@ -65,7 +63,7 @@ impl SupportParams {
     #[must_use]
     pub fn patterns(&self) -> SupportPatterns {
         let pattern = |lines| -> Pattern { Arc::new(lines) };
-        let body = [self.lines, self.crossing, Lines { joined: false, ..self.lines }];
+        let body = [self.lines, Lines { joined: false, ..self.lines }];
         SupportPatterns { body: body.map(pattern), interface: self.interface.map(pattern) }
     }
 
@@ -88,7 +86,6 @@ impl SupportParams {
             if support.threshold_angle >= 90.0 { 0.0 } else { libm::cos(angle) / libm::sin(angle) };
         support.enabled.then(|| Self {
             lines,
-            crossing: Lines::new(degrees + 90.0, spacing, (w / 2).max(1)),
             interface,
             lean,
             outset: to_units(support.expansion),

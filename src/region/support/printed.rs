@@ -78,7 +78,7 @@ mod tests {
         assert_eq!(printed(&ring, [4_000, 900]).len(), 2);
         assert!(printed(&ring, [4_000, 1_200]).is_empty());
         // A tip as wide as it is long gets no bead, however thin a bead may be.
-        let tip = [(0, 0), (3_900, 0), (3_900, 3_900), (0, 3_900)].map(|(x, y)| Point { x, y });
+        let tip = [(0, 0), (3_000, 0), (3_000, 3_000), (0, 3_000)].map(|(x, y)| Point { x, y });
         assert!(printed(&[tip.to_vec()], [4_000, 1_000]).is_empty());
     }
 }
