@@ -168,6 +168,9 @@ impl Maker<'_> {
             left_turn: border.left_turn,
         };
         let (lines, mut slivers) = gap_closing::close(&crossed, &self.params.lines);
+        // A thread much narrower than the nozzle does not flow evenly, and holds nothing in here.
+        let least = self.params.line_width * 7 / 10;
+        slivers.retain(|bead| bead.iter().all(|point| point.width >= least));
         slivers.extend(skin::zigzags(&lines, &self.params.lines));
         slivers
     }

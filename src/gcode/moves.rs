@@ -284,7 +284,8 @@ impl<'a> Walk<'a> {
 
     /// The feed of a bead, clamped to the flow limit, mm/min.
     fn feed(&mut self, bead: &Bead, asked: f64) -> u32 {
-        let (given, flow) = self.params.limit.feed(self.params.filament(bead, 1.0), asked);
+        let (given, flow) =
+            self.params.limit.feed(self.params.filament(bead, 1.0), bead.thick, asked);
         let feeds = Lowered { asked: whole_feed(asked), given };
         self.out.flows.note(bead.role, bead.thick, flow, feeds);
         given

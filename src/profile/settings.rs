@@ -262,6 +262,9 @@ pub struct Speed {
     /// Speed of sparse infill that is several layers high.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 60))]
     pub thick_infill: f64,
+    /// Thick lines take no more than this share of the plastic that the hot end can melt.
+    #[schemars(range(min = 10, max = 100), extend("unit" = "%", "default" = 90))]
+    pub thick_flow: f64,
     /// Speed of support.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 50))]
     pub support: f64,
