@@ -1,4 +1,11 @@
 //! Role: what a path is printed for, with everything specific to each role in one table.
+//!
+//! Words:
+//! - The *place* of a role is where its paths come in the order of a layer.
+//! - A *thick* path is printed for several layers at once, a *thin* one for its own.
+//!
+//! To add a role, add a variant and its facts. The lines of a layer are sorted, annotated, timed and
+//! reported by these facts alone.
 
 use crate::profile::{Extrusion, Speed};
 use std::ops::{Index, IndexMut};

@@ -203,8 +203,7 @@ pub struct Support {
     /// Gap between the lines of dense layers.
     #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.2))]
     pub interface_spacing: f64,
-    /// Support grows to this width, or to a fifth of its height if that is more, to stand; 0 leaves
-    /// it as narrow as the overhang.
+    /// Least width of support, or a fifth of its height if that is more; 0 leaves it as it is.
     #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 4))]
     pub min_width: f64,
     /// Whether bridges get support, however short.
