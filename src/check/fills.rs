@@ -38,9 +38,9 @@ const CELL: f64 = 4.0;
 /// Cells along a side at most; larger prints get larger cells.
 const MOST_CELLS: f64 = 256.0;
 
-/// Plastic over room: a row of turns at the edge of a cell takes 1.28, a wall of 0.6 mm printed by two
-/// lines of 0.4 mm 1.33; the model of a bead with round ends leaves 0.79 of the thinnest.
-const BOUNDS: [f64; 2] = [0.7, 1.3];
+/// Plastic over room: neighbours of other slicers overlap by a tenth, ends of lines in walls by
+/// another; the model of a bead with round ends leaves 0.79 of the thinnest.
+const BOUNDS: [f64; 2] = [0.7, 1.25];
 
 /// Room by which plastic is judged, mm²: too little and too much of it.
 const LEAST_ROOM: [f64; 2] = [2.0, 1.2];

@@ -17,7 +17,7 @@ Findings, each with a stable code, a place and a measure:
   unanchored         * over 3 mm of a line over nothing with a free end, along a void that it should
                        cross, or, of a wall, in a bow
   printed-twice        a line on the middle of another of its layer, over 10 mm or most of it
-  overfilled         * over 1.3 times the plastic that walls and skins have room for, on one layer
+  overfilled         * over 1.25 times the plastic that walls and skins have room for, on one layer
                        within 4 by 4 mm
   underfilled        * under 0.7 times that, or a fifth of the room between them left open
   narrow-bead        * over 1 mm of a line narrower than 70 % of the nozzle

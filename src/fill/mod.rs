@@ -77,7 +77,8 @@ impl FillParams {
 #[must_use]
 pub fn paths(region: &Region, params: &FillParams) -> Vec<Path> {
     let mut maker = Maker { k: region.layer.index, params, out: Vec::new() };
-    region.walls.iter().for_each(|wall| maker.wall(wall));
+    let hangs = region.hangs.iter().map(Vec::as_slice).chain(std::iter::repeat(&[] as &[u8]));
+    region.walls.iter().zip(hangs).for_each(|(wall, hangs)| maker.wall(wall, hangs));
     region.skins.iter().for_each(|skin| maker.skin(skin));
     region.infill.iter().for_each(|sparse| maker.sparse(Role::Infill, sparse));
     let support = &region.support;
@@ -106,12 +107,13 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    fn wall(&mut self, wall: &Wall) {
+    fn wall(&mut self, wall: &Wall, hangs: &[u8]) {
         let (plain, height) = (self.params.line_width, self.height(wall.layers));
         let role = if wall.depth == 0 { Role::OuterWall } else { Role::InnerWall };
         let point = |(k, &at): (usize, &Point)| {
             let width = wall.widths.get(k).copied().unwrap_or(plain);
-            PathPoint { at, z: 0, width, height }
+            let hang = hangs.get(k).copied().unwrap_or(0);
+            PathPoint { at, z: 0, width, height, hang }
         };
         let corners = wall.path.iter().enumerate().map(point);
         let again = corners.clone().next().filter(|_| wall.closed);
@@ -153,7 +155,7 @@ impl Maker<'_> {
     fn outline(&mut self, outline: &Contour) {
         let (width, height) = (self.params.line_width, self.height(1));
         let corners = outline.iter().chain(outline.first());
-        let points = corners.map(|&at| PathPoint { at, z: 0, width, height }).collect();
+        let points = corners.map(|&at| PathPoint { at, z: 0, width, height, hang: 0 }).collect();
         self.push(Role::Support, Shape::Open, 1, points);
     }
 
@@ -168,9 +170,6 @@ impl Maker<'_> {
             left_turn: border.left_turn,
         };
         let (lines, mut slivers) = gap_closing::close(&crossed, &self.params.lines);
-        // A thread much narrower than the nozzle does not flow evenly, and holds nothing in here.
-        let least = self.params.line_width * 7 / 10;
-        slivers.retain(|bead| bead.iter().all(|point| point.width >= least));
         slivers.extend(skin::zigzags(&lines, &self.params.lines));
         slivers
     }
@@ -190,6 +189,7 @@ impl Maker<'_> {
             z: 0,
             width,
             height,
+            hang: 0,
         };
         let mut points = rounding.round(polyline.iter().map(place).collect());
         if role == Role::Bridge {

@@ -4,7 +4,7 @@ use super::role::Role;
 use crate::geom::Point;
 use crate::units::Coord;
 
-/// A point of a path. Its width and height hold for the bead from the previous point to this one.
+/// A point of a path. Its width, height and hang hold for the bead from the previous point to this one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PathPoint {
     /// Position on the bed relative to the middle of the layout, grid units.
@@ -15,6 +15,8 @@ pub struct PathPoint {
     pub width: Coord,
     /// Height of the bead, grid units.
     pub height: Coord,
+    /// How far a wall hangs over nothing, % of its width; 0 up to half.
+    pub hang: u8,
 }
 
 /// How the ends of a path may be chosen.
@@ -69,8 +71,8 @@ impl Path {
         self.points.reverse();
         // Each point has the bead of the segment before it. That segment now ends at its other point.
         for k in (1..self.points.len()).rev() {
-            let PathPoint { width, height, .. } = self.points[k - 1];
-            self.points[k] = PathPoint { width, height, ..self.points[k] };
+            let PathPoint { width, height, hang, .. } = self.points[k - 1];
+            self.points[k] = PathPoint { width, height, hang, ..self.points[k] };
         }
     }
 
@@ -91,8 +93,13 @@ mod tests {
 
     fn square() -> Path {
         let corners = [(0, 0, 1), (10, 0, 2), (10, 10, 3), (0, 10, 4), (0, 0, 5)];
-        let point =
-            |(x, y, width)| PathPoint { at: Point { x, y }, z: width, width, height: 2 * width };
+        let point = |(x, y, width)| PathPoint {
+            at: Point { x, y },
+            z: width,
+            width,
+            height: 2 * width,
+            hang: 0,
+        };
         let points = corners.map(point).to_vec();
         let shape = Shape::Loop { depth: 0 };
         Path { role: Role::OuterWall, shape, points, layers: 1, tool: 0 }

@@ -1,11 +1,4 @@
 //! Role: what a path is printed for, with everything specific to each role in one table.
-//!
-//! Words:
-//! - The *place* of a role is where its paths come in the order of a layer.
-//! - A *thick* path is printed for several layers at once, a *thin* one for its own.
-//!
-//! To add a role, add a variant and its facts. The lines of a layer are sorted, annotated, timed and
-//! reported by these facts alone.
 
 use crate::profile::{Extrusion, Speed};
 use std::ops::{Index, IndexMut};
@@ -17,6 +10,8 @@ pub enum Role {
     OuterWall,
     /// Walls inside it.
     InnerWall,
+    /// Walls where they hang over nothing. No path has it: it is told by the points.
+    Overhang,
     /// Solid lines at tops and bottoms.
     Skin,
     /// Solid lines over places where nothing is printed below.
@@ -61,9 +56,10 @@ pub struct RoleFacts {
 
 impl Role {
     /// All roles, in the order of reports.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::OuterWall,
         Self::InnerWall,
+        Self::Overhang,
         Self::Skin,
         Self::Bridge,
         Self::Infill,
@@ -88,6 +84,13 @@ impl Role {
                 name: "inner wall",
                 annotation: "Perimeter",
                 may_be_thick: true,
+                ..Self::OuterWall.facts()
+            },
+            Self::Overhang => RoleFacts {
+                name: "overhanging wall",
+                annotation: "Overhang perimeter",
+                speed_keys: Both::same("speed.overhang"),
+                speed: |speed| Both::same(speed.overhang),
                 ..Self::OuterWall.facts()
             },
             Self::Skin => RoleFacts {

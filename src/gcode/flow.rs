@@ -19,29 +19,24 @@ const REPORT_THRESHOLD: f64 = 0.05;
 pub(super) struct FlowLimit {
     /// The largest flow, mm³/s.
     most: f64,
-    /// The part of it that thick beads may take: they melt as it arrives, with no slack from
-    /// thinner lines beside them.
-    thick: f64,
     /// Cross-section of the filament, mm².
     area: f64,
 }
 
 impl FlowLimit {
     pub(super) fn new(settings: &Settings) -> Self {
-        let thick = settings.speed.thick_flow / 100.0;
-        Self { most: settings.machine.max_volumetric_speed, thick, area: settings.filament_area() }
+        Self { most: settings.machine.max_volumetric_speed, area: settings.filament_area() }
     }
 
     /// The feed (mm/min) and the flow (mm³/s) of a bead that takes `filament` mm for each mm of
     /// path: the feed `asked` for, clamped to the highest at which the filament melts.
-    pub(super) fn feed(self, filament: f64, thick: bool, asked: f64) -> (u32, f64) {
-        let most = self.most * if thick { self.thick } else { 1.0 };
+    pub(super) fn feed(self, filament: f64, asked: f64) -> (u32, f64) {
         // mm³/s for each mm/min.
         let flow = filament * self.area / 60.0;
         let whole = whole_feed(asked);
-        let feed = if f64::from(whole) * flow > most * (1.0 + SLACK) {
+        let feed = if f64::from(whole) * flow > self.most * (1.0 + SLACK) {
             // Rounded down, since it is a limit.
-            (most / flow).floor().max(1.0) as u32
+            (self.most / flow).floor().max(1.0) as u32
         } else {
             whole
         };
@@ -119,12 +114,11 @@ mod tests {
     #[test]
     fn a_feed_is_lowered_to_the_flow_limit_and_no_further() {
         // A square of 1 mm², so that a mm of filament is a mm³.
-        let limit = FlowLimit { most: 10.0, thick: 0.9, area: 1.0 };
-        assert_eq!(limit.feed(0.1, false, 6000.0), (6000, 10.0));
-        assert_eq!(limit.feed(0.1, false, 6001.0).0, 6000);
-        assert_eq!(limit.feed(0.7, false, 6000.0).0, 857);
-        assert_eq!(limit.feed(0.1, true, 6000.0).0, 5400);
-        assert_eq!(limit.feed(0.0, false, 0.2), (1, 0.0));
+        let limit = FlowLimit { most: 10.0, area: 1.0 };
+        assert_eq!(limit.feed(0.1, 6000.0), (6000, 10.0));
+        assert_eq!(limit.feed(0.1, 6001.0).0, 6000);
+        assert_eq!(limit.feed(0.7, 6000.0).0, 857);
+        assert_eq!(limit.feed(0.0, 0.2), (1, 0.0));
     }
 
     #[test]

@@ -19,7 +19,7 @@ use crate::fill::{Both, Path, PathPoint, Role, RoleTable};
 use crate::geom::Point;
 use crate::plan::{PrintMove, Toolpath};
 use crate::profile::{ExtrusionModel, Settings};
-use crate::units::{Coord, Thousandths, UNITS_PER_MM, to_mm, to_units};
+use crate::units::{Bounded as _, Coord, Thousandths, UNITS_PER_MM, to_mm, to_units};
 
 /// A straight move.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -135,6 +135,14 @@ impl MoveParams {
     /// Filament for `length_mm` of a bead, mm.
     fn filament(&self, bead: &Bead, length_mm: f64) -> f64 {
         self.rates[bead.role] * length_mm * to_mm(bead.width) * to_mm(bead.height)
+    }
+
+    /// The feed asked for where a path hangs by `hang` % of its width, mm/min. From half to the
+    /// whole width it falls to that of overhangs.
+    fn asked(&self, path: &Path, hang: u8) -> f64 {
+        let usual = *self.feeds[path.role].of(path.is_thick());
+        let share = (f64::from(hang) / 50.0 - 1.0).at_least(0.0);
+        usual - share * (usual - self.feeds[Role::Overhang].thin).at_least(0.0)
     }
 
     /// The moves of one layer.
@@ -255,15 +263,15 @@ impl<'a> Walk<'a> {
     fn path(&mut self, path: &Path) {
         let thick = path.is_thick();
         let slow = if self.out.layer == 0 { self.params.first_layer } else { 1.0 };
-        let asked = self.params.feeds[path.role].of(thick) * slow;
         // No bead has a negative width, so that the first segment always computes its feed.
         let mut bead = Bead { role: path.role, thick, height: 0, width: -1 };
-        let mut feed = 0;
+        let (mut feed, mut hang) = (0, 0);
         for ends in path.points.windows(2) {
             let (from, to) = (&ends[0], &ends[1]);
-            if (to.width, to.height) != (bead.width, bead.height) {
-                (bead.width, bead.height) = (to.width, to.height);
-                feed = self.feed(&bead, asked);
+            if (to.width, to.height, to.hang) != (bead.width, bead.height, hang) {
+                (bead.width, bead.height, hang) = (to.width, to.height, to.hang);
+                bead.role = if hang > 0 { Role::Overhang } else { path.role };
+                feed = self.feed(&bead, self.params.asked(path, hang) * slow);
             }
             let length = length(from, to) / UNITS_PER_MM;
             self.out.moves.push(Move {
@@ -284,8 +292,7 @@ impl<'a> Walk<'a> {
 
     /// The feed of a bead, clamped to the flow limit, mm/min.
     fn feed(&mut self, bead: &Bead, asked: f64) -> u32 {
-        let (given, flow) =
-            self.params.limit.feed(self.params.filament(bead, 1.0), bead.thick, asked);
+        let (given, flow) = self.params.limit.feed(self.params.filament(bead, 1.0), asked);
         let feeds = Lowered { asked: whole_feed(asked), given };
         self.out.flows.note(bead.role, bead.thick, flow, feeds);
         given
@@ -316,6 +323,7 @@ mod tests {
             z,
             width: 4_000,
             height: 2_000 + z,
+            hang: 0,
         };
         let points = places.iter().map(point).collect();
         Path { role: Role::Skin, shape: Shape::Open, points, layers: 1, tool: 0 }

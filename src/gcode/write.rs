@@ -166,8 +166,8 @@ impl<'a> Text<'a> {
 
     /// Sets the fan to what `role` needs; at the end of a layer to what is usual.
     fn blow(&mut self, role: Option<Role>) {
-        let wanted =
-            if role == Some(Role::Bridge) { self.params.bridge_fan } else { self.params.fan };
+        let hangs = matches!(role, Some(Role::Bridge | Role::Overhang));
+        let wanted = if hangs { self.params.bridge_fan } else { self.params.fan };
         if self.fan.is_some_and(|fan| (fan - wanted).abs() > f64::EPSILON) {
             let words = self.params.dialect.fan(wanted, self.params.tool);
             self.line(&words);
@@ -299,7 +299,7 @@ mod tests {
     fn toolpath() -> Toolpath {
         let path = |role, layers: u32, xs: &[Coord], y| {
             let height = 2_000 * layers as Coord;
-            let point = |&x| PathPoint { at: Point { x, y }, z: 0, width: 4_000, height };
+            let point = |&x| PathPoint { at: Point { x, y }, z: 0, width: 4_000, height, hang: 0 };
             let points = xs.iter().map(point).collect();
             Path { role, shape: Shape::Open, points, layers, tool: 0 }
         };

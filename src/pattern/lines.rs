@@ -84,10 +84,7 @@ impl SparsePattern for Lines {
     fn shares(&self, count: usize) -> Vec<Pattern> {
         let share = |c: i32| -> Pattern {
             let offset = self.offset + c * self.stride;
-            // Shares are printed on different layers, but thick: anchors of two would lie in each
-            // other where they meet.
-            let anchor = if count > 1 { self.anchor.min(1) } else { self.anchor };
-            Arc::new(Self { offset, stride: count as i32 * self.stride, anchor, ..*self })
+            Arc::new(Self { offset, stride: count as i32 * self.stride, ..*self })
         };
         (0..count as i32).map(share).collect()
     }

@@ -262,7 +262,7 @@ mod tests {
     use crate::units::Coord;
 
     fn place(x: Coord, y: Coord) -> PathPoint {
-        PathPoint { at: Point { x, y }, z: 0, width: 4_000, height: 2_000 }
+        PathPoint { at: Point { x, y }, z: 0, width: 4_000, height: 2_000, hang: 0 }
     }
 
     fn line(x: Coord, role: Role) -> Path {

@@ -203,7 +203,8 @@ pub struct Support {
     /// Gap between the lines of dense layers.
     #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.2))]
     pub interface_spacing: f64,
-    /// Least width of support, or a fifth of its height if that is more; 0 leaves it as it is.
+    /// Support grows to this width, or to a fifth of its height if that is more, to stand; 0 leaves
+    /// it as narrow as the overhang.
     #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 4))]
     pub min_width: f64,
     /// Whether bridges get support, however short.
@@ -252,6 +253,10 @@ pub struct Speed {
     /// Speed of skins.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 50))]
     pub skin: f64,
+    /// Speed of walls that hang over nothing with their whole width. From half the width on they
+    /// slow down towards it; 0 prints them as any wall.
+    #[schemars(range(min = 0, max = 999), extend("unit" = "mm/s", "default" = 15))]
+    pub overhang: f64,
     /// Speed of bridges.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 25))]
     pub bridge: f64,
@@ -261,9 +266,6 @@ pub struct Speed {
     /// Speed of sparse infill that is several layers high.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 60))]
     pub thick_infill: f64,
-    /// Thick lines take no more than this share of the plastic that the hot end can melt.
-    #[schemars(range(min = 10, max = 100), extend("unit" = "%", "default" = 90))]
-    pub thick_flow: f64,
     /// Speed of support.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 50))]
     pub support: f64,
@@ -381,7 +383,7 @@ pub struct Filament {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cooling {
-    /// Power of the fan on bridges, from filament.fan_from_layer on; filament.fan comes back
+    /// Power of the fan on bridges and overhanging walls, from filament.fan_from_layer on; filament.fan comes back
     /// after them.
     #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 100))]
     pub bridge_fan: f64,

@@ -38,9 +38,6 @@ const DIAMETERS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 /// Height of a line where neither a comment nor a layer below gives one, mm: the most usual one.
 const SOME_HEIGHT: f64 = 0.2;
 
-/// A line of the first layer is at most so high without a comment, mm: no usual nozzle lays more.
-const HIGHEST: f64 = 1.5;
-
 /// A whole G-code file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Print {
@@ -263,10 +260,7 @@ impl Builder {
         let area = PI * diameter * diameter / 4.0;
         let print = &mut self.print;
         let start = (&print.start, SOME_HEIGHT);
-        // Lines far above the bed are not as high as they lie: they hang.
-        let usual = print.layers.get(1).map_or(SOME_HEIGHT, |second| second.height);
-        let height = |layer: &Layer| if layer.height > HIGHEST { usual } else { layer.height };
-        let layers = print.layers.iter().map(|layer| (&layer.moves, height(layer)));
+        let layers = print.layers.iter().map(|layer| (&layer.moves, layer.height));
         for (range, height) in std::iter::once(start).chain(layers) {
             print.moves[range.clone()].iter_mut().for_each(|step| step.measure(height, area));
         }
@@ -356,13 +350,6 @@ mod tests {
         assert_eq!((print.value("a"), print.value("b")), (Some("1"), Some("2")));
         let notes: Vec<_> = print.notes.iter().map(|note| (note.at, note.line)).collect();
         assert_eq!(notes, [(2, 6), (5, 14)]);
-    }
-
-    #[test]
-    fn lines_far_above_the_bed_hang() {
-        let print = print("G1 Z5\nG1 X20 E0.6652");
-        assert!((print.moves[1].height - 0.2).abs() < 1e-6, "{:?}", print.moves[1]);
-        assert!((print.layers[0].height - 5.0).abs() < 1e-6);
     }
 
     #[test]

@@ -1,15 +1,18 @@
 //! Layer and its neighbours -> Divided: narrow skin as wall beads, bridges, the rest as skin or infill.
 
 use super::Skin;
+use super::bridge::loose::{self, Below};
 use super::bridge::{self, Pair};
 use super::classify::{Areas, areas, areas_beside, exposed};
 use super::crossed::Crossed;
+use super::overhang::{Hanging, overhangs};
 use super::params::RegionParams;
 use super::per_raster::{PerRaster, skin_turn};
 use super::prepare::{LayerRows, Own};
 use super::rooms;
 use super::wall_beads::{taken, wall_beads};
 use crate::geom::Contour;
+use crate::geom::frame::Frame;
 use crate::geom::polyline::Polyline;
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
@@ -19,6 +22,7 @@ use crate::slice::Layer;
 pub type LayerAreas = PerRaster<Areas>;
 
 /// What a layer is divided into.
+#[derive(Debug)]
 pub struct Divided {
     /// Its areas.
     pub areas: LayerAreas,
@@ -26,6 +30,48 @@ pub struct Divided {
     pub beads: Vec<Polyline>,
     /// Its bridges.
     pub bridges: Vec<Skin>,
+    /// Its walls with their overhangs, if there are any.
+    pub hanging: Option<Vec<Hanging>>,
+}
+
+/// What a layer alone and its neighbours' rows tell, before what lies below is looked at.
+#[derive(Debug)]
+pub struct Examined {
+    /// Where its neighbours leave it exposed, on the two rasters of skins.
+    pub exposed: [Rows; 2],
+    /// Its rooms too narrow for sparse lines, on the same.
+    pub solid: Option<[Rows; 2]>,
+    /// Wall beads for the narrow parts of both, in the frame of its skin's raster.
+    pub beads: Vec<Polyline>,
+}
+
+/// The layer below the one that is divided.
+#[derive(Debug)]
+pub struct Lower<'a> {
+    /// The layer.
+    pub layer: &'a Layer,
+    /// What it was divided by.
+    pub examined: &'a Examined,
+    /// The direction of its sparse lines, if skin has to run across.
+    pub lines: Option<Frame>,
+}
+
+/// Examines the layer `own`, one of `layers`, which are `None` outside the part.
+#[must_use]
+pub fn examine<'a>(
+    own: &Own,
+    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+    params: &RegionParams,
+) -> Examined {
+    let exposed =
+        |r: usize| exposed(own.layer.index, params.rasters.skin(r), layers, &params.skins);
+    let exposed = [0, 1].map(exposed);
+    let solid = solid(own.layer.index, layers, params);
+    let beads = match &solid {
+        Some([a, b]) => beads(own, &[exposed[0].or(a), exposed[1].or(b)], layers, params),
+        None => beads(own, &exposed, layers, params),
+    };
+    Examined { exposed, solid, beads }
 }
 
 /// Divides the layer `own`, one of `layers`. Its areas are on both rasters of skins and on `more`.
@@ -33,14 +79,15 @@ pub struct Divided {
 #[must_use]
 pub fn divide<'a>(
     own: &Own,
+    examined: &Examined,
     more: impl Iterator<Item = Raster>,
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
-    below: Option<&Layer>,
+    below: Option<&Lower<'_>>,
     params: &RegionParams,
 ) -> Divided {
     let k = own.layer.index;
     let exposed = |raster| exposed(k, raster, layers, &params.skins);
-    let skins = [0, 1].map(|r| exposed(params.rasters.skin(r)));
+    let skins = &examined.exposed;
     let fill = |raster| layers(k)?.on(raster).map(|rows| &rows.fill);
     let both = [0, 1].map(|r| params.rasters.skin(r));
     let on = |narrow: &[Rows; 2], raster: Raster, region: &Rows| match both
@@ -50,14 +97,10 @@ pub fn divide<'a>(
         Some(r) => narrow[r].clone(),
         None => rooms::on_raster(narrow, both, raster, region),
     };
-    let solid = solid(k, layers, params);
-    let beads = match &solid {
-        Some([a, b]) => beads(own, &[skins[0].or(a), skins[1].or(b)], layers, params),
-        None => beads(own, &skins, layers, params),
-    };
-    let bridges =
-        below.map(|below| bridge::bridges(Pair { own, below, beads: &beads }, layers, params));
-    let bridges = bridges.unwrap_or_default();
+    let solid = &examined.solid;
+    let beads = held(k, examined.beads.clone(), layers, below, params);
+    let pair = below.map(|below| Pair { own, below: below.layer, beads: &beads });
+    let bridges = pair.map(|pair| bridge::bridges(pair, layers, params)).unwrap_or_default();
     let along = params.rasters.skin(skin_turn(k).0);
     let areas_on = |raster: Raster| {
         let Some(fill) = fill(raster) else { return Areas::default() };
@@ -91,7 +134,8 @@ pub fn divide<'a>(
         }),
         None => areas,
     };
-    Divided { areas, beads, bridges }
+    let hanging = overhangs(k, &own.walls, layers, params);
+    Divided { areas, beads, bridges, hanging }
 }
 
 /// The rooms of layer `k` too narrow for sparse lines, on the rasters of skins.
@@ -103,6 +147,28 @@ fn solid<'a>(
     let rows = layers(k)?;
     let fill = [0, 1].map(|r| &*rows.skin(r).fill);
     rooms::narrow(fill, [0, 1].map(|r| params.rasters.skin(r)), params.skins.least_room)
+}
+
+/// The `beads` of layer `k` without those that would lie along the sparse lines below.
+fn held<'a>(
+    k: usize,
+    beads: Vec<Polyline>,
+    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+    below: Option<&Lower<'_>>,
+    params: &RegionParams,
+) -> Vec<Polyline> {
+    let lower = below.and_then(|below| Some((below, below.lines?, layers(k.checked_sub(1)?)?)));
+    let Some((below, lines, rows)) = lower.filter(|_| !beads.is_empty()) else { return beads };
+    let along = skin_turn(k).0;
+    let Examined { exposed, solid, .. } = below.examined;
+    let skin = solid.as_ref().map(|solid| exposed[along].or(&solid[along]));
+    let below = Below {
+        raster: params.rasters.skin(along),
+        fill: &rows.skin(along).fill,
+        exposed: skin.as_ref().unwrap_or(&exposed[along]),
+        lines,
+    };
+    loose::held(beads, &below)
 }
 
 /// The beads of a layer along its innermost walls, where the exposed `skins` are narrow.

@@ -22,6 +22,7 @@ pub mod divide;
 pub mod dual;
 pub mod first_skin;
 mod near;
+pub mod overhang;
 pub mod params;
 pub mod per_raster;
 pub mod prepare;
@@ -55,6 +56,9 @@ pub struct Region {
     pub layer: Arc<Layer>,
     /// Its walls.
     pub walls: Vec<Wall>,
+    /// How far the way to each point of each wall hangs, % of the width; 0 up to half. No list for
+    /// a wall that does not hang, no lists if none does.
+    pub hangs: Vec<Vec<u8>>,
     /// Its skin: first that for this layer alone, then that printed for several, then bridges.
     pub skins: Vec<Skin>,
     /// Its sparse infill.

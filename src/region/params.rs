@@ -23,6 +23,8 @@ pub struct RegionParams {
     pub beads: BeadParams,
     /// For bridges.
     pub bridges: BridgeParams,
+    /// Whether walls that hang are told apart.
+    pub overhangs: bool,
     /// All rasters in use.
     pub rasters: Rasters,
     /// The patterns of the sparse infill.
@@ -149,6 +151,7 @@ impl RegionParams {
                 wall_to_fill: insets.fill - walls.inset_of(walls.count),
                 overlap: to_units(overlap * w),
             },
+            overhangs: settings.speed.overhang > 0.0,
             bridges: BridgeParams {
                 anchor: settings.bridge.enabled.then(|| to_units(settings.bridge.anchor)),
                 pitch: to_units(settings.bridge.spacing * w),

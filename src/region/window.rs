@@ -14,12 +14,13 @@
 //! once, when its region is handed on. So memory holds a batch and a few layers, whatever the
 //! height of the print.
 
-use super::divide::{Divided, LayerAreas, divide};
+use super::divide::{Divided, Examined, LayerAreas, Lower, divide, examine};
 use super::dual;
 use super::dual::audit::Audit;
 use super::dual::groups::{Block, Grouping};
 use super::dual::inner_skin::Skins;
 use super::first_skin::{self, Turn};
+use super::overhang::Hanging;
 use super::params::RegionParams;
 use super::per_raster::skin_turn;
 use super::prepare::{LayerRows, Own, prepare};
@@ -27,6 +28,7 @@ use super::queue::Queue;
 use super::support::{SupportLayer, SupportPatterns};
 use super::walls::{self, Wall};
 use super::{Region, Skin, SkinRows, Sparse, SupportLines};
+use crate::geom::frame::Frame;
 use crate::geom::polyline::Polyline;
 use crate::geom::spans::Rows;
 use crate::profile::DualPart;
@@ -47,8 +49,10 @@ pub struct Window<'a> {
     own: Queue<Own>,
     /// The layers themselves, as long as one above is not divided.
     layers: Queue<Arc<Layer>>,
-    /// Wall beads and bridges of the layers that are divided.
-    beads: Queue<(Vec<Polyline>, Vec<Skin>)>,
+    /// What the layers are divided by, as long as one above is not divided.
+    examined: Queue<Examined>,
+    /// Wall beads, bridges and overhangs of the layers that are divided.
+    beads: Queue<Laid>,
     /// Rows of the layers that are prepared.
     rows: Queue<LayerRows>,
     /// Areas of the layers that are divided.
@@ -63,6 +67,14 @@ pub struct Support {
     pub patterns: SupportPatterns,
     /// Where it stands, by layer.
     pub layers: Vec<SupportLayer>,
+}
+
+/// What is laid on a layer, whatever its block is.
+#[derive(Debug)]
+struct Laid {
+    beads: Vec<Polyline>,
+    bridges: Vec<Skin>,
+    hanging: Option<Vec<Hanging>>,
 }
 
 /// What is decided for one layer of a block, before its walls and beads are added.
@@ -91,6 +103,7 @@ impl<'a> Window<'a> {
             batch: 0,
             own: Queue::default(),
             layers: Queue::default(),
+            examined: Queue::default(),
             beads: Queue::default(),
             rows: Queue::default(),
             areas: Queue::default(),
@@ -127,13 +140,19 @@ impl<'a> Window<'a> {
         let known = self.rows.end();
         let all = self.batch == self.slicer.blocks();
         let until = if all { known } else { known.saturating_sub(self.params.skins.top.max(1)) };
+        let examine =
+            |k: usize| Some(examine(self.own.get(k)?, &|k| self.rows.get(k), self.params));
+        let examined: Vec<Examined> =
+            (self.examined.end()..until).into_par_iter().filter_map(examine).collect();
+        self.examined.extend(examined);
         let divided: Vec<Divided> =
             (self.areas.end()..until).into_par_iter().filter_map(|k| self.divide(k)).collect();
-        for Divided { areas, beads, bridges } in divided {
+        for Divided { areas, beads, bridges, hanging } in divided {
             self.areas.extend([areas]);
-            self.beads.extend([(beads, bridges)]);
+            self.beads.extend([Laid { beads, bridges, hanging }]);
         }
         self.layers.forget(until.saturating_sub(1));
+        self.examined.forget(until.saturating_sub(1));
     }
 
     /// Layer `k`, divided on both rasters of skins and on those of its block's infill. `None` if the
@@ -142,8 +161,14 @@ impl<'a> Window<'a> {
         let block = self.grouping.block(k, self.count());
         let patterns = dual::patterns(&block, self.grouping, &self.params.sparse);
         let rasters = patterns.iter().map(|pattern| pattern.raster());
-        let below = k.checked_sub(1).and_then(|k| self.layers.get(k)).map(|layer| &**layer);
-        Some(divide(self.own.get(k)?, rasters, &|k| self.rows.get(k), below, self.params))
+        let lower = |k: usize| {
+            let (layer, examined) = (self.layers.get(k)?, self.examined.get(k)?);
+            Some(Lower { layer, examined, lines: self.lines(k) })
+        };
+        let below = k.checked_sub(1).and_then(lower);
+        let (own, examined) = (self.own.get(k)?, self.examined.get(k)?);
+        let layers = |k: usize| self.rows.get(k);
+        Some(divide(own, examined, rasters, &layers, below.as_ref(), self.params))
     }
 
     /// The next blocks that can be filled.
@@ -255,14 +280,21 @@ impl<'a> Window<'a> {
     /// The sparse infill below what layer `k` prints for `layers`, if its lines run in the direction
     /// that skin has on layer `k`.
     fn along(&self, k: usize, layers: u32) -> Option<&Rows> {
-        let below = k.checked_sub(layers as usize).filter(|_| self.params.skins.across_infill)?;
-        let block = self.grouping.block(below, self.count());
+        let below = k.checked_sub(layers as usize)?;
         let frame = self.params.rasters.skin(skin_turn(k).0).frame;
-        let patterns = dual::patterns(&block, self.grouping, &self.params.sparse);
-        let alike =
-            !patterns.is_empty() && patterns.iter().all(|p| p.raster().frame.is_parallel(frame));
+        let alike = self.lines(below).is_some_and(|lines| lines.is_parallel(frame));
         let areas = self.areas.get(below).filter(|_| alike)?;
         Some(&areas.skin(skin_turn(k).0).infill)
+    }
+
+    /// The direction of the sparse lines of layer `k`, if they have only one and skin above has to
+    /// run across.
+    fn lines(&self, k: usize) -> Option<Frame> {
+        let block = self.grouping.block(k, self.count());
+        let patterns = dual::patterns(&block, self.grouping, &self.params.sparse);
+        let mut frames = patterns.iter().map(|pattern| pattern.raster().frame);
+        let first = frames.next().filter(|_| self.params.skins.across_infill)?;
+        frames.all(|frame| frame.is_parallel(first)).then_some(first)
     }
 
     /// The skin of layer `k` on raster `r` of skins: that printed for several layers, and that for
@@ -301,22 +333,35 @@ impl<'a> Window<'a> {
     /// Joins `fillings` with what belongs to their layers, and drops what no layer needs any more.
     fn hand_on(&mut self, fillings: Vec<Filling>) -> Vec<Region> {
         let own = std::iter::from_fn(|| self.own.take().zip(self.beads.take()));
-        let regions = fillings.into_iter().zip(own).map(|(filling, (own, (beads, bridges)))| {
-            let Filling { mut skins, infill, support, walls: printed } = filling;
-            // Wall beads are for this layer alone.
-            if let Some(skin) = skins.first_mut() {
-                skin.beads = beads;
-            }
-            skins.extend(bridges);
-            let Own { layer, walls, thin_mm2, .. } = own;
-            let printed = walls.into_iter().zip(printed).filter(|(_, layers)| *layers > 0);
-            let walls = printed.map(|(wall, layers)| Wall { layers, ..wall }).collect();
-            Region { layer, walls, skins, infill, support, thin_mm2 }
-        });
+        let regions = fillings.into_iter().zip(own).map(
+            |(filling, (own, Laid { beads, bridges, hanging }))| {
+                let Filling { mut skins, infill, support, walls: printed } = filling;
+                // Wall beads are for this layer alone.
+                if let Some(skin) = skins.first_mut() {
+                    skin.beads = beads;
+                }
+                skins.extend(bridges);
+                let Own { layer, walls, thin_mm2, .. } = own;
+                let (walls, hangs) = match hanging {
+                    Some(hanging) => hanging.into_iter().map(|h| (h.wall, h.hangs)).unzip(),
+                    None => (walls, Vec::new()),
+                };
+                // A wall that is printed for several layers lies on the lowest of them.
+                let of = |(hangs, layers): (Vec<u8>, &u32)| match layers {
+                    0 => None,
+                    1 => Some(hangs),
+                    _ => Some(Vec::new()),
+                };
+                let hangs = hangs.into_iter().zip(&printed).filter_map(of).collect();
+                let printed = walls.into_iter().zip(printed).filter(|(_, layers)| *layers > 0);
+                let walls = printed.map(|(wall, layers)| Wall { layers, ..wall }).collect();
+                Region { layer, walls, hangs, skins, infill, support, thin_mm2 }
+            },
+        );
         let regions: Vec<Region> = regions.collect();
         let done = self.own.start();
         let below = self.skin_reach();
-        let deepest = self.params.skins.bottom.max(if below > 0 { below + 1 } else { 0 });
+        let deepest = self.params.skins.bottom.max(1).max(if below > 0 { below + 1 } else { 0 });
         // The next layer's skin looks at the infill below it.
         self.areas.forget(done.saturating_sub(below + 1));
         self.rows.forget(done.saturating_sub(below + deepest));

@@ -9,8 +9,13 @@ use slicer::geom::{Point, side};
 use slicer::units::Coord;
 
 fn path(places: &[(Coord, Coord)], width: Coord) -> Vec<PathPoint> {
-    let point =
-        |&(x, y): &(Coord, Coord)| PathPoint { at: Point { x, y }, z: 0, width, height: 2_000 };
+    let point = |&(x, y): &(Coord, Coord)| PathPoint {
+        at: Point { x, y },
+        z: 0,
+        width,
+        height: 2_000,
+        hang: 0,
+    };
     places.iter().map(point).collect()
 }
 

@@ -33,7 +33,7 @@ fn cost(from: Point, paths: &[Path]) -> f64 {
 }
 
 fn place(x: Coord, y: Coord) -> PathPoint {
-    PathPoint { at: Point { x, y }, z: 0, width: 4_000, height: 2_000 }
+    PathPoint { at: Point { x, y }, z: 0, width: 4_000, height: 2_000, hang: 0 }
 }
 
 fn line(role: Role, points: Vec<PathPoint>) -> Path {

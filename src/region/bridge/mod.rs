@@ -15,6 +15,9 @@
 //! The lines of a bridge take their place from the layer's skin and infill, like wall beads.
 
 pub mod direction;
+pub mod loose;
+#[cfg(test)]
+mod tests;
 
 use super::params::RegionParams;
 use super::per_raster::skin_turn;

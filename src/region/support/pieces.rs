@@ -1,13 +1,7 @@
 //! Rows -> Pieces: which spans hang together, and how wide each piece is.
 //!
 //! Words: two spans on neighbouring rows *touch* if they overlap. A *piece* is all spans that hang
-//! together by touching. A piece *holds a disc* if a circle of that radius has room in it. *Across*
-//! is the raster that is turned by 90°.
-//!
-//! - Pieces: a union-find over the spans, row by row. Labels follow the order of the spans.
-//! - Discs: what is outside, grown by the radius, is taken away. A disc's middle has room in the rest.
-//! - Across: each row puts a mark on every row across that its spans cross. Marks of neighbouring
-//!   rows join to spans, whose ends lie on rows: they are short by up to a pitch at each end.
+//! together by touching. A piece *holds a disc* if a circle of that radius has room in it.
 
 use super::params::SupportParams;
 use crate::geom::spans::{Rows, Span, intersect, subtract, total};
