@@ -25,8 +25,9 @@ pub const STEP: f64 = 180.0 / COUNT as f64;
 /// ended in the side walls; at 0 noise decides.
 const ALIKE: f64 = 0.02;
 
-/// What a free end costs among directions that are alike: twice its share of the length.
-const FREE_COST: f64 = 2.0;
+/// What a free end costs among directions that are alike: eight times its share of the length. At
+/// twice, small bridges were laid a step askew, since cells tell lengths only roughly.
+const FREE_COST: f64 = 8.0;
 
 /// Most lines of one direction. The lines of a large island lie further apart: the choice is the
 /// same, and its time stays bounded.
