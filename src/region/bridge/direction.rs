@@ -145,6 +145,7 @@ impl Grid {
                 let on = step as f64 / 2.0 - radius;
                 self.at([middle[0] + on * cos - aside * sin, middle[1] + on * sin + aside * cos])
             }));
+            mend(&mut line, 2 * self.reach);
             for (length, ends) in runs(&line, 2 * self.reach) {
                 let length = length as f64 / 2.0;
                 free += length * ends as f64 / 2.0;
@@ -154,6 +155,22 @@ impl Grid {
         }
         let sum = sum.at_least(1.0);
         Hold { free: free / sum, length: (powers / sum).sqrt().sqrt().sqrt() }
+    }
+}
+
+/// Closes gaps of up to `reach` cells between open cells. A line that grazes an island's edge leaves
+/// and enters it with every step of the cells; its parts are one run.
+fn mend(line: &mut [Cell], reach: usize) {
+    let mut last: Option<usize> = None;
+    for k in 0..line.len() {
+        match (line[k], last) {
+            (Cell::Open, Some(from)) if k - from <= reach => line[from..k].fill(Cell::Open),
+            (Cell::Carrier, _) => last = None,
+            _ => {}
+        }
+        if line[k] == Cell::Open {
+            last = Some(k);
+        }
     }
 }
 
