@@ -40,7 +40,7 @@ const MOST_CELLS: f64 = 256.0;
 
 /// Plastic over room: neighbours of other slicers overlap by a tenth, ends of lines in walls by
 /// another; the model of a bead with round ends leaves 0.79 of the thinnest.
-const BOUNDS: [f64; 2] = [0.7, 1.25];
+const BOUNDS: [f64; 2] = [0.7, 1.3];
 
 /// Room by which plastic is judged, mm²: too little and too much of it.
 const LEAST_ROOM: [f64; 2] = [2.0, 1.2];

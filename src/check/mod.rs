@@ -3,6 +3,15 @@
 //! It reads the finished text and shares no code with what slices, plans or writes, so that it does
 //! not repeat their faults. It works on any slicer's files; what a file gives no means to judge is
 //! listed as not judged.
+//!
+//! - A *finding* is one thing that is wrong, with a place, a measure and a severity: errors fail the
+//!   check, warnings do not.
+//! - A *witness* is a file here that looks for a few kinds of findings. Each gets the moves of the
+//!   print, and some the model, and returns what it found.
+//! - *Terms* are what the file or a profile says of the machine and the beads.
+//! - The *verdict* is all findings, sorted, and what was measured on the way.
+//!
+//! Beads are drawn on rows of spans, layer by layer; a thick bead fills the layers below it too.
 
 mod against;
 mod align;

@@ -1,4 +1,12 @@
 //! Role: what a path is printed for, with everything specific to each role in one table.
+//!
+//! - A *role* is what a path is for, such as outer wall or sparse infill.
+//! - Its *facts* are all that is particular to it: name, annotation, speed, filament, and where in a
+//!   layer it is printed. To add a role, add a variant, put it into [`Role::ALL`], and give its facts.
+//! - A *thick* bead is printed for several layers at once; [`Both`] holds a value for thin and thick.
+//! - A [`RoleTable`] holds a value for each role.
+//!
+//! Roles that differ little from another one take its facts and change what differs.
 
 use crate::profile::{Extrusion, Speed};
 use std::ops::{Index, IndexMut};
@@ -110,33 +118,37 @@ impl Role {
                 speed: |speed| Both::same(speed.bridge),
                 ..Self::Skin.facts()
             },
-            Self::Infill => RoleFacts {
-                name: "infill",
-                annotation: "Internal infill",
-                place: Place::Inside,
-                may_be_thick: true,
-                speed_keys: Both { thin: "speed.infill", thick: "speed.thick_infill" },
-                speed: |speed| Both { thin: speed.infill, thick: speed.thick_infill },
-                factor: |extrusion| extrusion.infill_factor,
-            },
-            Self::Support => RoleFacts {
-                name: "support",
-                annotation: "Support material",
-                place: Place::Helper,
-                may_be_thick: true,
-                speed_keys: Both::same("speed.support"),
-                speed: |speed| Both::same(speed.support),
-                factor: |extrusion| extrusion.support_factor,
-            },
+            Self::Infill => INFILL,
+            Self::Support => SUPPORT,
             Self::SupportInterface => RoleFacts {
                 name: "support interface",
                 annotation: "Support material interface",
                 may_be_thick: false,
-                ..Self::Support.facts()
+                ..SUPPORT
             },
         }
     }
 }
+
+const INFILL: RoleFacts = RoleFacts {
+    name: "infill",
+    annotation: "Internal infill",
+    place: Place::Inside,
+    may_be_thick: true,
+    speed_keys: Both { thin: "speed.infill", thick: "speed.thick_infill" },
+    speed: |speed| Both { thin: speed.infill, thick: speed.thick_infill },
+    factor: |extrusion| extrusion.infill_factor,
+};
+
+const SUPPORT: RoleFacts = RoleFacts {
+    name: "support",
+    annotation: "Support material",
+    place: Place::Helper,
+    may_be_thick: true,
+    speed_keys: Both::same("speed.support"),
+    speed: |speed| Both::same(speed.support),
+    factor: |extrusion| extrusion.support_factor,
+};
 
 /// A value for each role.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -82,9 +82,10 @@ impl SparsePattern for Lines {
     }
 
     fn shares(&self, count: usize) -> Vec<Pattern> {
+        // Thick runs along the wall of two shares would lie in each other on the layers between.
         let share = |c: i32| -> Pattern {
             let offset = self.offset + c * self.stride;
-            Arc::new(Self { offset, stride: count as i32 * self.stride, ..*self })
+            Arc::new(Self { offset, stride: count as i32 * self.stride, anchor: 0, ..*self })
         };
         (0..count as i32).map(share).collect()
     }

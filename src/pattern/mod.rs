@@ -96,7 +96,7 @@ impl Turns {
             return Self::default();
         }
         let lines = |directions| lines(settings, directions);
-        let sparse = match settings.pattern {
+        let sparse: Vec<Vec<Pattern>> = match settings.pattern {
             profile::Pattern::Rectilinear => vec![lines(&[0.0]), lines(&[90.0])],
             profile::Pattern::Aligned => vec![lines(&[0.0])],
             profile::Pattern::Grid => vec![lines(&[0.0, 90.0])],

@@ -2,6 +2,12 @@
 //!
 //! A variant is a word, written with dashes in a profile (`OuterFirst` is `outer-first`); its
 //! doc comment is the word's meaning. To add a word, add a variant, and use it.
+//!
+//! - An enum here is the type of one key, and named after it; the key's own meaning stands in
+//!   [`super::settings`].
+//! - *Words* are what a profile or a flag may say; anything else is refused with the list of them.
+//! - Some keys take a number or `auto`: their enums have a variant for either, and are read and
+//!   written by hand below.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -61,8 +61,7 @@ pub struct Settings {
     /// size, 0 puts the wall's middle on the contour.
     #[schemars(range(min = 0, max = 1), extend("unit" = "line widths", "default" = 0.5))]
     pub outer_wall_inset: f64,
-    /// Thinner parts are not printed. Thicker ones get a bead of their own width where two walls
-    /// do not fit.
+    /// Thinner parts are not printed; thicker ones get one bead where two walls do not fit.
     #[schemars(range(min = 0.01, max = 10), extend("unit" = "mm", "default" = 0.1))]
     pub min_feature: f64,
     /// Minimum width of a bead; parts thinner than that get a bead this wide.
@@ -78,8 +77,7 @@ pub struct Settings {
     #[schemars(extend("default" = "rear"))]
     pub seam: Seam,
 
-    /// What happens to a print that begins in the air: refused if layers are empty or a whole body
-    /// stands on nothing, refused wherever it does, or only warned of.
+    /// A print that begins in the air is refused if a body hangs, refused anywhere, or warned of.
     #[schemars(extend("default" = "refuse"))]
     pub floating: Floating,
 
@@ -203,8 +201,7 @@ pub struct Support {
     /// Gap between the lines of dense layers.
     #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.2))]
     pub interface_spacing: f64,
-    /// Support grows to this width, or to a fifth of its height if that is more, to stand; 0 leaves
-    /// it as narrow as the overhang.
+    /// Least width of support, or a fifth of its height if that is more; 0 leaves it narrow.
     #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 4))]
     pub min_width: f64,
     /// Whether bridges get support, however short.
@@ -228,8 +225,7 @@ pub struct Support {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Bridge {
-    /// Whether skin over nothing is laid in the direction in which its lines hold best; off, it is
-    /// laid as any other skin.
+    /// Whether skin over nothing is laid in the direction in which its lines hold best.
     #[schemars(extend("default" = true))]
     pub enabled: bool,
     /// How far its lines reach into what carries them.
@@ -383,8 +379,7 @@ pub struct Filament {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Cooling {
-    /// Power of the fan on bridges and overhanging walls, from filament.fan_from_layer on; filament.fan comes back
-    /// after them.
+    /// Power of the fan on bridges and overhanging walls, from filament.fan_from_layer on.
     #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 100))]
     pub bridge_fan: f64,
 }

@@ -2,6 +2,10 @@
 //!
 //! Words: two spans on neighbouring rows *touch* if they overlap. A *piece* is all spans that hang
 //! together by touching. A piece *holds a disc* if a circle of that radius has room in it.
+//!
+//! Algorithm: walk through the rows. Each span joins the pieces of all spans that it touches on the
+//! row before, by a list of parents; a second walk numbers the pieces in the order of their first
+//! spans. The largest disc that a piece holds is found by shrinking its rows.
 
 use super::params::SupportParams;
 use crate::geom::spans::{Rows, Span, intersect, subtract, total};
