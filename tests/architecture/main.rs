@@ -46,11 +46,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
 /// Modules that judge what the others have made.
 const WITNESSES: &[&str] = &["reader", "estimate", "check", "diff"];
 
-/// What witnesses may use of `geom`: distances to segments, and sorting by counting. Neither knows
-/// what is sliced or printed, both are tested on their own, and a second version of them would
-/// only be another place for the same slip. Contours, spans, offsets and rasters have a part in
-/// what is judged; of these a witness has its own.
-const SHARED_GEOMETRY: &[&str] = &["segment", "cells"];
+/// What witnesses may use of `geom`: distances to segments, sorting by counting, and booleans of
+/// spans on a line. None knows what is sliced or printed, all are tested on their own by laws, and a
+/// second version of them would only be another place for the same slip. Contours, offsets and
+/// rasters have a part in what is judged; of these a witness has its own.
+const SHARED_GEOMETRY: &[&str] = &["segment", "cells", "spans"];
 
 /// Modules that may use all others: the flow itself, and what tells of it.
 const MAY_USE_ALL: &[&str] = &["lib", "pipeline", "report", "compare"];

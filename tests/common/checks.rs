@@ -1,6 +1,6 @@
 //! Print -> verdicts: asserts what must hold for every print, whatever the model and the profile.
 
-use super::gcode::{Kind, Move, Print};
+use super::gcode::{Kind, Move, Print, WALLS};
 use super::section::Section;
 use super::solid::Solid;
 use slicer::profile::{Origin, Settings};
@@ -88,17 +88,16 @@ pub(crate) fn stays_on_the_bed(print: &Print, settings: &Settings, what: &str) {
 /// Walls end where they began, unless they run along the middle of what is too thin for a loop: then
 /// their width is not that of a line.
 pub(crate) fn walls_close(print: &Print, settings: &Settings, what: &str) {
-    for kind in [Kind::OuterWall, Kind::InnerWall] {
-        for chain in print.chains(kind) {
-            let (first, last) = (chain[0], chain[chain.len() - 1]);
-            let (a, b) = (first.a(), last.b());
-            let is_thin = chain.iter().any(|m| (m.width - settings.line_width).abs() > 0.005);
-            assert!(
-                a == b || is_thin || kind == Kind::InnerWall,
-                "{what}: the wall from line {} starts at {a:?}, ends at {b:?}",
-                first.line
-            );
-        }
+    for chain in print.chains_of(&WALLS) {
+        let (first, last) = (chain[0], chain[chain.len() - 1]);
+        let (a, b) = (first.a(), last.b());
+        let is_thin = chain.iter().any(|m| (m.width - settings.line_width).abs() > 0.005);
+        let is_inner = chain.iter().all(|m| m.kind != Kind::OuterWall);
+        assert!(
+            a == b || is_thin || is_inner,
+            "{what}: the wall from line {} starts at {a:?}, ends at {b:?}",
+            first.line
+        );
     }
 }
 
@@ -156,7 +155,9 @@ pub(crate) fn stringing_travels(
         let long = travels.filter(|m| m.length() > settings.retraction.min_travel + ROUNDING);
         let leaves = |m: &&Move| {
             let steps = (m.length() / 0.1).ceil() as usize;
-            (0..=steps).any(|k| section.signed_distance(m.at(k as f64 / steps as f64), 0.1) > 0.03)
+            let out = |k: usize| section.signed_distance(m.at(k as f64 / steps as f64), 0.1);
+            // What drips on the way from support to support is broken off with it.
+            (0..=steps).any(|k| out(k) > 0.03) && (0..=steps).any(|k| out(k) < -0.03)
         };
         lines.extend(long.filter(|m| m.pulled == 0.0).filter(leaves).map(|m| m.line));
     }

@@ -9,12 +9,17 @@ pub(crate) enum Kind {
     Custom,
     OuterWall,
     InnerWall,
+    /// A stretch of either wall.
+    Overhang,
     Skin,
     Bridge,
     Infill,
     Support,
     SupportInterface,
 }
+
+/// The kinds of walls.
+pub(crate) const WALLS: [Kind; 3] = [Kind::OuterWall, Kind::InnerWall, Kind::Overhang];
 
 impl Kind {
     /// Whether it is no part of the model.
@@ -143,7 +148,7 @@ impl Print {
                 "Internal infill" => Kind::Infill,
                 "Support material" => Kind::Support,
                 "Support material interface" => Kind::SupportInterface,
-                "Overhang perimeter" => Kind::OuterWall,
+                "Overhang perimeter" => Kind::Overhang,
                 other => return Err(format!("unknown type {other}")),
             };
         } else if let Some(z) = note.strip_prefix("Z:") {
@@ -244,10 +249,15 @@ impl Print {
 
     /// Beads that follow each other without a gap, of one kind and layer.
     pub(crate) fn chains(&self, kind: Kind) -> Vec<Vec<Move>> {
+        self.chains_of(&[kind])
+    }
+
+    /// The same of several kinds.
+    pub(crate) fn chains_of(&self, kinds: &[Kind]) -> Vec<Vec<Move>> {
         let mut chains: Vec<Vec<Move>> = Vec::new();
         let mut goes_on = false;
         for m in &self.moves {
-            let bead = m.is_bead() && m.kind == kind;
+            let bead = m.is_bead() && kinds.contains(&m.kind);
             if bead {
                 match chains.last_mut().filter(|_| goes_on) {
                     Some(chain) if chain[0].layer == m.layer => chain.push(*m),

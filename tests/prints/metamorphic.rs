@@ -57,7 +57,14 @@ fn roles(run: &Run) -> Vec<(String, f64)> {
 fn assert_like(a: &Run, b: &Run, factor: f64, what: &str) {
     for ((role, x), (_, y)) in roles(a).into_iter().zip(roles(b)) {
         let off = (y - factor * x).abs() / (factor * x).max(1e-9);
-        assert!(off < 0.005 || y == x, "{what}: {role} takes {x} mm and {y} mm");
+        // A bridge is a few whole lines on a raster that does not move with the part.
+        // Overhangs begin where a sample of the wall says so.
+        let most = match role.as_str() {
+            "bridge" => 0.08,
+            "overhanging wall" => 0.02,
+            _ => 0.005,
+        };
+        assert!(off < most || y == x, "{what}: {role} takes {x} mm and {y} mm");
     }
 }
 
