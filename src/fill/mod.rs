@@ -33,6 +33,9 @@ use crate::units::{Coord, nearest, to_units};
 use rounding::Rounding;
 use variable_width::LineParams;
 
+/// Slivers of solid rooms that are nowhere as wide as this, tenths of a line's width, are left out.
+const LEAST_SLIVER: Coord = 7;
+
 /// Corners of skin are rounded with at most a line's width divided by this. A larger radius leaves the
 /// corners between line and wall open; a smaller one makes the nozzle stop at each.
 const SKIN_ROUNDING: Coord = 8;
@@ -170,6 +173,9 @@ impl Maker<'_> {
             left_turn: border.left_turn,
         };
         let (lines, mut slivers) = gap_closing::close(&crossed, &self.params.lines);
+        // A thread beside a skin's edge would lie on the skin's last line.
+        let least = self.params.line_width * LEAST_SLIVER / 10;
+        slivers.retain(|sliver| sliver.iter().any(|point| point.width >= least));
         slivers.extend(skin::zigzags(&lines, &self.params.lines));
         slivers
     }

@@ -333,7 +333,7 @@ mod tests {
     fn hill(highest: Coord) -> Toolpath {
         let rising = path(&[(0, 0), (4_000, 3_000), (100_000, 3_000)], 0);
         let flat = path(&[(100_000, 0), (0, 0)], 50_000);
-        let moves = [rising, flat].map(|path| PrintMove::to(path)).to_vec();
+        let moves = [rising, flat].map(PrintMove::to).to_vec();
         let from = Head { at: Some(Point { x: 0, y: 0 }), highest };
         Toolpath { layer: 4, z: 10_000, height: 2_000, from, moves }
     }

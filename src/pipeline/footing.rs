@@ -30,6 +30,10 @@ const CORNERS: usize = 24;
 /// A smaller share of an island's area is no overlap: contours that only meet leave slivers.
 const LEAST_SHARE: f64 = 1e-3;
 
+/// A hanging body with less than this, 500 mm of lines in grid units, is only warned of: a scan has
+/// specks beside it that nobody misses, and that fail alone. It is a cube of some 3 mm.
+const LEAST_BODY: f64 = 5_000_000.0;
+
 /// What a layer prints, as far as the layers around it need to know.
 #[derive(Debug, Default)]
 pub struct Footprint {
@@ -157,6 +161,8 @@ pub struct Footing {
     bodies: Vec<usize>,
     /// Whether the body with this number as its root stands.
     stands: Vec<bool>,
+    /// Length of the lines of the body with this number as its root, grid units.
+    lengths: Vec<f64>,
     support: VecDeque<SupportLines>,
     /// Whether each layer is printed.
     printed: Vec<bool>,
@@ -180,6 +186,7 @@ impl Footing {
             below: Footprint::default(),
             bodies: Vec::new(),
             stands: Vec::new(),
+            lengths: Vec::new(),
             support: VecDeque::new(),
             printed: Vec::new(),
             tops: Vec::new(),
@@ -200,6 +207,7 @@ impl Footing {
             island.number = self.bodies.len();
             self.bodies.push(island.number);
             self.stands.push(k == 0);
+            self.lengths.push(island.length);
             let touches = self.link(island, &print.contours, &below);
             if k > 0 && !touches && !self.on_support(island) {
                 self.begins.push(Begin {
@@ -273,6 +281,9 @@ impl Footing {
         let (low, high) = (a.min(b), a.max(b));
         self.bodies[high] = low;
         self.stands[low] |= self.stands[high];
+        if low != high {
+            self.lengths[low] += self.lengths[high];
+        }
     }
 
     /// What the print begins in the air with: the reason to refuse it, or a warning.
@@ -319,7 +330,7 @@ impl Footing {
             while self.bodies[root] != root {
                 root = self.bodies[root];
             }
-            !self.stands[root]
+            !self.stands[root] && self.lengths[root] > LEAST_BODY
         };
         let all: Vec<Begin> = self.begins.iter().copied().filter(hangs).collect();
         let (layer, z_mm, at_mm) = self.place(*all.first()?);

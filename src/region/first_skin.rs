@@ -108,10 +108,10 @@ mod tests {
             let skin = both(&[here.clone(), there.clone()], left);
             let below = rows(std::slice::from_ref(&there), if left { 0.0 } else { 90.0 });
             let (kept, turned) = divide(skin, &below, Turn { pitch: W, left });
-            prop_assert_eq!(kept[0].total(), both(&[here.clone()], left)[0].total());
+            prop_assert_eq!(kept[0].total(), both(std::slice::from_ref(&here), left)[0].total());
             prop_assert_eq!(kept[1].total(), both(&[here], left)[1].total());
             let turned = turned.unwrap();
-            prop_assert_eq!(turned[0].total(), both(&[there.clone()], left)[0].total());
+            prop_assert_eq!(turned[0].total(), both(std::slice::from_ref(&there), left)[0].total());
             prop_assert_eq!(turned[1].total(), both(&[there], left)[1].total());
         }
     }

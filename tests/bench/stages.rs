@@ -162,7 +162,10 @@ fn region(bench: &Bench, model: &Model) {
     let params = &model.params;
     let group = bench.group("region, middle block", model.name);
     group.time("walls", || {
-        layers.iter().map(|l| walls::walls(&l.contours, false, &params.walls).len()).sum::<usize>()
+        layers
+            .iter()
+            .map(|l| walls::walls(&l.contours, false, &params.walls).walls.len())
+            .sum::<usize>()
     });
     group.time("raster scan", || {
         layers.iter().map(|l| scan(l, params).inside().total()).sum::<i64>()
@@ -173,7 +176,7 @@ fn region(bench: &Bench, model: &Model) {
     let areas = |k: usize| {
         let (fill, raster) = (&rows[k].skin(0).fill, params.rasters.skin(0));
         let exposed = classify::exposed(k, raster, &|k| rows.get(k), &params.skins);
-        classify::areas(fill, &exposed, raster.pitch, &params.skins).skin.total()
+        classify::areas(fill, &exposed, None, raster.pitch, &params.skins).skin.total()
     };
     group.time("classify", || (0..rows.len()).map(areas).sum::<i64>());
 }

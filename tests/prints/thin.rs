@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use crate::common::solid::Outline;
-use crate::common::{Kind, Move, Run, Solid, slice};
+use crate::common::{Move, Run, Solid, slice};
 
 const WIDTH: f64 = 0.4;
 const LENGTH: f64 = 24.0;
