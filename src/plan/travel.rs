@@ -6,7 +6,7 @@
 //! retract as well.
 //!
 //! A travel that would cross a contour goes round it instead, if that way is short enough to need no
-//! retraction; see [`mod@detour`]. Else it goes straight, after wiping the nozzle on the last line.
+//! retraction; see `detour`. Else it goes straight, after wiping the nozzle on the last line.
 //!
 //! The order is improved with the cost of straight travels. Detours would seldom change it, and each
 //! costs many times as much to find as a crossing.

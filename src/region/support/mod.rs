@@ -6,14 +6,14 @@
 //! *clearance* is the sideways distance from the part to the middle of a support line. The
 //! *interface* is dense support next to the part, a *post* a piece of support that goes down.
 //!
-//! 1. [`overhangs`]: what hangs, on each layer. Only what is printed counts ([`printed`]); what
-//!    bridges needs no support ([`bridges`]).
-//! 2. [`columns`]: from there support goes down, layer by layer; thin posts grow on the way
-//!    ([`posts`]).
+//! 1. `overhangs`: what hangs, on each layer. Only what is printed counts (`printed`); what
+//!    bridges needs no support (`bridges`).
+//! 2. `columns`: from there support goes down, layer by layer; thin posts grow on the way
+//!    (`posts`).
 //! 3. Support that stands on the part is removed if the settings allow only the bed. On the bed it
 //!    gets a brim. Specks are dropped.
-//! 4. [`interface`]: which places are dense. The others are the [`body`], which gets a zigzag, or
-//!    lines and an [`outline`].
+//! 4. `interface`: which places are dense. The others are the `body`, which gets a zigzag, or
+//!    lines and an `outline`.
 //!
 //! All of this happens on the rows of one raster, at most half a line apart. Layers are sliced block
 //! by block.

@@ -2,7 +2,7 @@
 //!
 //! Words:
 //! - The *room* of a place is the thickness of the part there: twice the radius of the largest
-//!   circle inside the part that touches the contour at this place ([`room`]).
+//!   circle inside the part that touches the contour at this place (`room`).
 //! - A *loop* is a closed wall at a fixed depth. Its two *passes* run along both sides of a thin
 //!   place.
 //! - A *middle bead* runs along the middle of a thin place, from end to end.
@@ -12,8 +12,8 @@
 //! 1. Inset the contours once for each wall. Cut off each loop where its two passes come too near
 //!    to each other ([`thin`]). The inset one further, cut in the same way, is the core.
 //! 2. Where the core is cut off, count the loops that are left. They and a middle bead, if there is
-//!    room for one, share the room evenly ([`share_room`]): loops are moved and widened
-//!    ([`loops`]), and the middle bead gets its share of the width ([`middle`]).
+//!    room for one, share the room evenly (`share_room`): loops are moved and widened
+//!    (`loops`), and the middle bead gets its share of the width (`middle`).
 //!
 //! So the loops that exist decide how many beads there are, and no place gets two counts. A
 //! medial axis of the whole contour (Kuipers, Doubrovski, Wu, Wang 2020) decides the same from

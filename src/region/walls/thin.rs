@@ -2,7 +2,7 @@
 //!
 //! Where the room for a loop is hardly wider than a line, it would run out and back on itself: two
 //! beads in the room of one, up to twice the plastic. There the loop is cut off, and the room gets
-//! one bead ([`super::middle`]).
+//! one bead (`super::middle`).
 
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, double_area, edges, encloses, polygon};
