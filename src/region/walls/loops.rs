@@ -7,11 +7,16 @@
 use super::{Layout, Wall};
 use crate::geom::segment::{along, dot, way};
 use crate::geom::{Contour, Point, edges};
+use crate::region::near::Near;
 use crate::region::taper::{Place, tapered};
 
 /// Smaller cross products of two sides' directions count as straight on: the corner moves along
 /// the mean normal. Two nearly parallel lines meet too far away.
 const STRAIGHT: f64 = 0.2;
+
+/// How near a middle bead has to be to the middle of a place, in line widths, to lie there. Samples of
+/// both are up to a line apart.
+const BEAD: f64 = 0.5;
 
 /// The bead at one place of a side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,9 +34,9 @@ struct Sampled {
     samples: Vec<Sample>,
 }
 
-/// Moves and widens `wall`, a loop, where it shares the room.
-pub(super) fn share(wall: &mut Wall, layout: &Layout<'_>) {
-    let sides = sampled(&wall.path, wall.depth, layout);
+/// Moves and widens `wall`, a loop, where it shares the room. `beads` are the middle beads.
+pub(super) fn share(wall: &mut Wall, beads: &Near, layout: &Layout<'_>) {
+    let sides = sampled(&wall.path, wall.depth, beads, layout);
     let plain = Sample { shift: 0.0, width: layout.line_width };
     if sides.iter().flat_map(|s| &s.samples).all(|s| *s == plain) {
         return;
@@ -56,7 +61,7 @@ pub(super) fn share(wall: &mut Wall, layout: &Layout<'_>) {
     (wall.path, wall.widths) = (path, widths);
 }
 
-fn sampled(path: &Contour, depth: u32, layout: &Layout<'_>) -> Vec<Sampled> {
+fn sampled(path: &Contour, depth: u32, beads: &Near, layout: &Layout<'_>) -> Vec<Sampled> {
     let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
     let mut guess = layout.line_width;
     let sides = edges(path).filter(|(p, q)| p != q).map(|(p, q)| {
@@ -66,7 +71,7 @@ fn sampled(path: &Contour, depth: u32, layout: &Layout<'_>) -> Vec<Sampled> {
         let count = (length / layout.line_width).ceil();
         let sample = |i: usize| {
             let at = along(from, (i as f64 + 0.5) / count, way);
-            sample(at, normal, depth, layout, &mut guess)
+            sample(at, normal, depth, (beads, layout), &mut guess)
         };
         Sampled { from, way, normal, samples: (0..count as usize).map(sample).collect() }
     });
@@ -78,16 +83,20 @@ fn sample(
     at: [f64; 2],
     normal: [f64; 2],
     depth: u32,
-    layout: &Layout<'_>,
+    (beads, layout): (&Near, &Layout<'_>),
     guess: &mut f64,
 ) -> Sample {
     let inset = layout.inset(depth);
     let foot = along(at, -inset, normal);
-    let share = layout.share(foot, normal, guess).map(|(share, _)| share);
-    match share.filter(|share| share.loops > depth) {
-        Some(share) => {
-            let middle = (f64::from(depth) + 0.5) * share.width - layout.outside();
-            Sample { shift: middle - inset, width: share.width }
+    match layout.share(foot, normal, guess).filter(|(share, _)| share.loops > depth) {
+        Some((share, opposite)) => {
+            // What is laid decides, not what each place on its own would take.
+            let middle = along(foot, opposite.radius, normal);
+            let has_bead = !beads.is_free([middle], BEAD * layout.line_width);
+            let count = f64::from(2 * share.loops + u32::from(has_bead));
+            let width = share.room / count;
+            let middle = (f64::from(depth) + 0.5) * width - layout.outside();
+            Sample { shift: middle - inset, width }
         }
         None => Sample { shift: 0.0, width: layout.line_width },
     }

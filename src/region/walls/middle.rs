@@ -86,6 +86,16 @@ pub(super) fn beads(layout: &Layout<'_>) -> Vec<Wall> {
     all.iter().filter(|arc| is_long(arc, w)).map(wall).collect()
 }
 
+/// The sides of middle beads, to find whether a place has one.
+pub(super) fn near(beads: &[Wall], layout: &Layout<'_>) -> Near {
+    let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
+    let closing =
+        |b: &Wall| b.closed.then(|| Some([float(*b.path.last()?), float(*b.path.first()?)]));
+    let open = beads.iter().flat_map(|b| b.path.windows(2)).map(|p| [float(p[0]), float(p[1])]);
+    let all = open.chain(beads.iter().filter_map(|b| closing(b).flatten()));
+    Near::of_edges(all.collect(), 2.0 * layout.line_width)
+}
+
 fn is_long(arc: &Arc, w: f64) -> bool {
     let between = arc.iter().all(|s| s.loops > 0);
     length(arc) >= SHORT[usize::from(between)] * w

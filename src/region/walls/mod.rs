@@ -15,7 +15,8 @@
 //!    room for one, share the room evenly (`share_room`): loops are moved and widened
 //!    (`loops`), and the middle bead gets its share of the width (`middle`).
 //!
-//! So the loops that exist decide how many beads there are, and no place gets two counts. A
+//! So the loops that exist decide where middle beads run, the middle beads that exist decide how wide
+//! the loops are, and no place gets two counts. A
 //! medial axis of the whole contour (Kuipers, Doubrovski, Wu, Wang 2020) decides the same from
 //! one diagram; here only thin places of thin layers cost anything, and thick ones keep their
 //! exact offsets. Nothing depends on the direction of raster lines, so equal layers get equal
@@ -78,8 +79,9 @@ pub fn walls(contours: &[Contour], may_be_thin: bool, params: &WallParams) -> Wa
     let lost_mm2 = lost::outside_loops(contours, &walls, params);
     let Some(core) = core.filter(|_| !whole) else { return Walls { walls, core: None, lost_mm2 } };
     let layout = Layout::new(contours, &levels, &core, params);
-    walls.iter_mut().for_each(|wall| loops::share(wall, &layout));
     let beads = middle::beads(&layout);
+    let near = middle::near(&beads, &layout);
+    walls.iter_mut().for_each(|wall| loops::share(wall, &near, &layout));
     let lost_mm2 = (lost_mm2 - lost::under_beads(&beads)).max(0.0);
     walls.extend(beads);
     Walls { walls, core: Some(core), lost_mm2 }
