@@ -3,6 +3,7 @@
 //! Spans of neighbouring rows belong together if they share a place along the lines. Ends that only
 //! touch count: rounding must not split an island.
 
+use super::sets::Sets;
 use super::spans::{Rows, Span};
 use crate::units::Coord;
 
@@ -21,20 +22,20 @@ impl<'a> Islands<'a> {
     /// Divides `rows`. Islands are numbered in the order of their first spans.
     #[must_use]
     pub fn new(rows: &'a Rows) -> Self {
-        let (mut before, mut parents) = (Vec::with_capacity(rows.range().len()), Vec::new());
+        let (mut before, mut sets) = (Vec::with_capacity(rows.range().len()), Sets::default());
         let mut last: (usize, &[Span]) = (0, &[]);
         for (_, row) in rows.iter() {
-            let first = parents.len();
+            let first = sets.len();
             before.push(first);
-            parents.extend(first..first + row.len());
-            meet(last, (first, row), &mut parents);
+            row.iter().for_each(|_| _ = sets.add());
+            meet(last, (first, row), &mut sets);
             last = (first, row);
         }
-        let mut labels = vec![0; parents.len()];
+        let mut labels = vec![0; sets.len()];
         let mut count = 0;
-        // A parent never comes after its children.
-        for k in 0..parents.len() {
-            let root = root(&mut parents, k);
+        // A root is the least number of its set.
+        for k in 0..sets.len() {
+            let root = sets.root(k);
             labels[k] = if root == k { count } else { labels[root] };
             count += usize::from(root == k);
         }
@@ -77,12 +78,11 @@ impl<'a> Islands<'a> {
 
 /// Joins the spans of two neighbouring rows that meet. Each row comes with the number of its first
 /// span.
-fn meet((a, lower): (usize, &[Span]), (b, upper): (usize, &[Span]), parents: &mut [usize]) {
+fn meet((a, lower): (usize, &[Span]), (b, upper): (usize, &[Span]), sets: &mut Sets) {
     let (mut i, mut j) = (0, 0);
     while let (Some(p), Some(q)) = (lower.get(i), upper.get(j)) {
         if p.start <= q.end && q.start <= p.end {
-            let (x, y) = (root(parents, a + i), root(parents, b + j));
-            parents[x.max(y)] = x.min(y);
+            sets.join(a + i, b + j);
         }
         if p.end <= q.end {
             i += 1;
@@ -90,14 +90,6 @@ fn meet((a, lower): (usize, &[Span]), (b, upper): (usize, &[Span]), parents: &mu
             j += 1;
         }
     }
-}
-
-fn root(parents: &mut [usize], mut k: usize) -> usize {
-    while parents[k] != k {
-        parents[k] = parents[parents[k]];
-        k = parents[k];
-    }
-    k
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ pub mod polygon;
 pub mod polyline;
 pub mod raster;
 pub mod segment;
+pub mod sets;
 pub mod simple;
 pub mod spans;
 

@@ -23,6 +23,7 @@ use super::zigzag::Side;
 use crate::geom::decimate::{decimate, most_missed};
 use crate::geom::outline::{Corner, Outline, outlines};
 use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::sets::Sets;
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Point, side};
 use crate::units::{Bounded as _, Coord, nearest};
@@ -117,7 +118,8 @@ pub(super) fn strands(
     };
     let border = outlines(region.rows, pitch, region.columns, region.walls, lines.inwards);
     let mut all: Vec<Line> = spans.iter().map(line).collect();
-    let mut links = Links((0..all.len()).collect());
+    // Which lines are linked by joins.
+    let mut links = Sets::new(all.len());
     for outline in &border {
         let ends = ends(outline, &spans, lines);
         for end in &ends {
@@ -185,7 +187,7 @@ impl Arcs<'_> {
     }
 
     /// Joins lines along the outline.
-    fn join(&self, all: &mut [Line], links: &mut Links) {
+    fn join(&self, all: &mut [Line], links: &mut Sets) {
         let n = self.ends.len();
         if n < 2 {
             return;
@@ -203,7 +205,7 @@ impl Arcs<'_> {
         for k in (first..first + n).map(|k| k % n) {
             let next = (k + 1) % n;
             let (a, b) = (self.ends[k], self.ends[next]);
-            if !(short[k] && free[k] && free[next] && links.link(a.line, b.line)) {
+            if !(short[k] && free[k] && free[next] && links.join(a.line, b.line).is_some()) {
                 continue;
             }
             (free[k], free[next]) = (false, false);
@@ -289,26 +291,6 @@ pub(super) fn bends(points: &[LinePoint], least: f64) -> Vec<LinePoint> {
         most_missed(a, b, least, |k| side(at(a), at(b), at(k)).abs() as f64 / length)
     });
     kept[1..kept.len() - 1].iter().map(|&k| points[k]).collect()
-}
-
-/// Which lines are linked by joins.
-struct Links(Vec<usize>);
-
-impl Links {
-    fn root(&mut self, mut k: usize) -> usize {
-        while self.0[k] != k {
-            self.0[k] = self.0[self.0[k]];
-            k = self.0[k];
-        }
-        k
-    }
-
-    /// Links two lines; `false` if they are linked already.
-    fn link(&mut self, a: usize, b: usize) -> bool {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b)] = a.min(b);
-        a != b
-    }
 }
 
 /// The strand that begins at the end `from` of line `k`.

@@ -17,6 +17,7 @@
 
 use crate::error::Hanging;
 use crate::fill::{Path, Place};
+use crate::geom::sets::Sets;
 use crate::geom::{Contour, Point, double_area, edges, encloses, polygon};
 use crate::profile::{Floating, Settings};
 use crate::region::{Region, Sparse, SupportLines};
@@ -157,8 +158,8 @@ pub struct Footing {
     /// Layers whose support may carry an island.
     reach: usize,
     below: Footprint,
-    /// For each island the number of another of its body, or its own.
-    bodies: Vec<usize>,
+    /// The islands of each body.
+    bodies: Sets,
     /// Whether the body with this number as its root stands.
     stands: Vec<bool>,
     /// Length of the lines of the body with this number as its root, grid units.
@@ -184,7 +185,7 @@ impl Footing {
             gap,
             reach: gap + settings.dual_ratio().max(1) as usize + 1,
             below: Footprint::default(),
-            bodies: Vec::new(),
+            bodies: Sets::default(),
             stands: Vec::new(),
             lengths: Vec::new(),
             support: VecDeque::new(),
@@ -204,8 +205,7 @@ impl Footing {
         self.printed[from..].fill(print.layers > 0);
         let below = std::mem::take(&mut self.below);
         for island in &mut print.islands {
-            island.number = self.bodies.len();
-            self.bodies.push(island.number);
+            island.number = self.bodies.add();
             self.stands.push(k == 0);
             self.lengths.push(island.length);
             let touches = self.link(island, &print.contours, &below);
@@ -241,7 +241,7 @@ impl Footing {
             }
         }
         for other in unclear {
-            let (a, b) = (self.root(island.number), self.root(other.number));
+            let (a, b) = (self.bodies.root(island.number), self.bodies.root(other.number));
             let matters = !touches || (a != b && !(self.stands[a] && self.stands[b]));
             if matters && island.overlaps(other, &below.contours) {
                 touches = true;
@@ -262,27 +262,16 @@ impl Footing {
         let carries = |sparse: &Sparse| island.corners().any(|p| inside(sparse, p));
         let stands = self.support.iter().any(|support| support.areas().any(carries));
         if stands {
-            let root = self.root(island.number);
+            let root = self.bodies.root(island.number);
             self.stands[root] = true;
         }
         stands
     }
 
-    fn root(&mut self, mut number: usize) -> usize {
-        while self.bodies[number] != number {
-            self.bodies[number] = self.bodies[self.bodies[number]];
-            number = self.bodies[number];
-        }
-        number
-    }
-
     fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        let (low, high) = (a.min(b), a.max(b));
-        self.bodies[high] = low;
-        self.stands[low] |= self.stands[high];
-        if low != high {
-            self.lengths[low] += self.lengths[high];
+        if let Some((body, joined)) = self.bodies.join(a, b) {
+            self.stands[body] |= self.stands[joined];
+            self.lengths[body] += self.lengths[joined];
         }
     }
 
@@ -325,15 +314,12 @@ impl Footing {
 
     /// A body that never stands.
     fn hanging_body(&mut self) -> Option<Hanging> {
-        let hangs = |begin: &Begin| {
-            let mut root = begin.number;
-            while self.bodies[root] != root {
-                root = self.bodies[root];
-            }
-            !self.stands[root] && self.lengths[root] > LEAST_BODY
+        let mut hangs = |begin: &&Begin| {
+            let body = self.bodies.root(begin.number);
+            !self.stands[body] && self.lengths[body] > LEAST_BODY
         };
-        let all: Vec<Begin> = self.begins.iter().copied().filter(hangs).collect();
-        let (layer, z_mm, at_mm) = self.place(*all.first()?);
+        let first = *self.begins.iter().find(|begin| hangs(begin))?;
+        let (layer, z_mm, at_mm) = self.place(first);
         let below = layer.checked_sub(2).map_or(0, |k| self.tops[k]);
         Some(Hanging::Body { layer, z_mm, above_bed_mm: to_mm(below), at_mm })
     }

@@ -4,10 +4,11 @@
 //! together by touching. A piece *holds a disc* if a circle of that radius has room in it.
 //!
 //! Algorithm: walk through the rows. Each span joins the pieces of all spans that it touches on the
-//! row before, by a list of parents; a second walk numbers the pieces in the order of their first
+//! row before, by [`Sets`]; a second walk numbers the pieces in the order of their first
 //! spans. The largest disc that a piece holds is found by shrinking its rows.
 
 use super::params::SupportParams;
+use crate::geom::sets::Sets;
 use crate::geom::spans::{Rows, Span, intersect, subtract, total};
 use crate::units::Coord;
 
@@ -24,17 +25,17 @@ pub(super) struct Pieces {
 impl Pieces {
     /// Finds the pieces of `rows`.
     pub(super) fn new(rows: &Rows) -> Self {
-        let mut parents: Vec<usize> = (0..rows.iter().map(|(_, row)| row.len()).sum()).collect();
+        let mut sets = Sets::new(rows.iter().map(|(_, row)| row.len()).sum());
         let (mut before, mut first): (&[Span], usize) = (&[], 0);
         for (_, row) in rows.iter() {
             let next = first + before.len();
-            touching(before, row, |a, b| unite(&mut parents, first + a, next + b));
+            touching(before, row, |a, b| _ = sets.join(first + a, next + b));
             (before, first) = (row, next);
         }
-        let mut names = vec![usize::MAX; parents.len()];
+        let mut names = vec![usize::MAX; sets.len()];
         let mut count = 0;
-        let labels = (0..parents.len()).map(|k| {
-            let name = &mut names[root(&mut parents, k)];
+        let labels = (0..sets.len()).map(|k| {
+            let name = &mut names[sets.root(k)];
             if *name == usize::MAX {
                 *name = count;
                 count += 1;
@@ -118,20 +119,6 @@ fn touching(a: &[Span], b: &[Span], mut meet: impl FnMut(usize, usize)) {
             j += 1;
         }
     }
-}
-
-fn root(parents: &mut [usize], mut k: usize) -> usize {
-    while parents[k] != k {
-        parents[k] = parents[parents[k]];
-        k = parents[k];
-    }
-    k
-}
-
-/// The lesser index becomes the root, so that labels do not depend on the order of calls.
-fn unite(parents: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (root(parents, a), root(parents, b));
-    parents[a.max(b)] = a.min(b);
 }
 
 /// The rows without pieces that are too small to hold anything.
