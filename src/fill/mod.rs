@@ -31,6 +31,7 @@ use crate::region::{Border, Region, Skin, Sparse, walls::Wall};
 use crate::slice::Heights;
 use crate::units::{Coord, nearest, to_units};
 use rounding::Rounding;
+use std::borrow::Cow;
 use variable_width::LineParams;
 
 /// Slivers of solid rooms that are nowhere as wide as this, tenths of a line's width, are left out.
@@ -98,7 +99,11 @@ fn anchored<'a>(sparse: &'a Sparse, border: &'a Border, least: Coord) -> Vec<Pol
     let bounds =
         border.walls.iter().map(|[rows, across]| Bounds { rows, columns: columns(across) });
     let walls: Vec<Bounds<'_>> = bounds.collect();
-    let held = Held { rows: &sparse.rows, columns: columns(&border.columns), walls: &walls };
+    let (all, columns) = (&sparse.rows, columns(&border.columns));
+    let pitch = sparse.pattern.raster().pitch;
+    let rows =
+        if border.beside_thick { Cow::Owned(columns.held(all, pitch)) } else { Cow::Borrowed(all) };
+    let held = Held { rows: &rows, columns, walls: &walls };
     sparse.pattern.anchored(&held, sparse.width, least)
 }
 

@@ -14,7 +14,7 @@
 //! What holds no node, such as a tip thinner than a cell, has no outline.
 
 use super::Point;
-use super::spans::{Rows, Span};
+use super::spans::{Rows, Span, merge};
 use crate::units::{Coord, nearest};
 
 /// Sine of the least turn at which a corner is looked for within a cell, 40°. Flatter ones belong
@@ -58,6 +58,29 @@ impl Columns<'_> {
     pub fn chord(&self, c: i32, v: Coord) -> Option<Span> {
         let (j, v) = if self.left_turn { (-c, v) } else { (c, -v) };
         self.rows.row(j).iter().copied().find(|s| s.start <= v && v <= s.end)
+    }
+
+    /// What of `rows`, `pitch` apart, columns hold: of each column half its distance to both sides.
+    /// Spans between two columns stay.
+    #[must_use]
+    pub fn held(&self, rows: &Rows, pitch: Coord) -> Rows {
+        let half = self.pitch / 2;
+        let column = |at: Coord| (at + half).div_euclid(self.pitch);
+        let mut out = Rows::with_room_of(rows, rows.range().start);
+        for (j, row) in rows.iter() {
+            let cells = row.iter().flat_map(|&span| {
+                let columns = column(span.start)..=column(span.end);
+                let only = columns.start() == columns.end();
+                let held = columns.filter(move |&c| only || self.chord(c, j * pitch).is_some());
+                held.filter_map(move |c| {
+                    let (low, high) = (c * self.pitch - half, c * self.pitch + half);
+                    Span::new(low.max(span.start), high.min(span.end))
+                })
+            });
+            let mut cells: Vec<Span> = cells.collect();
+            out.push_row(|out| merge(&mut cells, out));
+        }
+        out
     }
 
     /// The columns of all spans, with their lower and upper ends.

@@ -157,6 +157,8 @@ pub struct Border {
     /// The fill rows of each of its layers, on both rasters. An end of the region that is also an
     /// end here is at a wall.
     pub walls: Vec<[Arc<Rows>; 2]>,
+    /// Thicker lines are printed beside it: a place that no column holds has no room for a bead.
+    pub beside_thick: bool,
 }
 
 impl Sparse {

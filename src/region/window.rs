@@ -18,7 +18,7 @@ use super::divide::{Divided, Examined, LayerAreas, Lower, divide, examine};
 use super::dual;
 use super::dual::audit::Audit;
 use super::dual::groups::{Block, Grouping};
-use super::dual::inner_skin::Skins;
+use super::dual::inner_skin::{Skins, without_threads};
 use super::first_skin::{self, Turn};
 use super::overhang::Hanging;
 use super::params::RegionParams;
@@ -251,6 +251,8 @@ impl<'a> Window<'a> {
         if self.grouping.shares(DualPart::InnerSkin) {
             let ((thick, thin), (thick_across, thin_across)) =
                 (self.share_skin(k, along), self.share_skin(k, across));
+            let (whole, pitch) = (&areas.skin(across).skin, self.params.skins.line_width);
+            let thin_across = without_threads(&thin_across, whole, pitch);
             printed.push((1, [thin, thin_across].map(Arc::new)));
             for (layers, rows) in thick {
                 let columns = thick_across.iter().find(|(count, _)| *count == layers);

@@ -6,10 +6,14 @@ use crate::common::solid::circle;
 use crate::common::stack::{Stack, stack, stacks};
 use crate::common::{Kind, Run, Solid, fixture, settings, slice};
 use proptest::prelude::*;
+use slicer::check::check;
+use slicer::check::finding::Code;
+use slicer::check::terms::Terms;
 use slicer::geom::raster::Raster;
 use slicer::geom::spans::{Rows, Span};
 use slicer::pattern::{Pattern, Turns};
 use slicer::profile::Settings;
+use slicer::reader;
 use slicer::region::divide::{LayerAreas, divide, examine};
 use slicer::region::dual;
 use slicer::region::dual::audit::Audit;
@@ -524,4 +528,42 @@ fn compare_reports_every_mode_and_what_it_saves() {
     // As slicing itself reports it.
     let report = slice(&fixture("bracket.stl"), "generic-marlin", &[("dual.mode", "pair")]).report;
     assert!((report.time.total_s - of(pair, "time_s")).abs() < 1e-9);
+}
+
+/// The findings of lines that lie on others in a frustum whose upper sides stand `grows` mm further
+/// out than its lower ones.
+fn printed_twice(sides: [f64; 2], grows: f64, set: &[(&str, &str)]) -> Vec<String> {
+    let ring = |by: f64| {
+        let [x, y] = sides.map(|side| side / 2.0 + by);
+        vec![[-x, -y], [x, -y], [x, y], [-x, y]]
+    };
+    let solid = Solid::tower(&[(ring(0.0), 0.0), (ring(grows), 4.0)]);
+    let run = slice(&solid.stl(), "generic-marlin", set);
+    let print = reader::Print::read(&mut run.text.as_bytes(), 1.75).unwrap();
+    let all = check(&print, &Terms::new(None, None, &print), None).findings.into_iter();
+    all.filter(|one| one.code == Code::PrintedTwice).map(|one| one.to_string()).collect()
+}
+
+const ALONG: [(&str, &str); 3] = [("dual.mode", "pair"), ("angle", "0"), ("walls", "2")];
+
+#[test]
+fn remainders_beside_thick_lines_do_not_lie_on_them() {
+    let all: Vec<_> =
+        ALONG.into_iter().chain([("dual.parts", "infill,inner-walls,inner-skin")]).collect();
+    assert_eq!(printed_twice([24.415, 15.338], 1.902, &ALONG), Vec::<String>::new());
+    assert_eq!(printed_twice([15.782, 12.712], 1.148, &all), Vec::<String>::new());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn no_line_of_a_frustum_lies_on_another(
+        (x, y, grows) in (8.0..20.0_f64, 8.0..20.0_f64, -2.0..2.0_f64),
+        all in any::<bool>(),
+    ) {
+        let parts = if all { "infill,inner-walls,inner-skin" } else { "infill" };
+        let set: Vec<_> = ALONG.into_iter().chain([("dual.parts", parts)]).collect();
+        prop_assert_eq!(printed_twice([x, y], grows, &set), Vec::<String>::new());
+    }
 }

@@ -43,6 +43,29 @@ pub struct Skins<'a, L, S> {
     pub params: &'a SkinParams,
 }
 
+/// Columns of the skin that a layer prints for itself, without threads: those that no row crosses,
+/// beside shared skin whose last line leaves less than half a line open. A bead there would lie on
+/// that line. `whole` is all skin of the layer, and its rows lie `pitch` apart.
+#[must_use]
+pub fn without_threads(own: &Rows, whole: &Rows, pitch: Coord) -> Rows {
+    let below = |at: Coord| at.div_euclid(pitch) * pitch;
+    let above = |at: Coord| -below(-at);
+    let has_room = |j: i32, s: Span| {
+        if above(s.start) <= s.end {
+            return true;
+        }
+        let around = whole.row(j).iter().find(|w| w.start <= s.start && s.end <= w.end);
+        let ends = around.map_or([true; 2], |w| [w.start == s.start, w.end == s.end]);
+        match ends {
+            [true, true] => true,
+            [false, false] => false,
+            [false, true] => 2 * (s.end - below(s.start)) >= pitch,
+            [true, false] => 2 * (above(s.end) - s.start) >= pitch,
+        }
+    };
+    own.filter(has_room)
+}
+
 /// A group of depths: printed on its uppermost layer.
 #[derive(Debug, Clone, Copy)]
 struct Depths {

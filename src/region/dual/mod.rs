@@ -38,6 +38,10 @@ use std::sync::Arc;
 /// one loses that material.
 const MOST_WIDENED: i64 = 5;
 
+/// Narrower remainders beside thick lines have no room for a run along the wall, per cent of a
+/// line's width. A smaller value lets runs lie on thick ones, a larger one takes anchors away.
+const LEAST_REMAINDER: i64 = 70;
+
 /// The patterns that may fill `block`. Its layers must be divided on the rasters of all of them.
 #[must_use]
 pub fn patterns(block: &Block, grouping: &Grouping, turns: &Turns) -> Vec<Pattern> {
@@ -126,14 +130,25 @@ fn border(pattern: &dyn SparsePattern, areas: &LayerAreas) -> Option<Border> {
         areas.across(raster).filter(|_| pattern.is_anchored())?;
     let walls = vec![[areas.on(raster)?.fill.clone(), across.fill.clone()]];
     let columns = if pattern.is_solid() { &across.dense } else { &across.infill }.clone();
-    Some(Border { columns, pitch, left_turn, walls })
+    Some(Border { columns, pitch, left_turn, walls, beside_thick: false })
 }
 
-/// The border of what `layers` share, whose own borders are given, with its `columns`.
-fn shared(layers: &[Border], columns: Rows) -> Option<Border> {
+/// Leaves out the columns of remainders that are narrower than a bead: there the thick bead beside
+/// them holds on to the wall, and a run along the wall would lie on it.
+fn without_slivers(printed: &mut Printed, line_width: Coord) {
+    let Some(thickest) = printed.iter().map(|(layers, _)| *layers).max() else { return };
+    let least = i64::from(line_width) * LEAST_REMAINDER / 100;
+    for (_, columns) in printed.iter_mut().filter(|(layers, _)| *layers < thickest) {
+        *columns = columns.filter(|_, span| span.len() >= least);
+    }
+}
+
+/// The border of what `layers` share, whose own borders are given, with its `columns`;
+/// `beside_thick` as in [`Border`].
+fn shared(layers: &[Border], columns: Rows, beside_thick: bool) -> Option<Border> {
     let walls = layers.iter().flat_map(|border| border.walls.clone()).collect();
     let &Border { pitch, left_turn, .. } = layers.last()?;
-    Some(Border { columns, pitch, left_turn, walls })
+    Some(Border { columns, pitch, left_turn, walls, beside_thick })
 }
 
 /// The sparse infill of a layer on the raster of `pattern`; empty if it was not divided there.
@@ -221,14 +236,16 @@ impl<'a> Sharing<'a> {
             let first = self.block.layers.start;
             let ends = |n: usize| self.grouping.ends(lane.phase, first + n, self.block);
             let printed = runs(rows, ends, self.line_width);
-            let across = runs(&columns, ends, self.line_width);
+            let mut across = runs(&columns, ends, self.line_width);
+            across.iter_mut().for_each(|printed| without_slivers(printed, self.line_width));
             self.explain(&lane, rows, skins, &printed);
             for (n, printed) in printed.into_iter().enumerate() {
+                let most = printed.iter().map(|(layers, _)| *layers).max().unwrap_or(1);
                 let sparse = |(layers, rows): (u32, Rows)| {
                     let columns = across.get(n).and_then(|a| a.iter().find(|a| a.0 == layers));
                     let columns = columns.map(|(_, rows)| rows.clone()).unwrap_or_default();
                     let its = borders.get(n + 1 - layers as usize..=n).unwrap_or_default();
-                    let border = shared(its, columns);
+                    let border = shared(its, columns, layers < most);
                     Sparse { layers, ..thin(&lane.pattern, rows, self.line_width, border) }
                 };
                 self.sparse[n].extend(printed.into_iter().map(sparse));
