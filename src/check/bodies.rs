@@ -6,10 +6,13 @@
 //!
 //! Whether a patch that begins in the air is a weak place or a failure is known only at the end: an
 //! island that grows together with what stands is held by it from then on, while a body that never
-//! does falls over. Bodies are joined as in any union of sets: each has a parent, the first of all
-//! is the root.
+//! does falls over. How bad that is is [`Floating`]'s rule, the same when slicing: a body of
+//! [`LEAST_BODY`](Floating::LEAST_BODY) of lines or more is an error, and so is a print that stands nowhere; a speck is a
+//! weak place.
 
 use super::finding::{Code, Finding, Findings, Place, short};
+use super::sets::Sets;
+use crate::profile::Floating;
 use crate::reader::Role;
 
 /// An island with shorter lines in all is ignored as a blob where it grows together with the rest,
@@ -32,7 +35,6 @@ pub(super) struct Start {
 /// A body as far as it is known.
 #[derive(Clone, Copy)]
 struct Body {
-    parent: u32,
     stands: bool,
     /// Whether some of it is more than support.
     is_part: bool,
@@ -43,34 +45,22 @@ struct Body {
 /// All bodies so far.
 #[derive(Default)]
 pub(super) struct Bodies {
+    sets: Sets,
     bodies: Vec<Body>,
     /// The body of each chain, counted over all layers from 0.
-    of_chain: Vec<u32>,
-    starts: Vec<(u32, Start)>,
+    of_chain: Vec<usize>,
+    starts: Vec<(usize, Start)>,
 }
 
 impl Bodies {
-    fn root(&mut self, mut one: u32) -> u32 {
-        while self.bodies[one as usize].parent != one {
-            let above = self.bodies[self.bodies[one as usize].parent as usize].parent;
-            self.bodies[one as usize].parent = above;
-            one = above;
-        }
-        one
-    }
-
-    fn join(&mut self, a: u32, b: u32) -> u32 {
-        let (a, b) = (self.root(a), self.root(b));
-        let (old, young) = (a.min(b), a.max(b));
-        if old != young {
-            let part = self.bodies[young as usize];
-            self.bodies[young as usize].parent = old;
-            let whole = &mut self.bodies[old as usize];
+    fn join(&mut self, a: usize, b: usize) {
+        if let Some([old, young]) = self.sets.join(a, b) {
+            let part = self.bodies[young];
+            let whole = &mut self.bodies[old];
             whole.stands |= part.stands;
             whole.is_part |= part.is_part;
             whole.length += part.length;
         }
-        old
     }
 
     /// Adds a patch, `length` mm long, that stands on these chains, counted from 1; 0 is the bed.
@@ -79,34 +69,38 @@ impl Bodies {
         &mut self,
         (length, is_part): (f64, bool),
         carriers: impl Iterator<Item = u32>,
-    ) -> u32 {
-        let mut body = self.bodies.len() as u32;
-        self.bodies.push(Body { parent: body, stands: false, is_part, length });
+    ) -> usize {
+        let body = self.sets.add();
+        self.bodies.push(Body { stands: false, is_part, length });
         for carrier in carriers {
             match (carrier as usize).checked_sub(1) {
-                Some(chain) => body = self.join(body, self.of_chain[chain]),
-                None => self.bodies[body as usize].stands = true,
+                Some(chain) => self.join(body, self.of_chain[chain]),
+                None => {
+                    let root = self.sets.root(body);
+                    self.bodies[root].stands = true;
+                }
             }
         }
-        body
+        self.sets.root(body)
     }
 
     /// The next chain, in the file's order, is of this body.
-    pub(super) fn chain(&mut self, body: u32) {
+    pub(super) fn chain(&mut self, body: usize) {
         self.of_chain.push(body);
     }
 
     /// A body begins in the air.
-    pub(super) fn begin(&mut self, body: u32, start: Start) {
+    pub(super) fn begin(&mut self, body: usize, start: Start) {
         self.starts.push((body, start));
     }
 
     /// Reports what began in the air, now that all is laid.
     pub(super) fn report(mut self, found: &mut Findings) {
-        let mut fallen: Vec<u32> = Vec::new();
+        let mut fallen: Vec<usize> = Vec::new();
+        let stands_nowhere = !self.bodies.iter().any(|body| body.stands && body.is_part);
         for (body, start) in std::mem::take(&mut self.starts) {
-            let root = self.root(body);
-            let whole = self.bodies[root as usize];
+            let root = self.sets.root(body);
+            let whole = self.bodies[root];
             let length = short(start.length);
             let what = start.role.name();
             if whole.stands {
@@ -125,7 +119,8 @@ impl Bodies {
                     short(start.bottom),
                 );
                 // Support that falls over costs a surface, not the print.
-                let of = if whole.is_part { Finding::of } else { Finding::warning };
+                let fails = stands_nowhere || whole.length >= Floating::LEAST_BODY;
+                let of = if whole.is_part && fails { Finding::of } else { Finding::warning };
                 found.add(of(Code::Floating, whole.length, "mm", text).at(start.place));
             }
         }
@@ -164,8 +159,15 @@ mod tests {
 
     #[test]
     fn a_body_that_never_stands_fails_once_and_as_a_whole() {
-        let table: &[(f64, &[u32])] = &[(9.0, &[0]), (1.0, &[]), (1.0, &[]), (7.0, &[2, 3])];
-        assert_eq!(judged(table), [(Severity::Error, 9.0)]);
+        let table: &[(f64, &[u32])] = &[(9.0, &[0]), (100.0, &[]), (100.0, &[]), (700.0, &[2, 3])];
+        assert_eq!(judged(table), [(Severity::Error, 900.0)]);
+    }
+
+    #[test]
+    fn a_speck_that_never_stands_is_a_weak_place_unless_nothing_stands() {
+        assert_eq!(judged(&[(9.0, &[0]), (499.0, &[])]), [(Severity::Warning, 499.0)]);
+        assert_eq!(judged(&[(9.0, &[0]), (500.0, &[])]), [(Severity::Error, 500.0)]);
         assert_eq!(judged(&[(9.0, &[0]), (3.0, &[])]), []);
+        assert_eq!(judged(&[(9.0, &[])]), [(Severity::Error, 9.0)]);
     }
 }

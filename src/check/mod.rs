@@ -33,6 +33,7 @@ mod posts;
 mod rows;
 mod runs;
 mod samples;
+mod sets;
 mod stack;
 mod surfaces;
 pub mod terms;

@@ -13,6 +13,7 @@ use super::capsule::Capsule;
 use super::grid::Grid;
 use super::moves::ROUNDING;
 use super::samples::Sample;
+use super::sets::Sets;
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};
 
@@ -55,8 +56,8 @@ pub(super) struct Pile {
     owners: Vec<u32>,
     /// The last chain of the layers before.
     owners_from: u32,
-    /// For each chain of the layer one that it touches, and so on to the first of its patch.
-    parents: Vec<usize>,
+    /// Which chains of the layer touch: a patch each.
+    patches: Sets,
     /// The highest line of the layers before, mm.
     highest: f64,
     /// How deep a line of this layer lies in what the layers before have printed, mm, and the line
@@ -75,7 +76,7 @@ impl Pile {
             cores: vec![0.0; count],
             owners: vec![0; count],
             owners_from: 0,
-            parents: Vec::new(),
+            patches: Sets::default(),
             highest: 0.0,
             fall: None,
         })
@@ -87,17 +88,13 @@ impl Pile {
 
     /// Forgets which chains touch; those to come are of another layer.
     pub(super) fn begin_layer(&mut self) {
-        self.owners_from += self.parents.len() as u32;
-        self.parents.clear();
+        self.owners_from += self.patches.len() as u32;
+        self.patches.clear();
     }
 
     /// The first chain of the patch that a chain of this layer belongs to.
-    pub(super) fn root(&mut self, mut line: usize) -> usize {
-        while self.parents[line] != line {
-            self.parents[line] = self.parents[self.parents[line]];
-            line = self.parents[line];
-        }
-        line
+    pub(super) fn root(&mut self, line: usize) -> usize {
+        self.patches.root(line)
     }
 
     /// What carries a line there, if anything does.
@@ -139,9 +136,8 @@ impl Pile {
     /// Lays a chain down, and joins it to the chains of this layer that it touches.
     pub(super) fn lay(&mut self, chain: &[Step]) {
         // Chains of the layer are counted from 0, owners over all layers from 1.
-        let line = self.parents.len();
-        self.parents.push(line);
-        let owner = self.owners_from + self.parents.len() as u32;
+        let line = self.patches.add();
+        let owner = self.owners_from + self.patches.len() as u32;
         let mut touched: Vec<u32> = Vec::new();
         let width = self.grid.size[0];
         for step in chain {
@@ -161,8 +157,7 @@ impl Pile {
         touched.sort_unstable();
         touched.dedup();
         for other in touched {
-            let (a, b) = (self.root(line), self.root((other - 1 - self.owners_from) as usize));
-            self.parents[a.max(b)] = a.min(b);
+            self.patches.join(line, (other - 1 - self.owners_from) as usize);
         }
     }
 

@@ -12,6 +12,7 @@ use super::filled::Filled;
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::part::extent_of;
 use super::rows::Lattice;
+use super::sets::Sets;
 use crate::geom::spans::{Rows, Span};
 use crate::reader::Role;
 use crate::units::to_mm;
@@ -139,18 +140,16 @@ impl Island {
 
 /// The islands of a layer, and the island of each span.
 fn islands(rows: &Rows, lattice: Lattice) -> (Vec<Island>, Vec<usize>) {
-    let mut parents: Vec<usize> = Vec::new();
+    let mut sets = Sets::default();
     let mut above: Vec<(Span, usize)> = Vec::new();
     for (_, row) in rows.iter() {
         let mut here = Vec::with_capacity(row.len());
         for &span in row {
-            let one = parents.len();
-            parents.push(one);
+            let one = sets.add();
             for (_, other) in
                 above.iter().filter(|(other, _)| other.start <= span.end && span.start <= other.end)
             {
-                let (a, b) = (root(&mut parents, one), root(&mut parents, *other));
-                parents[a.max(b)] = a.min(b);
+                sets.join(one, *other);
             }
             here.push((span, one));
         }
@@ -159,7 +158,7 @@ fn islands(rows: &Rows, lattice: Lattice) -> (Vec<Island>, Vec<usize>) {
     let (mut found, mut numbers): (Vec<Island>, Vec<usize>) = (Vec::new(), Vec::new());
     let spans = rows.iter().flat_map(|(j, row)| row.iter().map(move |&span| (j, span)));
     for (one, (j, span)) in spans.enumerate() {
-        let root = root(&mut parents, one);
+        let root = sets.root(one);
         let y = lattice.middle(j);
         let number = if root == one {
             found.push(Island { origin: [to_mm(span.start), y], ..Island::default() });
@@ -171,14 +170,6 @@ fn islands(rows: &Rows, lattice: Lattice) -> (Vec<Island>, Vec<usize>) {
         found[number].add(span, (y, lattice.pitch()));
     }
     (found, numbers)
-}
-
-fn root(parents: &mut [usize], mut one: usize) -> usize {
-    while parents[one] != one {
-        parents[one] = parents[parents[one]];
-        one = parents[one];
-    }
-    one
 }
 
 /// Which islands of a layer overlap which of the layer below.

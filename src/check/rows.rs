@@ -9,6 +9,7 @@
 //! grows and shrinks, cost what there are edges, not what there is area.
 
 use super::capsule::Capsule;
+use super::sets::Sets;
 use crate::geom::spans::{Rows, Span, intersect, merge};
 use crate::units::{Coord, UNITS_PER_MM, to_mm, to_units};
 
@@ -145,27 +146,39 @@ impl Lattice {
 
     /// The patches of an area, in the order of their first rows.
     pub(super) fn patches(self, rows: &Rows) -> Vec<Patch> {
-        let mut union = Union::default();
+        let (mut patches, mut sets): (Vec<Patch>, Sets) = (Vec::new(), Sets::default());
         let mut above: Vec<(Span, usize)> = Vec::new();
         for (j, row) in rows.iter() {
             let mut here = Vec::with_capacity(row.len());
             for &span in row {
                 let middle = (i64::from(span.start) + span.len() / 2) as f64 / UNITS_PER_MM;
-                let patch = union.add(Patch {
+                let patch = sets.add();
+                patches.push(Patch {
                     area: span.len() as f64 / UNITS_PER_MM * self.pitch(),
                     at: [middle, self.middle(j)],
                     longest: span.len(),
                 });
                 for (other, root) in &above {
                     if other.start <= span.end && span.start <= other.end {
-                        union.join(*root, patch);
+                        let joined = sets.join(*root, patch);
+                        joined.into_iter().for_each(|both| merged(&mut patches, both));
                     }
                 }
                 here.push((span, patch));
             }
             above = here;
         }
-        union.patches()
+        (0..patches.len()).filter(|&one| sets.root(one) == one).map(|one| patches[one]).collect()
+    }
+}
+
+/// Adds a patch to another that it has become a part of.
+fn merged(patches: &mut [Patch], [whole, part]: [usize; 2]) {
+    let part = patches[part];
+    let whole = &mut patches[whole];
+    whole.area += part.area;
+    if part.longest > whole.longest {
+        (whole.longest, whole.at) = (part.longest, part.at);
     }
 }
 
@@ -229,51 +242,6 @@ pub(super) fn united(chords: &[(i32, Span)]) -> Rows {
         rows.push_row(|out| merge(&mut sorted[*start as usize..*end as usize], out));
     }
     rows
-}
-
-/// Patches that grow together.
-#[derive(Default)]
-struct Union {
-    patches: Vec<Patch>,
-    /// The patch that each has become a part of; itself if none.
-    parents: Vec<usize>,
-}
-
-impl Union {
-    fn add(&mut self, patch: Patch) -> usize {
-        self.patches.push(patch);
-        self.parents.push(self.parents.len());
-        self.parents.len() - 1
-    }
-
-    fn root(&mut self, mut one: usize) -> usize {
-        while self.parents[one] != one {
-            self.parents[one] = self.parents[self.parents[one]];
-            one = self.parents[one];
-        }
-        one
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        if a == b {
-            return;
-        }
-        // The older one stays, so that the order is that of the rows.
-        let (old, young) = (a.min(b), a.max(b));
-        self.parents[young] = old;
-        let part = self.patches[young];
-        let whole = &mut self.patches[old];
-        whole.area += part.area;
-        if part.longest > whole.longest {
-            (whole.longest, whole.at) = (part.longest, part.at);
-        }
-    }
-
-    fn patches(self) -> Vec<Patch> {
-        let roots = self.parents.iter().enumerate().filter(|(k, parent)| k == *parent);
-        roots.map(|(k, _)| self.patches[k]).collect()
-    }
 }
 
 #[cfg(test)]

@@ -206,7 +206,7 @@ impl Judge<'_> {
     }
 
     /// Judges a patch; returns its body.
-    fn patch(&mut self, lines: &[&Line], pile: &Pile) -> u32 {
+    fn patch(&mut self, lines: &[&Line], pile: &Pile) -> usize {
         let length = lines.iter().map(|line| line.length).sum();
         let carriers = || lines.iter().flat_map(|line| line.carriers.iter().copied());
         let is_part = lines.iter().any(|line| line.first.role != Role::Support);
@@ -235,7 +235,7 @@ impl Judge<'_> {
 
     /// A patch hangs: a layer below is missing, unless the part itself hangs there. Where that is
     /// not known, plastic a layer or two lower tells.
-    fn begins(&mut self, lines: &[&Line], length: f64, (body, pile): (u32, &Pile)) {
+    fn begins(&mut self, lines: &[&Line], length: f64, (body, pile): (usize, &Pile)) {
         let samples = || lines.iter().flat_map(|line| line.ends.iter().flatten().copied());
         let step = &lines[0].first;
         let hangs = |sample: &Sample| match self.part {

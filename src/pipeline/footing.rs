@@ -21,7 +21,7 @@ use crate::geom::sets::Sets;
 use crate::geom::{Contour, Point, double_area, edges, encloses, polygon};
 use crate::profile::{Floating, Settings};
 use crate::region::{Region, Sparse, SupportLines};
-use crate::units::{Coord, sum_mm, to_mm};
+use crate::units::{Coord, UNITS_PER_MM, sum_mm, to_mm};
 use crate::warning::Warning;
 use std::collections::VecDeque;
 
@@ -30,10 +30,6 @@ const CORNERS: usize = 24;
 
 /// A smaller share of an island's area is no overlap: contours that only meet leave slivers.
 const LEAST_SHARE: f64 = 1e-3;
-
-/// A hanging body with less than this, 500 mm of lines in grid units, is only warned of: a scan has
-/// specks beside it that nobody misses, and that fail alone. It is a cube of some 3 mm.
-const LEAST_BODY: f64 = 5_000_000.0;
 
 /// What a layer prints, as far as the layers around it need to know.
 #[derive(Debug, Default)]
@@ -314,9 +310,10 @@ impl Footing {
 
     /// A body that never stands.
     fn hanging_body(&mut self) -> Option<Hanging> {
+        let least = Floating::LEAST_BODY * UNITS_PER_MM;
         let mut hangs = |begin: &&Begin| {
             let body = self.bodies.root(begin.number);
-            !self.stands[body] && self.lengths[body] > LEAST_BODY
+            !self.stands[body] && self.lengths[body] >= least
         };
         let first = *self.begins.iter().find(|begin| hangs(begin))?;
         let (layer, z_mm, at_mm) = self.place(first);

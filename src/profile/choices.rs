@@ -143,6 +143,13 @@ pub enum Floating {
     Warn,
 }
 
+impl Floating {
+    /// A body with less than this many mm of lines is a speck, and only warned of: a scan has specks
+    /// beside it that nobody misses, and that fail alone. It is a cube of some 3 mm. The rule of the
+    /// slicer and of `check`; a print that stands nowhere is never a speck.
+    pub const LEAST_BODY: f64 = 500.0;
+}
+
 /// See [`Support::stands_on`](super::Support::stands_on).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
