@@ -15,6 +15,10 @@
 //! the line beside it, so they are computed from these two ends. Columns cost nothing extra:
 //! the region stage needs them for neighbouring layers.
 //!
+//! Rows may also lie deeper in a wall than lines reach into it: then a narrow room has more lines than
+//! space. How much room a line truly has beside it is kept with it, and [`skin`](super::skin) takes
+//! away what is too much.
+//!
 //! Only edges at a wall are closed. An edge at the infill has more skin than it needs.
 
 use super::variable_width::{Line, LineParams, SHORT_STRIP, Strip, WIDEST};
@@ -50,8 +54,9 @@ pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Poly
     let mut lines = Vec::new();
     for (row, spans) in crossed.skin.iter() {
         for &span in spans {
-            let mut line = Line { row, span, above: Vec::new(), below: Vec::new() };
+            let mut line = Line { row, span, above: Vec::new(), below: Vec::new(), beside: 0.0 };
             if walled {
+                line.beside = strips.room_beside(row, span);
                 (line.above, line.below) = strips.beside(row, span);
                 add_ends(&mut line.above, span, crossed, (row, row + 1), params);
                 add_ends(&mut line.below, span, crossed, (row, row - 1), params);
@@ -100,13 +105,21 @@ struct Strips {
     first: i32,
     above: Vec<Vec<Strip>>,
     below: Vec<Vec<Strip>>,
+    /// All strips beside each row, also those less than zero wide, where it lies too deep in a wall.
+    all: Vec<Vec<(Coord, Coord)>>,
     pitch: Coord,
 }
 
 impl Strips {
     fn new(range: std::ops::Range<i32>, params: &LineParams) -> Self {
         let empty = vec![Vec::new(); range.len()];
-        Self { first: range.start, above: empty.clone(), below: empty, pitch: params.line_width }
+        Self {
+            first: range.start,
+            above: empty.clone(),
+            below: empty,
+            all: vec![Vec::new(); range.len()],
+            pitch: params.line_width,
+        }
     }
 
     /// The strips above and below `span` of `row`.
@@ -124,6 +137,21 @@ impl Strips {
             out
         };
         (of(&self.above), of(&self.below))
+    }
+
+    /// The area of the strips beside `span` of `row`, less that by which it lies too deep in walls: as
+    /// in its middle. Near its ends a slanted wall makes steps, which are no strips.
+    fn room_beside(&self, row: i32, span: Span) -> f64 {
+        let known = self.index(row).map_or(&[] as &[_], |k| &self.all[k]);
+        if known.is_empty() {
+            return 0.0;
+        }
+        let ends = (span.len() / 3).min(i64::from(SHORT_STRIP * self.pitch)) as Coord;
+        let from = known.partition_point(|(u, _)| *u < span.start + ends);
+        let inner = known[from..].iter().take_while(|(u, _)| *u <= span.end - ends);
+        let open = inner.map(|(_, open)| f64::from(*open));
+        let share = span.len() as f64 / (span.len() - 2 * i64::from(ends)).max(1) as f64;
+        open.sum::<f64>() * f64::from(self.pitch) * share
     }
 
     fn index(&self, row: i32) -> Option<usize> {
@@ -147,6 +175,14 @@ impl Strips {
         }
         if let Some(k) = self.index(lowest).filter(|_| extent.wall_low && below > LEAST_STRIP) {
             self.below[k].push(strip(below));
+        }
+        let both = [(highest, extent.wall_high, above), (lowest, extent.wall_low, below)];
+        for (row, _, open) in
+            both.into_iter().filter(|(_, wall, open)| *wall && open.abs() > LEAST_STRIP)
+        {
+            if let Some(k) = self.index(row) {
+                self.all[k].push((extent.u, open));
+            }
         }
         true
     }

@@ -1,6 +1,7 @@
 //! Lines of a skin -> zigzags: neighbouring solid lines joined end to end, straight across.
 
 use super::variable_width::{self, Joined, Line, LineParams};
+use crate::geom::Point;
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::pattern::zigzag::{Side, link};
 use crate::units::{Coord, nearest};
@@ -15,6 +16,14 @@ const MOVED_BACK: f64 = 0.75;
 
 /// Shorter lines are skipped (50 µm): the ends of their neighbours cover them.
 const LEAST: i64 = 500;
+
+/// Plastic that a zigzag may have beyond its room: its turns fill the notches between their round
+/// corners. At 0 lines of narrow places are so thin that hair lines stay open between them; a larger
+/// value presses more into the walls of narrow rooms.
+const MOST_OVER: f64 = 0.04;
+
+/// It gets at least this share: narrower lines no longer lie side by side.
+const LEAST_SHARE: f64 = 0.85;
 
 /// Joins the lines of a skin, already closed up to the walls, to zigzags.
 ///
@@ -48,7 +57,8 @@ pub fn zigzags(lines: &[Line], params: &LineParams) -> Vec<Polyline> {
                     let run = link.from.other().of(link.span) - next.from.of(next.span);
                     next_back = moved_back(run, params);
                 }
-                let mut points = variable_width::points(line(link.row, link.index), joined, params);
+                let line = line(link.row, link.index);
+                let mut points = variable_width::points(line, joined, params);
                 if link.from == Side::Right {
                     points.reverse();
                 }
@@ -56,9 +66,33 @@ pub fn zigzags(lines: &[Line], params: &LineParams) -> Vec<Polyline> {
                 append_line(points, &mut polyline);
                 back = next_back;
             }
+            let all = zigzag.iter().map(|link| line(link.row, link.index));
+            thin(&mut polyline, all.map(|line| room(line, params)).sum());
             polyline
         })
         .collect()
+}
+
+/// The area that a line and half the turns at its ends have between walls.
+fn room(line: &Line, params: &LineParams) -> f64 {
+    let w = f64::from(params.line_width);
+    // Its span ends where its middle reaches `overlap` further than the wall's edge lets it.
+    let ends = w - 2.0 * f64::from(params.overlap);
+    w * (line.span.len() as f64 + ends) + line.beside
+}
+
+/// Takes from a zigzag what is more than its `room` takes.
+fn thin(polyline: &mut Polyline, room: f64) {
+    let at = |p: &LinePoint| Point { x: p.u, y: p.v };
+    let area = |w: &[LinePoint]| at(&w[0]).distance(at(&w[1])) * f64::from(w[1].width);
+    let area: f64 = polyline.windows(2).map(area).sum();
+    if area <= (1.0 + MOST_OVER) * room {
+        return;
+    }
+    let share = ((1.0 + MOST_OVER) * room / area).max(LEAST_SHARE);
+    for point in polyline {
+        point.width = nearest(share * f64::from(point.width)) as Coord;
+    }
 }
 
 /// How far two ends, `run` apart along their lines, are moved back from the wall.

@@ -63,6 +63,13 @@ impl LineParams {
     }
 }
 
+impl LineParams {
+    /// How much an end that is not joined is lengthened.
+    fn tip(&self) -> Coord {
+        ((f64::from(self.line_width) * TIP) as Coord).min(self.overlap)
+    }
+}
+
 /// What is printed of one span of a row, with the open strips above (towards the next row) and
 /// below it, each sorted by u.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +82,8 @@ pub struct Line {
     pub above: Vec<Strip>,
     /// Open strips towards the previous row.
     pub below: Vec<Strip>,
+    /// The area of the strips, less that by which it lies deeper in walls beside it than lines shall.
+    pub beside: f64,
 }
 
 /// How wide an open strip beside a line is at one place, grid units.
@@ -127,7 +136,7 @@ pub fn points(line: &Line, joined: Joined, params: &LineParams) -> Vec<LinePoint
         let below = profile(&line.below, line.span, joined.below, w);
         bends(&samples(&above, &below)).iter().copied().map(point).collect()
     };
-    let tip = ((f64::from(w) * TIP) as Coord).min(params.overlap);
+    let tip = params.tip();
     if let [first, .., last] = points.as_mut_slice() {
         first.u -= if joined.above.left || joined.below.left { 0 } else { tip };
         last.u += if joined.above.right || joined.below.right { 0 } else { tip };

@@ -110,7 +110,7 @@ fn plates_of_any_thickness_are_as_full_as_walls_and_one_bead_make_them() {
                     let least =
                         if sparse { 2.0 * f64::from(walls) * WIDTH / thickness } else { 0.9 };
                     let twice = longest_twice(&run, turn, layer);
-                    if !(least - 0.01..=1.15).contains(&ratio) || twice > 1.0 {
+                    if !(least - 0.01..=1.06).contains(&ratio) || twice > 1.0 {
                         wrong.push(format!("{walls} walls, {thickness} mm at {turn}/{angle}, layer {layer}: {ratio:.3}, {twice:.1} mm twice"));
                     }
                 }
@@ -139,7 +139,8 @@ fn a_wedge_is_full_all_along() {
                     let thickness = 0.8 + share * (filled_up_to(walls) - 0.8);
                     let ratio =
                         plastic(&run, turn, layer, low, low + 2.0) / (thickness * 2.0 * 0.2);
-                    if !(0.85..=1.15).contains(&ratio) {
+                    // Where the number of beads changes.
+                    if !(0.85..=1.12).contains(&ratio) {
                         wrong.push(format!("{walls} walls, {thickness:.2} mm at {turn}/{angle}, layer {layer}: {ratio:.3}"));
                     }
                 }
