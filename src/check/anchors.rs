@@ -3,7 +3,8 @@
 //! Words used here: a *run* is a stretch of a chain that nothing carries; its end is *held* if the
 //! chain is carried beyond it, or if plastic stands close by (a line that ends beside a wall holds on
 //! to it, but only where the wall itself stands). A line is *loose* over a run
-//! - with an end that is not held: it is laid into the air and sags;
+//! - with an end that is not held: it is laid into the air and sags. The end of a bridge, a long run of
+//!   skin, must rest on what carries it;
 //! - along a narrow void: what carries it lies on both sides, nearer together than the run is long,
 //!   so that the line runs beside what it should cross;
 //! - of a wall in a bow, which the plastic cuts short.
@@ -23,6 +24,13 @@ pub(super) const LEAST_RUN: f64 = 3.0;
 /// Plastic this near holds an end, mm: a line ends one and a half widths from the middle of a wall's
 /// own line below at most.
 const NEAR: f64 = 0.8;
+
+/// A skin's longer run is a bridge, mm: it hangs on its ends alone, …
+const BRIDGE: f64 = 6.0;
+
+/// … and an end must rest on plastic, or end at its very edge, mm: beside a wall that carries nothing of
+/// it, only the side of the bead sticks.
+const NEAR_BRIDGE: f64 = 0.4;
 
 /// Void to both sides of a line is looked for as far as this, mm: sparse lines of 10 % lie 4 mm apart.
 const MOST_ASIDE: f64 = 6.0;
@@ -94,7 +102,7 @@ struct Judge<'a> {
 impl Judge<'_> {
     /// Judges a wall's run; `carried` says whether the chain is carried beyond its ends.
     fn wall(&self, run: &[Piece], carried: [bool; 2]) -> Option<Loose> {
-        if !self.holds(run, carried) {
+        if !self.holds(run, carried, NEAR) {
             return Some(found(run, FREE));
         }
         let [first, .., last] = run else { return None };
@@ -114,7 +122,8 @@ impl Judge<'_> {
                 continue;
             }
             let carried = [first == 0 && carried[0], end == run.len() && carried[1]];
-            if !self.holds(line, carried) {
+            let near = if length_of(line) > BRIDGE { NEAR_BRIDGE } else { NEAR };
+            if !self.holds(line, carried, near) {
                 out.push(found(line, FREE));
             } else if self.is_along(line) {
                 out.push(found(line, "run beside what they should rest on"));
@@ -123,19 +132,19 @@ impl Judge<'_> {
     }
 
     /// Whether both ends of a run are held.
-    fn holds(&self, run: &[Piece], carried: [bool; 2]) -> bool {
+    fn holds(&self, run: &[Piece], carried: [bool; 2], near: f64) -> bool {
         let [Some(first), Some(last)] = [run.first(), run.last()] else { return true };
-        (carried[0] || self.is_near(first)) && (carried[1] || self.is_near(last))
+        (carried[0] || self.is_near(first, near)) && (carried[1] || self.is_near(last, near))
     }
 
-    /// Whether plastic stands close by.
-    fn is_near(&self, piece: &Piece) -> bool {
+    /// Whether plastic stands as near as this, mm.
+    fn is_near(&self, piece: &Piece, near: f64) -> bool {
         let [x, y] = piece.sample.across;
         let (sides, slants) =
             ([[x, y], [-x, -y], [y, -x], [-y, x]], [[x + y, y - x], [x - y, x + y]]);
         let slants = slants.map(|way| way.map(|side| side * std::f64::consts::FRAC_1_SQRT_2));
         let ways = sides.into_iter().chain(slants).chain(slants.map(|way| way.map(|side| -side)));
-        ways.flat_map(|way| [0.5 * NEAR, NEAR].map(|by| segment::along(piece.sample.at, by, way)))
+        ways.flat_map(|way| [0.5 * near, near].map(|by| segment::along(piece.sample.at, by, way)))
             .any(|at| self.stands(piece, at))
     }
 

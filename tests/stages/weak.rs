@@ -39,6 +39,8 @@ fn walls_thinner_than_two_lines_were_overfilled() {
         ("wall_0.60.gcode", 130.0..170.0),
         ("fin.gcode", 150.0..190.0),
         ("tube_04.gcode", 140.0..180.0),
+        ("text_raised.gcode", 150.0..190.0),
+        ("knife_up.gcode", 190.0..230.0),
     ] {
         let verdict = fault(name);
         let found = largest(&verdict, Code::Overfilled);
@@ -50,12 +52,35 @@ fn walls_thinner_than_two_lines_were_overfilled() {
 
 #[test]
 fn bodies_that_stand_on_nothing_are_errors() {
-    for (name, z) in [("top10.gcode", 1.4), ("floating.gcode", 2.2)] {
+    for (name, z) in [
+        ("top10.gcode", 1.4),
+        ("floating.gcode", 2.2),
+        ("table_pointed_feet.gcode", 0.6),
+        ("cube_on_edge.gcode", 0.4),
+        ("neck.gcode", 8.2),
+        ("gap_in_z.gcode", 3.2),
+    ] {
         let verdict = fault(name);
         let found = largest(&verdict, Code::Floating);
         assert_eq!((found.severity, found.place.z_mm), (Severity::Error, Some(z)), "{found}");
         assert!(verdict.fails());
     }
+}
+
+#[test]
+fn layers_between_were_empty() {
+    for (name, missing) in [("neck.gcode", 3.0), ("gap_in_z.gcode", 1.0)] {
+        let verdict = fault(name);
+        let found = largest(&verdict, Code::InTheAir);
+        assert!((found.measure - missing).abs() < 0.01, "{name}: {found}");
+    }
+}
+
+#[test]
+fn an_edge_was_printed_twice() {
+    let verdict = fault("knife_up.gcode");
+    let found = largest(&verdict, Code::PrintedTwice);
+    assert_eq!((found.place.layer, found.severity), (Some(97), Severity::Error), "{found}");
 }
 
 #[test]
@@ -251,6 +276,56 @@ fn a_line_that_ends_in_the_air() {
         "{found}"
     );
     assert!(!has(&beam(16.5), Code::Unanchored));
+}
+
+/// Two pillars 10 mm apart, and over them a plate inside a wall, with zigzag lines between the
+/// pillars: across, with turns that lie so far on the pillars, or along the gap.
+fn bridge(rests: f64, along: bool) -> Verdict {
+    let mut hand = Hand::new();
+    for k in 0..6 {
+        hand.layer(0.2 * f64::from(k + 1));
+        if k < 5 {
+            for x in [10.0, 24.0] {
+                hand.loop_of("External perimeter", [x, 10.0], [4.0, 8.0]);
+                hand.loop_of("Perimeter", [x + 0.4, 10.4], [3.2, 7.2]);
+            }
+            continue;
+        }
+        hand.loop_of("External perimeter", [10.0, 10.0], [18.0, 8.0]);
+        // The outer lines of the pillars reach 0.2 mm into the gap.
+        let (from, to) = (14.2 - rests, 23.8 + rests);
+        let lines = if along { 23 } else { 19 };
+        let points = (0..lines).flat_map(|row| {
+            let at = 0.4 * f64::from(row);
+            let ends = if along {
+                [[14.6 + at, 10.3], [14.6 + at, 17.7]]
+            } else {
+                [[from, 10.3 + at], [to, 10.3 + at]]
+            };
+            if row % 2 == 0 { ends } else { [ends[1], ends[0]] }
+        });
+        hand.path("Bridge infill", 0.4, &points.collect::<Vec<_>>());
+    }
+    judged(&hand.text)
+}
+
+#[test]
+fn a_bridge_that_does_not_rest_on_its_pillars() {
+    for rests in [2.0, 0.2] {
+        let verdict = bridge(rests, false);
+        assert!(!has(&verdict, Code::Unanchored), "{rests}: {}", listed(&verdict));
+    }
+    let verdict = bridge(-0.6, false);
+    let found = largest(&verdict, Code::Unanchored);
+    assert!((7.5..9.5).contains(&found.measure), "{found}");
+    assert!(found.text.ends_with("with a free end"), "{found}");
+}
+
+#[test]
+fn a_bridge_along_its_free_edges() {
+    let verdict = bridge(0.2, true);
+    let found = largest(&verdict, Code::Unanchored);
+    assert!((6.0..9.0).contains(&found.measure), "{found}");
 }
 
 #[test]
