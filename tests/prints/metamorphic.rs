@@ -57,11 +57,13 @@ fn roles(run: &Run) -> Vec<(String, f64)> {
 fn assert_like(a: &Run, b: &Run, factor: f64, what: &str) {
     for ((role, x), (_, y)) in roles(a).into_iter().zip(roles(b)) {
         let off = (y - factor * x).abs() / (factor * x).max(1e-9);
-        // A bridge is a few whole lines on a raster that does not move with the part.
-        // Overhangs begin where a sample of the wall says so.
+        // A bridge is a few whole lines on a raster that does not move with the part: measured 5.8 %
+        // where the part is turned under it, 1.5 % between copies at other places of it, and nothing
+        // where it turns along. Overhangs begin where a sample of the wall says so: 0.6 %.
         let most = match role.as_str() {
-            "bridge" => 0.08,
-            "overhanging wall" => 0.02,
+            "bridge" if what == "turned" => 0.07,
+            "bridge" => 0.02,
+            "overhanging wall" => 0.008,
             _ => 0.005,
         };
         assert!(off < most || y == x, "{what}: {role} takes {x} mm and {y} mm");
