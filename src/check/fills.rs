@@ -144,23 +144,22 @@ impl Judge<'_> {
                 }
             }
         }
+        let solids = || lines.iter().filter(|(step, _)| is_solid(step)).map(|(step, _)| *step);
+        let sparse =
+            || lines.iter().map(|(step, _)| *step).filter(|step| step.role == Role::Infill);
         for flipped in [false, true] {
-            let draw = |solid: bool| {
-                let some = lines.iter().filter(|(step, _)| {
-                    if solid { is_solid(step) } else { step.role == Role::Infill }
-                });
-                let capsules = some.map(|(step, _)| Capsule::of(step, 1.0));
-                self.lattice.draw(capsules.map(|one| if flipped { one.flipped() } else { one }))
-            };
-            let (solid, sparse) = (draw(true), draw(false));
+            let solid = self.drawn(solids(), flipped);
             if !flipped {
                 self.share(&solid, flipped, |k, area| cells[k].room += area);
             }
-            let inside = self.inside(layer, flipped);
-            let hung = threads().map(|step| Capsule::of(step, 1.0));
-            let hung = self.lattice.draw(hung.map(|one| if flipped { one.flipped() } else { one }));
-            let open = gaps(&solid, &inside).minus(&sparse).minus(&hung);
-            self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
+            let mut open = gaps(&solid, &self.inside(layer, flipped));
+            // Most layers have too few gaps for any place to be open: no more is drawn for them.
+            if self.lattice.area(&open) >= LEAST_OPEN {
+                open = open
+                    .minus(&self.drawn(sparse(), flipped))
+                    .minus(&self.drawn(threads(), flipped));
+                self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
+            }
         }
         let judged = cells.iter().enumerate().filter_map(|(k, cell)| {
             let finding = self.judged(cell, self.filled.heights[layer])?;
@@ -174,6 +173,12 @@ impl Judge<'_> {
             }))
         });
         judged.collect()
+    }
+
+    /// What lines cover.
+    fn drawn<'s>(&self, lines: impl Iterator<Item = &'s Step>, flipped: bool) -> Rows {
+        let capsules = lines.map(|step| Capsule::of(step, 1.0));
+        self.lattice.draw(capsules.map(|one| if flipped { one.flipped() } else { one }))
     }
 
     /// The cell of a place.
