@@ -16,6 +16,7 @@ use super::scan::around;
 use crate::geom::Point;
 use crate::geom::outline::Columns;
 use crate::geom::raster::Raster;
+use crate::geom::sets::Sets;
 use crate::geom::spans::{Rows, Span, merge};
 use crate::units::Coord;
 
@@ -64,11 +65,10 @@ fn columns<'a>(rows: [&'a Rows; 2], rasters: [Raster; 2], r: usize) -> Columns<'
     Columns { rows: rows[1 - r], pitch: rasters[1 - r].pitch, left_turn: r == 0 }
 }
 
-/// A narrow span, and the stack that it belongs to.
+/// A narrow span and its row. It begins as a stack of its own.
 struct Narrow {
     row: i32,
     span: Span,
-    stack: usize,
 }
 
 /// A stack of narrow spans: its lowest and highest row, and whether it lies beside a wide place.
@@ -78,41 +78,62 @@ struct Stack {
     tip: bool,
 }
 
+/// Stacks that grow together: each set's root holds what is true of all of it.
+#[derive(Default)]
+struct Stacks {
+    sets: Sets,
+    of: Vec<Stack>,
+}
+
+impl Stacks {
+    fn add(&mut self, stack: Stack) {
+        self.sets.add();
+        self.of.push(stack);
+    }
+
+    fn root(&mut self, k: usize) -> &mut Stack {
+        &mut self.of[self.sets.root(k)]
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let Some((root, joined)) = self.sets.join(a, b) else { return };
+        let (x, y) = (self.of[root], self.of[joined]);
+        let rows = (x.rows.0.min(y.rows.0), x.rows.1.max(y.rows.1));
+        self.of[root] = Stack { rows, tip: x.tip || y.tip };
+    }
+}
+
 /// The narrow spans of `rows` by their own chords, without tips; `None` if there are none.
 fn stacks(rows: &Rows, pitch: Coord, columns: &Columns<'_>, limit: Coord) -> Option<Rows> {
     let is_narrow = |j: i32, s: Span| is_narrow(j * pitch, s, columns, limit);
     let mut spans: Vec<Narrow> = Vec::new();
-    let mut stacks: Vec<Stack> = Vec::new();
-    let (mut before, mut wide): (std::ops::Range<usize>, Vec<Span>) = (0..0, Vec::new());
+    let mut stacks = Stacks::default();
+    // The narrow spans of the row before, and the wide ones there and here.
+    let (mut before, mut wide, mut wide_here) = (0..0, Vec::new(), Vec::new());
     for (row, all) in rows.iter() {
         let first = spans.len();
-        let mut wide_here = Vec::new();
         for &span in all {
+            let below = before.clone().filter(|&k: &usize| spans[k].span.overlaps(span));
             if !is_narrow(row, span) {
                 wide_here.push(span);
-                let below = spans[before.clone()].iter().filter(|n| n.span.overlaps(span));
-                below.for_each(|n| stacks[n.stack].tip = true);
+                below.for_each(|k| stacks.root(k).tip = true);
                 continue;
             }
-            let stack = stacks.len();
-            let tip = wide.iter().any(|w| w.overlaps(span));
-            stacks.push(Stack { rows: (row, row), tip });
-            spans.push(Narrow { row, span, stack });
-            let below = before.clone().filter(|&k| spans[k].span.overlaps(span));
-            for k in below.collect::<Vec<_>>() {
-                let (old, now) = (spans[k].stack, spans[spans.len() - 1].stack);
-                unite(&mut spans, &mut stacks, (old, now));
-            }
+            let tip = wide.iter().any(|w: &Span| w.overlaps(span));
+            stacks.add(Stack { rows: (row, row), tip });
+            below.for_each(|k| stacks.join(k, spans.len()));
+            spans.push(Narrow { row, span });
         }
         before = first..spans.len();
-        wide = wide_here;
+        std::mem::swap(&mut wide, &mut wide_here);
+        wide_here.clear();
     }
     let least = (f64::from(limit) * TIP) as Coord;
-    let stays = |n: &Narrow| {
-        let Stack { rows: (low, high), tip } = stacks[n.stack];
+    let mut stays = (0..spans.len()).map(|k| {
+        let Stack { rows: (low, high), tip } = *stacks.root(k);
         !tip || (high - low + 1) * pitch >= least
-    };
-    spans.retain(stays);
+    });
+    spans.retain(|_| stays.next().unwrap_or_default());
     (!spans.is_empty()).then(|| {
         let mut rest = spans.as_slice();
         let mut out = Rows::with_room_of(rows, rows.range().start);
@@ -123,18 +144,6 @@ fn stacks(rows: &Rows, pitch: Coord, columns: &Columns<'_>, limit: Coord) -> Opt
         }
         out
     })
-}
-
-/// Makes two stacks one: the one with the lower number.
-fn unite(spans: &mut [Narrow], stacks: &mut [Stack], (a, b): (usize, usize)) {
-    if a == b {
-        return;
-    }
-    let (keep, drop) = (a.min(b), a.max(b));
-    let (x, y) = (stacks[keep], stacks[drop]);
-    let rows = (x.rows.0.min(y.rows.0), x.rows.1.max(y.rows.1));
-    stacks[keep] = Stack { rows, tip: x.tip || y.tip };
-    spans.iter_mut().filter(|n| n.stack == drop).for_each(|n| n.stack = keep);
 }
 
 /// Whether a region is narrower than `limit` at the middle of `span`, which lies at `v`.

@@ -68,10 +68,10 @@ pub fn open(
     let half = (params.least_apart(depth) / 2).max(1);
     let short = SHORT * f64::from(params.line_width);
     // Shrunk by half, the passes of a thin place would meet or vanish. If none do, nothing is thin.
-    if polygon::keep_shape(&loops, half, short) {
-        return (loops, false);
-    }
     let (mut kept, mut rest) = sorted_out(loops, |group| polygon::keep_shape(group, half, short));
+    if rest.is_empty() {
+        return (kept, false);
+    }
     let shrunk = polygon::inset(&rest, half);
     // Of a loop without anything left inside it, all is thin: a strip, a bulge of one, or a dot.
     let vanishes = |path: &Contour| {
@@ -99,21 +99,28 @@ pub fn open(
     (kept, true)
 }
 
-/// Sorts loops, with their holes, into those that are `good` and the rest. The library is slow: it
-/// gets only the rest.
+/// Sorts loops, with their holes, into those that are `good` and the rest; all stay in their order
+/// if all are good. The library is slow: it gets only the rest. What shrinks stays apart from
+/// other loops, so each is judged alone.
 fn sorted_out(
     loops: Vec<Contour>,
     good: impl Fn(&[Contour]) -> bool,
 ) -> (Vec<Contour>, Vec<Contour>) {
-    let own: Vec<usize> = (0..loops.len()).map(|k| around(&loops, k)).collect();
-    let mut groups: Vec<(usize, Contour)> = own.into_iter().zip(loops).collect();
-    groups.sort_by_key(|(k, _)| *k);
-    let (mut kept, mut rest) = (Vec::new(), Vec::new());
-    for group in groups.chunk_by(|a, b| a.0 == b.0) {
-        let group: Vec<Contour> = group.iter().map(|(_, path)| path.clone()).collect();
-        if good(&group) { &mut kept } else { &mut rest }.extend(group);
+    let mut order: Vec<(usize, usize)> = (0..loops.len()).map(|k| (around(&loops, k), k)).collect();
+    order.sort_unstable();
+    let is_good = |group: &[(usize, usize)]| match group {
+        [(_, only)] => good(std::slice::from_ref(&loops[*only])),
+        _ => good(&group.iter().map(|(_, k)| loops[*k].clone()).collect::<Vec<_>>()),
+    };
+    let groups: Vec<&[(usize, usize)]> = order.chunk_by(|a, b| a.0 == b.0).collect();
+    let (kept, rest): (Vec<&[_]>, Vec<&[_]>) = groups.into_iter().partition(|group| is_good(group));
+    if rest.is_empty() {
+        return (loops, Vec::new());
     }
-    (kept, rest)
+    let loops_of = |groups: Vec<&[(usize, usize)]>| -> Vec<Contour> {
+        groups.into_iter().flatten().map(|(_, k)| loops[*k].clone()).collect()
+    };
+    (loops_of(kept), loops_of(rest))
 }
 
 /// The index of the smallest loop around the hole `k`; an outer loop's own.
