@@ -120,7 +120,7 @@ pub struct Settings {
     pub infill_anchor: f64,
     /// Radius of the turns of infill, support and skin lines, where there is room; 0 leaves
     /// them sharp.
-    #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.4))]
+    #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.2))]
     pub corner_radius: f64,
 
     /// Dual injection: lines that are printed once for several layers.

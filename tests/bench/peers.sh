@@ -52,7 +52,7 @@ run() {
     case $program in
     plain) command_of ours "$model" "$out" "${job[@]}" ;;
     dual) command_of ours "$model" "$out" --dual "${job[@]}" ;;
-    cura) command_of cura "$model" "$out" "${cura_job[@]}" ;;
+    cura*) command_of "$program" "$model" "$out" "${cura_job[@]}" ;;
     *) command_of "$program" "$model" "$out" "${slic3r_job[@]}" ;;
     esac
     rm -f "$out"

@@ -15,6 +15,7 @@
 #                 at once as go into 0.4 mm. So do we, with --dual-ratio auto where these
 #                 are more than two.
 #   CROSSING=1    PrusaSlicer and Slic3r retract where we do: only across walls
+#   REACH=0       peers: skin reaches so far into our infill, mm. The others have none.
 #   LIMIT=300     seconds after which a program is given up
 #   SLICER, PRUSA, SLIC3R, CURAENGINE, CURA   see programs.sh
 #
@@ -79,7 +80,7 @@ thesis() {
     [ $# = 1 ] && [ -d "$1" ] || die "give the folder with the stand-ins"
     local peer stand_in name traditional dual saved metres dual_metres
     local bases=''
-    for peer in "${peers[@]}"; do [ "$peer" = cura ] || bases+="${bases:+ / }${title[$peer]}"; done
+    for peer in "${peers[@]}"; do [[ $peer = cura* || $peer = *_too ]] || bases+="${bases:+ / }${title[$peer]}"; done
     echo "Minutes, and m of filament (traditional / \`--dual\`). Traditional here is 20 % honeycomb of ${bases:-nobody}; the better of \`--dual\` and all parts saves so many points more than the thesis."
     echo
     echo "| part | thesis: traditional | dual | saved | m, both | here: traditional | \`--dual\` | saved | all parts | saved | points more | m, both |"
@@ -97,7 +98,7 @@ thesis() {
         fi
         rm -f "$work"/{prusa,slic3r}
         for peer in "${peers[@]}"; do
-            [ "$peer" = cura ] || # it has no honeycomb
+            [[ $peer = cura* || $peer = *_too ]] || # no honeycomb, or told once
                 timed "$peer" "$peer" "$model" "${family[@]}" --fill-pattern honeycomb "${other[@]}" &
         done
         wait
@@ -138,7 +139,7 @@ thesis() {
 # peer_arguments PEER: sets `arguments` to what makes it combine infill.
 peer_arguments() {
     case $1 in
-    cura) arguments=("layer_height=$height" "layer_height_0=$height" infill_sparse_thickness=0.4) ;;
+    cura*) arguments=("layer_height=$height" "layer_height_0=$height" infill_sparse_thickness=0.4) ;;
     *) arguments=("${family[@]}" --infill-every-layers "$layers") ;;
     esac
 }
@@ -147,7 +148,7 @@ peers() {
     [ $# -gt 0 ] || die "no models; give at least one STL"
     local layers model name peer ours arguments
     layers=$(awk -v height="$height" 'BEGIN { print int(0.4 / height + 1e-6) }')
-    ours=(--layer-height "$height" --first-layer-height "$height" --dual)
+    ours=(--layer-height "$height" --first-layer-height "$height" --dual --set "skin_reach=${REACH:-0}")
     [ "$layers" -gt 2 ] && ours+=(--dual-ratio auto)
     echo "Layers of $height mm, infill of $layers combined. Seconds; ratios to the fastest of the others."
     echo
@@ -155,7 +156,7 @@ peers() {
     echo "|---|---|--:|--:|--:|--:|--:|--:|"
     for model; do
         name=$(basename "$model" .stl)
-        rm -f "$work"/{prusa,slic3r,cura}
+        rm -f "$work"/{prusa,slic3r,cura}{,_too}
         for peer in "${peers[@]}"; do
             peer_arguments "$peer"
             timed "$peer" "$peer" "$model" "${arguments[@]}" &

@@ -350,8 +350,10 @@ fn filament_is_the_volume_of_the_beads() {
             for thick in [false, true] {
                 let laid = run.print.filament(kind, thick) * run.filament_area();
                 let space = 0.9 * space(&run, kind, thick);
-                // Widths are annotated in steps of 0.01 mm.
-                let most = if kind == Kind::SupportInterface { 0.0125 } else { 0.005 };
+                // Widths are annotated in steps of 0.01 mm. All lines of a zigzag have one width, so
+                // that these roundings do not level out.
+                let zigzag = matches!(kind, Kind::Infill | Kind::SupportInterface);
+                let most = if zigzag { 0.0125 } else { 0.005 };
                 assert!(
                     (laid - space).abs() <= most * space,
                     "{name} {kind:?}: {laid} for {space}"
