@@ -10,7 +10,7 @@
 //!
 //! Dilation grows a span by a circle. On the row `m` lines away it grows by half the chord of the
 //! circle at that distance; the grown spans are united. Between rows nothing is known, so that
-//! this is exact on the lines only.
+//! this is exact on the lines only. Erosion is the dilation of what lies outside.
 
 use crate::units::Coord;
 
@@ -261,6 +261,42 @@ impl Rows {
         }
         out
     }
+
+    /// Shrinks these rows, which are `pitch` apart, by `radius` in all directions: what stays is where
+    /// the middle of a disc has room.
+    #[must_use]
+    pub fn erode(&self, radius: Coord, pitch: Coord) -> Self {
+        if radius <= 0 {
+            return self.clone();
+        }
+        let chords: Vec<Coord> =
+            (0..=radius / pitch).map(|m| half_chord(radius, m * pitch)).collect();
+        let mut out = Self::with_room_of(self, self.range().start);
+        let (mut left, mut shrunk, mut both) = (Vec::new(), Vec::new(), Vec::new());
+        for j in self.range() {
+            left.clear();
+            shrink(self.row(j), radius, &mut left);
+            // The nearest rows take most: thin places are done after the first ones.
+            let others = (1..).zip(&chords[1..]).flat_map(|(m, &by)| [(j - m, by), (j + m, by)]);
+            for (other, by) in others {
+                if left.is_empty() {
+                    break;
+                }
+                shrunk.clear();
+                shrink(self.row(other), by, &mut shrunk);
+                both.clear();
+                intersect(&left, &shrunk, &mut both);
+                std::mem::swap(&mut left, &mut both);
+            }
+            out.push_row(|spans| spans.extend_from_slice(&left));
+        }
+        out
+    }
+}
+
+/// Appends the spans of a row without `by` at both ends.
+fn shrink(row: &[Span], by: Coord, out: &mut Vec<Span>) {
+    out.extend(row.iter().filter_map(|s| Span::new(s.start + by, s.end - by)));
 }
 
 /// Half the chord of a circle at distance `d` from its centre, rounded down.
@@ -340,5 +376,34 @@ mod tests {
         assert_eq!(grown.range(), -1..2);
         assert_eq!(grown.row(0), [Span { start: -50, end: 150 }]);
         assert_eq!(grown.row(1), [Span { start: -30, end: 130 }]);
+    }
+
+    #[test]
+    fn a_square_is_eroded_on_all_sides() {
+        let mut square = Rows::starting_at(0);
+        (0..10).for_each(|_| square.push_row(|out| out.push(Span { start: 0, end: 100 })));
+        let core = square.erode(25, 10);
+        let first = core.iter().find(|(_, row)| !row.is_empty());
+        assert_eq!(first, Some((2, &[Span { start: 25, end: 75 }][..])));
+        assert!(square.erode(60, 10).is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn erosion_is_the_dilation_of_what_lies_outside(
+            masks in prop::collection::vec(any::<u64>(), 1..9), radius in 0..24_i32
+        ) {
+            let mut rows = Rows::starting_at(-3);
+            // Few gaps, so that something is left.
+            masks.iter().for_each(|m| rows.push_row(|out| out.extend(row(m | m << 7 | m >> 9))));
+            let whole = [Span { start: -100, end: SIZE + 100 }];
+            let mut outside = Rows::starting_at(-30);
+            (-30..30).for_each(|j| outside.push_row(|out| subtract(&whole, rows.row(j), out)));
+            let expected = rows.minus(&outside.dilate(radius, 4));
+            let eroded = rows.erode(radius, 4);
+            for j in rows.range() {
+                prop_assert_eq!(eroded.row(j), expected.row(j));
+            }
+        }
     }
 }

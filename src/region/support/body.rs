@@ -7,7 +7,7 @@
 
 use super::outline::outlines;
 use super::params::SupportParams;
-use super::pieces::{Pieces, erode};
+use super::pieces::Pieces;
 use crate::geom::Contour;
 use crate::geom::spans::Rows;
 use crate::pattern::{Lines, SparsePattern as _};
@@ -42,7 +42,7 @@ pub(super) fn lay(rows: &Rows, k: usize, params: &SupportParams) -> (Vec<Contour
     }
     let (w, raster) = (params.least, params.raster());
     let half = w * NARROW / 200;
-    let rows = erode(rows, half, raster.pitch).dilate(half, raster.pitch).and(rows);
+    let rows = rows.erode(half, raster.pitch).dilate(half, raster.pitch).and(rows);
     let pieces = Pieces::new(&rows);
     let stands: Vec<bool> = (0..pieces.count())
         .map(|piece| stands(&params.lines, &pieces.keep(&rows, |other| other == piece), w))
@@ -51,7 +51,7 @@ pub(super) fn lay(rows: &Rows, k: usize, params: &SupportParams) -> (Vec<Contour
     let outlined = pieces.keep(&rows, |piece| !stands[piece]);
 
     let outlines = outlines(&outlined, raster.pitch, raster.frame, 4 * w);
-    let lines = erode(&outlined, w * LINES_FROM_OUTLINE / 100, raster.pitch);
+    let lines = outlined.erode(w * LINES_FROM_OUTLINE / 100, raster.pitch);
     let brace = i64::from(BRACE * params.lines.stride * raster.pitch);
     let lines = lines.filter(|_, span| k.is_multiple_of(SELDOM) || span.len() > brace);
     (outlines, [zigzags, lines])

@@ -1,15 +1,15 @@
-//! Rows -> Pieces: which spans hang together, and how wide each piece is.
+//! Rows -> Pieces: which spans hang together.
 //!
 //! Words: two spans on neighbouring rows *touch* if they overlap. A *piece* is all spans that hang
-//! together by touching. A piece *holds a disc* if a circle of that radius has room in it.
+//! together by touching.
 //!
 //! Algorithm: walk through the rows. Each span joins the pieces of all spans that it touches on the
 //! row before, by [`Sets`]; a second walk numbers the pieces in the order of their first
-//! spans. The largest disc that a piece holds is found by shrinking its rows.
+//! spans.
 
 use super::params::SupportParams;
 use crate::geom::sets::Sets;
-use crate::geom::spans::{Rows, Span, intersect, subtract, total};
+use crate::geom::spans::{Rows, Span, intersect, total};
 use crate::units::Coord;
 
 /// Smaller pieces of support on a layer are dropped, in squares of a line's width. They hold
@@ -129,24 +129,6 @@ pub(super) fn without_specks(rows: &Rows, params: &SupportParams) -> Rows {
     pieces.keep(rows, |piece| lengths[piece] * pitch >= LEAST_AREA * w * w)
 }
 
-/// What of `rows`, which are `pitch` apart, lies at least `radius` inside them: where the middle of
-/// a disc has room.
-pub(super) fn erode(rows: &Rows, radius: Coord, pitch: Coord) -> Rows {
-    let spans = || rows.iter().flat_map(|(_, row)| row);
-    let (Some(low), Some(high)) = (spans().map(|s| s.start).min(), spans().map(|s| s.end).max())
-    else {
-        return Rows::default();
-    };
-    let whole = [Span { start: low - radius - 1, end: high + radius + 1 }];
-    let reach = radius / pitch + 1;
-    let range = rows.range();
-    let mut outside = Rows::starting_at(range.start - reach);
-    for j in range.start - reach..range.end + reach {
-        outside.push_row(|out| subtract(&whole, rows.row(j), out));
-    }
-    rows.minus(&outside.dilate(radius, pitch))
-}
-
 /// `rows`, which are `pitch` apart, on the raster of the same pitch that is turned by 90°: its row
 /// `m` lies at `u = −m · pitch`. Spans end on rows, so that they are shorter by up to two pitches.
 pub(super) fn turned(rows: &Rows, pitch: Coord) -> Rows {
@@ -200,15 +182,6 @@ mod tests {
         assert_eq!(pieces.labels, [0, 0, 0, 1, 2]);
         assert_eq!(pieces.lengths(&fork), [50, 10, 10]);
         assert_eq!(pieces.keep(&fork, |label| label == 1), rows(&[&[], &[(50, 60)], &[]]));
-    }
-
-    #[test]
-    fn a_square_is_eroded_on_all_sides() {
-        let square = rows(&[&[(0, 100)] as &[_]; 10]);
-        let core = erode(&square, 25, 10);
-        let first = core.iter().find(|(_, row)| !row.is_empty());
-        assert_eq!(first, Some((2, &[Span { start: 25, end: 75 }][..])));
-        assert!(erode(&square, 60, 10).is_empty());
     }
 
     proptest! {

@@ -9,7 +9,7 @@
 //! piece. A piece that has room for the disc somewhere stays as it is, since that place holds it.
 
 use super::params::SupportParams;
-use super::pieces::{Pieces, erode};
+use super::pieces::Pieces;
 use crate::geom::spans::Rows;
 use crate::units::{Bounded as _, Coord};
 
@@ -85,7 +85,7 @@ impl Posts {
         // Rows show the middle of the outermost lines.
         let radius = |width: Coord| ((width - params.least) / 2).max(1);
         let mut wide = vec![false; pieces.count()];
-        let core = erode(rows, radius(params.min_width), pitch);
+        let core = rows.erode(radius(params.min_width), pitch);
         pieces.meeting(rows, &core, |piece, _| wide[piece] = true);
         // Only posts that are taller than five times that width are looked at alone.
         for (piece, wide) in wide.iter_mut().enumerate().filter(|(_, wide)| **wide) {
@@ -93,7 +93,7 @@ impl Posts {
             if asked > f64::from(params.min_width) {
                 let one = pieces.keep(rows, |other| other == piece);
                 let asked = asked.at_most(f64::from(MOST_WIDTH)) as Coord;
-                *wide = !erode(&one, radius(asked), pitch).is_empty();
+                *wide = !one.erode(radius(asked), pitch).is_empty();
             }
         }
         pieces.keep(rows, |piece| !wide[piece])
