@@ -54,6 +54,7 @@ for model; do
     row "all parts" ours "$model" --dual --dual-parts all
     for program in "${peers[@]}"; do
         case $program in
+        slic3r) ;; # its files do not say what a line is
         cura*) row "${title[$program]}" "$program" "$model" wall_line_count=2 wall_thickness=0.8 ;;
         *) row "${title[$program]}" "$program" "$model" --perimeters 2 ;;
         esac
