@@ -21,7 +21,7 @@
 use super::Held;
 use super::zigzag::Side;
 use crate::geom::decimate::{decimate, most_missed};
-use crate::geom::outline::{Corner, Outline, outlines};
+use crate::geom::outline::{Corner, Outline, SpanEnd, outlines};
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::sets::Sets;
 use crate::geom::spans::{Rows, Span};
@@ -145,7 +145,7 @@ pub(super) fn strands(
 /// The ends of lines on an outline, in its order.
 fn ends(outline: &Outline, spans: &[(i32, Span)], lines: Places) -> Vec<End> {
     let end = |(at, corner): (usize, &Corner)| {
-        let (row, u) = corner.end.filter(|(row, _)| lines.prints(*row))?;
+        let SpanEnd { row, u, .. } = corner.end.filter(|end| lines.prints(end.row))?;
         // The last line of the row that begins at or before u.
         let line = spans.partition_point(|&(j, s)| (j, s.start) <= (row, u)).checked_sub(1)?;
         let (j, span) = spans[line];
