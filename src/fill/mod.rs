@@ -21,7 +21,7 @@ pub use role::{Both, Place, Role, RoleFacts, RoleTable};
 
 use crate::geom::frame::Frame;
 use crate::geom::outline::{Bounds, Columns};
-use crate::geom::polyline::{self, LinePoint, Polyline};
+use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
 use crate::pattern::Held;
@@ -41,14 +41,11 @@ const LEAST_SLIVER: Coord = 7;
 /// corners between line and wall open; a smaller one makes the nozzle stop at each.
 const SKIN_ROUNDING: Coord = 8;
 
-/// Shorter pieces of solid infill, in line widths, are printed as skin. A larger value gives whole
-/// rooms the speed of skin; a smaller one changes speed and role for a speck.
-const SPECK: i64 = 8;
-
 /// The numbers that this stage needs, in grid units.
 #[derive(Debug, Clone)]
 pub struct FillParams {
     heights: Heights,
+    walls: u32,
     line_width: Coord,
     lines: LineParams,
     rounding: Rounding,
@@ -67,6 +64,7 @@ impl FillParams {
         let radius = if settings.walls == 0 { 0 } else { to_units(settings.corner_radius) };
         Self {
             heights: heights.clone(),
+            walls: settings.walls,
             line_width,
             lines: LineParams::new(settings),
             rounding: Rounding { radius },
@@ -117,7 +115,12 @@ struct Maker<'a> {
 impl Maker<'_> {
     fn wall(&mut self, wall: &Wall, hangs: &[u8]) {
         let (plain, height) = (self.params.line_width, self.height(wall.layers));
-        let role = if wall.depth == 0 { Role::OuterWall } else { Role::InnerWall };
+        // A bead between the innermost walls is no wall that was asked for: it fills their room.
+        let role = match wall.depth {
+            0 => Role::OuterWall,
+            depth if depth < self.params.walls => Role::InnerWall,
+            _ => Role::Infill,
+        };
         let point = |(k, &at): (usize, &Point)| {
             let width = wall.widths.get(k).copied().unwrap_or(plain);
             let hang = hangs.get(k).copied().unwrap_or(0);
@@ -138,6 +141,9 @@ impl Maker<'_> {
         for polyline in lines.iter().chain(&skin.beads).chain(&slivers) {
             self.polyline(role, skin.layers, frame, polyline, rounding);
         }
+        for bead in &skin.room_beads {
+            self.polyline(Role::Infill, skin.layers, frame, bead, rounding);
+        }
     }
 
     fn sparse(&mut self, role: Role, sparse: &Sparse) {
@@ -152,9 +158,6 @@ impl Maker<'_> {
             None => pattern.strands(rows, *width, least),
         };
         for strand in strands {
-            // Specks between beads and skin hold no walls apart: they are skin.
-            let speck = solid && polyline::length(&strand) < SPECK * i64::from(least);
-            let role = if speck { Role::Skin } else { role };
             self.polyline(role, *layers, frame, &strand, rounding);
         }
     }

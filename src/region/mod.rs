@@ -102,6 +102,8 @@ pub struct Skin {
     pub left_turn: bool,
     /// Beads along walls where the skin is narrow, in the frame of its raster.
     pub beads: Vec<Polyline>,
+    /// The same in rooms too narrow for sparse lines, where nothing is exposed.
+    pub room_beads: Vec<Polyline>,
     /// Its lines span places where nothing is printed below.
     pub bridges: bool,
 }

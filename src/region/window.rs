@@ -73,6 +73,7 @@ pub struct Support {
 #[derive(Debug)]
 struct Laid {
     beads: Vec<Polyline>,
+    room_beads: Vec<Polyline>,
     bridges: Vec<Skin>,
     hanging: Option<Vec<Hanging>>,
 }
@@ -147,9 +148,9 @@ impl<'a> Window<'a> {
         self.examined.extend(examined);
         let divided: Vec<Divided> =
             (self.areas.end()..until).into_par_iter().filter_map(|k| self.divide(k)).collect();
-        for Divided { areas, beads, bridges, hanging } in divided {
+        for Divided { areas, beads, room_beads, bridges, hanging } in divided {
             self.areas.extend([areas]);
-            self.beads.extend([Laid { beads, bridges, hanging }]);
+            self.beads.extend([Laid { beads, room_beads, bridges, hanging }]);
         }
         self.layers.forget(until.saturating_sub(1));
         self.examined.forget(until.saturating_sub(1));
@@ -328,6 +329,7 @@ impl<'a> Window<'a> {
             columns: SkinRows { skin: columns, fill: fill(across) },
             left_turn: along == 0,
             beads: Vec::new(),
+            room_beads: Vec::new(),
             bridges: false,
         }
     }
@@ -336,11 +338,11 @@ impl<'a> Window<'a> {
     fn hand_on(&mut self, fillings: Vec<Filling>) -> Vec<Region> {
         let own = std::iter::from_fn(|| self.own.take().zip(self.beads.take()));
         let regions = fillings.into_iter().zip(own).map(
-            |(filling, (own, Laid { beads, bridges, hanging }))| {
+            |(filling, (own, Laid { beads, room_beads, bridges, hanging }))| {
                 let Filling { mut skins, infill, support, walls: printed } = filling;
                 // Wall beads are for this layer alone.
                 if let Some(skin) = skins.first_mut() {
-                    skin.beads = beads;
+                    (skin.beads, skin.room_beads) = (beads, room_beads);
                 }
                 skins.extend(bridges);
                 let Own { layer, walls, thin_mm2, .. } = own;

@@ -190,6 +190,7 @@ fn lay(
         columns: SkinRows { skin: Arc::new(columns), fill: Arc::new(fill_across) },
         left_turn: true,
         beads: Vec::new(),
+        room_beads: Vec::new(),
         bridges: true,
     }
 }
