@@ -45,7 +45,6 @@ const SKIN_ROUNDING: Coord = 8;
 #[derive(Debug, Clone)]
 pub struct FillParams {
     heights: Heights,
-    walls: u32,
     line_width: Coord,
     lines: LineParams,
     rounding: Rounding,
@@ -64,7 +63,6 @@ impl FillParams {
         let radius = if settings.walls == 0 { 0 } else { to_units(settings.corner_radius) };
         Self {
             heights: heights.clone(),
-            walls: settings.walls,
             line_width,
             lines: LineParams::new(settings),
             rounding: Rounding { radius },
@@ -115,11 +113,10 @@ struct Maker<'a> {
 impl Maker<'_> {
     fn wall(&mut self, wall: &Wall, hangs: &[u8]) {
         let (plain, height) = (self.params.line_width, self.height(wall.layers));
-        // A bead between the innermost walls is no wall that was asked for: it fills their room.
         let role = match wall.depth {
             0 => Role::OuterWall,
-            depth if depth < self.params.walls => Role::InnerWall,
-            _ => Role::Infill,
+            _ if wall.fills => Role::Infill,
+            _ => Role::InnerWall,
         };
         let point = |(k, &at): (usize, &Point)| {
             let width = wall.widths.get(k).copied().unwrap_or(plain);

@@ -5,19 +5,19 @@ use super::bridge::loose::{self, Below};
 use super::bridge::{self, Pair};
 use super::classify::{Areas, areas, areas_beside, exposed};
 use super::crossed::Crossed;
+use super::hidden::{between_walls, is_hidden};
 use super::overhang::{Hanging, overhangs};
 use super::params::RegionParams;
 use super::per_raster::{PerRaster, skin_turn};
 use super::prepare::{LayerRows, Own};
 use super::rooms;
 use super::wall_beads::{taken, wall_beads};
+use crate::geom::Contour;
 use crate::geom::frame::Frame;
 use crate::geom::polyline::Polyline;
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
-use crate::geom::{Contour, Point};
 use crate::slice::Layer;
-use crate::units::{Bounded as _, Coord, nearest};
 
 /// Areas of one layer on both rasters of skins, and on the others that were requested.
 pub type LayerAreas = PerRaster<Areas>;
@@ -31,6 +31,8 @@ pub struct Divided {
     pub beads: Vec<Polyline>,
     /// Those of its rooms too narrow for sparse lines, where nothing is exposed.
     pub room_beads: Vec<Polyline>,
+    /// Which of its walls fill a room that nothing exposes.
+    pub filling: Vec<usize>,
     /// Its bridges.
     pub bridges: Vec<Skin>,
     /// Its walls with their overhangs, if there are any.
@@ -138,6 +140,7 @@ pub fn divide<'a>(
         None => areas,
     };
     let hanging = overhangs(k, &own.walls, layers, params);
+    let filling = between_walls(k, &own.walls, layers, params);
     let (room_beads, beads) = match solid {
         Some(solid) => {
             let (r, pitch) = (skin_turn(k).0, along.pitch);
@@ -145,7 +148,7 @@ pub fn divide<'a>(
         }
         None => (Vec::new(), beads),
     };
-    Divided { areas, beads, room_beads, bridges, hanging }
+    Divided { areas, beads, room_beads, filling, bridges, hanging }
 }
 
 /// The rooms of layer `k` too narrow for sparse lines, on the rasters of skins.
@@ -157,27 +160,6 @@ fn solid<'a>(
     let rows = layers(k)?;
     let fill = [0, 1].map(|r| &*rows.skin(r).fill);
     rooms::narrow(fill, [0, 1].map(|r| params.rasters.skin(r)), params.skins.least_room)
-}
-
-/// Whether `bead` lies in the `rooms`, and nowhere where the layer is `exposed`.
-fn is_hidden(bead: &Polyline, rooms: &Rows, exposed: &Rows, pitch: Coord) -> bool {
-    let places: Vec<Point> = places(bead, pitch).collect();
-    let holds = |rows: &Rows, p: Point| {
-        let row = rows.row(nearest(f64::from(p.y) / f64::from(pitch)) as i32);
-        row.iter().any(|s| s.start <= p.x && p.x <= s.end)
-    };
-    let inside = places.iter().filter(|&&p| holds(rooms, p)).count();
-    2 * inside > places.len() && !places.iter().any(|&p| holds(exposed, p))
-}
-
-/// Places on `line`, at most `step` apart.
-fn places(line: &Polyline, step: Coord) -> impl Iterator<Item = Point> {
-    line.windows(2).flat_map(move |w| {
-        let (from, to) = (Point { x: w[0].u, y: w[0].v }, Point { x: w[1].u, y: w[1].v });
-        let steps = (from.distance(to) / f64::from(step)).ceil().at_least(1.0) as i64;
-        let on = move |a: Coord, b: Coord, k: i64| a + (i64::from(b - a) * k / steps) as Coord;
-        (0..=steps).map(move |k| Point { x: on(from.x, to.x, k), y: on(from.y, to.y, k) })
-    })
 }
 
 /// The `beads` of layer `k` without those that would lie along the sparse lines below.

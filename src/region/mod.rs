@@ -21,6 +21,7 @@ pub mod crossed;
 pub mod divide;
 pub mod dual;
 pub mod first_skin;
+pub mod hidden;
 mod near;
 pub mod overhang;
 pub mod params;

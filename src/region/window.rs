@@ -74,6 +74,7 @@ pub struct Support {
 struct Laid {
     beads: Vec<Polyline>,
     room_beads: Vec<Polyline>,
+    filling: Vec<usize>,
     bridges: Vec<Skin>,
     hanging: Option<Vec<Hanging>>,
 }
@@ -148,9 +149,9 @@ impl<'a> Window<'a> {
         self.examined.extend(examined);
         let divided: Vec<Divided> =
             (self.areas.end()..until).into_par_iter().filter_map(|k| self.divide(k)).collect();
-        for Divided { areas, beads, room_beads, bridges, hanging } in divided {
+        for Divided { areas, beads, room_beads, filling, bridges, hanging } in divided {
             self.areas.extend([areas]);
-            self.beads.extend([Laid { beads, room_beads, bridges, hanging }]);
+            self.beads.extend([Laid { beads, room_beads, filling, bridges, hanging }]);
         }
         self.layers.forget(until.saturating_sub(1));
         self.examined.forget(until.saturating_sub(1));
@@ -338,18 +339,19 @@ impl<'a> Window<'a> {
     fn hand_on(&mut self, fillings: Vec<Filling>) -> Vec<Region> {
         let own = std::iter::from_fn(|| self.own.take().zip(self.beads.take()));
         let regions = fillings.into_iter().zip(own).map(
-            |(filling, (own, Laid { beads, room_beads, bridges, hanging }))| {
-                let Filling { mut skins, infill, support, walls: printed } = filling;
+            |(laid, (own, Laid { beads, room_beads, filling, bridges, hanging }))| {
+                let Filling { mut skins, infill, support, walls: printed } = laid;
                 // Wall beads are for this layer alone.
                 if let Some(skin) = skins.first_mut() {
                     (skin.beads, skin.room_beads) = (beads, room_beads);
                 }
                 skins.extend(bridges);
                 let Own { layer, walls, thin_mm2, .. } = own;
-                let (walls, hangs) = match hanging {
+                let (mut walls, hangs): (Vec<Wall>, Vec<Vec<u8>>) = match hanging {
                     Some(hanging) => hanging.into_iter().map(|h| (h.wall, h.hangs)).unzip(),
                     None => (walls, Vec::new()),
                 };
+                filling.into_iter().for_each(|index| walls[index].fills = true);
                 // A wall that is printed for several layers lies on the lowest of them.
                 let of = |(hangs, layers): (Vec<u8>, &u32)| match layers {
                     0 => None,

@@ -192,7 +192,7 @@ proptest! {
         let rows = &layers.rows;
         for (k, own) in layers.own.iter().enumerate() {
             let examined = examine(own, &|k| rows.get(k), &params);
-            let Divided { areas, beads, .. } = divide(
+            let Divided { areas, beads, room_beads, .. } = divide(
                 own,
                 &examined,
                 params.rasters.iter(),
@@ -206,7 +206,7 @@ proptest! {
                 let infill = &infill.or(dense);
                 // Beads along the walls take a part of the fill rows, or nothing.
                 let whole = &rows[k].on(raster).unwrap().fill;
-                prop_assert!(!beads.is_empty() || fill == whole);
+                prop_assert!(!beads.is_empty() || !room_beads.is_empty() || fill == whole);
                 prop_assert!(fill.minus(whole).is_empty());
                 prop_assert!(is_tidy(skin) && is_tidy(infill));
                 prop_assert!(skin.and(infill).is_empty(), "layer {} raster {:?}", k, raster);
@@ -467,7 +467,8 @@ proptest! {
         let sum: f64 = layers.iter().map(|l| 0.1 * area(l)).sum();
         let (low, high) = solid.extent();
         // A layer counts whole if its middle is inside: up to half a layer at the top.
-        let widest = layers.iter().map(area).fold(0.0, f64::max);
+        let top = Section::new(&solid, high[2] - 1e-6).area();
+        let widest = layers.iter().map(area).fold(top, f64::max);
         let rest = (high[2] - low[2] - 0.1 * layers.len() as f64).abs() * widest;
         let volume = solid.volume();
         prop_assert!((sum - volume).abs() <= rest + 0.003 * volume, "{} of {}", sum, volume);

@@ -50,6 +50,8 @@ pub struct Wall {
     pub closed: bool,
     /// Counted from the outside; 0 is the outer wall.
     pub depth: u32,
+    /// Whether it fills a room between the innermost loops that nothing exposes.
+    pub fills: bool,
     /// How many layers it is printed for: this one and those below it.
     pub layers: u32,
 }
@@ -113,7 +115,7 @@ fn levels(
 impl Wall {
     /// A loop of one line width.
     fn closed(path: Contour, depth: u32) -> Self {
-        Self { path, widths: Vec::new(), closed: true, depth, layers: 1 }
+        Self { path, widths: Vec::new(), closed: true, depth, fills: false, layers: 1 }
     }
 }
 

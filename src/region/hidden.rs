@@ -1,0 +1,67 @@
+//! Beads in narrow rooms, and the layers around -> those that nothing exposes: they are infill.
+//!
+//! A room too narrow for sparse lines is filled by a bead between its walls, by beads along them, or
+//! by solid lines. Where the layers above and below cover it, all of these are infill: they hold
+//! the walls apart and are seen by nobody. Elsewhere they are part of a surface.
+
+use super::params::RegionParams;
+use super::per_raster::skin_turn;
+use super::prepare::LayerRows;
+use super::walls::Wall;
+use crate::geom::Point;
+use crate::geom::polyline::Polyline;
+use crate::geom::spans::Rows;
+use crate::units::{Bounded as _, Coord, nearest};
+
+/// Whether the wall bead `bead` lies in the `rooms`, and nowhere where the layer is `exposed`. All
+/// are in one frame, with rows at the distance `pitch`.
+#[must_use]
+pub fn is_hidden(bead: &Polyline, rooms: &Rows, exposed: &Rows, pitch: Coord) -> bool {
+    let line: Vec<Point> = bead.iter().map(|p| Point { x: p.u, y: p.v }).collect();
+    let places: Vec<Point> = places(&line, pitch).collect();
+    let inside = places.iter().filter(|&&p| holds(rooms, p, pitch)).count();
+    2 * inside > places.len() && !places.iter().any(|&p| holds(exposed, p, pitch))
+}
+
+/// The indices of those `walls` of layer `k` that lie between the innermost loops, and that nothing
+/// exposes. `layers(k)` is `None` outside the part.
+#[must_use]
+pub fn between_walls<'a>(
+    k: usize,
+    walls: &[Wall],
+    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+    params: &RegionParams,
+) -> Vec<usize> {
+    let count = params.walls.count;
+    let mut inner = walls.iter().enumerate().filter(|(_, w)| w.depth >= count.max(1)).peekable();
+    if inner.peek().is_none() {
+        return Vec::new();
+    }
+    let below = (1..=params.skins.bottom).map(|n| k.checked_sub(n).and_then(layers));
+    let above = (1..=params.skins.top).map(|n| layers(k + n));
+    let Some(around) = below.chain(above).collect::<Option<Vec<_>>>() else { return Vec::new() };
+    let along = skin_turn(k).0;
+    let raster = params.rasters.skin(along);
+    let covered =
+        |p: Point| around.iter().all(|rows| holds(&rows.skin(along).cover, p, raster.pitch));
+    let is_covered = |wall: &Wall| {
+        let line: Vec<Point> = wall.path.iter().map(|&p| raster.frame.enter(p)).collect();
+        places(&line, raster.pitch).all(covered)
+    };
+    inner.filter(|(_, wall)| is_covered(wall)).map(|(index, _)| index).collect()
+}
+
+fn holds(rows: &Rows, p: Point, pitch: Coord) -> bool {
+    let row = rows.row(nearest(f64::from(p.y) / f64::from(pitch)) as i32);
+    row.iter().any(|s| s.start <= p.x && p.x <= s.end)
+}
+
+/// Places on `line`, at most `step` apart.
+fn places(line: &[Point], step: Coord) -> impl Iterator<Item = Point> {
+    line.windows(2).flat_map(move |w| {
+        let (from, to) = (w[0], w[1]);
+        let steps = (from.distance(to) / f64::from(step)).ceil().at_least(1.0) as i64;
+        let on = move |a: Coord, b: Coord, k: i64| a + (i64::from(b - a) * k / steps) as Coord;
+        (0..=steps).map(move |k| Point { x: on(from.x, to.x, k), y: on(from.y, to.y, k) })
+    })
+}
