@@ -18,7 +18,7 @@ use super::divide::{Divided, Examined, LayerAreas, Lower, divide, examine};
 use super::dual;
 use super::dual::audit::Audit;
 use super::dual::groups::{Block, Grouping};
-use super::dual::inner_skin::{Skins, without_threads};
+use super::dual::inner_skin::{self, Skins, without_threads};
 use super::first_skin::{self, Turn};
 use super::overhang::Hanging;
 use super::params::RegionParams;
@@ -251,8 +251,9 @@ impl<'a> Window<'a> {
         let (along, across) = skin_turn(k);
         let mut printed = Vec::new();
         if self.grouping.shares(DualPart::InnerSkin) {
-            let ((thick, thin), (thick_across, thin_across)) =
-                (self.share_skin(k, along), self.share_skin(k, across));
+            let mut shared = self.share_skin(k);
+            shared.swap(0, along);
+            let [(thick, thin), (thick_across, thin_across)] = shared;
             let (whole, pitch) = (&areas.skin(across).skin, self.params.skins.line_width);
             let thin_across = without_threads(&thin_across, whole, pitch);
             printed.push((1, [thin, thin_across].map(Arc::new)));
@@ -301,17 +302,17 @@ impl<'a> Window<'a> {
         frames.all(|frame| frame.is_parallel(first)).then_some(first)
     }
 
-    /// The skin of layer `k` on raster `r` of skins: that printed for several layers, and that for
+    /// The skin of layer `k` on both rasters of skins: that printed for several layers, and that for
     /// this one alone.
-    fn share_skin(&self, k: usize, r: usize) -> (Vec<(u32, Rows)>, Rows) {
-        let skins = Skins {
+    fn share_skin(&self, k: usize) -> [(Vec<(u32, Rows)>, Rows); 2] {
+        let skins = |r: usize| Skins {
             layers: |k| self.rows.get(k),
-            skins: |k| self.areas.get(k).map(|areas| &*areas.skin(r).skin),
+            skins: move |k| self.areas.get(k).map(|areas| &*areas.skin(r).skin),
             raster: self.params.rasters.skin(r),
             ratio: self.grouping.ratio(),
             params: &self.params.skins,
         };
-        skins.share(k)
+        inner_skin::share(&[0, 1].map(skins), k)
     }
 
     /// Skin on the rasters `along` its lines and across. Its beads are added later.

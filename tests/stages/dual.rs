@@ -18,7 +18,7 @@ use slicer::region::divide::{LayerAreas, divide, examine};
 use slicer::region::dual;
 use slicer::region::dual::audit::Audit;
 use slicer::region::dual::groups::{Block, Grouping, Lane};
-use slicer::region::dual::inner_skin::Skins;
+use slicer::region::dual::inner_skin::{self, Skins};
 use slicer::region::{RegionParams, Sparse};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -217,18 +217,20 @@ proptest! {
         let params = RegionParams::new(&settings("generic-marlin", &set));
         let layers = stack(&params, &outlines);
         let areas = all_areas(&layers, &params);
+        let (rows, areas) = (&layers.rows, &areas);
+        let skins = [0, 1].map(|raster| Skins {
+            layers: |k| rows.get(k),
+            skins: move |k: usize| Some(&*areas.get(k)?.skin(raster).skin),
+            raster: params.rasters.skin(raster),
+            ratio: ratio as usize,
+            params: &params.skins,
+        });
+        let both: Vec<_> = (0..areas.len()).map(|k| inner_skin::share(&skins, k)).collect();
         for raster in [0, 1] {
             let of = |k: usize| Some(&*areas.get(k)?.skin(raster).skin);
-            let skins = Skins {
-                layers: |k| layers.rows.get(k),
-                skins: of,
-                raster: params.rasters.skin(raster),
-                ratio: ratio as usize,
-                params: &params.skins,
-            };
-            let shared: Vec<_> = (0..areas.len()).map(|k| skins.share(k)).collect();
+            let shared: Vec<_> = both.iter().map(|both| &both[raster]).collect();
             let mut left: Vec<Rows> = (0..areas.len()).map(|k| of(k).unwrap().clone()).collect();
-            for (k, (thick, thin)) in shared.iter().enumerate() {
+            for (k, (thick, thin)) in shared.into_iter().enumerate() {
                 prop_assert!(thin.minus(&left[k]).is_empty(), "thin lines on thick ones");
                 left[k] = left[k].minus(thin);
                 for (count, rows) in thick {
@@ -322,6 +324,32 @@ fn heights(run: &Run, kind: Kind) -> BTreeSet<(usize, u32)> {
             (k, (m.height / run.print.layers[k].height).round() as u32)
         })
         .collect()
+}
+
+/// A plate with fins from 0.25 to 1.2 mm on it: skin between fins is too narrow to be shared along
+/// some lines, and wide enough along those across.
+fn comb() -> Vec<u8> {
+    let plate = Solid::cuboid([0.0; 3], [30.0, 14.0, 1.2]);
+    let widths = [0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7, 0.8, 1.0, 1.2];
+    let fins = widths.iter().enumerate().map(|(i, wide)| {
+        let x = 1.5 + 2.5 * i as f64;
+        Solid::cuboid([x, 2.0, 1.2], [x + wide, 12.0, 2.0])
+    });
+    fins.fold(plate, |all, fin| all.and(&fin)).stl()
+}
+
+#[test]
+fn skin_that_one_layer_leaves_to_another_is_printed_there() {
+    for (height, first) in [("0.2", "0.2"), ("0.15", "0.2"), ("0.1", "0.2")] {
+        let heights = [("layer_height", height), ("first_layer_height", first)];
+        let filament = |parts: &str| {
+            let dual = [("dual.mode", "pair"), ("dual.parts", parts)];
+            let set: Vec<_> = heights.into_iter().chain(dual).collect();
+            slice(&comb(), "generic-marlin", &set).report.filament.length_mm
+        };
+        let (plain, shared) = (filament("infill"), filament("inner-skin"));
+        assert!((shared / plain - 1.0).abs() < 0.005, "{shared} of {plain} mm at {height}");
+    }
 }
 
 #[test]

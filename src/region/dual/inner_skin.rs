@@ -11,9 +11,12 @@
 //!
 //! Algorithm, for each layer and each group of depths: intersect the layer's skin with the
 //! covers of its neighbours to find the core, add the margin, drop what any layer of the group
-//! lacks or shows, and drop what neighbouring groups print.
+//! lacks or shows, and drop what neighbouring groups print. This is done on both rasters, and only
+//! what both agree on is shared: a layer's lines run along one raster and those of the next along
+//! the other, so that what one leaves out the other must print.
 
 use super::runs::Printed;
+use crate::geom::outline::Columns;
 use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span};
 use crate::region::params::SkinParams;
@@ -28,6 +31,50 @@ const LEAST_VISIBLE: Coord = 500;
 /// even narrower ones on every second layer. These have more turns and take longer than what
 /// sharing saves. A larger value shares less skin.
 const LEAST_WIDE: Coord = 6;
+
+/// What layer `k` prints for itself and layers below, and the skin that it prints for itself alone,
+/// on two rasters of which the second is turned by +90°. Layers above print the rest.
+#[must_use]
+pub fn share<'a, L, S>(skins: &[Skins<'a, L, S>; 2], k: usize) -> [(Printed, Rows); 2]
+where
+    L: Fn(usize) -> Option<&'a LayerRows>,
+    S: Fn(usize) -> Option<&'a Rows>,
+{
+    let thick = agreed(skins, k);
+    let mut thin = [0, 1].map(|r| (skins[r].skins)(k).cloned().unwrap_or_default());
+    for above in 0..skins[0].ratio {
+        let printed = if above == 0 { &thick } else { &agreed(skins, k + above) };
+        for (thin, printed) in thin.iter_mut().zip(printed) {
+            let reaches = printed.iter().filter(|(count, _)| *count as usize > above);
+            reaches.for_each(|(_, rows)| *thin = thin.minus(rows));
+        }
+    }
+    let [a, b] = thick;
+    let [thin, thin_across] = thin;
+    [(a, thin), (b, thin_across)]
+}
+
+/// What layer `k` prints for several layers: what both rasters have, but for their edges.
+fn agreed<'a, L, S>(skins: &[Skins<'a, L, S>; 2], k: usize) -> [Printed; 2]
+where
+    L: Fn(usize) -> Option<&'a LayerRows>,
+    S: Fn(usize) -> Option<&'a Rows>,
+{
+    let both = [skins[0].thick(k), skins[1].thick(k)];
+    let least = i64::from(skins[0].params.line_width);
+    [0, 1].map(|r| {
+        let agreed = both[r].iter().filter_map(|(count, rows)| {
+            let (_, across) = both[1 - r].iter().find(|(c, _)| c == count)?;
+            let pitch = skins[1 - r].raster.pitch;
+            let columns = Columns { rows: across, pitch, left_turn: r == 0 };
+            let held = columns.held(rows, skins[r].raster.pitch);
+            let rows = rows.minus(&rows.minus(&held).filter(|_, span| span.len() >= least));
+            let rows = rows.filter(|_, span| span.len() >= least);
+            (!rows.is_empty()).then_some((*count, rows))
+        });
+        agreed.collect()
+    })
+}
 
 /// The layers on one raster.
 pub struct Skins<'a, L, S> {
@@ -81,26 +128,7 @@ where
     L: Fn(usize) -> Option<&'a LayerRows>,
     S: Fn(usize) -> Option<&'a Rows>,
 {
-    /// What layer `k` prints for itself and layers below, and the skin that it prints for itself
-    /// alone. Layers above print the rest.
-    #[must_use]
-    pub fn share(&self, k: usize) -> (Printed, Rows) {
-        let thick = self.thick(k);
-        let mut thin = (self.skins)(k).cloned().unwrap_or_default();
-        for (_, rows) in &thick {
-            thin = thin.minus(rows);
-        }
-        for above in 1..self.ratio {
-            for (count, rows) in self.thick(k + above) {
-                if count as usize > above {
-                    thin = thin.minus(&rows);
-                }
-            }
-        }
-        (thick, thin)
-    }
-
-    /// What layer `k` prints for several layers.
+    /// What layer `k` prints for several layers: at most one entry for each number of layers.
     fn thick(&self, k: usize) -> Printed {
         let mut out = Printed::new();
         for depths in self.depths() {
@@ -128,7 +156,11 @@ where
                 }
             }
             let long = |_, span: Span| span.len() >= i64::from(self.params.line_width);
-            out.push((depths.count as u32, rows.filter(long)));
+            let (count, rows) = (depths.count as u32, rows.filter(long));
+            match out.iter_mut().find(|(c, _)| *c == count) {
+                Some((_, all)) => *all = all.or(&rows),
+                None => out.push((count, rows)),
+            }
         }
         out.retain(|(_, rows)| !rows.is_empty());
         out
