@@ -5,7 +5,7 @@ use super::bridge::loose::{self, Below};
 use super::bridge::{self, Pair};
 use super::classify::{Areas, areas, areas_beside, exposed};
 use super::crossed::Crossed;
-use super::hidden::{between_walls, is_hidden};
+use super::hidden::{Place, between_walls, is_hidden};
 use super::overhang::{Hanging, overhangs};
 use super::params::RegionParams;
 use super::per_raster::{PerRaster, skin_turn};
@@ -14,6 +14,7 @@ use super::rooms;
 use super::wall_beads::{taken, wall_beads};
 use crate::geom::Contour;
 use crate::geom::frame::Frame;
+use crate::geom::outline::Columns;
 use crate::geom::polyline::Polyline;
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
@@ -143,8 +144,8 @@ pub fn divide<'a>(
     let filling = between_walls(k, &own.walls, layers, params);
     let (room_beads, beads) = match solid {
         Some(solid) => {
-            let (r, pitch) = (skin_turn(k).0, along.pitch);
-            beads.into_iter().partition(|bead| is_hidden(bead, &solid[r], &skins[r], pitch))
+            let [rooms, exposed] = [solid, skins].map(|of| place(k, of, params));
+            beads.into_iter().partition(|bead| is_hidden(bead, rooms, exposed))
         }
         None => (Vec::new(), beads),
     };
@@ -160,6 +161,14 @@ fn solid<'a>(
     let rows = layers(k)?;
     let fill = [0, 1].map(|r| &*rows.skin(r).fill);
     rooms::narrow(fill, [0, 1].map(|r| params.rasters.skin(r)), params.skins.least_room)
+}
+
+/// What `rows` on the two rasters of skins tell, in the frame of layer `k`'s skin.
+fn place<'a>(k: usize, rows: &'a [Rows; 2], params: &RegionParams) -> Place<'a> {
+    let (along, across) = skin_turn(k);
+    let pitch = params.rasters.skin(across).pitch;
+    let columns = Columns { rows: &rows[across], pitch, left_turn: along == 0 };
+    Place { rows: &rows[along], columns }
 }
 
 /// The `beads` of layer `k` without those that would lie along the sparse lines below.

@@ -9,18 +9,35 @@ use super::per_raster::skin_turn;
 use super::prepare::LayerRows;
 use super::walls::Wall;
 use crate::geom::Point;
+use crate::geom::outline::Columns;
 use crate::geom::polyline::Polyline;
 use crate::geom::spans::Rows;
 use crate::units::{Bounded as _, Coord, nearest};
 
+/// An area as its rows and its columns tell it. A strip between two rows is on no row.
+#[derive(Debug, Clone, Copy)]
+pub struct Place<'a> {
+    /// Its rows, as far apart as its columns.
+    pub rows: &'a Rows,
+    /// Its columns.
+    pub columns: Columns<'a>,
+}
+
+impl Place<'_> {
+    fn holds(&self, p: Point) -> bool {
+        let pitch = self.columns.pitch;
+        holds(self.rows, p, pitch) || self.columns.chord(nearest_row(p.x, pitch), p.y).is_some()
+    }
+}
+
 /// Whether the wall bead `bead` lies in the `rooms`, and nowhere where the layer is `exposed`. All
-/// are in one frame, with rows at the distance `pitch`.
+/// are in one frame.
 #[must_use]
-pub fn is_hidden(bead: &Polyline, rooms: &Rows, exposed: &Rows, pitch: Coord) -> bool {
+pub fn is_hidden(bead: &Polyline, rooms: Place<'_>, exposed: Place<'_>) -> bool {
     let line: Vec<Point> = bead.iter().map(|p| Point { x: p.u, y: p.v }).collect();
-    let places: Vec<Point> = places(&line, pitch).collect();
-    let inside = places.iter().filter(|&&p| holds(rooms, p, pitch)).count();
-    2 * inside > places.len() && !places.iter().any(|&p| holds(exposed, p, pitch))
+    let places: Vec<Point> = places(&line, rooms.columns.pitch).collect();
+    let inside = places.iter().filter(|&&p| rooms.holds(p)).count();
+    2 * inside > places.len() && !places.iter().any(|&p| exposed.holds(p))
 }
 
 /// The indices of those `walls` of layer `k` that lie between the innermost loops, and that nothing
@@ -51,9 +68,12 @@ pub fn between_walls<'a>(
     inner.filter(|(_, wall)| is_covered(wall)).map(|(index, _)| index).collect()
 }
 
+fn nearest_row(v: Coord, pitch: Coord) -> i32 {
+    nearest(f64::from(v) / f64::from(pitch)) as i32
+}
+
 fn holds(rows: &Rows, p: Point, pitch: Coord) -> bool {
-    let row = rows.row(nearest(f64::from(p.y) / f64::from(pitch)) as i32);
-    row.iter().any(|s| s.start <= p.x && p.x <= s.end)
+    rows.row(nearest_row(p.y, pitch)).iter().any(|s| s.start <= p.x && p.x <= s.end)
 }
 
 /// Places on `line`, at most `step` apart.

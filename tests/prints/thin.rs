@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use crate::common::solid::Outline;
-use crate::common::{Move, Run, Solid, slice};
+use crate::common::{Kind, Move, Run, Solid, slice};
+use std::collections::BTreeSet;
 
 const WIDTH: f64 = 0.4;
 const LENGTH: f64 = 24.0;
@@ -158,6 +159,19 @@ fn a_plate_of_one_line_is_one_bead_on_every_layer() {
             let beads: Vec<_> = run.print.beads().filter(|m| m.layer == Some(layer)).collect();
             assert_eq!(beads.len(), 1, "{thickness} mm, layer {layer}");
             assert!((beads[0].width - thickness).abs() < 0.02, "{}", beads[0].width);
+        }
+    }
+}
+
+#[test]
+fn what_fills_a_narrow_room_is_infill_where_nothing_exposes_it() {
+    // Middle beads, beads along the walls, and solid lines.
+    for (thick, walls) in [(1.2, 1), (1.6, 1), (2.0, 2), (2.4, 2), (3.0, 2)] {
+        for angle in [0.0, 30.0, 90.0] {
+            let run = sliced(&plate(thick, thick), walls, angle, &[]);
+            let layers = run.print.of(Kind::Infill).map(|m| m.layer.unwrap());
+            let layers: BTreeSet<usize> = layers.collect();
+            assert_eq!(layers, (3..12).collect(), "{thick} mm, {walls} walls, {angle} degrees");
         }
     }
 }
