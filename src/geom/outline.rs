@@ -139,10 +139,11 @@ pub fn outlines(
 ) -> Vec<Outline> {
     let grid = Grid::new(rows, pitch, columns, bounds);
     let mut seen = vec![false; grid.runs.len()];
-    let mut out = Vec::new();
+    let (mut out, mut walked) = (Vec::new(), Outline::new());
     for (j, index) in grid.all_runs() {
         if !seen[index] {
-            let outline = with_corners(&grid.walk(j, index, &mut seen), pitch.max(columns.pitch));
+            grid.walk(j, index, &mut seen, &mut walked);
+            let outline = with_corners(&walked, pitch.max(columns.pitch));
             out.push(moved(&outline, f64::from(inwards)));
         }
     }
@@ -215,42 +216,42 @@ impl<'a> Grid<'a> {
         (index < to && self.runs[index].first <= c).then_some(index)
     }
 
-    /// The outline that passes the left end of a run of row `j`. Runs whose left ends it passes are `seen`.
-    fn walk(&self, j: i32, index: usize, seen: &mut [bool]) -> Outline {
+    /// The outline that passes the left end of run `index` of row `j`, as `out`. Runs whose left ends
+    /// it passes are `seen`.
+    fn walk(&self, j: i32, index: usize, seen: &mut [bool], out: &mut Outline) {
         let first = self.runs[index].first;
         let start: (Node, Node) = ((first, j), (first - 1, j));
-        let (mut inside, mut outside) = start;
-        let mut out = Outline::new();
+        let ((mut inside, mut outside), mut run) = (start, index);
+        out.clear();
         loop {
             if inside.1 == outside.1 && outside.0 < inside.0 {
-                self.run(inside).into_iter().for_each(|run| seen[run] = true);
+                seen[run] = true;
             }
-            out.push(self.corner(inside, outside));
+            out.push(self.corner((inside, run), outside));
             // From the outside to the inside is to the left, so ahead is a turn to the right.
             let ahead = (inside.1 - outside.1, outside.0 - inside.0);
             let step = |(c, j): Node| (c + ahead.0, j + ahead.1);
             let (left, right) = (step(inside), step(outside));
-            if self.run(left).is_none() {
-                outside = left;
-            } else if self.run(right).is_some() {
-                inside = right;
-            } else {
-                (inside, outside) = (left, right);
+            match self.run(left) {
+                None => outside = left,
+                Some(at_left) => match self.run(right) {
+                    Some(at_right) => (inside, run) = (right, at_right),
+                    None => (inside, outside, run) = (left, right, at_left),
+                },
             }
             if (inside, outside) == start {
-                return out;
+                return;
             }
         }
     }
 
-    /// The point of the border between two neighbouring nodes.
-    fn corner(&self, inside: Node, outside: Node) -> Corner {
+    /// The point of the border between two neighbouring nodes, of which `run` holds the one inside.
+    fn corner(&self, (inside, run): (Node, usize), outside: Node) -> Corner {
         let v = inside.1 * self.pitch;
         if inside.1 == outside.1 {
             let left = outside.0 < inside.0;
-            let span = self.run(inside).map_or_else(Span::default, |run| self.runs[run].span);
             let end = |s: &Span| if left { s.start } else { s.end };
-            let u = end(&span);
+            let u = end(&self.runs[run].span);
             let same = |b: &Bounds<'_>| b.rows.row(inside.1).iter().any(|s| end(s) == u);
             let wall = self.bounds.iter().any(same);
             let end = SpanEnd { row: inside.1, u, left };
@@ -274,23 +275,69 @@ fn towards(a: Point, b: Point) -> ([f64; 2], f64) {
     ([x * by, y * by], length)
 }
 
+/// The points of a closed outline and the directions of its edges, each computed once.
+struct Ring {
+    at: Vec<Point>,
+    /// From each point to the next: the direction and the distance.
+    ways: Vec<([f64; 2], f64)>,
+}
+
+impl Ring {
+    fn new(points: impl Iterator<Item = Point>) -> Self {
+        let at: Vec<Point> = points.collect();
+        let next = at.iter().skip(1).chain(at.first());
+        let ways = at.iter().zip(next).map(|(a, b)| towards(*a, *b)).collect();
+        Self { at, ways }
+    }
+
+    fn len(&self) -> usize {
+        self.at.len()
+    }
+
+    /// The number `by` points after `k`.
+    fn after(&self, k: usize, by: usize) -> usize {
+        let (k, n) = (k + by, self.len());
+        if k < n { k } else { k % n }
+    }
+
+    /// The number `by` points before `k`.
+    fn before(&self, k: usize, by: usize) -> usize {
+        if k >= by { k - by } else { (k + by * self.len() - by) % self.len() }
+    }
+
+    /// The direction in which the outline comes to point `k`. Very short edges have none of their own:
+    /// up to three are taken together.
+    fn coming(&self, k: usize) -> [f64; 2] {
+        let (way, length) = self.ways[self.before(k, 1)];
+        let far = |other: &Point| other.distance(self.at[k]) >= SHORT;
+        if length >= SHORT {
+            return way;
+        }
+        let earlier = [2, 3].map(|by| self.at[self.before(k, by)]);
+        earlier.into_iter().find(far).map_or(way, |from| towards(from, self.at[k]).0)
+    }
+
+    /// The direction in which the outline leaves point `k`, as [`Self::coming`].
+    fn leaving(&self, k: usize) -> [f64; 2] {
+        let (way, length) = self.ways[k];
+        let far = |other: &Point| other.distance(self.at[k]) >= SHORT;
+        if length >= SHORT {
+            return way;
+        }
+        let later = [2, 3].map(|by| self.at[self.after(k, by)]);
+        later.into_iter().find(far).map_or(way, |to| towards(self.at[k], to).0)
+    }
+}
+
 /// An outline with the corners that lie within cells, and whether each point is one of these.
 fn with_corners(outline: &[Corner], cell: Coord) -> Vec<(Corner, bool)> {
-    let n = outline.len();
-    let at = |k: usize| outline[k % n];
-    let mut out = Vec::with_capacity(n + 8);
-    for k in 0..n {
-        let (p, q) = (at(k), at(k + 1));
+    let ring = Ring::new(outline.iter().map(|corner| corner.at));
+    let mut out = Vec::with_capacity(ring.len() + 8);
+    for (k, &p) in outline.iter().enumerate() {
         out.push((p, false));
-        // Very short edges have no direction of their own.
-        let far = |from: Point, of: [usize; 3]| {
-            let points = of.map(|k| at(k).at);
-            points.into_iter().find(|at| at.distance(from) >= SHORT).unwrap_or(points[0])
-        };
-        let before = far(p.at, [1, 2, 3].map(|m| k + 3 * n - m));
-        let after = far(q.at, [2, 3, 4].map(|m| k + m));
-        let ((a, _), (b, _)) = (towards(before, p.at), towards(q.at, after));
-        let ((way, length), turn) = (towards(p.at, q.at), a[0] * b[1] - a[1] * b[0]);
+        let next = ring.after(k, 1);
+        let (a, b, q) = (ring.coming(k), ring.leaving(next), outline[next]);
+        let ((way, length), turn) = (ring.ways[k], a[0] * b[1] - a[1] * b[0]);
         if turn.abs() < SHARP {
             continue;
         }
@@ -310,15 +357,12 @@ fn with_corners(outline: &[Corner], cell: Coord) -> Vec<(Corner, bool)> {
 /// An outline moved inwards where it is at a wall. Ends of rows stay on their row. Points on
 /// columns that a corner has passed are dropped.
 fn moved(outline: &[(Corner, bool)], inwards: f64) -> Outline {
-    let n = outline.len();
-    let at = |k: usize| outline[k % n].0.at;
-    let moved = |k: usize| {
-        let corner = outline[k].0;
-        // Very short edges have no direction of their own.
-        let far = |&other: &usize| at(k).distance(at(other)) >= SHORT;
-        let before = (1..=3).map(|m| k + 3 * n - m).find(far).unwrap_or(k + n - 1);
-        let after = (1..=3).map(|m| k + m).find(far).unwrap_or(k + 1);
-        let ((a, _), (b, _)) = (towards(at(before), at(k)), towards(at(k), at(after)));
+    let ring = Ring::new(outline.iter().map(|(corner, _)| corner.at));
+    let moved = |(k, (corner, _)): (usize, &(Corner, bool))| {
+        if !corner.wall {
+            return *corner;
+        }
+        let (a, b) = (ring.coming(k), ring.leaving(k));
         // The sum of both normals to the left; both edges move by 1 if the corner moves by this.
         let (x, y) = (-a[1] - b[1], a[0] + b[0]);
         let by = inwards / (1.0 + a[0] * b[0] + a[1] * b[1]).max(ACUTE);
@@ -334,19 +378,20 @@ fn moved(outline: &[(Corner, bool)], inwards: f64) -> Outline {
             x: nearest(f64::from(corner.at.x) + x) as Coord,
             y: nearest(f64::from(corner.at.y) + y) as Coord,
         };
-        if corner.wall { Corner { at, ..corner } } else { corner }
+        Corner { at, ..*corner }
     };
-    let all: Outline = (0..n).map(moved).collect();
+    let all: Outline = outline.iter().enumerate().map(moved).collect();
     let passed = |k: usize| {
-        let ((a, _), (b, _)) =
-            (towards(at(k), at(k + 1)), towards(all[k % n].at, all[(k + 1) % n].at));
-        a[0] * b[0] + a[1] * b[1] < 0.0
+        let next = ring.after(k, 1);
+        let way = |a: Point, b: Point| [i64::from(b.x - a.x), i64::from(b.y - a.y)];
+        let (a, b) = (way(ring.at[k], ring.at[next]), way(all[k].at, all[next].at));
+        a[0] * b[0] + a[1] * b[1] < 0
     };
     let stays = |&k: &usize| {
         let (corner, inserted) = outline[k];
-        inserted || corner.end.is_some() || !(passed(k) || passed(k + n - 1))
+        inserted || corner.end.is_some() || !(passed(k) || passed(ring.before(k, 1)))
     };
-    (0..n).filter(stays).map(|k| all[k]).collect()
+    (0..ring.len()).filter(stays).map(|k| all[k]).collect()
 }
 
 #[cfg(test)]
