@@ -116,8 +116,16 @@ fn covered<'a>(
         if let Some(neighbours) = &neighbours {
             now.extend_from_slice(row);
             for cover in neighbours {
+                let cover = cover.row(j);
+                // Mostly one span covers all there is.
+                if let ([c], [first, .., last] | [first @ last]) = (cover, &now[..])
+                    && c.start <= first.start
+                    && last.end <= c.end
+                {
+                    continue;
+                }
                 next.clear();
-                intersect(&now, cover.row(j), &mut next);
+                intersect(&now, cover, &mut next);
                 std::mem::swap(&mut now, &mut next);
             }
         }
