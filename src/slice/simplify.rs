@@ -28,6 +28,12 @@ pub(super) fn canonical(mut contour: Contour) -> Contour {
 /// canonization of circular strings").
 fn least_start(contour: &[Point]) -> usize {
     let n = contour.len();
+    // Nearly always the least vertex is there once: the smallest rotation begins with it.
+    let least = contour.iter().enumerate().min_by_key(|(_, p)| **p);
+    let Some((first, least)) = least else { return 0 };
+    if !contour[first + 1..].contains(least) {
+        return first;
+    }
     let (mut a, mut b, mut same) = (0, 1, 0);
     while a < n && b < n && same < n {
         match contour[(a + same) % n].cmp(&contour[(b + same) % n]) {
@@ -39,7 +45,7 @@ fn least_start(contour: &[Point]) -> usize {
             b += 1;
         }
     }
-    a.min(b).min(n.saturating_sub(1))
+    a.min(b).min(n - 1)
 }
 
 /// Removes vertices of a canonical contour. None of them lies further than `tolerance` (grid units)
