@@ -14,6 +14,7 @@
 
 use super::scan::around;
 use crate::geom::Point;
+use crate::geom::cells::Cells;
 use crate::geom::outline::Columns;
 use crate::geom::raster::Raster;
 use crate::geom::sets::Sets;
@@ -162,26 +163,24 @@ fn is_narrow(v: Coord, span: Span, columns: &Columns<'_>, limit: Coord) -> bool 
 
 /// The columns as rows `pitch` apart: each as wide as their distance.
 fn brought(columns: &Columns<'_>, pitch: Coord) -> Rows {
-    let mut cells: Vec<(i32, Span)> = Vec::new();
-    for (c, low, high) in columns.spans() {
-        let u = c * columns.pitch;
-        let (start, end) = (u - columns.pitch / 2, u - columns.pitch / 2 + columns.pitch);
-        let rows = -(-low).div_euclid(pitch)..=high.div_euclid(pitch);
-        cells.extend(rows.map(|j| (j, Span { start, end })));
-    }
-    cells.sort_unstable();
-    let Some((&(first, _), &(last, _))) = cells.first().zip(cells.last()) else {
-        return Rows::default();
+    let rows = |low: Coord, high: Coord| -(-low).div_euclid(pitch)..high.div_euclid(pitch) + 1;
+    let all = || columns.spans().map(|(_, low, high)| rows(low, high)).filter(|r| !r.is_empty());
+    let (first, last) = (all().map(|r| r.start).min(), all().map(|r| r.end).max());
+    let Some((first, last)) = first.zip(last) else { return Rows::default() };
+    let cells = || {
+        columns.spans().map(|(c, low, high)| {
+            let start = c * columns.pitch - columns.pitch / 2;
+            (Span { start, end: start + columns.pitch }, low, high)
+        })
     };
-    let mut out = Rows::starting_at(first);
-    let mut rest = cells.as_slice();
-    let mut row = Vec::new();
-    for j in first..=last {
-        let here = rest.iter().take_while(|(k, _)| *k == j).count();
+    let index = |j: i32| (j - first) as usize;
+    let cells = Cells::new(index(last), cells, |(_, low, high)| rows(low, high).map(index));
+    let mut out = Rows::with_room(first, cells.count(), cells.count());
+    let mut row: Vec<Span> = Vec::new();
+    for k in 0..cells.count() {
         row.clear();
-        row.extend(rest[..here].iter().map(|(_, span)| *span));
+        row.extend(cells.of(k..k + 1).iter().map(|(span, ..)| *span));
         out.push_row(|spans| merge(&mut row, spans));
-        rest = &rest[here..];
     }
     out
 }
