@@ -81,12 +81,14 @@ impl Grid {
         [p, q]: [[f64; 2]; 2],
     ) -> impl Iterator<Item = Range<usize>> + use<> {
         // A cast clamps negative numbers to 0. Places beyond the area count to its border cells.
-        let at =
-            |x: f64, k: usize| (((x - self.low[k]) * self.scale) as usize).min(self.size[k] - 1);
+        // To u32 it takes half the instructions that it takes to usize.
+        let at = |x: f64, k: usize| {
+            (((x - self.low[k]) * self.scale) as u32 as usize).min(self.size[k] - 1)
+        };
         let [columns, rows] =
             [0, 1].map(|k| (at(p[k].at_most(q[k]), k), at(p[k].at_least(q[k]), k)));
         let width = self.size[0];
-        (rows.0..=rows.1).map(move |row| row * width + columns.0..row * width + columns.1 + 1)
+        (rows.0..rows.1 + 1).map(move |row| row * width + columns.0..row * width + columns.1 + 1)
     }
 }
 
@@ -103,8 +105,9 @@ impl Near {
     /// Sorts all edges into cells of side `side`, for places anywhere.
     pub(super) fn of_all(walls: &[Contour], side: f64) -> Self {
         let point = |p: Point| [f64::from(p.x), f64::from(p.y)];
-        let all = walls.iter().flat_map(|w| edges(w)).map(|(p, q)| [point(p), point(q)]);
-        Self::of_edges(all.collect(), side)
+        let mut all = Vec::with_capacity(walls.iter().map(Vec::len).sum());
+        all.extend(walls.iter().flat_map(|w| edges(w)).map(|(p, q)| [point(p), point(q)]));
+        Self::of_edges(all, side)
     }
 
     /// Sorts `edges` into cells of side `side`, for places anywhere.
