@@ -56,17 +56,15 @@ pub fn improve(paths: Vec<Path>, from: Option<Point>, cost: &impl Cost) -> Vec<P
         let before = run.start.checked_sub(1).map_or(from, |k| end(&paths[k]));
         let after = paths.get(run.end).and_then(Option::as_ref).map(Path::start);
         let (Some(before), Some(after)) = (before, after) else { continue };
-        let stop = |(index, p): (usize, &Path)| Stop {
-            index,
-            turned: false,
-            start: p.start(),
-            end: p.end(),
-        };
-        let stops = paths[run.clone()].iter().flatten().enumerate().map(stop).collect();
-        let mut tour = Tour { stops, before, after, legs: Vec::new(), cost };
+        let place = |index, start, end| Stop { index, turned: false, start, end };
+        let stop = |(index, p): (usize, &Path)| place(index, p.start(), p.end());
+        let mut stops = vec![place(0, before, before)];
+        stops.extend(paths[run.clone()].iter().flatten().enumerate().map(stop));
+        stops.push(place(0, after, after));
+        let mut tour = Tour { stops, legs: Vec::new(), cost };
         tour.improve();
         let mut old: Vec<Option<Path>> = paths[run.clone()].iter_mut().map(Option::take).collect();
-        for (slot, stop) in paths[run].iter_mut().zip(&tour.stops) {
+        for (slot, stop) in paths[run].iter_mut().zip(&tour.stops[1..]) {
             *slot = old[stop.index].take();
             if let Some(path) = slot.as_mut().filter(|_| stop.turned) {
                 path.reverse();
@@ -120,36 +118,37 @@ impl Stop {
 /// Start and end of a travel.
 type Leg = (Point, Point);
 
-/// The paths of a run, from `before` to `after`.
+/// The paths of a run.
 struct Tour<'a, C> {
+    /// The paths, between two places as stops that stay: where the run begins, and where it leads to. So
+    /// every travel has a stop before it and one after it.
     stops: Vec<Stop>,
-    before: Point,
-    after: Point,
-    /// Time of the travel to each stop, and to `after`.
+    /// Time of the travel to each stop. None leads to the first.
     legs: Vec<f64>,
     cost: &'a C,
 }
 
 impl<C: Cost> Tour<'_, C> {
-    /// Start of the travel to stop `k`.
-    fn from(&self, k: usize) -> Point {
-        k.checked_sub(1).map_or(self.before, |k| self.stops[k].end)
+    /// The travel to stop `k`.
+    fn leg(&self, k: usize) -> Leg {
+        (self.stops[k - 1].end, self.stops[k].start)
     }
 
-    /// End of the travel to stop `k`.
-    fn to(&self, k: usize) -> Point {
-        self.stops.get(k).map_or(self.after, |s| s.start)
+    /// The squared distance from which on one new travel alone takes longer than `old` s.
+    #[inline]
+    fn reach2(&self, old: f64) -> f64 {
+        let reach = self.cost.reach(old);
+        reach * reach
     }
 
     /// Whether a change saves time: it removes travels of `old` s and adds the two travels `new`.
     /// A move of stops adds a third one. Its lower bound is subtracted from `old` already, and
-    /// `third` returns its retraction.
+    /// `third` returns its retraction. `reach2` is that of `old`.
     ///
     /// The first lines reject nearly all changes: one new travel alone takes longer than `old`.
     #[inline]
-    fn pays(&self, old: f64, new: [Leg; 2], third: impl Fn() -> f64) -> bool {
-        let reach = self.cost.reach(old);
-        let is_far = |(a, b): Leg| a.distance2(b) as f64 >= reach * reach;
+    fn pays(&self, (old, reach2): (f64, f64), new: [Leg; 2], third: impl Fn() -> f64) -> bool {
+        let is_far = |(a, b): Leg| a.distance2(b) as f64 >= reach2;
         !is_far(new[0]) && !is_far(new[1]) && self.saves(old, new, third)
     }
 
@@ -164,21 +163,22 @@ impl<C: Cost> Tour<'_, C> {
 
     fn measure(&mut self, legs: Range<usize>) {
         for k in legs {
-            self.legs[k] = self.cost.whole(self.from(k), self.to(k));
+            let (from, to) = self.leg(k);
+            self.legs[k] = self.cost.whole(from, to);
         }
     }
 
     fn improve(&mut self) {
-        let n = self.stops.len();
-        self.legs = vec![0.0; n + 1];
-        self.measure(0..n + 1);
+        let last = self.stops.len() - 1;
+        self.legs = vec![0.0; last + 1];
+        self.measure(1..last + 1);
         for _ in 0..MOST_ROUNDS {
             let mut better = false;
-            for a in 0..n {
-                for b in a..n.min(a + REACH) {
+            for a in 1..last {
+                for b in a..last.min(a + REACH) {
                     better |= self.turn(a, b);
                 }
-                for length in 1..=LONGEST_MOVED.min(n - a) {
+                for length in 1..=LONGEST_MOVED.min(last - a) {
                     better |= self.shift(a, a + length);
                 }
             }
@@ -191,8 +191,8 @@ impl<C: Cost> Tour<'_, C> {
     /// Reverses the stops from `a` to `b` if that saves time.
     fn turn(&mut self, a: usize, b: usize) -> bool {
         let old = self.legs[a] + self.legs[b + 1];
-        let new = [(self.from(a), self.stops[b].end), (self.stops[a].start, self.to(b + 1))];
-        if !self.pays(old, new, || 0.0) {
+        let ((from, first), (last, to)) = (self.leg(a), self.leg(b + 1));
+        if !self.pays((old, self.reach2(old)), [(from, last), (first, to)], || 0.0) {
             return false;
         }
         self.stops[a..=b].reverse();
@@ -204,25 +204,28 @@ impl<C: Cost> Tour<'_, C> {
     /// Moves the stops `a..b` to the first place that saves time, reversed or not.
     fn shift(&mut self, a: usize, b: usize) -> bool {
         let (first, last) = (self.stops[a].start, self.stops[b - 1].end);
-        let gap = (self.from(a), self.to(b));
+        let gap = (self.stops[a - 1].end, self.stops[b].start);
         // An upper bound for the time saved by taking them out.
         let out = self.legs[a] + self.legs[b] - self.cost.least(gap.0, gap.1);
         if out <= LEAST_GAIN {
             return false;
         }
         let third = LazyCell::new(|| self.cost.whole(gap.0, gap.1) - self.cost.least(gap.0, gap.1));
-        let near = a.saturating_sub(REACH)..(b + REACH).min(self.stops.len()) + 1;
-        for k in near.filter(|k| !(a..=b).contains(k)) {
+        let saves = |k: usize| {
             let old = out + self.legs[k];
-            let (from, to) = (self.from(k), self.to(k));
+            let (old, (from, to)) = ((old, self.reach2(old)), self.leg(k));
             let pays = |first, last| self.pays(old, [(from, first), (last, to)], || *third);
-            let is_better = pays(first, last);
-            if is_better || pays(last, first) {
-                self.lift(a..b, k, !is_better);
-                return true;
+            if pays(first, last) {
+                Some((k, false))
+            } else {
+                pays(last, first).then_some((k, true))
             }
-        }
-        false
+        };
+        let (low, high) = (a.saturating_sub(REACH).max(1), (b + REACH).min(self.stops.len() - 1));
+        let found = (low..a).find_map(saves).or_else(|| (b + 1..high + 1).find_map(saves));
+        let Some((k, turned)) = found else { return false };
+        self.lift(a..b, k, turned);
+        true
     }
 
     /// Moves the stops of `range` before stop `k`, which is not one of them.
