@@ -128,6 +128,19 @@ impl Grid {
         }
     }
 
+    /// From where to where a line through `start` along `way`, of length 1, runs over the cells; a little
+    /// more is no harm.
+    fn within(&self, start: [f64; 2], way: [f64; 2]) -> [f64; 2] {
+        let size = [self.width as f64, self.height as f64];
+        let mut on = [f64::MIN, f64::MAX];
+        for axis in (0..2).filter(|&axis| way[axis].abs() > 0.01) {
+            let ends = [-1.0, size[axis] + 1.0].map(|end| (end - start[axis]) / way[axis]);
+            on[0] = on[0].at_least(ends[0].at_most(ends[1]));
+            on[1] = on[1].at_most(ends[0].at_least(ends[1]));
+        }
+        on
+    }
+
     /// How the island holds in direction `turn`.
     fn hold(&self, turn: usize) -> Hold {
         let (sin, cos) = sin_cos(STEP * turn as f64);
@@ -140,9 +153,13 @@ impl Grid {
         let mut line = Vec::with_capacity(steps);
         for n in 0..lines {
             let aside = (2.0 * n as f64 + 1.0 - lines as f64) * radius / lines as f64;
+            let on = |step: usize| step as f64 / 2.0 - radius;
+            let start = [middle[0] - aside * sin, middle[1] + aside * cos];
+            // Beyond the cells there is nothing, which changes no run.
+            let [from, to] = self.within(start, [cos, sin]).map(|on| 2.0 * (on + radius));
+            let steps = from as usize..steps.min(to as usize + 2);
             line.clear();
-            line.extend((0..steps).map(|step| {
-                let on = step as f64 / 2.0 - radius;
+            line.extend(steps.map(on).map(|on| {
                 self.at([middle[0] + on * cos - aside * sin, middle[1] + on * sin + aside * cos])
             }));
             mend(&mut line, 2 * self.reach);
