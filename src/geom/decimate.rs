@@ -35,9 +35,14 @@ fn between(
 /// The place between `a` and `b` that is missed most, of equals the first, if by more than `least`.
 #[must_use]
 pub fn most_missed(a: usize, b: usize, least: f64, miss: impl Fn(usize) -> f64) -> Option<usize> {
-    let misses = (a + 1..b).map(|k| (miss(k), k));
-    let most = misses.max_by(|x, y| x.0.total_cmp(&y.0).then(y.1.cmp(&x.1)));
-    most.filter(|(miss, _)| *miss > least).map(|(_, k)| k)
+    let (mut most, mut found) = (least, None);
+    for k in a + 1..b {
+        let miss = miss(k);
+        if miss > most {
+            (most, found) = (miss, Some(k));
+        }
+    }
+    found
 }
 
 #[cfg(test)]

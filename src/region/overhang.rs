@@ -13,7 +13,7 @@ use super::Wall;
 use super::params::RegionParams;
 use super::prepare::LayerRows;
 use crate::geom::Point;
-use crate::geom::spans::Span;
+use crate::geom::spans::{Span, subtract};
 use crate::units::{Bounded as _, Coord, between, nearest};
 
 /// Steps from half to the whole width. Each change of speed costs a move; with more steps walls
@@ -44,9 +44,14 @@ pub fn overhangs<'a>(
 ) -> Option<Vec<Hanging>> {
     let (here, below) = (layers(k)?, layers(k.checked_sub(1)?)?);
     let half = i64::from(params.walls.line_width / 2);
-    let beyond = |r: usize| {
-        let beyond = here.skin(r).cover.minus(&below.skin(r).cover);
-        beyond.iter().any(|(_, row)| row.iter().any(|span| span.len() > half))
+    let mut left = Vec::new();
+    let mut beyond = |r: usize| {
+        let below = &below.skin(r).cover;
+        here.skin(r).cover.iter().any(|(j, row)| {
+            left.clear();
+            subtract(row, below.row(j), &mut left);
+            left.iter().any(|span| span.len() > half)
+        })
     };
     if !params.overhangs || !(beyond(0) || beyond(1)) {
         return None;
