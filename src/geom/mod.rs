@@ -10,6 +10,7 @@ pub mod parallel;
 pub mod polygon;
 pub mod polyline;
 pub mod raster;
+pub mod section;
 pub mod segment;
 pub mod sets;
 pub mod simple;

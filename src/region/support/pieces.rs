@@ -8,9 +8,10 @@
 //! spans.
 
 use super::params::SupportParams;
+use crate::geom::section::Section;
 use crate::geom::sets::Sets;
 use crate::geom::spans::{Rows, Span, intersect, total};
-use crate::units::Coord;
+use crate::units::{Coord, to_mm};
 
 /// Smaller pieces of support on a layer are dropped, in squares of a line's width. They hold
 /// nothing, and each costs two travels.
@@ -104,10 +105,22 @@ impl Pieces {
         spans.zip(&self.labels).for_each(|(span, label)| sums[*label] += span.len());
         sums
     }
+
+    /// The section of each piece.
+    pub(super) fn sections(&self, rows: &Rows, pitch: Coord) -> Vec<Section> {
+        let mut sections: Vec<Option<Section>> = vec![None; self.count];
+        let spans = rows.iter().flat_map(|(j, row)| row.iter().map(move |&span| (j, span)));
+        for ((j, span), label) in spans.zip(&self.labels) {
+            let y = to_mm(j * pitch);
+            let near = || Section::near([to_mm(span.start), y]);
+            sections[*label].get_or_insert_with(near).add(span, y, to_mm(pitch));
+        }
+        sections.into_iter().map(Option::unwrap_or_default).collect()
+    }
 }
 
 /// Calls `meet` with the indices of all spans of two rows that overlap.
-fn touching(a: &[Span], b: &[Span], mut meet: impl FnMut(usize, usize)) {
+pub(super) fn touching(a: &[Span], b: &[Span], mut meet: impl FnMut(usize, usize)) {
     let (mut i, mut j) = (0, 0);
     while let (Some(p), Some(q)) = (a.get(i), b.get(j)) {
         if p.overlaps(*q) {

@@ -1,24 +1,31 @@
 //! Support of a layer -> support of a layer: thin pieces grow, from layer to layer, until they stand.
 //!
 //! Words: a *post* is a piece of support that goes down from layer to layer; its *height* is measured
-//! from its top. It is *thin* if no disc of its least width has room in it. The least width is a
-//! fixed one, or a fifth of the height if that is more.
+//! from its top. Its *thickness* is that of its section ([`mod@crate::geom::section`]): a bent strip
+//! stands where a straight one would not. It is *thin* if it is less than a fixed width, of low posts
+//! half of their height, of high ones a fifth of it.
 //!
-//! A thin piece grows to all sides on each layer further down, as far as the part leaves room. So it
-//! becomes wide enough within a few layers, and meets its neighbours on the way: then they are one
-//! piece. A piece that has room for the disc somewhere stays as it is, since that place holds it.
+//! A thin piece grows to all sides on each layer further down, as far as the part leaves room, until
+//! it is no longer thin, and meets its neighbours on the way: then they are one piece.
 
 use super::params::SupportParams;
 use super::pieces::Pieces;
+use crate::geom::section::Section;
 use crate::geom::spans::Rows;
-use crate::units::{Bounded as _, Coord};
+use crate::units::{Bounded as _, Coord, to_mm};
 
 /// The least width of a post, as a part of its height: half of the slenderness of 10 at which
 /// posts begin to whip under the nozzle.
 const PART_OF_HEIGHT: f64 = 0.2;
 
+/// The same of low posts, which may be thinner than others: many land on the part before long.
+const PART_OF_LOW: f64 = 0.5;
+
 /// Posts grow no wider than this (20 mm), however high: a piece as wide stands by its own weight.
 const MOST_WIDTH: Coord = 200_000;
+
+/// No post is thinner than so many lines at its thickest place, however long it is.
+const LEAST_LINES: Coord = 3;
 
 /// How far a thin piece grows on a layer, in pitches. It leans out by two layer heights then, which
 /// is no matter further down: wider layers carry narrower ones.
@@ -52,7 +59,7 @@ impl Posts {
         pieces.meeting(&rows, &self.rows, |piece, above| {
             tops[piece] = tops[piece].max(self.tops[above]);
         });
-        let thin = self.thin(&rows, &pieces, |piece| tops[piece] - z, params);
+        let thin = Self::thin(&rows, &pieces, |piece| tops[piece] - z, params);
         let grown = if thin.is_empty() {
             rows.clone()
         } else {
@@ -72,7 +79,6 @@ impl Posts {
 
     /// The pieces that are too thin for their height.
     fn thin(
-        &self,
         rows: &Rows,
         pieces: &Pieces,
         height: impl Fn(usize) -> Coord,
@@ -83,19 +89,22 @@ impl Posts {
         }
         let pitch = params.raster().pitch;
         // Rows show the middle of the outermost lines.
-        let radius = |width: Coord| ((width - params.least) / 2).max(1);
-        let mut wide = vec![false; pieces.count()];
-        let core = rows.erode(radius(params.min_width), pitch);
-        pieces.meeting(rows, &core, |piece, _| wide[piece] = true);
-        // Only posts that are taller than five times that width are looked at alone.
-        for (piece, wide) in wide.iter_mut().enumerate().filter(|(_, wide)| **wide) {
-            let asked = f64::from(height(piece)) * PART_OF_HEIGHT;
-            if asked > f64::from(params.min_width) {
-                let one = pieces.keep(rows, |other| other == piece);
-                let asked = asked.at_most(f64::from(MOST_WIDTH)) as Coord;
-                *wide = !one.erode(radius(asked), pitch).is_empty();
-            }
-        }
+        let core = rows.erode((LEAST_LINES - 1) * params.least / 2, pitch);
+        let mut has_core = vec![false; pieces.count()];
+        pieces.meeting(rows, &core, |piece, _| has_core[piece] = true);
+        let wide = |(piece, section): (usize, Section)| {
+            let asked = to_mm(asked(height(piece), params.min_width));
+            has_core[piece] && section.thickness() + to_mm(params.least) >= asked
+        };
+        let wide: Vec<bool> =
+            pieces.sections(rows, pitch).into_iter().enumerate().map(wide).collect();
         pieces.keep(rows, |piece| !wide[piece])
     }
+}
+
+/// The least thickness of a piece of some height.
+fn asked(height: Coord, min_width: Coord) -> Coord {
+    let height = f64::from(height);
+    let low = (height * PART_OF_LOW).at_most(f64::from(min_width));
+    (height * PART_OF_HEIGHT).at_most(f64::from(MOST_WIDTH)).at_least(low) as Coord
 }
