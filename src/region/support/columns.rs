@@ -1,7 +1,8 @@
 //! Layers, from the top down -> Columns: where support stands on each layer.
 //!
 //! With the overhang `O(k)` of layer `k`, grown by the outset, the contours `L(k)` and the support
-//! `S(k)`: `S(k) = (O(k+1+gap) ∪ S(k+1)) − outset(L(k), clearance)`, less the layers within the gap.
+//! `S(k)`: `S(k) = (O(k+1+gap) ∪ S(k+1)) − outset(L(k), clearance)`, less the layers within the gap,
+//! those below with their clearance as well.
 //! So support goes down until it reaches the bed or the part. A window keeps only the layers within
 //! the gap.
 //!
@@ -9,6 +10,7 @@
 //! which thin posts grow ([`mod@super::posts`]). Where the reach ends on a layer it carries an
 //! overhang; where a grown post ends it carries nothing.
 
+use super::held::to_lines;
 use super::overhangs::{LayerView, Overhang, overhang};
 use super::params::SupportParams;
 use super::posts::Posts;
@@ -24,6 +26,10 @@ pub(super) struct Column {
     pub(super) all: Rows,
     /// Where it stands, without what thin posts have grown.
     pub(super) reach: Rows,
+    /// Where it stands on the part.
+    pub(super) foot: Rows,
+    /// What may be added to the body of support, so that lines hold all of it.
+    pub(super) beside: Rows,
 }
 
 /// The layers around the one whose support is computed, from the top down.
@@ -90,8 +96,9 @@ impl<'a> Window<'a> {
         let new = if begins { self.overhangs.pop_front() } else { None };
         let new = new.map(|overhang| overhang.all).unwrap_or_default();
         let around = at.saturating_sub(gap)..(at + gap + 1).min(self.layers.len());
-        let others: Vec<&Rows> =
-            around.filter(|&n| n != at).map(|n| &self.layers[n].inside).collect();
+        // Beside the edge of a floor support would lie on nothing.
+        let near = |n: usize| if n > at { &self.layers[n].near } else { &self.layers[n].inside };
+        let others: Vec<&Rows> = around.filter(|&n| n != at).map(near).collect();
         // What begins in the air within the gap above the bed is carried without a gap: it would
         // have nothing below it otherwise.
         let low = self.overhangs.iter().find(|o| o.layer == k + 1 && k < gap);
@@ -102,10 +109,28 @@ impl<'a> Window<'a> {
         };
         self.reach = cut(self.reach.or(&new));
         let wanted = cut(self.posts.rows().or(&new));
-        self.posts.next(wanted, self.heights.top(k), params, cut);
-        out[k] = Column { all: self.posts.rows().clone(), reach: self.reach.clone() };
+        if let Some(above) = out.get_mut(k + 1) {
+            let floors = self.layers.range(at..(at + gap + 1).min(self.layers.len()));
+            above.foot = foot(&above.all.minus(&wanted), floors.map(|floor| &floor.inside), params);
+        }
+        self.posts.next(wanted, self.heights.top(k), params, &cut);
+        let all = self.posts.rows().clone();
+        let beside = to_lines(&params.lines, &all).minus(&all);
+        let beside = if beside.is_empty() { beside } else { cut(beside).minus(&all) };
+        out[k] = Column { all, reach: self.reach.clone(), beside, ..Column::default() };
         self.done = at + 1;
     }
+}
+
+/// What of `ends`, where support ends downwards, stands on `floors`, or reaches a little beyond them.
+fn foot<'a>(ends: &Rows, floors: impl Iterator<Item = &'a Rows>, params: &SupportParams) -> Rows {
+    if ends.is_empty() {
+        return Rows::default();
+    }
+    let (lean, pitch) = (params.least, params.raster().pitch);
+    let around = ends.dilate(lean, pitch);
+    let floor = floors.fold(Rows::default(), |all, floor| all.or(&floor.and(&around)));
+    floor.dilate(lean, pitch).and(ends)
 }
 
 /// Joins support on both sides of a gap that is at most two lines wide and free of the part. Such

@@ -13,7 +13,7 @@
 use super::body;
 use super::columns::Column;
 use super::params::{SupportLayer, SupportParams};
-use super::pieces::{across, without_specks};
+use super::pieces::{Pieces, across, without_specks};
 use crate::geom::spans::Rows;
 
 /// The support of layer `k`, divided.
@@ -30,9 +30,21 @@ pub(super) fn divide(columns: &[Column], k: usize, params: &SupportParams) -> Su
     let along = along.minus(&across);
     // Where the two meet, their outermost lines lie beside each other.
     let dense = across.or(&along).dilate(params.least, params.raster().pitch);
-    let body = here.minus(&dense);
+    let body = with_lines(&here.minus(&dense), &columns[k].beside.minus(&dense));
     let (outlines, body) = body::lay(&body, k, params);
     SupportLayer { body, outlines, interface: [params.along(&along), params.across(&across)] }
+}
+
+/// A body with what it needs to be held by lines: those pieces of both that have some of the body in them.
+fn with_lines(body: &Rows, beside: &Rows) -> Rows {
+    if beside.is_empty() {
+        return body.clone();
+    }
+    let both = body.or(beside);
+    let pieces = Pieces::new(&both);
+    let mut has_body = vec![false; pieces.count()];
+    pieces.meeting(&both, body, |piece, _| has_body[piece] = true);
+    pieces.keep(&both, |piece| has_body[piece])
 }
 
 /// The interface of layer `k` with lines across and along those of the support.
@@ -42,10 +54,15 @@ fn interface(columns: &[Column], k: usize, params: &SupportParams) -> [Rows; 2] 
     let (none, pitch) = (Rows::default(), params.raster().pitch);
     let reach = |k: usize| columns.get(k).map_or(&none, |column| &column.reach);
     let all = |k: usize| &columns[k].all;
+    // On a slope of the part support ends by less than a line on each layer: dense lines would
+    // stand alone there.
+    let bottom = |k: usize| {
+        let ends = all(k).minus(all(k - 1));
+        ends.erode(params.least / 2, pitch).dilate(params.least / 2, pitch)
+    };
     for rank in 1..=n {
         let top = reach(k + rank - 1).minus(reach(k + rank));
-        let bottom =
-            if rank <= k { all(k + 1 - rank).minus(all(k - rank)) } else { Rows::default() };
+        let bottom = if rank <= k { bottom(k + 1 - rank) } else { Rows::default() };
         let ends = top.or(&bottom);
         if ends.is_empty() {
             continue;

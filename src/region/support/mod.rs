@@ -11,9 +11,9 @@
 //! 2. `columns`: from there support goes down, layer by layer; thin posts grow on the way
 //!    (`posts`).
 //! 3. Support that stands on the part is removed if the settings allow only the bed. On the bed it
-//!    gets a brim. Specks are dropped.
+//!    gets a brim. Specks are dropped, and what stands on nothing (`stand`).
 //! 4. `interface`: which places are dense. The others are the `body`, which gets a zigzag, or
-//!    lines and an `outline`.
+//!    lines and an `outline`; places far from any line are grown to one (`held`).
 //!
 //! All of this happens on the rows of one raster, at most half a line apart. Layers are sliced block
 //! by block.
@@ -21,6 +21,7 @@
 mod body;
 mod bridges;
 mod columns;
+mod held;
 mod interface;
 mod outline;
 mod overhangs;
@@ -28,6 +29,7 @@ mod params;
 mod pieces;
 mod posts;
 mod printed;
+mod stand;
 
 pub use params::{SupportLayer, SupportParams, SupportPatterns};
 
@@ -37,7 +39,6 @@ use crate::geom::spans::Rows;
 use crate::slice::{Layer, Slicer};
 use columns::{Column, Window};
 use overhangs::LayerView;
-use pieces::without_specks;
 use printed::printed;
 use rayon::prelude::*;
 
@@ -71,9 +72,11 @@ pub fn supports(
     let bed = Scan::new(&[corners], params.raster());
     add_brim(slicer, params, &mut columns);
     columns.par_iter_mut().for_each(|column| {
-        column.all = without_specks(&column.all.and(bed.inside()), params);
+        column.all = column.all.and(bed.inside());
         column.reach = column.reach.and(bed.inside());
+        column.beside = column.beside.and(bed.inside());
     });
+    stand::stand(&mut columns, params);
     (0..columns.len()).into_par_iter().map(|k| interface::divide(&columns, k, params)).collect()
 }
 

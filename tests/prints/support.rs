@@ -1,0 +1,67 @@
+//! Random solids that hang -> prints with support: it stands, and is not slender.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use crate::common::{Solid, slice, solid::circle};
+use proptest::prelude::*;
+use slicer::check::finding::{Code, Finding};
+use slicer::check::terms::Terms;
+use slicer::check::{self};
+use slicer::reader::Print;
+
+/// What is found of support itself.
+fn faults(text: &str) -> Vec<Finding> {
+    let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
+    let verdict = check::check(&print, &Terms::new(None, None, &print), None);
+    let of_support = |finding: &Finding| match finding.code {
+        Code::SlenderSupport => true,
+        Code::Floating => finding.text.contains("of support"),
+        _ => false,
+    };
+    verdict.findings.into_iter().filter(of_support).collect()
+}
+
+/// A column with arms: boxes that reach out of it, and balls on its sides, at heights of their own.
+fn tree(boxes: &[[f64; 5]], balls: &[[f64; 4]]) -> Solid {
+    let mut solid = Solid::cuboid([-4.0, -4.0, 0.0], [4.0, 4.0, 24.0]);
+    for &[x, y, z, wide, high] in boxes {
+        let low = [x.min(0.0) - wide, y.min(0.0) - wide, z];
+        solid = solid.and(&Solid::cuboid(low, [x.max(0.0) + wide, y.max(0.0) + wide, z + high]));
+    }
+    for &[x, y, z, radius] in balls {
+        solid = solid.and(&Solid::ball(radius, 24).shifted([x, y, z]));
+    }
+    solid
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn support_stands_and_is_not_slender(
+        boxes in prop::collection::vec(
+            [-9.0..9.0, -9.0..9.0, 3.0..20.0, 0.5..3.0, 1.0..4.0_f64],
+            1..3,
+        ),
+        balls in prop::collection::vec([-6.0..6.0, -6.0..6.0, 6.0..18.0, 2.0..5.0_f64], 0..2),
+    ) {
+        let run = slice(&tree(&boxes, &balls).stl(), "generic-marlin", &[("support.enabled", "true")]);
+        let found = faults(&run.text);
+        prop_assert!(found.is_empty(), "{found:?}");
+    }
+}
+
+/// A roof over a slope, so that support stands on the slope and beside it.
+#[test]
+fn support_over_a_slope_stands_on_it() {
+    for angle in [20.0_f64, 35.0, 50.0, 65.0] {
+        let run_out = 12.0 / angle.to_radians().tan();
+        let hill = Solid::tower(&[(circle(2.0 + run_out, 48), 0.0), (circle(2.0, 48), 12.0)]);
+        let neck = Solid::cylinder(2.0, 20.0, 48);
+        let hat = Solid::cylinder(12.0, 2.0, 48).shifted([0.0, 0.0, 18.0]);
+        let part = hill.and(&neck).and(&hat);
+        let run = slice(&part.stl(), "generic-marlin", &[("support.enabled", "true")]);
+        let found = faults(&run.text);
+        assert!(found.is_empty(), "{angle}: {found:?}");
+    }
+}
