@@ -120,7 +120,7 @@ impl Pieces {
 }
 
 /// Calls `meet` with the indices of all spans of two rows that overlap.
-pub(super) fn touching(a: &[Span], b: &[Span], mut meet: impl FnMut(usize, usize)) {
+fn touching(a: &[Span], b: &[Span], mut meet: impl FnMut(usize, usize)) {
     let (mut i, mut j) = (0, 0);
     while let (Some(p), Some(q)) = (a.get(i), b.get(j)) {
         if p.overlaps(*q) {
