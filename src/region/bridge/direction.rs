@@ -29,6 +29,12 @@ const ALIKE: f64 = 0.02;
 /// twice, small bridges were laid a step askew, since cells tell lengths only roughly.
 const FREE_COST: f64 = 8.0;
 
+/// Along or across the rows a bridge may have this share of free ends more than in the best direction,
+/// and lines longer by this share: cells and the lines that are tried tell both only roughly. Such
+/// bridges keep their edges along the walls. A larger value lays bridges across that are turned
+/// against the rows; a smaller one lays halls askew, and their sides as steps.
+const NEAT: f64 = 0.04;
+
 /// Most lines of one direction. The lines of a large island lie further apart: the choice is the
 /// same, and its time stays bounded.
 const MOST_LINES: usize = 64;
@@ -59,8 +65,14 @@ pub fn best(site: &Site<'_>, walls: Coord) -> usize {
     let fewest = tried.iter().map(|(_, hold)| hold.free).fold(f64::MAX, f64::at_most);
     let good = tried.iter().filter(|(_, hold)| hold.free <= fewest + ALIKE);
     let cost = |hold: &Hold| hold.length * (1.0 + FREE_COST * (hold.free - fewest));
-    let best = good.min_by(|a, b| cost(&a.1).total_cmp(&cost(&b.1)));
-    best.map_or(0, |(turn, _)| *turn)
+    let Some((turn, best)) = good.min_by(|a, b| cost(&a.1).total_cmp(&cost(&b.1))) else {
+        return 0;
+    };
+    // Of both the rows' own direction first: the skin above then crosses the bridge.
+    let mut neat = tried[..2].iter().filter(|(_, hold)| {
+        hold.free <= fewest + NEAT && hold.length <= best.length * (1.0 + NEAT)
+    });
+    neat.next().map_or(*turn, |(turn, _)| *turn)
 }
 
 /// How well an island holds in one direction.
@@ -270,6 +282,30 @@ mod tests {
             let carrier = rectangle([-100_000, 0], [-wide, wide]);
             let off = direction(&[open], &[carrier], degrees);
             prop_assert!(off.abs() < 45.0, "{off}");
+        }
+    }
+
+    proptest! {
+        /// A hall that is held all around, or on one side and on pillars at the other, is laid along
+        /// its sides.
+        #[test]
+        fn a_hall_is_laid_along_its_sides(
+            width in 100_000..400_000_i32,
+            deep in 100_000..400_000_i32,
+            pillars in 5_i32..12,
+        ) {
+            let hall = rectangle([0, width], [0, deep]);
+            let around = rectangle([-30_000, width + 30_000], [-30_000, deep + 30_000]);
+            let rest = [around, hall.iter().rev().copied().collect()];
+            let off = direction(std::slice::from_ref(&hall), &rest, 0.0).abs();
+            prop_assert!(off < 0.1 || off > 89.9, "{off}");
+            let deep = deep.min(width / 3);
+            let porch = rectangle([0, width], [0, deep]);
+            let back = rectangle([5_000, width - 5_000], [deep, deep + 30_000]);
+            let step = width / pillars;
+            let front = (0..pillars).map(|k| rectangle([k * step, k * step + step / 2], [-10_000, 0]));
+            let off = direction(&[porch], &std::iter::once(back).chain(front).collect::<Vec<_>>(), 0.0);
+            prop_assert!(off.abs() > 89.9, "{off}");
         }
     }
 
