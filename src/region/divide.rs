@@ -129,9 +129,9 @@ pub fn divide<'a>(
         areas_beside(&taken, fill, uncovered, solid.as_ref(), raster.pitch, &params.skins)
     };
     let areas = PerRaster::new(&params.rasters, more, areas_on);
-    // Strips between skin and a wall in which no sparse line has room.
+    // Strips between skin or a bridge and a wall in which no sparse line has room.
     let infill = [0, 1].map(|r| &areas.skin(r).infill);
-    let skinned = (0..2).any(|r| !areas.skin(r).skin.is_empty());
+    let skinned = !bridges.is_empty() || (0..2).any(|r| !areas.skin(r).skin.is_empty());
     let limit = if skinned && !params.sparse.is_empty() { params.skins.reach } else { 0 };
     let areas = match rooms::narrow(infill, both, limit) {
         Some(strips) => areas.map_on(|raster, its| {

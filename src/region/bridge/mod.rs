@@ -110,15 +110,42 @@ pub fn bridges<'a>(
 pub fn taken(bridges: &[Skin], raster: Raster, params: &RegionParams) -> Rows {
     // As a wall bead: a line that ends there reaches into it as into a wall.
     let more = (params.beads.line_width / 2 - params.beads.overlap).max(0);
-    let edges = bridges.iter().flat_map(|bridge| {
+    let mut edges = Vec::new();
+    for bridge in bridges {
         let Raster { frame, pitch } = bridge.raster;
-        let spans = bridge.rows.skin.iter();
-        spans.flat_map(move |(j, row)| {
-            let end = move |x| raster.frame.enter(frame.leave(Point { x, y: j * pitch }));
-            row.iter().map(move |s| (end(s.start), end(s.end), pitch / 2 + more))
-        })
-    });
-    around(&edges.collect::<Vec<_>>(), raster)
+        let at = |u: Coord, v: Coord| raster.frame.enter(frame.leave(Point { x: u, y: v }));
+        for (j, row) in bridge.rows.skin.iter() {
+            let end = |u: Coord| at(u, j * pitch);
+            edges.extend(row.iter().map(|s| (end(s.start), end(s.end), pitch / 2 + more)));
+        }
+        if params.walls.count > 0 {
+            for ((u, low), (_, high)) in strips(bridge) {
+                edges.push((at(u, low), at(u, high), pitch / 2));
+            }
+        }
+    }
+    around(&edges, raster)
+}
+
+/// The strips beside the last lines of a bridge, which are widened up to the walls: column by column,
+/// in the frame of its rows.
+fn strips(bridge: &Skin) -> Vec<((Coord, Coord), (Coord, Coord))> {
+    let pitch = bridge.raster.pitch;
+    let mut out = Vec::new();
+    for (c, row) in bridge.columns.skin.iter() {
+        let walls = bridge.columns.fill.row(c);
+        // Bridges have their columns turned left.
+        let u = -c * pitch;
+        for s in row {
+            if walls.iter().any(|wall| wall.start == s.start) {
+                out.push(((u, s.start), (u, s.end.min(s.start + pitch))));
+            }
+            if walls.iter().any(|wall| wall.end == s.end) {
+                out.push(((u, s.start.max(s.end - pitch)), (u, s.end)));
+            }
+        }
+    }
+    out
 }
 
 impl Pair<'_> {
@@ -161,6 +188,8 @@ fn lay(
     params: &RegionParams,
 ) -> Skin {
     let pitch = params.bridges.pitch;
+    // The open places are grown by a line on all sides: its row is as far away as the rows lie apart.
+    let aside = pitch.max(params.skins.line_width);
     let rasters = [0.0, 90.0].map(|turn| Raster { frame: Frame::new(degrees + turn), pitch });
     let [(fill, open), (fill_across, open_across)] = rasters.map(|raster| {
         let scan = Scan::new(&pair.own.layer.contours, raster);
@@ -173,11 +202,10 @@ fn lay(
             fill = fill.minus(&taken(others, raster, params));
         }
         let keep = |j, s: Span| s.len() >= i64::from(LEAST_OPEN) && holds.holds(raster, j, s);
-        let open = fill.minus(&cover).filter(keep).dilate(params.skins.line_width, pitch);
+        let open = fill.minus(&cover).filter(keep).dilate(aside, pitch);
         (fill, open)
     });
-    // The open places are grown by a line's width on all sides.
-    let more = (anchor - params.skins.line_width).max(0);
+    let more = (anchor - aside).max(0);
     let skin = lengthened(&open, more).and(&fill);
     // A line never jumps over a hole to reach its anchor.
     let skin = skin.filter(|j, span| open.row(j).iter().any(|s| s.overlaps(span)));

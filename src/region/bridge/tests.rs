@@ -103,3 +103,18 @@ fn islands_with_gaps_of_their_own_get_directions_of_their_own() {
         assert!((longest - 10.0).abs() < 0.2, "{longest}");
     }
 }
+
+#[test]
+fn a_bridge_has_a_line_beside_its_opening_on_both_sides() {
+    let plate = rectangle([-40.0, 40.0], [-20.0, 20.0]);
+    for half in [10.0, 12.3, 15.1] {
+        let hole = rectangle([-half, half], [-3.0, 3.0]).into_iter().rev().collect();
+        let params = params();
+        let found = turned(std::slice::from_ref(&plate), &[plate.clone(), hole], 0.0, &params);
+        let rows = found[0].rows.skin.iter().filter(|(_, row)| !row.is_empty());
+        let aside: Vec<f64> = rows.map(|(j, _)| to_mm(j * found[0].raster.pitch)).collect();
+        let edge = half + to_mm(params.insets.cover);
+        let (first, last) = (aside[0], aside[aside.len() - 1]);
+        assert!(first < -edge && last > edge, "{half}: {first} to {last}");
+    }
+}
