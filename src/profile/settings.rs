@@ -107,8 +107,8 @@ pub struct Settings {
     /// auto takes the direction with the fewest turns.
     #[schemars(extend("unit" = "degrees", "default" = "auto"))]
     pub angle: Angle,
-    /// Whether the first skin above sparse infill runs across the lines below it, whatever its
-    /// layer; off, the direction alternates with the layer alone.
+    /// Whether the first skin above sparse infill runs across the lines below it and ends on one of
+    /// them, whatever its layer; off, the direction alternates with the layer alone.
     #[schemars(extend("default" = true))]
     pub skin_across_infill: bool,
     /// How far skin and infill lines reach into the innermost wall.

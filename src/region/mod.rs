@@ -22,6 +22,7 @@ pub mod divide;
 pub mod dual;
 pub mod first_skin;
 pub mod hidden;
+pub mod landing;
 mod near;
 pub mod overhang;
 pub mod params;

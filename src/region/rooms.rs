@@ -49,16 +49,23 @@ pub fn narrow(region: [&Rows; 2], rasters: [Raster; 2], limit: Coord) -> Option<
 /// The part of `region`, on `raster`, that is narrow on the two rasters of skins.
 #[must_use]
 pub fn on_raster(narrow: &[Rows; 2], rasters: [Raster; 2], raster: Raster, region: &Rows) -> Rows {
-    let edges = |(rows, its): (&Rows, Raster)| {
-        let at = |u: Coord, j: i32| {
-            raster.frame.enter(its.frame.leave(Point { x: u, y: j * its.pitch }))
-        };
-        let edge = |(j, s): (i32, &Span)| (at(s.start, j), at(s.end, j), its.pitch / 2);
-        let spans = rows.iter().flat_map(|(j, row)| row.iter().map(move |s| (j, s)));
-        spans.map(edge).collect::<Vec<_>>()
+    let spans = |(rows, its): (&Rows, Raster)| {
+        let spans = rows.iter().flat_map(|(j, row)| row.iter().map(move |s| (j, *s)));
+        edges(spans, its, raster)
     };
-    let all: Vec<_> = narrow.iter().zip(rasters).flat_map(edges).collect();
+    let all: Vec<_> = narrow.iter().zip(rasters).flat_map(spans).collect();
     whole(region, &around(&all, raster), rasters[0].pitch)
+}
+
+/// Spans of rows of `its` as edges in the frame of `raster`, each as wide as the rows' distance.
+pub(super) fn edges(
+    spans: impl Iterator<Item = (i32, Span)>,
+    its: Raster,
+    raster: Raster,
+) -> Vec<(Point, Point, Coord)> {
+    let at =
+        |u: Coord, j: i32| raster.frame.enter(its.frame.leave(Point { x: u, y: j * its.pitch }));
+    spans.map(|(j, s)| (at(s.start, j), at(s.end, j), its.pitch / 2)).collect()
 }
 
 /// The rows across raster `r`.
@@ -186,7 +193,7 @@ fn brought(columns: &Columns<'_>, pitch: Coord) -> Rows {
 }
 
 /// The part of `region` in `narrow`, with the bits shorter than `least` beside it.
-fn whole(region: &Rows, narrow: &Rows, least: Coord) -> Rows {
+pub(super) fn whole(region: &Rows, narrow: &Rows, least: Coord) -> Rows {
     let inside = region.and(narrow);
     let beside = |j: i32, s: Span| {
         s.len() < i64::from(least)

@@ -20,6 +20,7 @@ use super::dual::audit::Audit;
 use super::dual::groups::{Block, Grouping};
 use super::dual::inner_skin::{self, Skins, without_threads};
 use super::first_skin::{self, Turn};
+use super::landing::{self, Floor};
 use super::overhang::Hanging;
 use super::params::RegionParams;
 use super::per_raster::skin_turn;
@@ -34,6 +35,7 @@ use crate::geom::spans::Rows;
 use crate::profile::DualPart;
 use crate::slice::{Layer, Slicer};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Makes the regions of a print in batches, from the bed upwards.
@@ -194,11 +196,12 @@ impl<'a> Window<'a> {
     fn fill(&self, block: &Block) -> (Vec<Filling>, Vec<Audit>) {
         let layers = block.layers.clone();
         let line_width = self.params.walls.line_width;
-        let areas: Vec<&LayerAreas> = layers.clone().filter_map(|k| self.areas.get(k)).collect();
+        let (skins, areas): (Vec<_>, Vec<_>) =
+            layers.into_par_iter().filter_map(|k| self.skins(k)).unzip();
+        let areas: Vec<&LayerAreas> = areas.iter().map(Cow::as_ref).collect();
         let (infill, audit) =
             dual::infill(block, &areas, self.grouping, &self.params.sparse, line_width);
         let (support, support_audit) = self.share_support(block);
-        let skins: Vec<Vec<Skin>> = layers.into_par_iter().map(|k| self.skins(k)).collect();
         let lines = infill.into_iter().zip(support).zip(self.share_walls(block));
         let fillings = skins
             .into_iter()
@@ -245,27 +248,15 @@ impl<'a> Window<'a> {
         (layers.iter().zip(bodies).map(lines).collect(), audit)
     }
 
-    /// The skins of layer `k`, which must be divided. The first has the raster of the layer's beads.
-    fn skins(&self, k: usize) -> Vec<Skin> {
-        let Some(areas) = self.areas.get(k) else { return Vec::new() };
+    /// The skins of layer `k`, and what they leave of its areas; `None` if it is not divided. The
+    /// first has the raster of the layer's beads.
+    fn skins(&self, k: usize) -> Option<(Vec<Skin>, Cow<'_, LayerAreas>)> {
+        let areas = self.areas.get(k)?;
+        let mut left = Cow::Borrowed(areas);
         let (along, across) = skin_turn(k);
-        let mut printed = Vec::new();
-        if self.grouping.shares(DualPart::InnerSkin) {
-            let mut shared = self.share_skin(k);
-            shared.swap(0, along);
-            let [(thick, thin), (thick_across, thin_across)] = shared;
-            let (whole, pitch) = (&areas.skin(across).skin, self.params.skins.line_width);
-            let thin_across = without_threads(&thin_across, whole, pitch);
-            printed.push((1, [thin, thin_across].map(Arc::new)));
-            for (layers, rows) in thick {
-                let columns = thick_across.iter().find(|(count, _)| *count == layers);
-                let columns = columns.map(|(_, rows)| rows.clone()).unwrap_or_default();
-                printed.push((layers, [rows, columns].map(Arc::new)));
-            }
-        } else {
-            printed.push((1, [along, across].map(|r| areas.skin(r).skin.clone())));
-        }
-        let skins = printed.into_iter().flat_map(|(layers, skin)| {
+        let floor = self.floor(k);
+        let mut skins = Vec::new();
+        for (layers, skin) in self.printed(k, areas) {
             let (kept, turned) = match self.along(k, layers) {
                 Some(below) => {
                     let turn = Turn { pitch: self.params.skins.line_width, left: along == 0 };
@@ -273,13 +264,47 @@ impl<'a> Window<'a> {
                 }
                 None => (skin, None),
             };
-            let kept = Self::skin(self.params, (along, across), layers, areas, kept);
-            let turned = turned.map(|[rows, columns]| {
-                Self::skin(self.params, (across, along), layers, areas, [columns, rows])
-            });
-            std::iter::once(kept).chain(turned)
-        });
-        skins.collect()
+            let turned = turned.map(|[rows, columns]| ((across, along), [columns, rows]));
+            for ((r, other), mut skin) in std::iter::once(((along, across), kept)).chain(turned) {
+                if let Some(floor) = floor.as_ref().filter(|_| layers == 1) {
+                    skin = landing::land(skin, r, &mut left, floor, &self.params.rasters);
+                }
+                skins.push(Self::skin(self.params, (r, other), layers, areas, skin));
+            }
+        }
+        Some((skins, left))
+    }
+
+    /// The skin of layer `k` by the number of layers that it is printed for, on the raster of its
+    /// lines and across.
+    fn printed(&self, k: usize, areas: &LayerAreas) -> Vec<(u32, first_skin::Both)> {
+        let (along, across) = skin_turn(k);
+        if !self.grouping.shares(DualPart::InnerSkin) {
+            return vec![(1, [along, across].map(|r| areas.skin(r).skin.clone()))];
+        }
+        let mut shared = self.share_skin(k);
+        shared.swap(0, along);
+        let [(thick, thin), (thick_across, thin_across)] = shared;
+        let (whole, pitch) = (&areas.skin(across).skin, self.params.skins.line_width);
+        let thin_across = without_threads(&thin_across, whole, pitch);
+        let mut printed = vec![(1, [thin, thin_across].map(Arc::new))];
+        for (layers, rows) in thick {
+            let columns = thick_across.iter().find(|(count, _)| *count == layers);
+            let columns = columns.map(|(_, rows)| rows.clone()).unwrap_or_default();
+            printed.push((layers, [rows, columns].map(Arc::new)));
+        }
+        printed
+    }
+
+    /// The sparse infill below layer `k`, if skin has to end on it.
+    fn floor(&self, k: usize) -> Option<Floor<'_>> {
+        let below = k.checked_sub(1).filter(|_| self.params.skins.across_infill)?;
+        let block = self.grouping.block(below, self.count());
+        let patterns = dual::patterns(&block, self.grouping, &self.params.sparse);
+        let line_width = self.params.skins.line_width;
+        let thick = block.layers.contains(&k) && self.grouping.shares(DualPart::Infill);
+        let least_rows = if thick { landing::LEAST_ROWS_IN_THICK } else { 1 };
+        Some(Floor { areas: self.areas.get(below)?, patterns, line_width, least_rows })
     }
 
     /// The sparse infill below what layer `k` prints for `layers`, if its lines run in the direction

@@ -10,6 +10,7 @@ mod gpx;
 mod library;
 mod metamorphic;
 mod models;
+mod skins;
 mod support;
 mod tables;
 mod thin;
