@@ -2,7 +2,8 @@
 //!
 //! Each side of the loop is sampled once for each line width. A sample asks for the share of the
 //! beads at its place. Between samples the loop goes straight; at a corner it goes where its two
-//! moved sides meet.
+//! moved sides meet. Around a small nose sides that move inwards get shorter, and vanish where they
+//! would turn back.
 
 use super::{Layout, Wall};
 use crate::geom::segment::{along, dot, way};
@@ -18,6 +19,11 @@ const STRAIGHT: f64 = 0.2;
 /// both are up to a line apart.
 const BEAD: f64 = 0.5;
 
+/// How fast a loop may leave its nominal place, as a part of the way along it. At the end of a thin place
+/// neighbouring samples see very different rooms. A larger value lets a loop of short sides jump to and
+/// fro there; a smaller one leaves the ends of thin places open.
+const LEAN: f64 = 0.5;
+
 /// The bead at one place of a side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sample {
@@ -31,25 +37,37 @@ struct Sampled {
     from: [f64; 2],
     way: [f64; 2],
     normal: [f64; 2],
+    /// The distance of its samples.
+    step: f64,
     samples: Vec<Sample>,
+}
+
+impl Sampled {
+    fn length(&self) -> f64 {
+        self.step * self.samples.len() as f64
+    }
 }
 
 /// Moves and widens `wall`, a loop, where it shares the room. `beads` are the middle beads.
 pub(super) fn share(wall: &mut Wall, beads: &Near, layout: &Layout<'_>) {
-    let sides = sampled(&wall.path, wall.depth, beads, layout);
+    let mut sides = sampled(&wall.path, wall.depth, beads, layout);
     let plain = Sample { shift: 0.0, width: layout.line_width };
     if sides.iter().flat_map(|s| &s.samples).all(|s| *s == plain) {
         return;
     }
-    let n = sides.len();
+    steady(&mut sides, layout.line_width);
+    let Some(corners) = corners(&mut sides) else { return };
     let mut places = Vec::new();
     for (k, side) in sides.iter().enumerate() {
-        places.push(corner(&sides[(k + n - 1) % n], side));
         let count = side.samples.len() as f64;
-        places.extend(side.samples.iter().enumerate().map(|(i, s)| {
+        let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
+        let ahead = |a: [f64; 2], b: [f64; 2]| dot(way(a, b), side.way) >= 0.0;
+        places.push(from);
+        let moved = side.samples.iter().enumerate().map(|(i, s)| {
             let on = along(side.from, (i as f64 + 0.5) / count, side.way);
             Place { at: along(on, s.shift, side.normal), width: s.width }
-        }));
+        });
+        places.extend(moved.filter(|place| ahead(from.at, place.at) && ahead(place.at, to.at)));
     }
     places.extend(places.first().copied());
     let (mut path, mut widths) = tapered(&places);
@@ -73,7 +91,8 @@ fn sampled(path: &Contour, depth: u32, beads: &Near, layout: &Layout<'_>) -> Vec
             let at = along(from, (i as f64 + 0.5) / count, way);
             sample(at, normal, depth, (beads, layout), &mut guess)
         };
-        Sampled { from, way, normal, samples: (0..count as usize).map(sample).collect() }
+        let samples = (0..count as usize).map(sample).collect();
+        Sampled { from, way, normal, step: length / count, samples }
     });
     sides.collect()
 }
@@ -102,6 +121,66 @@ fn sample(
     }
 }
 
+/// Takes from the shifts what lets the loop leave its nominal place faster than it leans.
+fn steady(sides: &mut [Sampled], line_width: f64) {
+    let samples =
+        || sides.iter().flat_map(|side| side.samples.iter().map(|s| (s.shift, side.step)));
+    let (mut shifts, steps): (Vec<f64>, Vec<f64>) = samples().unzip();
+    let n = shifts.len();
+    let mut limit = |from: usize, to: usize| {
+        let most = LEAN * f64::midpoint(steps[from], steps[to]);
+        let (inwards, outwards) = (shifts[from].max(0.0) + most, shifts[from].min(0.0) - most);
+        shifts[to] = shifts[to].min(inwards).max(outwards);
+    };
+    // Twice around: the loop is closed.
+    (0..2 * n).for_each(|k| limit(k % n, (k + 1) % n));
+    (0..2 * n).rev().for_each(|k| limit((k + 1) % n, k % n));
+    let all = sides.iter_mut().flat_map(|side| &mut side.samples);
+    for (sample, shift) in all.zip(shifts).filter(|(sample, shift)| sample.shift != *shift) {
+        let width = line_width + (sample.width - line_width) * shift / sample.shift;
+        *sample = Sample { shift, width };
+    }
+}
+
+/// The corners at which the sides begin. Sides that would turn back are taken away; `None` if too few
+/// are left.
+fn corners(sides: &mut Vec<Sampled>) -> Option<Vec<Place>> {
+    let n = sides.len();
+    let mut corners: Vec<Place> =
+        (0..n).map(|k| corner(&sides[(k + n - 1) % n], &sides[k])).collect();
+    let turns_back = |sides: &[Sampled], corners: &[Place], k: usize| {
+        let ahead = way(corners[k].at, corners[(k + 1) % corners.len()].at);
+        sides[k].samples.iter().any(|s| s.shift != 0.0) && dot(ahead, sides[k].way) < 0.0
+    };
+    while let Some(k) = (0..sides.len()).find(|&k| turns_back(sides, &corners, k)) {
+        sides.remove(k);
+        corners.remove(k);
+        let n = sides.len();
+        if n < 3 {
+            return None;
+        }
+        corners[k % n] = cut(&sides[(k + n - 1) % n], &sides[k % n]);
+    }
+    Some(corners)
+}
+
+/// The corner between two moved sides of which what lay between was taken away.
+fn cut(before: &Sampled, after: &Sampled) -> Place {
+    let (Some(a), Some(b)) = (before.samples.last(), after.samples.first()) else {
+        return Place { at: after.from, width: 0.0 };
+    };
+    let end = along(along(before.from, 1.0, before.way), a.shift, before.normal);
+    let start = along(after.from, b.shift, after.normal);
+    let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+    let (between, width) = (way(end, start), f64::midpoint(a.width, b.width));
+    let at = if cross(before.normal, after.normal).abs() < STRAIGHT {
+        along(end, 0.5, between)
+    } else {
+        along(end, cross(between, after.way) / cross(before.way, after.way), before.way)
+    };
+    Place { at, width }
+}
+
 /// The corner between two sides: where the moved sides meet.
 fn corner(before: &Sampled, after: &Sampled) -> Place {
     let (Some(a), Some(b)) = (before.samples.last(), after.samples.first()) else {
@@ -111,11 +190,16 @@ fn corner(before: &Sampled, after: &Sampled) -> Place {
     let width = if before.samples.len() > after.samples.len() { a.width } else { b.width };
     let (m, n) = (before.normal, after.normal);
     let cross = m[0] * n[1] - m[1] * n[0];
-    let by = if cross.abs() < STRAIGHT {
+    let met =
+        [(a.shift * n[1] - b.shift * m[1]) / cross, (b.shift * m[0] - a.shift * n[0]) / cross];
+    // Of two short sides that move by different widths, one would pass the samples of the other.
+    let passes = dot(met, before.way) < -0.5 * before.step * before.length()
+        || dot(met, after.way) > 0.5 * after.step * after.length();
+    let by = if cross.abs() < STRAIGHT || passes {
         let mean = f64::midpoint(a.shift, b.shift) / (1.0 + dot(m, n)).max(STRAIGHT);
         [0, 1].map(|k| (m[k] + n[k]) * mean)
     } else {
-        [(a.shift * n[1] - b.shift * m[1]) / cross, (b.shift * m[0] - a.shift * n[0]) / cross]
+        met
     };
     Place { at: [0, 1].map(|k| after.from[k] + by[k]), width }
 }

@@ -22,6 +22,7 @@
 //! exact offsets. Nothing depends on the direction of raster lines, so equal layers get equal
 //! beads.
 
+mod dots;
 mod loops;
 mod lost;
 mod middle;
@@ -72,6 +73,23 @@ pub struct Walls {
 /// all loops get fewer beads that share the room.
 #[must_use]
 pub fn walls(contours: &[Contour], may_be_thin: bool, params: &WallParams) -> Walls {
+    let dots = if may_be_thin { dots::dots(contours, params) } else { None };
+    let Some((dots, others)) = dots else { return around_cores(contours, may_be_thin, params).0 };
+    let (mut made, core) = around_cores(&others, may_be_thin, params);
+    made.walls.extend(dots);
+    // The outer loops first, and middle beads last.
+    made.walls.sort_by_key(|wall| (!wall.closed, wall.depth));
+    // Dots have none.
+    made.core = made.core.or(core);
+    made
+}
+
+/// The walls of contours that are no dots, and their core if they fill no part of it.
+fn around_cores(
+    contours: &[Contour],
+    may_be_thin: bool,
+    params: &WallParams,
+) -> (Walls, Option<Vec<Contour>>) {
     let (mut levels, whole) = levels(contours, may_be_thin, params);
     let core = levels.split_off((params.count as usize).min(levels.len())).pop();
     let plain = |(depth, level): (u32, &Vec<Contour>)| -> Vec<Wall> {
@@ -79,14 +97,17 @@ pub fn walls(contours: &[Contour], may_be_thin: bool, params: &WallParams) -> Wa
     };
     let mut walls: Vec<Wall> = (0..).zip(&levels).flat_map(plain).collect();
     let lost_mm2 = lost::outside_loops(contours, &walls, params);
-    let Some(core) = core.filter(|_| !whole) else { return Walls { walls, core: None, lost_mm2 } };
+    let core = match core {
+        Some(core) if !whole => core,
+        core => return (Walls { walls, core: None, lost_mm2 }, core),
+    };
     let layout = Layout::new(contours, &levels, &core, params);
     let beads = middle::beads(&layout);
     let near = middle::near(&beads, &layout);
     walls.iter_mut().for_each(|wall| loops::share(wall, &near, &layout));
     let lost_mm2 = (lost_mm2 - lost::under_beads(&beads)).max(0.0);
     walls.extend(beads);
-    Walls { walls, core: Some(core), lost_mm2 }
+    (Walls { walls, core: Some(core), lost_mm2 }, None)
 }
 
 /// The loops of each depth, and the core if the layer `may_be_thin`. Also whether each contour has
@@ -175,7 +196,7 @@ impl<'a> Layout<'a> {
 
     /// How far beads reach out over the contour; negative if they stay inside.
     fn outside(&self) -> f64 {
-        self.line_width / 2.0 - f64::from(self.params.outer_inset)
+        self.params.outside()
     }
 
     /// Distance of the centre line of a loop of nominal width from the contour.

@@ -3,7 +3,7 @@
 use super::*;
 use crate::geom::frame::Frame;
 use crate::geom::raster::Raster;
-use crate::geom::{Point, double_area, edges, segment};
+use crate::geom::{Point, double_area, edges, encloses, segment, side};
 use crate::profile;
 use crate::region::RegionParams;
 use crate::region::scan::Scan;
@@ -182,4 +182,91 @@ fn what_is_thinner_than_the_least_feature_is_lost_and_reported() {
     let made = made(&bar(800.0, 800.0, 0.0), &params(2));
     assert!(made.walls.is_empty());
     assert!((made.lost_mm2 - 24.0 * 0.08).abs() < 0.01, "{}", made.lost_mm2);
+}
+
+/// A pin: a regular polygon with the diameter `size` of its inner circle, made longer in one direction.
+fn pin(size: f64, corners: usize, degrees: f64, longer: f64) -> Vec<Contour> {
+    let turn = 360.0 / corners as f64;
+    let (_, cosine) = sin_cos(turn / 2.0);
+    let corner = |k: usize| {
+        let (sin, cos) = sin_cos(turn * (k as f64 + 0.5));
+        let [x, y] = [cos, sin].map(|x| x * size / 2.0 / cosine);
+        at(longer * x, y, degrees)
+    };
+    vec![(0..corners).map(corner).collect()]
+}
+
+/// How far the beads reach out over the contours, grid units.
+fn outside(contours: &[Contour], walls: &[Wall]) -> f64 {
+    let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
+    let inside = |p: Point| contours.iter().filter(|c| encloses(edges(c), p)).count() % 2 == 1;
+    let to_edge = |p: Point| {
+        let sides = contours.iter().flat_map(|c| edges(c));
+        let away = |(a, b)| segment::distance2(float(p), [float(a), float(b)]).sqrt();
+        let away = sides.map(away).fold(f64::MAX, f64::min);
+        if inside(p) { -away } else { away }
+    };
+    let reach = |(p, q, w): (Point, Point, f64)| (to_edge(p).max(to_edge(q))) + w / 2.0;
+    walls.iter().flat_map(sides).map(reach).fold(0.0, f64::max)
+}
+
+proptest! {
+    #[test]
+    fn pins_of_any_shape_are_full_and_no_more(
+        (count, size) in (1..=3_u32).prop_flat_map(|n| (Just(n), 4_000.0..(2.0 * f64::from(n) + 1.5) * W / 1.2)),
+        corners in prop::sample::select(vec![3, 4, 5, 6, 8, 16, 24, 48, 96]),
+        degrees in 0.0..360.0,
+        longer in 1.0..1.3,
+    ) {
+        let pin = pin(size, corners, degrees, longer);
+        let Walls { walls, core, .. } = made(&pin, &params(count));
+        prop_assert!(core.is_some_and(|core| core.is_empty()));
+        prop_assert!(walls.iter().all(|wall| wall.closed));
+        let filled = filled(&pin, &walls);
+        prop_assert!((0.97..1.02).contains(&filled), "{filled}");
+        prop_assert!(outside(&pin, &walls) < 400.0, "{}", outside(&pin, &walls));
+    }
+}
+
+/// A wing: round at its nose, sharp at its tail.
+fn wing(chord: f64, thick: f64, degrees: f64) -> Vec<Contour> {
+    let curve = |x: f64| x * (-0.126 + x * (-0.3516 + x * (0.2843 - 0.1036 * x)));
+    let half = |x: f64| 5.0 * thick * (0.2969 * x.sqrt() + curve(x));
+    let places = 0..=60;
+    let x = |k: i32| (1.0 - sin_cos(90.0 - 3.0 * f64::from(k)).0) / 2.0;
+    let lower = places.clone().map(|k| (x(k), -half(x(k))));
+    let upper = places.rev().skip(1).map(|k| (x(k), half(x(k))));
+    let all: Contour = lower.chain(upper).map(|(x, y)| at(chord * x, chord * y, degrees)).collect();
+    polygon::union(&[all])
+}
+
+/// Whether two sides of a closed path cross.
+fn crosses(path: &Contour) -> bool {
+    let apart = |(p, q): (Point, Point), (a, b): (Point, Point)| {
+        side(p, q, a).signum() * side(p, q, b).signum() < 0
+    };
+    let all: Vec<(Point, Point)> = edges(path).collect();
+    let crossed = |(k, &s): (usize, &(Point, Point))| {
+        all[k + 1..].iter().any(|&t| apart(s, t) && apart(t, s))
+    };
+    all.iter().enumerate().any(crossed)
+}
+
+proptest! {
+    #[test]
+    fn loops_around_a_nose_neither_cross_nor_leave_the_part(
+        count in 1..=3_u32,
+        chord in 80_000.0..600_000.0,
+        thick in 0.04..0.3,
+        degrees in 0.0..360.0,
+    ) {
+        let wing = wing(chord, thick, degrees);
+        let Walls { walls, .. } = made(&wing, &params(count));
+        for wall in walls.iter().filter(|wall| wall.closed) {
+            let crosses = crosses(&wall.path);
+            prop_assert!(!crosses && double_area(&wall.path) > 0, "depth {}", wall.depth);
+        }
+        let loops: Vec<Wall> = walls.into_iter().filter(|wall| wall.closed).collect();
+        prop_assert!(outside(&wing, &loops) < 1_000.0, "{}", outside(&wing, &loops));
+    }
 }

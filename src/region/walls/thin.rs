@@ -20,11 +20,11 @@ const ROUNDING: Coord = 20;
 
 /// Passes may be this much (5 µm) nearer to each other. So a wall of exactly the limit gets one
 /// bead on every layer, whichever way its contours were rounded.
-const LIMIT: Coord = 50;
+pub(super) const LIMIT: Coord = 50;
 
 /// Room in line widths from which on one more loop fits inside another: its two passes then are
 /// three quarters of a line wide.
-const ONE_MORE: f64 = 1.5;
+pub(super) const ONE_MORE: f64 = 1.5;
 
 /// Whether a layer may have such thin places, given its contours and its inside on two crossing
 /// rasters. This is a cheap test to skip most layers: a thin place longer than a few lines has
