@@ -24,12 +24,10 @@ const HALVINGS: usize = 7;
 
 /// The loops of the dots among `contours`, and the other contours. `None` if there are no dots.
 pub(super) fn dots(contours: &[Contour], params: &WallParams) -> Option<(Vec<Wall>, Vec<Contour>)> {
-    let has_hole = |k: usize| {
-        let mut others = contours.iter().enumerate().filter(|(j, _)| *j != k);
-        others.any(|(_, other)| encloses(edges(&contours[k]), other[0]))
-    };
-    let found = |(k, contour)| radius(contour, params).filter(|_| !has_hole(k));
-    let radii: Vec<Option<f64>> = contours.iter().enumerate().map(found).collect();
+    let holes: Vec<&Contour> = contours.iter().filter(|c| double_area(c) < 0).collect();
+    let has_hole = |contour| holes.iter().any(|hole| encloses(edges(contour), hole[0]));
+    let found = |contour| radius(contour, params).filter(|_| !has_hole(contour));
+    let radii: Vec<Option<f64>> = contours.iter().map(found).collect();
     if radii.iter().all(Option::is_none) {
         return None;
     }
@@ -65,7 +63,8 @@ fn radius(contour: &Contour, params: &WallParams) -> Option<f64> {
 fn loops(contour: &Contour, radius: f64, params: &WallParams) -> Vec<Wall> {
     let half = radius + params.outside();
     let count = (1..params.count).find(|&n| 2.0 * half < params.room_of_loops(n));
-    let count = count.unwrap_or(params.count);
+    let narrow = (half / params.narrowest) as u32;
+    let count = count.unwrap_or(params.count).min(narrow).max(1);
     let even = half / f64::from(count);
     let width = even.max(params.narrowest);
     let inset = |depth: u32| {
