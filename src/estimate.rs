@@ -13,7 +13,7 @@
 //! - Dwells (G4) are timed, and belong to no role.
 
 use crate::motion::{Clock, Junction, Limits, Move, Timed};
-use crate::reader::{self, Cause, Change, Event, Heights, Motion, Role, Summary, Wait};
+use crate::reader::{self, Cause, Change, Event, Firmware, Heights, Motion, Role, Summary, Wait};
 use serde::Serialize;
 use std::f64::consts::PI;
 use std::io::BufRead;
@@ -22,12 +22,14 @@ use std::io::BufRead;
 pub const SCHEMA: u32 = 1;
 
 /// What an estimate depends on besides the file and the machine's limits.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
     /// Diameter of the filament, mm.
     pub filament_diameter: f64,
     /// Whether the file's own limits are ignored, so that files can be compared.
     pub fixed_limits: bool,
+    /// Whose rules the file is read by.
+    pub firmware: Firmware,
 }
 
 /// How long a print takes.
@@ -110,7 +112,7 @@ pub fn estimate(
     options: Options,
 ) -> Result<Estimate, reader::Error> {
     let mut meter = Meter::new(limits, options);
-    let summary = reader::read(source, &mut |_, event| meter.event(event))
+    let summary = reader::read(source, options.firmware, &mut |_, event| meter.event(event))
         .map_err(|error| Cause::Unreadable(error).of(file))?;
     meter.clock.finish();
     meter.collect();

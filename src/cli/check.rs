@@ -10,7 +10,7 @@ use slicer::check::{self, Measures, Model, Verdict};
 use slicer::mesh::Bed;
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
-use slicer::reader::{Cause, Print};
+use slicer::reader::{Cause, Firmware, Print};
 use slicer::warning::plural;
 use std::path::Path;
 
@@ -32,7 +32,9 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     };
     let (name, mut source) = input::open(&args.file)?;
     let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
-    let print = Print::read(&mut source, diameter).map_err(|e| Cause::Unreadable(e).of(name))?;
+    let firmware = given.as_ref().map_or_else(Firmware::default, |p| input::firmware(&p.settings));
+    let print = Print::read_as(&mut source, firmware, diameter)
+        .map_err(|e| Cause::Unreadable(e).of(name))?;
     if print.layers.is_empty() {
         return Err(Cause::NoLine.of(name).into());
     }

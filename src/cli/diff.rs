@@ -106,7 +106,7 @@ fn print((name, bytes): &(&str, Vec<u8>)) -> Result<Print> {
 
 fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Result<Side> {
     let settings = &clock.settings;
-    let options = Options { filament_diameter: settings.filament.diameter, fixed_limits: false };
+    let options = Options { filament_diameter: settings.filament.diameter, ..Options::default() };
     let time = estimate(&mut bytes.as_slice(), name, &Limits::new(settings), options)?;
     Ok(Side::new(bytes, print, time))
 }

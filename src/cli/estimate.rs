@@ -16,8 +16,11 @@ use std::path::Path;
 pub(super) fn run(args: &EstimateArgs) -> Result<String> {
     let profile = profile::load(&args.profile, &words::set_overrides(&args.set)?)?;
     let settings = &profile.settings;
-    let options =
-        Options { filament_diameter: settings.filament.diameter, fixed_limits: args.fixed_limits };
+    let options = Options {
+        filament_diameter: settings.filament.diameter,
+        fixed_limits: args.fixed_limits,
+        firmware: input::firmware(settings),
+    };
     let (name, mut source) = input::open(&args.file)?;
     let found = estimate::estimate(&mut source, name, &Limits::new(settings), options)?;
     if args.json {

@@ -1,5 +1,7 @@
 //! Path -> bytes of a G-code file, from a file or from standard input.
 
+use slicer::profile::{DialectName, Settings};
+use slicer::reader::Firmware;
 use slicer::reader::{Cause, Error};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read as _};
@@ -29,4 +31,12 @@ pub(super) fn read(file: &str) -> Result<(&str, Vec<u8>), Error> {
     let mut bytes = Vec::new();
     source.read_to_end(&mut bytes).map_err(|error| Cause::Unreadable(error).of(name))?;
     Ok((name, bytes))
+}
+
+/// The firmware by whose rules files for a machine are read.
+pub(super) fn firmware(settings: &Settings) -> Firmware {
+    match settings.machine.dialect {
+        DialectName::Marlin => Firmware::Marlin,
+        DialectName::Klipper | DialectName::Makerbot => Firmware::Other,
+    }
 }

@@ -202,7 +202,9 @@ fn model_itself(args: &PreviewArgs, format: Format) -> Result<()> {
 fn read(args: &PreviewArgs) -> Result<(&str, Print)> {
     let profile = profile::load(&args.profile, &words::set_overrides(&args.set)?)?;
     let (name, mut source) = input::open(&args.file)?;
-    let print = Print::read(&mut source, profile.settings.filament.diameter)
+    let settings = &profile.settings;
+    let firmware = input::firmware(settings);
+    let print = Print::read_as(&mut source, firmware, settings.filament.diameter)
         .map_err(|error| Cause::Unreadable(error).of(name))?;
     if layer::frame(&print, &print.layers).is_empty() {
         return Err(Cause::NothingToDraw.of(name).into());

@@ -20,7 +20,7 @@ pub(super) fn write(file: &str, out: &Path, settings: &Settings) -> Result<Strin
     let mut sink = Sink::open(out)?;
     let (name, bytes) = input::read(file)?;
     let diameter = settings.filament.diameter;
-    let options = Options { filament_diameter: diameter, fixed_limits: false };
+    let options = Options { filament_diameter: diameter, ..Options::default() };
     let estimate = estimate::estimate(&mut &bytes[..], name, &Limits::new(settings), options)?;
     let print = Print::read(&mut &bytes[..], diameter)
         .map_err(|error| Cause::Unreadable(error).of(name))?;

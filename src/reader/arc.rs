@@ -1,4 +1,4 @@
-//! G2 and G3 -> points on the arc, about a millimetre apart.
+//! G2 and G3 -> points on the arc, a millimetre apart; further where the arc is nearly straight.
 
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::TAU;
@@ -7,8 +7,15 @@ use std::f64::consts::TAU;
 /// see corners that the printer does not drive.
 const PIECE_MM: f64 = 1.0;
 
-/// Most pieces of an arc, whatever its radius: a faulty file must not fill the memory.
-const MOST_PIECES: f64 = 100_000.0;
+/// How far pieces may leave the arc, mm. From a radius of 10 mm on, pieces of [`PIECE_MM`] leave it by
+/// less, and longer ones do as well: a faulty file with huge radii must not fill the memory.
+const TOLERANCE_MM: f64 = 0.0125;
+
+/// Most pieces of an arc, whatever its radius.
+const MOST_PIECES: f64 = 10_000.0;
+
+/// By how much half the chord may be longer than the radius, mm: both are rounded in files.
+const ROUNDING_MM: f64 = 0.01;
 
 /// An arc in the plane, from `from` to `to` around `middle`.
 #[derive(Debug, Clone, Copy)]
@@ -20,8 +27,8 @@ pub(super) struct Arc {
 }
 
 impl Arc {
-    /// The arc of this radius; a negative one is the long way round. `None` if the ends are
-    /// the same or too far apart.
+    /// The arc of this radius; a negative one is the long way round. Ends as far apart as two radii
+    /// make a half circle. `None` if they are the same or further apart.
     pub(super) fn by_radius(
         from: [f64; 2],
         to: [f64; 2],
@@ -31,8 +38,9 @@ impl Arc {
         let (start, end) = (Vector2::from(from), Vector2::from(to));
         let chord = end - start;
         let square = chord.norm_squared();
-        let beside = radius * radius / square - 0.25;
-        if !(square > 0.0 && beside >= 0.0) {
+        let is_far = 0.5 * square.sqrt() > radius.abs() + ROUNDING_MM;
+        let beside = (radius * radius / square - 0.25).max(0.0);
+        if !(square > 0.0 && beside.is_finite()) || is_far {
             return None;
         }
         let side = if clockwise == (radius > 0.0) { -beside.sqrt() } else { beside.sqrt() };
@@ -55,7 +63,8 @@ impl Arc {
             turn += TAU;
         }
         let radius = start.norm();
-        let pieces = (turn.abs() * radius / PIECE_MM).ceil().clamp(1.0, MOST_PIECES);
+        let piece = PIECE_MM.max((8.0 * TOLERANCE_MM * radius).sqrt());
+        let pieces = (turn.abs() * radius / piece).ceil().clamp(1.0, MOST_PIECES);
         let count = pieces as u32;
         (1..=count).map(move |k| {
             if k == count {
@@ -97,6 +106,14 @@ mod tests {
             let arc = Arc::by_radius([10.0, 0.0], [0.0, 10.0], radius, clockwise).unwrap();
             about(length(&arc), TAU * turn);
         }
+        // A radius that was rounded down.
+        for clockwise in [false, true] {
+            let arc = Arc::by_radius([0.0, 0.0], [10.0, 0.0], 4.9995, clockwise).unwrap();
+            about(length(&arc), TAU * 2.5);
+        }
+        let huge = Arc { from: [0.0; 2], to: [0.0; 2], middle: [99_999.0, 0.0], clockwise: true };
+        about(length(&huge), TAU * 99_999.0);
+        assert!(huge.points().count() < 7_000);
         assert!(Arc::by_radius([0.0, 0.0], [10.0, 0.0], 4.0, true).is_none());
         assert!(Arc::by_radius([0.0, 0.0], [0.0, 0.0], 4.0, true).is_none());
     }

@@ -57,6 +57,21 @@ pub(super) fn heating(code: &[u8]) -> Option<Heating> {
     }
 }
 
+/// The temperature that a G10 of RepRapFirmware with these words sets for a tool, if it does.
+pub(super) fn of_tool(words: words::Words<'_>) -> Option<Heating> {
+    let (mut celsius, mut tool) = (None, None);
+    for (letter, value) in words {
+        match letter {
+            b'L' => return None,
+            b'S' => celsius = value,
+            b'P' => tool = value.filter(|value| *value >= 0.0).map(|value| value as u32),
+            _ => {}
+        }
+    }
+    let heater = Heater::Nozzle(tool);
+    celsius.map(|_| Heating { heater, celsius, waits: false })
+}
+
 /// SET_HEATER_TEMPERATURE and TEMPERATURE_WAIT.
 fn klipper(code: &[u8]) -> Option<Heating> {
     let mut words = code.split(u8::is_ascii_whitespace);

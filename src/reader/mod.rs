@@ -106,12 +106,27 @@ pub struct Summary {
     pub firmware_retractions: u64,
 }
 
+/// Whose rules a file is read by, where firmwares differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Firmware {
+    /// Filament is relative after M83 or G91: Klipper and most others.
+    #[default]
+    Other,
+    /// G90 and G91 say so of the filament as well, and the last of M82, M83, G90 and G91 counts:
+    /// Marlin 2.
+    Marlin,
+}
+
 /// Reads G-code and hands each event to `sink` with its line, counted from 1, in the file's order.
 ///
 /// # Errors
 /// Only what reading the bytes gives: no content is an error.
-pub fn read(source: &mut dyn BufRead, sink: &mut dyn FnMut(u64, Event)) -> io::Result<Summary> {
-    let mut state = state::State::default();
+pub fn read(
+    source: &mut dyn BufRead,
+    firmware: Firmware,
+    sink: &mut dyn FnMut(u64, Event),
+) -> io::Result<Summary> {
+    let mut state = state::State::new(firmware);
     let mut layers = layers::Layers::default();
     let mut number = 0;
     lines::each(source, &mut |line| {

@@ -14,7 +14,7 @@
 //! Then each line gets its width and height: from comments where the file has them, else the height
 //! of the layer, and the width that its plastic fills at that height.
 
-use super::{Event, Heating, Heights, Motion, Role, Summary};
+use super::{Event, Firmware, Heating, Heights, Motion, Role, Summary};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::io::{self, BufRead};
@@ -37,6 +37,10 @@ const DIAMETERS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
 /// Height of a line where neither a comment nor a layer below gives one, mm: the most usual one.
 const SOME_HEIGHT: f64 = 0.2;
+
+/// No line is higher than this, mm: twice what the widest nozzles print. A layer that lies higher
+/// above the one before, or above the bed, hangs.
+const HIGHEST: f64 = 2.0;
 
 /// A whole G-code file.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -153,11 +157,25 @@ impl Print {
     /// Reads a whole file. `filament_diameter`, in mm, gives the widths of lines without a comment,
     /// unless the file has a diameter of its own.
     ///
+    /// As [`Self::read_as`] for no firmware in particular.
+    ///
     /// # Errors
     /// Only what reading the bytes gives: no content is an error.
     pub fn read(source: &mut dyn BufRead, filament_diameter: f64) -> io::Result<Self> {
+        Self::read_as(source, Firmware::default(), filament_diameter)
+    }
+
+    /// Reads a whole file by the rules of a firmware.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_as(
+        source: &mut dyn BufRead,
+        firmware: Firmware,
+        filament_diameter: f64,
+    ) -> io::Result<Self> {
         let mut builder = Builder::default();
-        let summary = super::read(source, &mut |line, event| builder.event(line, event))?;
+        let summary = super::read(source, firmware, &mut |line, event| builder.event(line, event))?;
         Ok(builder.print(summary, filament_diameter))
     }
 
@@ -260,7 +278,8 @@ impl Builder {
         let area = PI * diameter * diameter / 4.0;
         let print = &mut self.print;
         let start = (&print.start, SOME_HEIGHT);
-        let layers = print.layers.iter().map(|layer| (&layer.moves, layer.height));
+        let height = |rise: f64| if rise > HIGHEST { SOME_HEIGHT } else { rise };
+        let layers = print.layers.iter().map(|layer| (&layer.moves, height(layer.height)));
         for (range, height) in std::iter::once(start).chain(layers) {
             print.moves[range.clone()].iter_mut().for_each(|step| step.measure(height, area));
         }

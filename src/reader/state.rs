@@ -1,11 +1,13 @@
 //! Words -> where the nozzle goes: modes, units, positions and feeds as a firmware keeps them.
 //!
 //! The state of a printer after the lines so far, and the events that the next line makes of it:
-//! - positions are absolute (G90) or relative (G91), the filament's too (M82, M83), in mm (G21) or
-//!   inches (G20); G92 sets them without a move;
+//! - positions are absolute (G90) or relative (G91), the filament's too (M82, M83; see [`Firmware`]),
+//!   in mm (G21) or inches (G20); G92 sets them without a move;
 //! - an axis that was sent to an end stop whose place only the printer knows is unknown (`None`)
 //!   until the file names one; the move there counts as one of no length;
 //! - F holds until the next F, times M220's factor;
+//! - Sailfish counts the filament of its two tools apart, as A and B; there E is the current tool's.
+//!   Elsewhere all tools share one counter;
 //! - role, width and height hold from one comment to the next;
 //! - arcs (G2, G3) become straight pieces.
 //!
@@ -16,7 +18,7 @@ use super::arc::Arc;
 use super::heat;
 use super::marks::{Mark, mark};
 use super::words::{self, Code, Words};
-use super::{Change, Event, Motion, Role, Summary, Wait};
+use super::{Change, Event, Firmware, Motion, Role, Summary, Wait};
 use crate::units::{MmPerMin, MmPerS};
 
 /// Feed before the file names one: Marlin's.
@@ -36,10 +38,14 @@ const HARMLESS: &[u32] = &[
 ];
 
 pub(super) struct State {
+    firmware: Firmware,
     /// Where the nozzle is, mm; `None` where only the printer knows.
     at: [Option<f64>; 3],
-    /// Where the filament is, mm.
-    filament: f64,
+    /// Where the filament is, mm: of the first tool or of all, and of the second.
+    filament: [f64; 2],
+    /// The current tool, 0 or 1, and whether A and B count apart.
+    tool: usize,
+    counts_apart: bool,
     feed: MmPerS,
     /// M220, as a factor.
     feed_factor: f64,
@@ -56,8 +62,11 @@ pub(super) struct State {
 impl Default for State {
     fn default() -> Self {
         Self {
+            firmware: Firmware::default(),
             at: [Some(0.0); 3],
-            filament: 0.0,
+            filament: [0.0; 2],
+            tool: 0,
+            counts_apart: false,
             feed: FIRST_FEED,
             feed_factor: 1.0,
             unit: 1.0,
@@ -75,12 +84,17 @@ impl Default for State {
 #[derive(Default)]
 struct Target {
     axes: [Option<f64>; 3],
-    filament: Option<f64>,
+    /// A, B or E, and its number.
+    filament: Option<(u8, f64)>,
     /// I, J and R of an arc.
     arc: [Option<f64>; 3],
 }
 
 impl State {
+    pub(super) fn new(firmware: Firmware) -> Self {
+        Self { firmware, ..Self::default() }
+    }
+
     /// Reads the next line of the file.
     pub(super) fn line(&mut self, line: &[u8], sink: &mut dyn FnMut(Event)) {
         self.summary.lines += 1;
@@ -110,6 +124,10 @@ impl State {
         }
         if let Some(heating) = heat::heating(code) {
             sink(Event::Heating(heating));
+            // Sailfish's M6 changes the tool before it waits.
+            if let Some((Code { letter: b'M', number: 6, .. }, words)) = command {
+                self.change_tool(words);
+            }
             if heating.waits {
                 sink(Event::Wait(Wait::Heating));
             }
@@ -137,6 +155,11 @@ impl State {
             (b'G', 0 | 1) => self.straight(words, sink),
             (b'G', 2 | 3) => self.arc(words, code.number == 2, sink),
             (b'G', 4) => sink(Event::Dwell(dwell(words))),
+            (b'G', 10) if !retracts(words) => {
+                if let Some(heating) = heat::of_tool(words) {
+                    sink(Event::Heating(heating));
+                }
+            }
             (b'G', 10 | 11) => {
                 self.summary.firmware_retractions += 1;
                 sink(Event::FirmwareRetraction { back: code.number == 10 });
@@ -145,13 +168,19 @@ impl State {
             (b'G', 21) => self.unit = 1.0,
             (b'G', 28) => self.home(words, Some(0.0), sink),
             (b'G', 161 | 162) => self.home(words, None, sink),
-            (b'G', 90) => self.relative = false,
-            (b'G', 91) => self.relative = true,
+            (b'G', 90 | 91) => {
+                self.relative = code.number == 91;
+                if self.firmware == Firmware::Marlin {
+                    self.relative_filament = self.relative;
+                }
+            }
             (b'G', 92) => self.set_position(words),
             (b'G', 29 | 34 | 80) => sink(Event::Wait(Wait::Homing)),
-            (b'G', 17 | 54 | 130) | (b'T', _) => {}
+            (b'G', 17 | 54 | 130) => {}
+            (b'T', tool) => self.tool = (tool as usize).min(1),
             (b'M', 82) => self.relative_filament = false,
             (b'M', 83) => self.relative_filament = true,
+            (b'M', 108 | 135) => self.change_tool(words),
             // Only the printer knows where its end stops are.
             (b'M', 132) => self.forget(words, None),
             (b'M', 191 | 303) => sink(Event::Wait(Wait::Heating)),
@@ -207,8 +236,7 @@ impl State {
                 b'X' => target.axes[0] = Some(value),
                 b'Y' => target.axes[1] = Some(value),
                 b'Z' => target.axes[2] = Some(value),
-                // The two extruders of Sailfish by their own names.
-                b'E' | b'A' | b'B' => target.filament = Some(value),
+                b'E' | b'A' | b'B' => target.filament = Some((letter, value)),
                 b'I' => target.arc[0] = Some(value),
                 b'J' => target.arc[1] = Some(value),
                 b'R' => target.arc[2] = Some(value),
@@ -229,13 +257,33 @@ impl State {
     }
 
     /// How far the filament is to move, mm.
-    fn push_filament(&mut self, value: Option<f64>) -> f64 {
-        let Some(value) = value else { return 0.0 };
-        if self.relative || self.relative_filament {
-            self.filament += value;
+    fn push_filament(&mut self, to: Option<(u8, f64)>) -> f64 {
+        let Some((letter, value)) = to else { return 0.0 };
+        let counter = self.counter(letter);
+        let by_axes = self.relative && self.firmware != Firmware::Marlin;
+        if by_axes || self.relative_filament {
+            self.filament[counter] += value;
             return value;
         }
-        value - std::mem::replace(&mut self.filament, value)
+        value - std::mem::replace(&mut self.filament[counter], value)
+    }
+
+    /// The counter that E, A or B is.
+    fn counter(&mut self, letter: u8) -> usize {
+        self.counts_apart |= letter != b'E';
+        match letter {
+            b'A' => 0,
+            b'B' => 1,
+            _ if self.counts_apart => self.tool,
+            _ => 0,
+        }
+    }
+
+    fn change_tool(&mut self, words: Words<'_>) {
+        let mut tools = words.filter_map(|(letter, value)| value.filter(|_| letter == b'T'));
+        if let Some(tool) = tools.next() {
+            self.tool = usize::from(tool >= 1.0);
+        }
     }
 
     fn go(&mut self, to: [Option<f64>; 3], filament: f64, sink: &mut dyn FnMut(Event)) {
@@ -281,13 +329,16 @@ impl State {
                 b'X' => self.at[0] = Some(value),
                 b'Y' => self.at[1] = Some(value),
                 b'Z' => self.at[2] = Some(value),
-                b'E' | b'A' | b'B' => self.filament = value,
+                b'E' | b'A' | b'B' => {
+                    let counter = self.counter(letter);
+                    self.filament[counter] = value;
+                }
                 _ => continue,
             }
             any = true;
         }
         if !any {
-            (self.at, self.filament) = ([Some(0.0); 3], 0.0);
+            (self.at, self.filament) = ([Some(0.0); 3], [0.0; 2]);
         }
     }
 
@@ -298,6 +349,16 @@ impl State {
             }
         }
     }
+}
+
+/// Whether G10 pulls filament back. RepRapFirmware sets a tool's temperatures (P, R, S) and offsets (an
+/// axis) with it, and a workplace with L; Marlin's S of 0 or 1 says how far to pull back.
+fn retracts(words: Words<'_>) -> bool {
+    let mut words = words.filter(|(letter, _)| b"LPRSXYZUVW".contains(letter));
+    let is_length = |(letter, value): (u8, Option<f64>)| {
+        letter == b'S' && value.is_some_and(|value| (0.0..=1.0).contains(&value))
+    };
+    words.next().is_none_or(is_length) && words.next().is_none()
 }
 
 /// Seconds that G4 waits: P in milliseconds, S in seconds.

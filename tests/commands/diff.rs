@@ -46,7 +46,7 @@ fn gcode(model: &Model) -> String {
 fn side(text: &str) -> Side {
     let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
     let limits = Limits::new(&settings("generic-marlin", &[]));
-    let options = Options { filament_diameter: 1.75, fixed_limits: false };
+    let options = Options { filament_diameter: 1.75, ..Options::default() };
     let time = estimate(&mut text.as_bytes(), "x", &limits, options).unwrap();
     Side::new(text.as_bytes(), print, time)
 }

@@ -29,7 +29,7 @@ fn limits() -> Limits {
 }
 
 fn of_text(text: &str, limits: &Limits, fixed_limits: bool) -> Estimate {
-    let options = Options { filament_diameter: 1.75, fixed_limits };
+    let options = Options { filament_diameter: 1.75, fixed_limits, ..Options::default() };
     estimate(&mut text.as_bytes(), "x.gcode", limits, options).unwrap()
 }
 

@@ -30,7 +30,7 @@ fn print(gcode: &[u8]) -> Print {
 
 fn page(gcode: &[u8], name: &str) -> String {
     let limits = Limits::new(&slicer::profile::load(["generic-marlin"], &[]).unwrap().settings);
-    let options = Options { filament_diameter: FILAMENT, fixed_limits: false };
+    let options = Options { filament_diameter: FILAMENT, ..Options::default() };
     let estimate = estimate(&mut &gcode[..], name, &limits, options).unwrap();
     let mut page = Vec::new();
     html::write(&print(gcode), &estimate, name, FILAMENT, &mut page).unwrap();

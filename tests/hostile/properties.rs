@@ -110,7 +110,7 @@ pub(crate) fn gcode(bytes: &[u8]) {
     let settings = settings(&[]);
     let print = Print::read(&mut &*bytes, 1.75).unwrap();
     drop(check::check(&print, &Terms::new(Some(&settings), None, &print), None));
-    let options = estimate::Options { filament_diameter: 1.75, fixed_limits: false };
+    let options = estimate::Options { filament_diameter: 1.75, ..estimate::Options::default() };
     let time = || estimate(&mut &*bytes, "x.gcode", &Limits::new(&settings), options);
     let (a, b) = match (time(), time()) {
         (Ok(a), Ok(b)) => (a, b),

@@ -186,7 +186,7 @@ fn an_estimate_of_the_file_agrees() {
             // Without the end block, which would count as part of the last layer.
             let end = run.text.rfind(";TYPE:Custom").unwrap();
             let options =
-                Options { filament_diameter: run.settings.filament.diameter, fixed_limits: false };
+                Options { filament_diameter: run.settings.filament.diameter, ..Options::default() };
             let limits = Limits::new(&run.settings);
             let text = &run.text.as_bytes()[..end];
             let read = estimate(&mut &text[..], "test", &limits, options).unwrap();

@@ -41,7 +41,7 @@ fn read(text: &str) -> Print {
 
 fn times(text: &str) -> Estimate {
     let settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
-    let options = Options { filament_diameter: 1.75, fixed_limits: false };
+    let options = Options { filament_diameter: 1.75, ..Options::default() };
     estimate::estimate(&mut text.as_bytes(), "bent", &Limits::new(&settings), options).unwrap()
 }
 

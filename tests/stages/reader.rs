@@ -3,12 +3,17 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use proptest::prelude::*;
-use slicer::reader::{self, Event, Heater, Heating, Motion, Role, Summary, Wait};
+use slicer::reader::{self, Event, Firmware, Heater, Heating, Motion, Role, Summary, Wait};
 
 fn read(bytes: &[u8]) -> (Vec<Event>, Summary) {
+    read_as(bytes, Firmware::Other)
+}
+
+fn read_as(bytes: &[u8], firmware: Firmware) -> (Vec<Event>, Summary) {
     let mut events = Vec::new();
     let mut source = bytes;
-    let summary = reader::read(&mut source, &mut |_, event| events.push(event)).unwrap();
+    let mut sink = |_, event| events.push(event);
+    let summary = reader::read(&mut source, firmware, &mut sink).unwrap();
     (events, summary)
 }
 
@@ -52,8 +57,31 @@ fn filament_is_absolute_or_relative_too() {
     assert_eq!(filament("G1 X1 E2\nG1 X2 E3\nG92 E0\nG1 X3 E0.5"), [2.0, 1.0, 0.5]);
     assert_eq!(filament("M83\nG1 X1 E2\nG1 X2 E3\nM82\nG1 X3 E6"), [2.0, 3.0, 1.0]);
     assert_eq!(filament("G91\nG1 X1 E2\nG1 X1 E2\nG90\nM83\nG1 X9 E1"), [2.0, 2.0, 1.0]);
-    // Sailfish names its extruders.
+    let by = |firmware: Firmware, text: &str| -> f64 {
+        let pushed = |event| match event {
+            Event::Move(motion) => motion.filament,
+            _ => 0.0,
+        };
+        read_as(text.as_bytes(), firmware).0.into_iter().map(pushed).sum()
+    };
+    let absolute_after_all = "M83\nG90\nG1 X1 E2\nG1 X2 E2\nG1 X3 E3";
+    let absolute_on_the_way = "G91\nM82\nG1 X1 E2\nG1 X1 E2\nG1 X1 E3";
+    for text in [absolute_after_all, absolute_on_the_way] {
+        assert_eq!([Firmware::Marlin, Firmware::Other].map(|one| by(one, text)), [3.0, 7.0]);
+    }
+    assert_eq!(by(Firmware::Marlin, "G91\nG1 X1 E2\nG1 X1 E2\nG90\nM83\nG1 X9 E1"), 5.0);
+    // Sailfish names its extruders, and counts each apart; E is the current one's.
     assert_eq!(filament("G92 A0 B0\nG1 X1 B2\nG1 X2 B3"), [2.0, 1.0]);
+    assert_eq!(
+        filament("G92 A0 B0\nG1 X1 A10\nG1 X2 B9\nG1 X3 A20\nG1 X4 B19"),
+        [10.0, 9.0, 10.0, 10.0]
+    );
+    assert_eq!(
+        filament("G92 A0 B0\nM135 T1\nG1 X1 E5\nM6 T0\nG1 X2 E4\nM108 T1\nG1 X3 B7"),
+        [5.0, 4.0, 2.0]
+    );
+    // Elsewhere the tools share a counter.
+    assert_eq!(filament("T0\nG1 X1 E5\nT1\nG1 X2 E6"), [5.0, 1.0]);
 }
 
 #[test]
@@ -97,6 +125,8 @@ fn arcs_are_as_long_as_they_are() {
     near(length("G1 X10\nG2 X0 Y10 I-10 J0"), 10.0 + 3.0 * quarter);
     near(length("G1 X10\nG3 X0 Y10 R10"), 10.0 + quarter);
     near(length("G1 X10\nG3 X10 Y0 I-10 J0"), 10.0 + 4.0 * quarter);
+    // A half circle whose radius was rounded down.
+    near(length("G0 X100.123 Y50.456\nG2 X110.357 Y57.891 R6.324") - 112.116, 19.87);
     // A helix.
     near(length("G3 X0 Y0 I10 J0 Z30"), (16.0 * quarter * quarter + 900.0).sqrt());
     let pushed: f64 = filament("G1 X10\nG3 X0 Y10 I-10 J0 E3").iter().sum();
@@ -127,6 +157,25 @@ fn kinds_of_waits_are_distinguished_and_unknown_lines_counted() {
     let firmware = |back| Event::FirmwareRetraction { back };
     assert_eq!(events, [firmware(true), firmware(false), Event::Comment(b" back ".to_vec())]);
     assert_eq!(summary.firmware_retractions, 2);
+}
+
+#[test]
+fn g10_is_a_retraction_or_sets_a_tool_or_a_workplace() {
+    let event = |text: &str| read_without_commands(text).0;
+    for retraction in ["G10", "G10 S1", "G10 S0 ; short"] {
+        assert_eq!(event(retraction)[0], Event::FirmwareRetraction { back: true }, "{retraction}");
+    }
+    let tool = |tool, celsius| {
+        let heater = Heater::Nozzle(tool);
+        [Event::Heating(Heating { heater, celsius: Some(celsius), waits: false })]
+    };
+    assert_eq!(event("G10 P0 S210 R180"), tool(Some(0), 210.0));
+    assert_eq!(event("G10 S210 P1"), tool(Some(1), 210.0));
+    assert_eq!(event("G10 S210"), tool(None, 210.0));
+    assert_eq!(event("G10 P1 S0"), tool(Some(1), 0.0));
+    for offset in ["G10 P1 X0.5 Y-3", "G10 L2 P1 X0 Y0", "G10 L20 P1 X0 S9", "G10 P1 R150"] {
+        assert_eq!(event(offset), [], "{offset}");
+    }
 }
 
 #[test]
