@@ -2,6 +2,7 @@
 
 use super::Model;
 use super::against::{SOME_WIDTH, is_of_part, share_in};
+use super::capsule::Capsule;
 use super::finding::{Code, Finding, Findings, short};
 use super::part::Part;
 use super::rows::Lattice;
@@ -110,29 +111,39 @@ pub(super) fn place(
     Some(part)
 }
 
-/// What part of the outer walls lies along the model's outline.
+/// What part of the outer walls lies along the model's outline, or of the outline along outer walls:
+/// whichever is more. Files call inner walls that hang the same as outer ones, and leave thin places
+/// without walls.
 fn fit(print: &Print, part: &Part, has_roles: bool) -> f64 {
     let Some((low, high)) = part.extent() else { return 0.0 };
     let lattice = Lattice::new(ROWS.0, high[1] - low[1], ROWS.1);
     let every = print.layers.len().div_ceil(LAYERS_LOOKED_AT).max(1);
     let looked_at = print.layers.iter().enumerate().step_by(every);
-    let shares = looked_at.map(|(index, layer)| {
+    let mut shares = [[0.0; 2]; 2];
+    for (index, layer) in looked_at {
         let cut = part.section(index, lattice);
-        let mut band = cut.inside.or(&cut.along(lattice, BAND[0]));
+        let near = cut.along(lattice, BAND[0]);
+        let mut band = cut.inside.or(&near);
         if has_roles {
             band = band.minus(&cut.inside.minus(&cut.along(lattice, BAND[1])));
         }
-        let walls = print
-            .moves_of(layer)
-            .iter()
-            .filter(|step| step.is_line() && (step.role == Role::OuterWall || !has_roles));
-        walls.fold([0.0; 2], |[along, all], step| {
+        let steps = print.moves_of(layer).iter();
+        let walls = || {
+            let walls = |step: &&Step| step.role == Role::OuterWall || !has_roles;
+            steps.clone().filter(|step| step.is_line()).filter(walls)
+        };
+        for step in walls() {
             let length = step.length();
-            [along + length * share_in(step, lattice, &band), all + length]
-        })
-    });
-    let [along, all] = shares.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
-    if all > 0.0 { along / all } else { 0.0 }
+            shares[0][0] += length * share_in(step, lattice, &band);
+            shares[0][1] += length;
+        }
+        let rim = cut.inside.and(&near);
+        let walled = lattice.draw(walls().map(|step| Capsule::of(step, 1.0)));
+        shares[1][0] += lattice.area(&rim.and(&walled));
+        shares[1][1] += lattice.area(&rim);
+    }
+    let [of_walls, of_rim] = shares.map(|[along, all]| if all > 0.0 { along / all } else { 0.0 });
+    if has_roles { of_walls.max(of_rim) } else { of_walls }
 }
 
 /// How a layer's lines lie to the model's cut, by their extents.

@@ -7,8 +7,8 @@
 //! Whether a patch that begins in the air is a weak place or a failure is known only at the end: an
 //! island that grows together with what stands is held by it from then on, while a body that never
 //! does falls over. How bad that is is [`Floating`]'s rule, the same when slicing: a body of
-//! [`LEAST_BODY`](Floating::LEAST_BODY) of lines or more is an error, and so is a print that stands nowhere; a speck is a
-//! weak place.
+//! [`least_body`](Floating::least_body) of lines or more is an error, and so is a print that stands
+//! nowhere; a speck is a weak place.
 
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::sets::Sets;
@@ -98,6 +98,8 @@ impl Bodies {
     pub(super) fn report(mut self, found: &mut Findings) {
         let mut fallen: Vec<usize> = Vec::new();
         let stands_nowhere = !self.bodies.iter().any(|body| body.stands && body.is_part);
+        let roots = (0..self.bodies.len()).filter(|&body| self.sets.root(body) == body);
+        let all: f64 = roots.map(|body| self.bodies[body].length).sum();
         for (body, start) in std::mem::take(&mut self.starts) {
             let root = self.sets.root(body);
             let whole = self.bodies[root];
@@ -119,7 +121,7 @@ impl Bodies {
                     short(start.bottom),
                 );
                 // Support that falls over costs a surface, not the print.
-                let fails = stands_nowhere || whole.length >= Floating::LEAST_BODY;
+                let fails = stands_nowhere || whole.length >= Floating::least_body(all);
                 let of = if whole.is_part && fails { Finding::of } else { Finding::warning };
                 found.add(of(Code::Floating, whole.length, "mm", text).at(start.place));
             }
@@ -165,8 +167,10 @@ mod tests {
 
     #[test]
     fn a_speck_that_never_stands_is_a_weak_place_unless_nothing_stands() {
-        assert_eq!(judged(&[(9.0, &[0]), (499.0, &[])]), [(Severity::Warning, 499.0)]);
-        assert_eq!(judged(&[(9.0, &[0]), (500.0, &[])]), [(Severity::Error, 500.0)]);
+        assert_eq!(judged(&[(2e6, &[0]), (499.0, &[])]), [(Severity::Warning, 499.0)]);
+        assert_eq!(judged(&[(2e6, &[0]), (500.0, &[])]), [(Severity::Error, 500.0)]);
+        assert_eq!(judged(&[(20_000.0, &[0]), (9.0, &[])]), [(Severity::Warning, 9.0)]);
+        assert_eq!(judged(&[(20_000.0, &[0]), (11.0, &[])]), [(Severity::Error, 11.0)]);
         assert_eq!(judged(&[(9.0, &[0]), (3.0, &[])]), []);
         assert_eq!(judged(&[(9.0, &[])]), [(Severity::Error, 9.0)]);
     }

@@ -7,8 +7,7 @@
 //! - places outside the machine's volume;
 //! - speeds in x and y beyond the machine's, and more plastic per second than the hot end melts.
 //!   Speeds in z and of the filament alone are not judged: firmwares cap them, and slicers rely on
-//!   that. A line that rises is as slow as the cap on z makes it;
-//! - layers that lie lower than one before them.
+//!   that. A line that rises is as slow as the cap on z makes it.
 //!
 //! Commands are judged once each, by a list of what the firmware knows. Klipper's macros cannot be
 //! judged, and are listed as such.
@@ -121,10 +120,6 @@ struct Walk<'a> {
     pulled: f64,
     /// Whether the firmware has it pulled back.
     pulled_by_firmware: bool,
-    /// By how much the layer lies lower than one before it, mm, until that is reported.
-    fall: f64,
-    /// Height of the highest layer so far, mm.
-    highest: f64,
 }
 
 impl<'a> Walk<'a> {
@@ -142,8 +137,6 @@ impl<'a> Walk<'a> {
             is_cold_reported: false,
             pulled: 0.0,
             pulled_by_firmware: false,
-            fall: 0.0,
-            highest: 0.0,
         }
     }
 
@@ -162,9 +155,6 @@ impl<'a> Walk<'a> {
         let next = self.layer.map_or(0, |layer| layer + 1);
         if self.print.layers.get(next).is_some_and(|layer| layer.moves.start <= index) {
             self.layer = Some(next);
-            let z = self.print.layers[next].z;
-            self.fall = self.highest - z;
-            self.highest = self.highest.max(z);
         }
         let before = found.len();
         self.retraction(index, step, found);
@@ -172,9 +162,6 @@ impl<'a> Walk<'a> {
         if step.is_line() || self.printing.contains(&index) {
             self.volume(step, found);
             self.speed(step, found);
-        }
-        if step.is_line() && self.printing.contains(&index) {
-            self.falling(found);
         }
         // All of them lie where the move ends.
         let place = Place {
@@ -285,19 +272,4 @@ impl<'a> Walk<'a> {
             found.add(Finding::of(Code::TooMuchFlow, flow, "mm³/s", text));
         }
     }
-
-    /// Lines of a layer may go up and down, but layers go up. Lines that run into what is printed
-    /// are found where lines are piled up, see [`super::stack`].
-    fn falling(&mut self, found: &mut Findings) {
-        let fall = std::mem::take(&mut self.fall);
-        if fall > ROUNDING {
-            found.add(fallen(fall));
-        }
-    }
-}
-
-/// A line that lies `fall` mm lower than what is printed already.
-pub(super) fn fallen(fall: f64) -> Finding {
-    let text = format!("{} mm lower than what is printed already", short(fall));
-    Finding::of(Code::FallingZ, fall, "mm", text)
 }

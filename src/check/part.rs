@@ -22,7 +22,7 @@ use crate::geom::cells::Cells;
 use crate::geom::segment;
 use crate::geom::spans::{Rows, Span};
 use crate::mesh::Mesh;
-use crate::units::{UNITS_PER_MM, to_mm, to_units};
+use crate::units::{Coord, UNITS_PER_MM, to_mm, to_units};
 
 /// Planes lie on a grid with this many steps a mm: half of the mesh's units, so that a plane at a
 /// vertex's height is exactly the same number.
@@ -48,6 +48,14 @@ pub(super) struct Part {
 /// a thousandth.
 const NEAR_LEVEL: f64 = 1.5e-3;
 
+/// Bodies nearer to each other than this (0.01 mm) touch, grid units: their faces were rounded apart.
+const CLOSED: Coord = 100;
+
+/// How far beside an outline its sides are looked at, mm more than the distance of rows, and at which
+/// distances along it.
+const BESIDE: f64 = 0.02;
+const EVERY: f64 = 0.5;
+
 /// A stretch of an outline; the solid lies on the same side of all of them.
 type Segment = [[f64; 2]; 2];
 
@@ -56,7 +64,7 @@ type Segment = [[f64; 2]; 2];
 pub(super) struct Section {
     pub(super) inside: Rows,
     outline: Vec<Segment>,
-    /// Whether some of the outline lies inside another body.
+    /// Whether some of the outline lies inside another body, or on its outline.
     overlaps: bool,
     /// Whether the outline closes.
     pub(super) closes: bool,
@@ -201,7 +209,7 @@ impl Part {
         crossings
             .sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         let (mut closes, mut overlaps) = (true, false);
-        let mut spans = Vec::with_capacity(crossings.len() / 2);
+        let mut spans: Vec<(i32, Span)> = Vec::with_capacity(crossings.len() / 2);
         for row in crossings.chunk_by(|a, b| a.0 == b.0) {
             let mut winding = 0;
             for two in row.windows(2) {
@@ -209,13 +217,25 @@ impl Part {
                 winding += two[0].2;
                 overlaps |= before != 0 && winding != 0;
                 if winding != 0 {
-                    let span = Span::new(to_units(two[0].1), to_units(two[1].1));
-                    spans.extend(span.map(|span| (two[0].0, span)));
+                    let Some(span) = Span::new(to_units(two[0].1), to_units(two[1].1)) else {
+                        continue;
+                    };
+                    match spans.last_mut() {
+                        Some((row, last))
+                            if *row == two[0].0 && span.start - last.end <= CLOSED =>
+                        {
+                            last.end = span.end;
+                        }
+                        _ => spans.push((two[0].0, span)),
+                    }
                 }
             }
             closes &= winding + row.last().map_or(0, |last| last.2) == 0;
         }
-        Section { inside: united(&spans), outline, overlaps, closes }
+        let inside = united(&spans);
+        let is_inner = |segment: &Segment| is_inner(*segment, &inside, lattice);
+        overlaps = overlaps || outline.iter().any(is_inner);
+        Section { inside, outline, overlaps, closes }
     }
 
     /// The plane below that of a layer: of the layer before, or nearer where there is a gap.
@@ -243,6 +263,19 @@ impl Part {
         }
         winding == 0
     }
+}
+
+/// Whether some of a stretch of an outline has solid on both sides: bodies that touch by a face have.
+fn is_inner([from, to]: Segment, inside: &Rows, lattice: Lattice) -> bool {
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
+    let off = (BESIDE + lattice.pitch()) / length.max(f64::MIN_POSITIVE);
+    let across = [-off * way[1], off * way[0]];
+    let count = (length / EVERY).ceil().max(1.0);
+    (0..count as u32).any(|k| {
+        let at = segment::along(from, (f64::from(k) + 0.5) / count, way);
+        [-1.0, 1.0].iter().all(|side| lattice.has(inside, segment::along(at, *side, across)))
+    })
 }
 
 /// The triangles that each plane cuts.

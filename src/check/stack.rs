@@ -18,7 +18,6 @@ use super::anchors::{self, LEAST_RUN, Loose, Piece};
 use super::beads::place;
 use super::bodies::{Bodies, Start};
 use super::finding::{Code, Finding, Findings, Place, short};
-use super::moves::{ROUNDING, fallen};
 use super::part::Part;
 use super::pile::{Pile, lower_side};
 use super::runs::{Runs, Twice};
@@ -55,7 +54,7 @@ pub(super) struct Measured {
 pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) -> Measured {
     let mut measured = Measured::default();
     let Some(mut pile) = Pile::over(print) else { return measured };
-    let (mut bodies, mut highest) = (Bodies::default(), 0.0_f64);
+    let mut bodies = Bodies::default();
     let mut pieces = Vec::new();
     for (layer, one) in print.layers.iter().enumerate() {
         gap(print, (layer, part), found);
@@ -68,11 +67,10 @@ pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) ->
             .collect();
         let mut judge = Judge { layer, part, bodies: &mut bodies, found, measured: &mut measured };
         judge.patches(&lines, &mut pile);
-        // A layer that falls as a whole is reported where moves are judged one by one.
-        if let Some((fall, step)) = pile.fall.take().filter(|_| one.z >= highest - ROUNDING) {
-            found.add(fallen(fall).at(place(layer, &step)));
+        if let Some((fall, step)) = pile.fall.take() {
+            let text = format!("{} mm lower than what is printed already", short(fall));
+            found.add(Finding::of(Code::FallingZ, fall, "mm", text).at(place(layer, &step)));
         }
-        highest = highest.max(one.z);
         pile.raise(chains());
     }
     bodies.report(found);

@@ -11,6 +11,7 @@ mod mend;
 mod motion;
 mod reader;
 mod rounding;
+mod sound;
 mod stl;
 mod tour;
 mod weak;
