@@ -137,9 +137,10 @@ pub enum Hanging {
     /// Nothing is printed on some layers, but on others above them.
     #[error(
         "nothing is printed on {}, so that what is above would hang {gap_mm:.2} mm over the {}: the \
-         part is missing or too thin there; print with --support{}",
+         part is missing or too thin there; {}{}",
         layers(*.from, *.until),
         if *.from_bed { "bed" } else { "layer below" },
+        carried(*.kept_away),
         if *.from_bed { format!(", or cut off the bottom with --sink {gap_mm:.2}") } else { String::new() }
     )]
     EmptyLayers {
@@ -151,12 +152,15 @@ pub enum Hanging {
         gap_mm: f64,
         /// They lie on the bed.
         from_bed: bool,
+        /// Support is asked for, but this setting keeps it away.
+        kept_away: Option<&'static str>,
     },
     /// A whole body stands on nothing.
     #[error(
         "a body begins in the air on layer {layer}, {above_bed_mm:.2} mm above the bed at x {:.1} y \
-         {:.1}, and stands on nothing: print with --support{}",
+         {:.1}, and stands on nothing: {}{}",
         .at_mm[0], .at_mm[1],
+        carried(*.kept_away),
         if *.above_bed_mm > MOST_SINK_MM { String::new() } else {
             format!(", or cut off the bottom with --sink {above_bed_mm:.2}")
         }
@@ -170,12 +174,14 @@ pub enum Hanging {
         above_bed_mm: f64,
         /// Place in the machine's coordinates, mm.
         at_mm: [f64; 2],
+        /// Support is asked for, but this setting keeps it away.
+        kept_away: Option<&'static str>,
     },
     /// Islands begin in the air that meet the part further up.
     #[error(
         "{length_mm:.0} mm of lines begin in the air at {}, first on layer {layer} at {z_mm:.2} mm, x \
-         {:.1} y {:.1}: print with --support, or turn the part with --rotate",
-        plural(*.places as u64, "place"), .at_mm[0], .at_mm[1]
+         {:.1} y {:.1}: {}, or turn the part with --rotate",
+        plural(*.places as u64, "place"), .at_mm[0], .at_mm[1], carried(*.kept_away)
     )]
     Places {
         /// Number of islands.
@@ -188,7 +194,17 @@ pub enum Hanging {
         z_mm: f64,
         /// Its place in the machine's coordinates, mm.
         at_mm: [f64; 2],
+        /// Support is asked for, but this setting keeps it away.
+        kept_away: Option<&'static str>,
     },
+}
+
+/// How what hangs may be carried, where this setting keeps support away.
+fn carried(kept_away: Option<&'static str>) -> String {
+    match kept_away {
+        None => "print with --support".to_owned(),
+        Some(key) => format!("{key} keeps support away there; set another"),
+    }
 }
 
 /// Such as `layer 3` or `layers 3 to 5`.

@@ -49,11 +49,16 @@ pub enum Warning {
         z_mm: f64,
         /// Its place in the machine's coordinates, mm.
         at_mm: [f64; 2],
+        /// Support is asked for, but this setting keeps it away.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        kept_away: Option<String>,
     },
     /// Lines that are printed in the air, since the part has nothing below them.
     PartHangs {
         /// Their length, mm.
         length_mm: f64,
+        /// Whether support is asked for.
+        supported: bool,
     },
     /// Bytes after the last triangle of a binary STL.
     TrailingBytes {
@@ -115,16 +120,23 @@ impl fmt::Display for Warning {
                  min_feature or nozzle",
                 plural(*layers as u64, "layer")
             ),
-            Self::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm: [x, y] } => write!(
-                f,
-                "{length_mm:.0} mm of lines begin in the air at {}, first on layer {layer} at \
-                 {z_mm:.2} mm, x {x:.1} y {y:.1}; use --support, or turn the part with --rotate",
-                plural(*places as u64, "place")
-            ),
-            Self::PartHangs { length_mm } => write!(
+            Self::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm: [x, y], kept_away } => {
+                let way = kept_away.as_ref().map_or_else(
+                    || "use --support".to_owned(),
+                    |key| format!("{key} keeps support away there; set another"),
+                );
+                write!(
+                    f,
+                    "{length_mm:.0} mm of lines begin in the air at {}, first on layer {layer} at \
+                     {z_mm:.2} mm, x {x:.1} y {y:.1}; {way}, or turn the part with --rotate",
+                    plural(*places as u64, "place")
+                )
+            }
+            Self::PartHangs { length_mm, supported } => write!(
                 f,
                 "{length_mm:.0} mm of lines begin in the air, where the part has nothing below; \
-                 use --support, or turn the part with --rotate"
+                 {}turn the part with --rotate",
+                if *supported { "" } else { "use --support, or " }
             ),
             Self::TrailingBytes { file, count } => {
                 write!(f, "{file}: ignored {} after the last triangle", plural(*count, "byte"))

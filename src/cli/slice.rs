@@ -4,7 +4,7 @@ use super::args::SliceArgs;
 use super::failure::Output;
 use super::output::{self, Sink};
 use super::words;
-use super::{check, failure, interrupt, progress, say, summary, usage};
+use super::{check, failure, input, interrupt, progress, say, summary, usage};
 use anyhow::{Context as _, Result};
 use slicer::check::terms::Terms;
 use slicer::error::Error;
@@ -165,14 +165,17 @@ fn slice_and_check(
     }
     let print = sink
         .read_back()
-        .and_then(|mut source| Print::read(&mut source, settings.filament.diameter))
+        .and_then(|mut source| {
+            Print::read_as(&mut source, input::firmware(settings), settings.filament.diameter)
+        })
         .with_context(|| Output { file: out.to_owned(), action: "cannot read back" })?;
     let terms = Terms::new(Some(settings), Some(settings), &print);
     let model = slicer::check::Model { mesh: &placed.mesh, offset: placed.offset };
     let verdict = slicer::check::check(&print, &terms, Some(model));
     let length_mm = verdict.measures.part_hangs_mm;
     if length_mm > 0.0 {
-        report.warnings.push(Warning::PartHangs { length_mm });
+        let supported = settings.support.enabled;
+        report.warnings.push(Warning::PartHangs { length_mm, supported });
     }
     report.check = Some(verdict);
     Ok(report)

@@ -13,8 +13,8 @@ Findings, each with a stable code, a place and a measure:
   falling-z            a line lower than what is printed already
   in-the-air           lines that hold on to one another, but stand on nothing
   floating             lines that begin a body, or an island of one, with nothing printed below; an
-                       error where a body of 500 mm of lines or more, or the whole print, never
-                       stands on the bed, else a warning, as when slicing
+                       error where a body of more than a 2000th of the lines (8 to 500 mm), or the
+                       whole print, never stands on the bed, else a warning, as when slicing
   unanchored         * over 3 mm of a line over nothing with a free end, along a void that it should
                        cross, or, of a wall, in a bow
   printed-twice        a line on the middle of another of its layer, over 10 mm or most of it

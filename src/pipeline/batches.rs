@@ -3,7 +3,8 @@
 //! All code that names the numbers of `region`, `fill` and `plan` stands here and in no other file of
 //! the pipeline.
 
-use super::footing::{Footing, Footprint, footprint};
+use super::footing::Footing;
+use super::footprint::{Footprint, Rules, footprint};
 use crate::error::Result;
 use crate::fill::{self, FillParams};
 use crate::gcode::Writer;
@@ -29,6 +30,7 @@ const AHEAD: usize = 2;
 /// What the settings mean for `region`, `fill` and `plan`.
 pub struct Setup {
     region: RegionParams,
+    rules: Rules,
     support: Option<SupportParams>,
     grouping: Grouping,
     fill: FillParams,
@@ -39,8 +41,14 @@ impl Setup {
     /// The numbers that `settings` mean, for layers at `heights`.
     #[must_use]
     pub fn new(settings: &Settings, heights: &Heights) -> Self {
+        let mut region = RegionParams::new(settings);
+        // No more can be skin than there is; each layer looks at as many neighbours as this.
+        let most = heights.count();
+        (region.skins.top, region.skins.bottom) =
+            (region.skins.top.min(most), region.skins.bottom.min(most));
         Self {
-            region: RegionParams::new(settings),
+            region,
+            rules: Rules::new(settings),
             support: SupportParams::new(settings),
             grouping: Grouping::new(&settings.dual, settings.dual_ratio()),
             fill: FillParams::new(settings, heights),
@@ -61,6 +69,7 @@ impl Setup {
             .map(|s| window::Support { patterns: s.patterns(), layers: supports(slicer, &s, bed) });
         let window = Window::new(slicer, &self.region, &self.grouping, supports);
         let orderer = Orderer {
+            rules: self.rules,
             fill: &self.fill,
             plan: &self.plan,
             head: Head::default(),
@@ -108,6 +117,7 @@ impl Iterator for Planner<'_> {
 
 /// Fills regions and orders the paths of layer after layer.
 struct Orderer<'a> {
+    rules: Rules,
     fill: &'a FillParams,
     plan: &'a PlanParams,
     /// Where the head is after the layers so far.
@@ -118,10 +128,10 @@ struct Orderer<'a> {
 
 impl Orderer<'_> {
     fn toolpaths(&mut self, regions: &[Region]) -> Vec<Toolpath> {
-        let (fill, plan) = (self.fill, self.plan);
+        let (fill, plan, rules) = (self.fill, self.plan, self.rules);
         let unordered = |region: &Region| {
             let paths = fill::paths(region, fill);
-            (footprint(region, &paths), Unordered::new(paths, &region.layer.contours))
+            (footprint(region, &paths, rules), Unordered::new(paths, &region.layer.contours))
         };
         let unordered: Vec<(Footprint, Unordered)> = regions.par_iter().map(unordered).collect();
         // The end of a layer decides where the next begins, so that they are ordered in sequence.

@@ -1,143 +1,69 @@
 //! Paths of successive layers -> Footing: what begins in the air, judged on what is printed.
 //!
 //! Words:
-//! - An *island* is one outer contour with the paths inside it. It is *printed* if there are any.
-//! - Two islands of successive layers *touch* if they share an area.
+//! - An *island* is one outer contour with its holes and the paths inside it; it *touches* another
+//!   if they share an area: see [`footprint`](super::footprint).
 //! - A *body* is all printed islands that touch each other, directly or through others. It *stands*
 //!   if one of its islands is on the first layer or on support.
 //! - An island *begins in the air* if it touches no printed island below and no support.
 //!
-//! Algorithm: [`footprint`] looks at each layer alone, in parallel. [`Footing::layer`] links each
-//! layer with the one below. A corner of one island inside the other shows at once that they
-//! touch, which is nearly always so. Only where no such corner is found, and it would change the
-//! verdict, the contours are subtracted from each other.
+//! Algorithm: [`Footing::layer`] links each layer's footprint with the one below. A place near a
+//! corner of one island inside the other shows at once that they touch, which is nearly always so.
+//! Only where no such place is found, and it would change the verdict, the contours are subtracted
+//! from each other.
 //!
 //! Bodies are only known at the end: two arms that begin in the air on their own may meet what
 //! stands further up. So a job is refused after its last layer, before its output is complete.
 
+use super::footprint::{Footprint, Island};
 use crate::error::Hanging;
-use crate::fill::{Path, Place};
+use crate::geom::Point;
 use crate::geom::sets::Sets;
-use crate::geom::{Contour, Point, double_area, edges, encloses, polygon};
-use crate::profile::{Floating, Settings};
+use crate::profile::{Floating, Settings, SupportBase};
 use crate::region::{Region, Sparse, SupportLines};
 use crate::units::{Coord, UNITS_PER_MM, sum_mm, to_mm};
 use crate::warning::Warning;
 use std::collections::VecDeque;
 
-/// Corners of an island that are tried. More find smaller overlaps without subtracting contours.
-const CORNERS: usize = 24;
-
-/// A smaller share of an island's area is no overlap: contours that only meet leave slivers.
-const LEAST_SHARE: f64 = 1e-3;
-
-/// What a layer prints, as far as the layers around it need to know.
-#[derive(Debug, Default)]
-pub struct Footprint {
-    /// All contours of the layer.
-    contours: Vec<Contour>,
-    islands: Vec<Island>,
-    /// How many layers its paths are printed for, at most; 0 without paths.
-    layers: u32,
+/// Which setting keeps support away from what hangs, in the order in which support is made.
+#[derive(Debug, Clone, Copy)]
+struct Keepers {
+    /// How far a layer may reach out without support, as a height's tangent.
+    lean: f64,
+    bed_only: bool,
 }
 
-/// A printed island.
-#[derive(Debug)]
-struct Island {
-    outer: Contour,
-    low: Point,
-    high: Point,
-    /// Length of its paths, grid units.
-    length: f64,
-    /// Its number; islands count through all layers.
-    number: usize,
-}
+impl Keepers {
+    fn new(settings: &Settings) -> Option<Self> {
+        let support = &settings.support;
+        let angle = support.threshold_angle.to_radians();
+        let lean = libm::cos(angle).max(0.0) / libm::sin(angle).max(1e-9);
+        let bed_only = support.stands_on == SupportBase::Bed;
+        support.enabled.then_some(Self { lean, bed_only })
+    }
 
-/// The footprint of a layer with these `paths`.
-#[must_use]
-pub fn footprint(region: &Region, paths: &[Path]) -> Footprint {
-    let contours = &region.layer.contours;
-    let outer = contours.iter().filter(|c| double_area(c) > 0);
-    let mut islands: Vec<Island> = outer.map(|c| Island::new(c.clone())).collect();
-    for path in paths.iter().filter(|path| path.role.facts().place != Place::Helper) {
-        let at = path.start();
-        let holds = |(_, island): &(usize, &Island)| islands.len() == 1 || island.contains(at);
-        let all = islands.iter().enumerate().filter(holds);
-        // Of nested contours the one with the smallest box is the path's own.
-        let own = all.min_by_key(|(k, i)| (i.low.distance2(i.high), *k)).map(|(k, _)| k);
-        if let Some(k) = own {
-            let steps = path.points.windows(2).map(|p| p[0].at.distance(p[1].at));
-            islands[k].length += steps.sum::<f64>();
+    /// The setting that leaves no support `clear` layers above the part, with room for support from
+    /// `gap` layers on. `lean` is how far to the side the part is next, in heights of a layer.
+    fn of(self, (clear, gap): (usize, usize), lean: Option<f64>) -> &'static str {
+        if lean.is_some_and(|lean| lean <= self.lean) {
+            "support.threshold_angle"
+        } else if clear > 0 && clear <= gap {
+            "support.z_distance"
+        } else if self.bed_only {
+            "support.stands_on"
+        } else {
+            "support.xy_distance"
         }
     }
-    islands.retain(|island| island.length > 0.0);
-    let layers = paths.iter().map(|path| path.layers).max().unwrap_or(0);
-    Footprint { contours: contours.clone(), islands, layers }
-}
-
-impl Island {
-    fn new(outer: Contour) -> Self {
-        let xs = || outer.iter().map(|p| p.x);
-        let ys = || outer.iter().map(|p| p.y);
-        let bound = |x: Option<Coord>, y: Option<Coord>| Point {
-            x: x.unwrap_or_default(),
-            y: y.unwrap_or_default(),
-        };
-        let (low, high) = (bound(xs().min(), ys().min()), bound(xs().max(), ys().max()));
-        Self { outer, low, high, length: 0.0, number: 0 }
-    }
-
-    fn boxes_meet(&self, other: &Self) -> bool {
-        self.low.x <= other.high.x
-            && other.low.x <= self.high.x
-            && self.low.y <= other.high.y
-            && other.low.y <= self.high.y
-    }
-
-    fn contains(&self, p: Point) -> bool {
-        (self.low.x..=self.high.x).contains(&p.x)
-            && (self.low.y..=self.high.y).contains(&p.y)
-            && encloses(edges(&self.outer), p)
-    }
-
-    /// Some of its corners, evenly spread.
-    fn corners(&self) -> impl Iterator<Item = Point> {
-        let step = self.outer.len().div_ceil(CORNERS).max(1);
-        self.outer.iter().step_by(step).copied()
-    }
-
-    /// Whether a corner of `self` lies inside `other`, whose layer has these `contours`.
-    fn has_corner_in(&self, other: &Self, contours: &[Contour]) -> bool {
-        let inside =
-            |p: Point| other.contains(p) && encloses(contours.iter().flat_map(|c| edges(c)), p);
-        self.corners().any(inside)
-    }
-
-    /// Whether the two share an area.
-    fn overlaps(&self, other: &Self, contours: &[Contour]) -> bool {
-        let own = [self.outer.clone()];
-        let area = |all: &[Contour]| all.iter().map(double_area_of).sum::<f64>();
-        let mut left = polygon::difference(&own, std::slice::from_ref(&other.outer), 0);
-        // What lies in a hole of the other does not touch it.
-        let holes = contours.iter().filter(|c| double_area(c) < 0);
-        let holes: Vec<Contour> = holes
-            .filter(|c| other.contains(c[0]))
-            .map(|c| c.iter().rev().copied().collect())
-            .collect();
-        let outside_holes = polygon::difference(&own, &holes, 0);
-        let in_holes = area(&own) - area(&outside_holes);
-        let outside = area(&std::mem::take(&mut left));
-        area(&own) - outside - in_holes > LEAST_SHARE * area(&own)
-    }
-}
-
-fn double_area_of(contour: &Contour) -> f64 {
-    double_area(contour) as f64
 }
 
 /// An island that begins in the air.
 #[derive(Debug, Clone, Copy)]
 struct Begin {
+    /// The layers right below it in which nothing of the part is printed.
+    clear: usize,
+    /// How far to the side the layer below is printed, in heights of the layer.
+    lean: Option<f64>,
     number: usize,
     layer: usize,
     z: Coord,
@@ -160,13 +86,19 @@ pub struct Footing {
     stands: Vec<bool>,
     /// Length of the lines of the body with this number as its root, grid units.
     lengths: Vec<f64>,
+    /// Length of the lines of all bodies, grid units.
+    islands_length: f64,
     support: VecDeque<SupportLines>,
     /// Whether each layer is printed.
     printed: Vec<bool>,
+    /// The layers up to the last one in which some of the part is printed.
+    part: usize,
     tops: Vec<Coord>,
     begins: Vec<Begin>,
     /// The middle of the layout in the machine's coordinates, mm.
     offset: [f64; 2],
+    /// What may keep support away, if it is asked for.
+    keepers: Option<Keepers>,
 }
 
 impl Footing {
@@ -184,11 +116,14 @@ impl Footing {
             bodies: Sets::default(),
             stands: Vec::new(),
             lengths: Vec::new(),
+            islands_length: 0.0,
             support: VecDeque::new(),
             printed: Vec::new(),
+            part: 0,
             tops: Vec::new(),
             begins: Vec::new(),
             offset,
+            keepers: Keepers::new(settings),
         }
     }
 
@@ -204,16 +139,25 @@ impl Footing {
             island.number = self.bodies.add();
             self.stands.push(k == 0);
             self.lengths.push(island.length);
-            let touches = self.link(island, &print.contours, &below);
+            self.islands_length += island.length;
+            let touches = self.link(island, &below) && island.lies_on(&below);
             if k > 0 && !touches && !self.on_support(island) {
+                let beside = below.islands.iter().map(|other| island.distance(other));
+                let nearest = beside.reduce(f64::min);
+                let height = f64::from(region.layer.z - self.tops[k - 1]);
                 self.begins.push(Begin {
+                    clear: k - self.part,
+                    lean: nearest.map(|nearest| nearest / height.max(1.0)),
                     number: island.number,
                     layer: k,
                     z: region.layer.z,
-                    at: island.outer[0],
+                    at: island.outer()[0],
                     length: island.length,
                 });
             }
+        }
+        if !print.islands.is_empty() {
+            self.part = k + 1;
         }
         self.below = print;
         self.support.push_back(region.support.clone());
@@ -223,13 +167,11 @@ impl Footing {
     }
 
     /// Joins an island with all islands below that it touches. Returns whether there are any.
-    fn link(&mut self, island: &Island, contours: &[Contour], below: &Footprint) -> bool {
+    fn link(&mut self, island: &Island, below: &Footprint) -> bool {
         let mut touches = false;
         let mut unclear = Vec::new();
         for other in below.islands.iter().filter(|other| island.boxes_meet(other)) {
-            let corner = island.has_corner_in(other, &below.contours)
-                || other.has_corner_in(island, contours);
-            if corner {
+            if island.has_corner_in(other) || other.has_corner_in(island) {
                 touches = true;
                 self.join(island.number, other.number);
             } else {
@@ -239,7 +181,7 @@ impl Footing {
         for other in unclear {
             let (a, b) = (self.bodies.root(island.number), self.bodies.root(other.number));
             let matters = !touches || (a != b && !(self.stands[a] && self.stands[b]));
-            if matters && island.overlaps(other, &below.contours) {
+            if matters && island.overlaps(other) {
                 touches = true;
                 self.join(island.number, other.number);
             }
@@ -285,10 +227,12 @@ impl Footing {
         let length: f64 = self.begins.iter().map(|b| b.length).sum();
         let (places, length_mm) = (self.begins.len(), sum_mm(length as i64));
         let (layer, z_mm, at_mm) = self.place(first);
+        let kept_away = self.kept_away(first);
         if rule == Floating::RefuseAll {
-            return Err(Hanging::Places { places, length_mm, layer, z_mm, at_mm });
+            return Err(Hanging::Places { places, length_mm, layer, z_mm, at_mm, kept_away });
         }
-        Ok(Some(Warning::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm }))
+        let kept_away = kept_away.map(str::to_owned);
+        Ok(Some(Warning::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm, kept_away }))
     }
 
     /// Layers without plastic below the first one with plastic, or between two. Where support carries
@@ -305,12 +249,15 @@ impl Footing {
         };
         let bottom = from.checked_sub(1).map_or(0, |k| self.tops[k]);
         let gap_mm = to_mm(self.tops[until] - bottom);
-        Some(Hanging::EmptyLayers { from: from + 1, until: until + 1, gap_mm, from_bed: from == 0 })
+        let kept_away = self.keepers.map(|keepers| keepers.of((until + 1 - from, self.gap), None));
+        let (from_bed, from, until) = (from == 0, from + 1, until + 1);
+        Some(Hanging::EmptyLayers { from, until, gap_mm, from_bed, kept_away })
     }
 
     /// A body that never stands.
     fn hanging_body(&mut self) -> Option<Hanging> {
-        let least = Floating::LEAST_BODY * UNITS_PER_MM;
+        let all: f64 = self.islands_length / UNITS_PER_MM;
+        let least = Floating::least_body(all) * UNITS_PER_MM;
         let mut hangs = |begin: &&Begin| {
             let body = self.bodies.root(begin.number);
             !self.stands[body] && self.lengths[body] >= least
@@ -318,7 +265,12 @@ impl Footing {
         let first = *self.begins.iter().find(|begin| hangs(begin))?;
         let (layer, z_mm, at_mm) = self.place(first);
         let below = layer.checked_sub(2).map_or(0, |k| self.tops[k]);
-        Some(Hanging::Body { layer, z_mm, above_bed_mm: to_mm(below), at_mm })
+        let kept_away = self.kept_away(first);
+        Some(Hanging::Body { layer, z_mm, above_bed_mm: to_mm(below), at_mm, kept_away })
+    }
+
+    fn kept_away(&self, begin: Begin) -> Option<&'static str> {
+        self.keepers.map(|keepers| keepers.of((begin.clear, self.gap), begin.lean))
     }
 
     /// Layer, counted from 1; top of the layer; x and y in the machine's coordinates, mm.

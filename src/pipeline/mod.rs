@@ -6,6 +6,7 @@
 
 pub mod batches;
 pub mod footing;
+pub mod footprint;
 pub mod place;
 pub mod refuse;
 pub mod spool;

@@ -144,10 +144,14 @@ pub enum Floating {
 }
 
 impl Floating {
-    /// A body with less than this many mm of lines is a speck, and only warned of: a scan has specks
-    /// beside it that nobody misses, and that fail alone. It is a cube of some 3 mm. The rule of the
-    /// slicer and of `check`; a print that stands nowhere is never a speck.
-    pub const LEAST_BODY: f64 = 500.0;
+    /// A body with less than this many mm of lines, of `all` those of the print, is a speck, and only
+    /// warned of: a scan has specks beside it that nobody misses, and that fail alone. It is a 2000th
+    /// of the print, but at least a cube of 1 mm and at most one of 3 mm. The rule of the slicer and
+    /// of `check`; a print that stands nowhere is never a speck.
+    #[must_use]
+    pub fn least_body(all: f64) -> f64 {
+        (all / 2000.0).clamp(8.0, 500.0)
+    }
 }
 
 /// See [`Support::stands_on`](super::Support::stands_on).

@@ -62,7 +62,8 @@ fn a_tip_is_refused_with_its_layers_and_stands_on_support_or_cut_off() {
 fn a_gap_between_two_bodies_is_refused_and_named() {
     let two = block([0.0; 3], [10.0, 10.0, 2.0]).and(&block([0.0, 0.0, 3.0], [10.0, 10.0, 5.0]));
     let hangs = hanging(&two, &[]);
-    let expected = Hanging::EmptyLayers { from: 11, until: 15, gap_mm: 1.0, from_bed: false };
+    let expected =
+        Hanging::EmptyLayers { from: 11, until: 15, gap_mm: 1.0, from_bed: false, kept_away: None };
     assert_eq!(hangs, expected);
     assert!(sliced(&two, &SUPPORT, 0.0).is_ok());
 }
@@ -76,6 +77,99 @@ fn a_body_beside_another_that_stands_on_nothing_is_refused() {
     assert!(layer == 11 && (above_bed_mm - 2.0).abs() < 1e-9, "{layer} {above_bed_mm}");
     assert!(at_mm[0] > 100.0, "in the machine's coordinates: {at_mm:?}");
     assert!(sliced(&two, &SUPPORT, 0.0).is_ok());
+}
+
+/// A tube around the origin.
+fn tube(outer: f64, inner: f64, high: f64) -> Solid {
+    let hole = Solid::prism(&circle(inner, 48), 0.0, high).inside_out();
+    Solid::prism(&circle(outer, 48), 0.0, high).and(&hole)
+}
+
+fn pin(radius: f64, low: f64, high: f64) -> Solid {
+    Solid::prism(&circle(radius, 24), low, high)
+}
+
+#[test]
+fn a_body_inside_another_that_touches_nothing_is_refused() {
+    for high in [3.0, 5.0, 9.0, 21.0] {
+        let inside = tube(12.0, 11.0, 22.0).and(&pin(3.0, 1.0, high));
+        let hangs = hanging(&inside, &[]);
+        assert!(matches!(hangs, Hanging::Body { layer: 6, .. }), "{high}: {hangs:?}");
+        // Standing on the bed, or hanging from a lid, it is held.
+        for held in [
+            tube(12.0, 11.0, 8.0).and(&pin(3.0, 0.0, 5.0)),
+            tube(12.0, 11.0, 8.0).and(&pin(3.0, 1.0, 8.0)).and(&pin(12.0, 7.5, 9.0)),
+        ] {
+            sliced(&held, &[], 0.0).unwrap();
+        }
+    }
+}
+
+#[test]
+fn bodies_that_share_an_edge_hold_no_more_than_those_apart() {
+    let low = block([0.0; 3], [10.0, 10.0, 4.0]);
+    for apart in [0.0, 0.05] {
+        let by = 10.0 + apart;
+        for at in [[by, 0.0, 4.0], [by, by, 4.0], [by, 3.0, 4.0]] {
+            let two = low.clone().and(&block(at, [at[0] + 10.0, at[1] + 10.0, 8.0]));
+            for degrees in [0.0_f64, 30.0, 90.0] {
+                let (sin, cos) = degrees.to_radians().sin_cos();
+                let turned = two.map(|[x, y, z]| [cos * x - sin * y, sin * x + cos * y, z]);
+                let hangs = hanging(&turned, &[]);
+                assert!(matches!(hangs, Hanging::Body { layer: 21, .. }), "{at:?} {hangs:?}");
+            }
+        }
+    }
+    // One that reaches over the other by half a line is held.
+    let over = low.and(&block([9.8, 0.0, 4.0], [19.8, 10.0, 8.0]));
+    sliced(&over, &[], 0.0).unwrap();
+}
+
+#[test]
+fn a_neck_too_thin_to_be_printed_holds_nothing() {
+    // Two cylinders that lie on a line, and a thread between their ends along that line.
+    let ball = |x: f64, radius: f64, high: f64| {
+        let rings = [0.02, radius, radius, 0.02].map(|r| circle(r, 32));
+        let at = [-4.0, -3.0, 3.0, 4.0];
+        let rings: Vec<_> = rings.into_iter().zip(at).collect();
+        // Its axis along x.
+        Solid::tower(&rings).map(|[a, b, c]| [c + x, a, b + high])
+    };
+    let two = ball(0.0, 5.0, 5.0).and(&ball(12.0, 4.0, 5.0));
+    let neck = two.and(&block([3.0, -0.04, 4.0], [9.0, 0.04, 6.0]));
+    let hangs = hanging(&neck, &[]);
+    assert!(matches!(hangs, Hanging::Body { .. }), "{hangs:?}");
+}
+
+#[test]
+fn an_island_between_the_lines_of_open_infill_is_warned_of() {
+    let small = |x: f64| block([x, 9.0, 1.0], [x + 1.2, 10.2, 2.0]);
+    let comb = (0..6).fold(block([0.0; 3], [20.0, 20.0, 1.0]), |all, k| {
+        all.and(&small(2.0 + 2.7 * f64::from(k)))
+    });
+    assert!(!begins_in_the_air(&sliced(&comb, &[], 0.0).unwrap()));
+    for key in ["skin_layers", "top_layers"] {
+        let report = sliced(&comb, &[(key, "0"), ("infill", "8")], 0.0).unwrap();
+        assert!(begins_in_the_air(&report), "{key}");
+    }
+}
+
+#[test]
+fn what_keeps_support_away_is_named() {
+    let over = |gap: f64| {
+        block([0.0; 3], [20.0, 20.0, 2.0]).and(&block([5.0, 5.0, 2.0 + gap], [15.0, 15.0, 6.0]))
+    };
+    let named = |solid: &Solid, set: &[(&str, &str)]| {
+        let set: Vec<_> = SUPPORT.iter().chain(set).copied().collect();
+        let refusal = hanging(solid, &set).to_string();
+        assert!(!refusal.contains("with --support"), "{refusal}");
+        refusal.split_whitespace().find(|word| word.starts_with("support.")).unwrap().to_owned()
+    };
+    let two = block([0.0; 3], [10.0, 10.0, 8.0]).and(&block([20.0, 0.0, 2.0], [30.0, 10.0, 6.0]));
+    assert_eq!(named(&over(0.2), &[]), "support.z_distance");
+    assert_eq!(named(&over(2.0), &[("support.stands_on", "bed")]), "support.stands_on");
+    assert_eq!(named(&two, &[("support.xy_distance", "20")]), "support.xy_distance");
+    assert_eq!(named(&two, &[("support.threshold_angle", "0")]), "support.threshold_angle");
 }
 
 #[test]
