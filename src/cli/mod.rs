@@ -130,7 +130,7 @@ fn unknown_flag(error: &clap::Error, first: Option<&str>) -> Option<String> {
 
 /// Prints text for people on standard error. If that fails there is nowhere left to report it.
 fn say(text: &str) {
-    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+    let _ = std::io::stderr().lock().write_all(words::harmless(text).as_bytes());
 }
 
 fn other(command: &Command) -> Result<Outcome> {

@@ -200,6 +200,7 @@ pub(crate) fn is_closed_stdout(error: &anyhow::Error) -> bool {
 /// [`Output`].
 pub(crate) fn print(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
+    let text = super::words::harmless(text);
     let done = out.write_all(text.as_bytes()).and_then(|()| out.flush());
     done.with_context(|| writing(Path::new("-")))
 }

@@ -104,6 +104,7 @@ fn blocks(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
     {
         let text = template::render(key, block, &values)
             .map_err(|source| ProfileError::Block { origin: blame.origin(&[key]), source })?;
+        no_control(key, &text).map_err(|conflict| blame.error(&[key], conflict))?;
         if machine.dialect == DialectName::Makerbot {
             no_host_codes(key, &text).map_err(|conflict| blame.error(&[key], conflict))?;
         }
@@ -117,6 +118,15 @@ fn blocks(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
     if machine.relative_e && !says_relative {
         let keys = ["machine.relative_e", "machine.start_gcode"];
         return Err(blame.error(&keys, Conflict::RelativeEUnsaid));
+    }
+    Ok(())
+}
+
+fn no_control(block: &'static str, text: &str) -> Result<(), Conflict> {
+    for (index, line) in text.lines().enumerate() {
+        if let Some(character) = line.chars().find(|c| c.is_control() && *c != '\t') {
+            return Err(Conflict::ControlCharacter { block, line: index + 1, character });
+        }
     }
     Ok(())
 }

@@ -248,6 +248,16 @@ pub enum Conflict {
          put {{e_mode}} on a line of its own"
     )]
     RelativeEUnsaid,
+    /// A character that printers may take for anything, and terminals obey.
+    #[error("{block}, line {line} of it: there is a control character ({character:?}); remove it")]
+    ControlCharacter {
+        /// The block's key.
+        block: &'static str,
+        /// Line, from 1.
+        line: usize,
+        /// The character.
+        character: char,
+    },
     /// A command that GPX cannot have in a file.
     #[error(
         "{block}, line {line} of it: {code} must not be in a file for GPX, which drops it or \

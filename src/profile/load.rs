@@ -299,6 +299,11 @@ mod tests {
                 "--set: machine.end_gcode, line 1 of it: unknown placeholder",
             ),
             ("machine.end_gcode", "M105", "--set: machine.end_gcode, line 1 of it: M105 must not"),
+            (
+                "machine.end_gcode",
+                "G21\n\u{1b}[2J",
+                "--set: machine.end_gcode, line 2 of it: there is a control character",
+            ),
             ("machine.start_gcode", "G21", ""),
             ("machine.relative_e", "true", "--set: machine.relative_e = true, but"),
         ] {

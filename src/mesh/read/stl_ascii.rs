@@ -9,7 +9,7 @@
 //! - keywords may be in any case, and lines may end in LF, CR LF or CR, or be missing;
 //! - `solid` blocks are joined, and the last `endsolid` may be missing;
 //! - names and unknown words between facets are skipped, and so are unknown words before
-//!   `outer` and `endfacet`; a keyword in the wrong place is an error;
+//!   `outer` and `endfacet`; a keyword in the wrong place is an error, but not in a name;
 //! - a normal may be anything, since the order of the corners counts;
 //! - each corner must have three numbers and each facet three corners.
 //!
@@ -104,6 +104,10 @@ struct Parser {
     corners: [[f32; 3]; 3],
     /// Numbers of corners so far.
     numbers: usize,
+    /// The line of the `solid` whose name may be what was taken for a facet.
+    guess: Option<usize>,
+    /// What was wrong with it, and its line: in a file without line breaks it was a facet.
+    wrong: Option<(usize, ReadError)>,
 }
 
 impl Parser {
@@ -137,9 +141,34 @@ impl Parser {
             return Ok(());
         }
         self.after_return = false;
-        self.state = match self.state {
+        // A name may have words of a facet in it, but no facet ends there.
+        if let Some(line) = self.guess.filter(|line| *line != self.line)
+            && self.state != State::Name(line)
+            && ["facet", "endsolid"].iter().any(|next| is(word, next))
+        {
+            self.state = State::Between;
+            self.guess = None;
+        }
+        match (self.next(word, limit), self.guess) {
+            (Ok(state), _) => self.state = state,
+            (Err(error), Some(line)) if line == self.line => {
+                self.state = State::Name(line);
+                self.guess = None;
+                self.wrong.get_or_insert((line, error));
+            }
+            (Err(error), _) => return Err(error),
+        }
+        Ok(())
+    }
+
+    /// The state after a word.
+    fn next(&mut self, word: &[u8], limit: Limit) -> Result<State> {
+        Ok(match self.state {
             State::Between => self.between(word)?,
-            State::NameOrFacet(_) if is(word, "normal") => self.facet(),
+            State::NameOrFacet(line) if is(word, "normal") => {
+                self.guess = Some(line);
+                self.facet()
+            }
             State::Name(line) | State::NameOrFacet(line) => self.name(word, line)?,
             State::Normal => self.normal(word)?,
             State::Loop if is(word, "loop") => State::Corners,
@@ -152,11 +181,14 @@ impl Parser {
                     return Err(ReadError::TooManyTriangles { announced, most });
                 }
                 self.welder.add(&Facet::new(self.normal, self.corners));
+                self.guess = None;
+                if let Some((_, error)) = self.wrong.take().filter(|(line, _)| *line == self.line) {
+                    return Err(error);
+                }
                 State::Between
             }
             State::End => self.other(word, "endfacet")?,
-        };
-        Ok(())
+        })
     }
 
     fn between(&mut self, word: &[u8]) -> Result<State> {
@@ -241,7 +273,10 @@ impl Parser {
     }
 
     fn finish(self) -> Result<RawMesh> {
-        if !matches!(self.state, State::Between | State::Name(_) | State::NameOrFacet(_)) {
+        let is_done = matches!(self.state, State::Between | State::Name(_) | State::NameOrFacet(_));
+        // The last name may have words of a facet in it, too.
+        let is_name = self.guess.is_some() && self.welder.count() > 0;
+        if !is_done && !is_name {
             return Err(Truncated::Text { line: self.line }.into());
         }
         let mut mesh = self.welder.finish();
@@ -306,6 +341,9 @@ mod tests {
             good.to_uppercase(),
             good.replace("name", ""),
             good.replace("name", "vertex facet outer"),
+            good.replace("solid name", "solid facet normal"),
+            good.replace("solid name", "solid facet normal outer loop vertex 1 2 3"),
+            good.replace("solid name", "solid facet normal outer loop vertex a b c endloop"),
             good.replace("endsolid name", ""),
             good.replace("endloop", "endloop foo").replace("endfacet", "endfacet bar"),
             good.replace("vertex 1 0 0", "vertex +1.0E+00 -0 .0e-5"),

@@ -218,7 +218,12 @@ impl<'a> Layout<'a> {
                 && self.has(depth, at, normal)
         };
         let loops = (0..self.params.count).take_while(|&depth| reaches(depth)).count() as u32;
-        let room = 2.0 * (opposite.radius + self.outside());
+        let thickness = 2.0 * opposite.radius;
+        // Beads stay a little inside the contour, or reach out of it: that makes no part thinner.
+        if loops == 0 && thickness < self.params.least_room - ROUNDING {
+            return None;
+        }
+        let room = thickness + 2.0 * self.outside();
         Some((share_room(room, loops, self.params)?, opposite))
     }
 
@@ -229,17 +234,16 @@ impl<'a> Layout<'a> {
     }
 }
 
-/// How `loops` loops and perhaps a middle bead share `room`. `None` if nothing fits, or if there is
-/// more room than they are for.
+/// How `loops` loops and perhaps a middle bead share `room`. `None` if there is more room than they
+/// are for.
 fn share_room(room: f64, loops: u32, params: &WallParams) -> Option<Share> {
     let w = f64::from(params.line_width);
     let passes = f64::from(2 * loops);
     let most = if loops == 0 { params.widest } else { passes + 1.5 };
-    let least = if loops == 0 { params.least_room - ROUNDING } else { (passes + LEAST_MIDDLE) * w };
-    if room > (most + BEYOND) * w || (loops == 0 && room < least) {
+    if room > (most + BEYOND) * w {
         return None;
     }
-    let middle = room >= least;
+    let middle = loops == 0 || room >= (passes + LEAST_MIDDLE) * w;
     let width = room / (passes + f64::from(u8::from(middle)));
     Some(Share { room, width: width.max(params.narrowest), loops, middle })
 }

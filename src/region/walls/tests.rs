@@ -270,3 +270,16 @@ proptest! {
         prop_assert!(outside(&wing, &loops) < 1_000.0, "{}", outside(&wing, &loops));
     }
 }
+
+#[test]
+fn a_bar_of_exactly_the_least_thickness_gets_a_bead_whichever_way_it_lies() {
+    for inset in [-25, 0, 25] {
+        let usual = params(1);
+        let params = WallParams { outer_inset: usual.outer_inset + inset, ..usual };
+        for degrees in [0.0, 17.0, 45.0, 90.0] {
+            let beads = |thick: f64| walls(&bar(thick, thick, degrees), true, &params).walls.len();
+            let least = params.least_room;
+            assert_eq!([beads(least), beads(least - 100.0)], [1, 0], "{inset} {degrees}");
+        }
+    }
+}
