@@ -121,15 +121,12 @@ impl fmt::Display for Warning {
                 plural(*layers as u64, "layer")
             ),
             Self::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm: [x, y], kept_away } => {
-                let way = kept_away.as_ref().map_or_else(
-                    || "use --support".to_owned(),
-                    |key| format!("{key} keeps support away there; set another"),
-                );
                 write!(
                     f,
                     "{length_mm:.0} mm of lines begin in the air at {}, first on layer {layer} at \
-                     {z_mm:.2} mm, x {x:.1} y {y:.1}; {way}, or turn the part with --rotate",
-                    plural(*places as u64, "place")
+                     {z_mm:.2} mm, x {x:.1} y {y:.1}; {}, or turn the part with --rotate",
+                    plural(*places as u64, "place"),
+                    carried(kept_away.as_deref())
                 )
             }
             Self::PartHangs { length_mm, supported } => write!(
@@ -149,18 +146,22 @@ impl fmt::Display for Warning {
             Self::SlowSpeed { setting, speed_mm_s } => {
                 write!(f, "{setting} = {speed_mm_s} is very slow; speeds are in mm/s")
             }
-            Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
-                write!(
-                    f,
-                    "{role}: slowed down from {} to as little as {} mm/s, \
+            Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => write!(
+                f,
+                "{role}: slowed down from {} to as little as {} mm/s, \
                  since the hot end melts no more than {limit_mm3_s} mm³/s; set {setting} to that, \
                  or machine.max_volumetric_speed if it melts more",
-                    short(*asked_mm_s),
-                    short(*lowest_mm_s),
-                )
-            }
+                short(*asked_mm_s),
+                short(*lowest_mm_s),
+            ),
         }
     }
+}
+
+/// How what hangs may be carried, where this setting keeps support away.
+fn carried(kept_away: Option<&str>) -> String {
+    let set = |key| format!("{key} keeps support away there; set another");
+    kept_away.map_or_else(|| "use --support".to_owned(), set)
 }
 
 /// A speed in hundredths, rounded down: what a setting may be without being too much.
