@@ -1,4 +1,11 @@
 //! Print + Mesh -> Part where it was printed, and whether it is as large.
+//!
+//! Words: the *fit* of a print is the share of its outer walls that lie along the model's outline, or of
+//! that outline along which outer walls lie, whichever is more.
+//!
+//! The model is cut at the print's layers. If the walls do not fit where it is expected, it is moved by
+//! the usual distance between the middles of layers and cuts; the better of the two places counts. A
+//! print that fits in neither is one of another model, and its size is compared.
 
 use super::Model;
 use super::against::{SOME_WIDTH, is_of_part, share_in};

@@ -4,6 +4,9 @@
 //! are any. Two islands of successive layers *touch* if they share an area: to meet along an edge, or
 //! to lie in a hole of the other, is not enough. Where no skin closes the layer below, an island also
 //! has to lie on beads of it.
+//!
+//! Most islands are found to touch by a place near a corner. The contours are only subtracted from each
+//! other where no such place is in both.
 
 use crate::fill::{Path, Place};
 use crate::geom::{Contour, Point, double_area, edges, encloses, polygon};
