@@ -44,8 +44,8 @@ fn bodies_that_touch_by_faces_have_no_outline_between_them() {
 
 #[test]
 fn hanging_inner_walls_are_no_outline() {
-    let mushroom = Solid::tower(&[(circle(4.0, 48), 0.0), (circle(4.0, 48), 3.0)])
-        .and(&Solid::prism(&circle(9.0, 48), 3.0, 4.0));
+    let mushroom = Solid::tower(&[(circle(4.0, 48), 0.0), (circle(4.0, 48), 3.2)])
+        .and(&Solid::prism(&circle(9.0, 48), 3.2, 4.2));
     sound(&sliced(&mushroom, "generic-marlin", &[("walls", "4")]));
 }
 

@@ -38,23 +38,23 @@ pub(super) fn without_bridges(
         pieces.shared(hanging, &gaps.dilate(reach, pitch), &mut sums);
         (0..pieces.count()).map(|k| 100 * sums[k] >= MOSTLY * lengths[k]).collect::<Vec<bool>>()
     };
-    let longest = i64::from(params.longest_bridge) + ROUNDING;
-    let along = bridges(&gaps([layer, below], longest, params), pitch);
+    let along = bridges(&gaps([layer, below], params, ROUNDING), pitch);
     if along.iter().all(|bridges| *bridges) {
         return Rows::default();
     }
     let [layer, below] = [layer, below].map(|rows| turned(rows, pitch));
-    // Turned rows tell lengths to a row at each end: the shortest that it may be counts.
-    let across = gaps([&layer, &below], longest + 2 * i64::from(pitch), params);
+    // Across, a gap is known to a row at each edge.
+    let across = gaps([&layer, &below], params, ROUNDING + 2 * i64::from(pitch));
     // Turned back, by three more quarters, it may be short by a row at each edge.
     let across = (0..3).fold(across, |rows, _| turned(&rows, pitch));
     let across = bridges(&across, 2 * pitch);
     pieces.keep(hanging, |piece| !along[piece] && !across[piece])
 }
 
-/// The anchored gaps of a layer that are at most `longest`.
-fn gaps([layer, below]: [&Rows; 2], longest: i64, params: &SupportParams) -> Rows {
+/// The anchored gaps of a layer that exceed the longest bridge by no more than `slack`.
+fn gaps([layer, below]: [&Rows; 2], params: &SupportParams, slack: i64) -> Rows {
     let anchor = i64::from(ANCHOR * params.least);
+    let longest = i64::from(params.longest_bridge) + slack;
     let mut carried = Vec::new();
     let mut out = Rows::with_room_of(layer, layer.range().start);
     for (j, row) in layer.iter() {
