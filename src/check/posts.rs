@@ -3,8 +3,9 @@
 //! Words used here: an *island* is support of a layer that touches; it stands on the islands below that
 //! it overlaps. A *post* is islands one on another that are about as thick; where one is twice as
 //! thick or half as thick, a new post begins: cross lines that tie posts together brace them. The
-//! *thickness* of an island is that of its section ([`mod@crate::geom::section`]). The *slenderness*
-//! of a post is its height over its thickness.
+//! *thickness* of an island is the side of the square that resists bending as it does in its weakest
+//! direction, √12 times its least radius of gyration: of a straight line its width, of a zigzag or an
+//! outline about the side of the field. The *slenderness* of a post is its height over its thickness.
 
 use super::capsule::Capsule;
 use super::filled::Filled;
@@ -12,7 +13,6 @@ use super::finding::{Code, Finding, Findings, Place, short};
 use super::part::extent_of;
 use super::rows::Lattice;
 use super::sets::Sets;
-use crate::geom::section::Section;
 use crate::geom::spans::{Rows, Span};
 use crate::reader::Role;
 use crate::units::to_mm;
@@ -31,7 +31,9 @@ const MOST_ROWS: f64 = 6000.0;
 /// Support of a layer that touches.
 #[derive(Clone, Copy, Default)]
 struct Island {
-    section: Section,
+    /// Sums of area, of x, y, xx, xy and yy over it, from its first span, mm.
+    sums: [f64; 6],
+    origin: [f64; 2],
     /// Height and thickness of its post up to here, mm.
     height: f64,
     thick: f64,
@@ -82,13 +84,37 @@ fn report(filled: &Filled<'_>, layer: usize, islands: &[Island], found: &mut Fin
                 line: None,
                 layer: Some(layer + 1),
                 z_mm: Some(short(filled.print.layers[layer].z)),
-                at_mm: Some(island.section.middle().map(short)),
+                at_mm: Some(island.middle().map(short)),
             }));
         }
     }
 }
 
 impl Island {
+    /// Adds a span of a row in the middle of `y`, mm.
+    fn add(&mut self, span: Span, (y, pitch): (f64, f64)) {
+        let (from, to) = (to_mm(span.start) - self.origin[0], to_mm(span.end) - self.origin[0]);
+        let (x, y, length) = (0.5 * (from + to), y - self.origin[1], to - from);
+        let area = length * pitch;
+        let own = [length * length / 12.0, pitch * pitch / 12.0];
+        let more = [1.0, x, y, x * x + own[0], x * y, y * y + own[1]];
+        self.sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += area * more);
+    }
+
+    fn middle(&self) -> [f64; 2] {
+        let [area, x, y, ..] = self.sums;
+        [self.origin[0] + x / area, self.origin[1] + y / area]
+    }
+
+    /// See the words of this file.
+    fn own_thickness(&self) -> f64 {
+        let [area, x, y, xx, xy, yy] = self.sums;
+        let (x, y) = (x / area, y / area);
+        let (a, b, c) = (xx / area - x * x, xy / area - x * y, yy / area - y * y);
+        let least = 0.5 * (a + c - ((a - c) * (a - c) + 4.0 * b * b).sqrt());
+        (12.0 * least.max(0.0)).sqrt()
+    }
+
     /// Stands on islands of the layer below.
     fn grow(
         &mut self,
@@ -96,7 +122,7 @@ impl Island {
         stands_on: &mut dyn Iterator<Item = usize>,
         below: &mut [Self],
     ) {
-        let own = self.section.thickness().max(PITCH);
+        let own = self.own_thickness().max(PITCH);
         (self.height, self.thick) = (height, own);
         for under in stands_on {
             let post = &mut below[under];
@@ -135,14 +161,13 @@ fn islands(rows: &Rows, lattice: Lattice) -> (Vec<Island>, Vec<usize>) {
         let root = sets.root(one);
         let y = lattice.middle(j);
         let number = if root == one {
-            let section = Section::near([to_mm(span.start), y]);
-            found.push(Island { section, ..Island::default() });
+            found.push(Island { origin: [to_mm(span.start), y], ..Island::default() });
             found.len() - 1
         } else {
             numbers[root]
         };
         numbers.push(number);
-        found[number].section.add(span, y, lattice.pitch());
+        found[number].add(span, (y, lattice.pitch()));
     }
     (found, numbers)
 }

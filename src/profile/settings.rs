@@ -201,8 +201,7 @@ pub struct Support {
     /// Gap between the lines of dense layers.
     #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.2))]
     pub interface_spacing: f64,
-    /// Least width of support; low support needs but half of its height, high support a fifth of it;
-    /// 0 leaves it narrow.
+    /// Least width of support: half of its height if it is low, a fifth if it is high; 0 leaves it.
     #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 4))]
     pub min_width: f64,
     /// Whether bridges get support, however short.

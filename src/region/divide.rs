@@ -1,11 +1,18 @@
 //! Layer and its neighbours -> Divided: narrow skin as wall beads, bridges, the rest as skin or infill.
+//!
+//! Words: a layer is *exposed* where a neighbour does not cover it. A *room* is a place too narrow for
+//! sparse lines; it is solid.
+//!
+//! Algorithm: first a layer is examined alone: what is exposed, which rooms it has, and which beads
+//! along walls fill the narrow parts of both. Then, with the layer below, bridges take their place, and
+//! what is left is skin or infill. Last, strips in which no sparse line has room become skin.
 
 use super::Skin;
 use super::bridge::loose::{self, Below};
 use super::bridge::{self, Pair};
 use super::classify::{Areas, areas, areas_beside, exposed};
 use super::crossed::Crossed;
-use super::hidden::{Place, between_walls, is_hidden};
+use super::hidden::{self, between_walls};
 use super::overhang::{Hanging, overhangs};
 use super::params::RegionParams;
 use super::per_raster::{PerRaster, skin_turn};
@@ -14,11 +21,11 @@ use super::rooms;
 use super::wall_beads::{taken, wall_beads};
 use crate::geom::Contour;
 use crate::geom::frame::Frame;
-use crate::geom::outline::Columns;
 use crate::geom::polyline::Polyline;
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
 use crate::slice::Layer;
+use crate::units::Coord;
 
 /// Areas of one layer on both rasters of skins, and on the others that were requested.
 pub type LayerAreas = PerRaster<Areas>;
@@ -131,8 +138,7 @@ pub fn divide<'a>(
     let areas = PerRaster::new(&params.rasters, more, areas_on);
     // Strips between skin or a bridge and a wall in which no sparse line has room.
     let infill = [0, 1].map(|r| &areas.skin(r).infill);
-    let skinned = !bridges.is_empty() || (0..2).any(|r| !areas.skin(r).skin.is_empty());
-    let limit = if skinned && !params.sparse.is_empty() { params.skins.reach } else { 0 };
+    let limit = least_strip(&areas, &bridges, params);
     let areas = match rooms::narrow(infill, both, limit) {
         Some(strips) => areas.map_on(|raster, its| {
             let strips = on(&strips, raster, &its.infill);
@@ -142,14 +148,14 @@ pub fn divide<'a>(
     };
     let hanging = overhangs(k, &own.walls, layers, params);
     let filling = between_walls(k, &own.walls, layers, params);
-    let (room_beads, beads) = match solid {
-        Some(solid) => {
-            let [rooms, exposed] = [solid, skins].map(|of| place(k, of, params));
-            beads.into_iter().partition(|bead| is_hidden(bead, rooms, exposed))
-        }
-        None => (Vec::new(), beads),
-    };
+    let (room_beads, beads) = hidden::beads(k, beads, solid.as_ref(), skins, params);
     Divided { areas, beads, room_beads, filling, bridges, hanging }
+}
+
+/// Narrower strips of infill become skin; 0 if there is nothing beside which they could be.
+fn least_strip(areas: &LayerAreas, bridges: &[Skin], params: &RegionParams) -> Coord {
+    let skinned = !bridges.is_empty() || (0..2).any(|r| !areas.skin(r).skin.is_empty());
+    if skinned && !params.sparse.is_empty() { params.skins.reach } else { 0 }
 }
 
 /// The rooms of layer `k` too narrow for sparse lines, on the rasters of skins.
@@ -161,14 +167,6 @@ fn solid<'a>(
     let rows = layers(k)?;
     let fill = [0, 1].map(|r| &*rows.skin(r).fill);
     rooms::narrow(fill, [0, 1].map(|r| params.rasters.skin(r)), params.skins.least_room)
-}
-
-/// What `rows` on the two rasters of skins tell, in the frame of layer `k`'s skin.
-fn place<'a>(k: usize, rows: &'a [Rows; 2], params: &RegionParams) -> Place<'a> {
-    let (along, across) = skin_turn(k);
-    let pitch = params.rasters.skin(across).pitch;
-    let columns = Columns { rows: &rows[across], pitch, left_turn: along == 0 };
-    Place { rows: &rows[along], columns }
 }
 
 /// The `beads` of layer `k` without those that would lie along the sparse lines below.

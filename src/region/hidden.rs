@@ -16,11 +16,9 @@ use crate::units::{Bounded as _, Coord, nearest};
 
 /// An area as its rows and its columns tell it. A strip between two rows is on no row.
 #[derive(Debug, Clone, Copy)]
-pub struct Place<'a> {
-    /// Its rows, as far apart as its columns.
-    pub rows: &'a Rows,
-    /// Its columns.
-    pub columns: Columns<'a>,
+struct Place<'a> {
+    rows: &'a Rows,
+    columns: Columns<'a>,
 }
 
 impl Place<'_> {
@@ -30,10 +28,29 @@ impl Place<'_> {
     }
 }
 
+/// The wall `beads` of layer `k`: first those in its solid `rooms` that nothing exposes, then the
+/// others. `rooms` and what is `exposed` are on the two rasters of skins.
+#[must_use]
+pub fn beads(
+    k: usize,
+    beads: Vec<Polyline>,
+    rooms: Option<&[Rows; 2]>,
+    exposed: &[Rows; 2],
+    params: &RegionParams,
+) -> (Vec<Polyline>, Vec<Polyline>) {
+    let Some(rooms) = rooms else { return (Vec::new(), beads) };
+    let (along, across) = skin_turn(k);
+    let pitch = params.rasters.skin(across).pitch;
+    let [rooms, exposed] = [rooms, exposed].map(|of| {
+        let columns = Columns { rows: &of[across], pitch, left_turn: along == 0 };
+        Place { rows: &of[along], columns }
+    });
+    beads.into_iter().partition(|bead| is_hidden(bead, rooms, exposed))
+}
+
 /// Whether the wall bead `bead` lies in the `rooms`, and nowhere where the layer is `exposed`. All
 /// are in one frame.
-#[must_use]
-pub fn is_hidden(bead: &Polyline, rooms: Place<'_>, exposed: Place<'_>) -> bool {
+fn is_hidden(bead: &Polyline, rooms: Place<'_>, exposed: Place<'_>) -> bool {
     let line: Vec<Point> = bead.iter().map(|p| Point { x: p.u, y: p.v }).collect();
     let places: Vec<Point> = places(&line, rooms.columns.pitch).collect();
     let inside = places.iter().filter(|&&p| rooms.holds(p)).count();

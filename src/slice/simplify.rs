@@ -1,5 +1,8 @@
 //! Contour -> Contour: removes vertices within a tolerance, from a canonical start.
 //!
+//! Words: the *canonical start* of a contour is the vertex at which its list is the smallest: the same
+//! whichever way a mesh is stored.
+//!
 //! A cone of directions starts at each kept vertex. Every vertex that follows narrows the cone to the
 //! lines that pass it within the tolerance. The first vertex outside the cone ends the line: the
 //! vertex before it is kept. This takes linear time. Imai and Iri 1986 and Sklansky and Gonzalez 1980

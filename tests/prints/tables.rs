@@ -32,7 +32,7 @@ fn bar(side: f64, hole: f64, height: f64) -> Solid {
         Solid::cuboid([-half, -half, low], [half, half, high])
     };
     let bar = square(side, 0.0, height);
-    if hole > 0.0 { bar.and(&square(hole, -1.0, height + 1.0).inside_out()) } else { bar }
+    if hole > 0.0 { bar.and(&square(hole, 0.0, height).inside_out()) } else { bar }
 }
 
 /// Print time and filament of a part on the clock of the benches.

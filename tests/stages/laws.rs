@@ -352,7 +352,7 @@ fn filament_is_the_volume_of_the_beads() {
                 let space = 0.9 * space(&run, kind, thick);
                 // Widths are annotated in steps of 0.01 mm. All lines of a zigzag have one width, so
                 // that these roundings do not level out.
-                let zigzag = matches!(kind, Kind::Infill | Kind::SupportInterface);
+                let zigzag = matches!(kind, Kind::Infill | Kind::Support | Kind::SupportInterface);
                 let most = if zigzag { 0.0125 } else { 0.005 };
                 assert!(
                     (laid - space).abs() <= most * space,

@@ -1,5 +1,8 @@
 //! Loop and layout -> loop of changing width: passes move and widen where they share the room.
 //!
+//! Words: a *side* is the straight way between two corners of the loop. A *sample* is a place of a side,
+//! with how far the bead moves inwards there and how wide it is.
+//!
 //! Each side of the loop is sampled once for each line width. A sample asks for the share of the
 //! beads at its place. Between samples the loop goes straight; at a corner it goes where its two
 //! moved sides meet. Around a small nose sides that move inwards get shorter, and vanish where they

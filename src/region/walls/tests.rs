@@ -1,4 +1,11 @@
 //! Laws over walls, tubes, crosses and wedges of many widths: how much plastic they get, and where.
+//!
+//! Words: *filled* is plastic over solid; *covered* is the share of the outline that a bead lies along.
+//!
+//! - Bars, tubes, crosses and wedges are turned by random angles and get one to three walls.
+//! - Pins are regular polygons of any number of corners, compact enough to have no core.
+//! - Nothing reaches out of the part, and loops do not cross themselves.
+//! - Wings are round at their nose and sharp at their tail: where loops once turned inside out.
 
 use super::*;
 use crate::geom::frame::Frame;
