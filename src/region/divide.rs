@@ -103,10 +103,8 @@ pub fn divide<'a>(
     let skins = &examined.exposed;
     let fill = |raster| layers(k)?.on(raster).map(|rows| &rows.fill);
     let both = [0, 1].map(|r| params.rasters.skin(r));
-    let on = |narrow: &[Rows; 2], raster: Raster, region: &Rows| match both
-        .iter()
-        .position(|r| *r == raster)
-    {
+    let index = |raster: Raster| both.iter().position(|r| *r == raster);
+    let on = |narrow: &[Rows; 2], raster: Raster, region: &Rows| match index(raster) {
         Some(r) => narrow[r].clone(),
         None => rooms::on_raster(narrow, both, raster, region),
     };
@@ -118,7 +116,7 @@ pub fn divide<'a>(
     let areas_on = |raster: Raster| {
         let Some(fill) = fill(raster) else { return Areas::default() };
         let other;
-        let uncovered = match (0..2).find(|&r| params.rasters.skin(r) == raster) {
+        let uncovered = match index(raster) {
             Some(r) => &skins[r],
             None => {
                 other = exposed(raster);
