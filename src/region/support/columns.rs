@@ -113,7 +113,7 @@ impl<'a> Window<'a> {
             let floors = self.layers.range(at..(at + gap + 1).min(self.layers.len()));
             above.foot = foot(&above.all.minus(&wanted), floors.map(|floor| &floor.inside), params);
         }
-        self.posts.next(wanted, self.heights.top(k), params, &cut);
+        self.posts.next(wanted, self.heights.top(k), params, cut);
         let all = self.posts.rows().clone();
         let beside = to_lines(&params.lines, &all).minus(&all);
         let beside = if beside.is_empty() { beside } else { cut(beside).minus(&all) };

@@ -79,7 +79,8 @@ fn held(lines: &Lines, rows: &Rows, order: impl Iterator<Item = i32>) -> Vec<Vec
             here.extend_from_slice(rows.row(j));
         } else if let Some(before) = out.last().filter(|_| steps <= reach(lines)) {
             let grown = |s: &Span| Span { start: s.start - wider, end: s.end + wider };
-            (wide.clear(), merged.clear());
+            wide.clear();
+            merged.clear();
             wide.extend(before.iter().map(grown));
             merge(&mut wide, &mut merged);
             intersect(rows.row(j), &merged, &mut here);
