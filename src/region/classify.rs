@@ -97,6 +97,18 @@ impl Areas {
     }
 }
 
+/// The layers that have to cover a place of layer `k` so that it is no skin. `None` if one of them is
+/// outside the part: then nothing is covered.
+pub(super) fn neighbours<'a>(
+    k: usize,
+    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+    params: &SkinParams,
+) -> Option<Vec<&'a LayerRows>> {
+    let below = (1..=params.bottom).map(|n| k.checked_sub(n).and_then(layers));
+    let above = (1..=params.top).map(|n| layers(k + n));
+    below.chain(above).collect()
+}
+
 /// The part of `fill` that all neighbours within the number of skin layers cover.
 fn covered<'a>(
     fill: &Rows,
@@ -105,10 +117,9 @@ fn covered<'a>(
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
     params: &SkinParams,
 ) -> Rows {
-    let below = (1..=params.bottom).map(|n| k.checked_sub(n).and_then(layers));
-    let above = (1..=params.top).map(|n| layers(k + n));
+    let cover = |rows: &'a LayerRows| rows.on(raster).map(|rows| &rows.cover);
     let neighbours: Option<Vec<&Rows>> =
-        below.chain(above).map(|rows| Some(&rows?.on(raster)?.cover)).collect();
+        neighbours(k, layers, params).and_then(|all| all.into_iter().map(cover).collect());
     let mut out = Rows::with_room_of(fill, fill.range().start);
     let (mut now, mut next) = (Vec::<Span>::new(), Vec::new());
     for (j, row) in fill.iter() {

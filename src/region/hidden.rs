@@ -4,6 +4,7 @@
 //! by solid lines. Where the layers above and below cover it, all of these are infill: they hold
 //! the walls apart and are seen by nobody. Elsewhere they are part of a surface.
 
+use super::classify::neighbours;
 use super::params::RegionParams;
 use super::per_raster::skin_turn;
 use super::prepare::LayerRows;
@@ -71,9 +72,7 @@ pub fn between_walls<'a>(
     if inner.peek().is_none() {
         return Vec::new();
     }
-    let below = (1..=params.skins.bottom).map(|n| k.checked_sub(n).and_then(layers));
-    let above = (1..=params.skins.top).map(|n| layers(k + n));
-    let Some(around) = below.chain(above).collect::<Option<Vec<_>>>() else { return Vec::new() };
+    let Some(around) = neighbours(k, layers, &params.skins) else { return Vec::new() };
     let along = skin_turn(k).0;
     let raster = params.rasters.skin(along);
     let covered =

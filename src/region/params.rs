@@ -169,4 +169,10 @@ impl WallParams {
     pub fn inset_of(&self, number: u32) -> Coord {
         self.outer_inset + (number as Coord - 1) * self.line_width
     }
+
+    /// How far beads reach out over the contour, grid units; negative if they stay inside.
+    #[must_use]
+    pub fn outside(&self) -> f64 {
+        f64::from(self.line_width) / 2.0 - f64::from(self.outer_inset)
+    }
 }

@@ -107,9 +107,4 @@ impl WallParams {
         let w = f64::from(self.line_width);
         (2.0 * f64::from(count) + ONE_MORE) * w + f64::from(LIMIT)
     }
-
-    /// How far beads reach out over the contour; negative if they stay inside.
-    pub(super) fn outside(&self) -> f64 {
-        f64::from(self.line_width) / 2.0 - f64::from(self.outer_inset)
-    }
 }

@@ -117,7 +117,7 @@ fn sample(
             let has_bead = !beads.is_free([middle], BEAD * layout.line_width);
             let count = f64::from(2 * share.loops + u32::from(has_bead));
             let width = share.room / count;
-            let middle = (f64::from(depth) + 0.5) * width - layout.outside();
+            let middle = (f64::from(depth) + 0.5) * width - layout.params.outside();
             Sample { shift: middle - inset, width }
         }
         None => Sample { shift: 0.0, width: layout.line_width },

@@ -194,11 +194,6 @@ impl<'a> Layout<'a> {
         Self { contours, outline: Outline::new(contours, params), levels: near, params, line_width }
     }
 
-    /// How far beads reach out over the contour; negative if they stay inside.
-    fn outside(&self) -> f64 {
-        self.params.outside()
-    }
-
     /// Distance of the centre line of a loop of nominal width from the contour.
     fn inset(&self, depth: u32) -> f64 {
         f64::from(self.params.inset_of(depth + 1))
@@ -223,7 +218,7 @@ impl<'a> Layout<'a> {
         if loops == 0 && thickness < self.params.least_room - ROUNDING {
             return None;
         }
-        let room = thickness + 2.0 * self.outside();
+        let room = thickness + 2.0 * self.params.outside();
         Some((share_room(room, loops, self.params)?, opposite))
     }
 
