@@ -1,6 +1,6 @@
 //! JSON Schema of the settings -> table of keys: what each key may hold, its unit, default and meaning.
 //!
-//! The table is read once from the schema, which is derived from `settings.rs`: there a
+//! The table is read once from the schema, which is derived from `settings/`: there a
 //! key is declared. It is what values are checked by, and what every list of keys shows.
 //!
 //! Words: a *key* is a dotted name such as `speed.wall`; its *kind* is what it may hold. A kind

@@ -135,7 +135,7 @@ fn the_list_of_keys_is_as_declared() {
         fs::write(LIST, made).unwrap();
         panic!("{LIST} is rewritten; look at it, and unset UPDATE_GOLDEN");
     }
-    assert!(kept == made, "{LIST} does not list the keys as src/profile/settings.rs declares them");
+    assert!(kept == made, "{LIST} does not list the keys as src/profile/settings/ declares them");
 }
 
 #[test]

@@ -1,0 +1,52 @@
+//! `[machine]`: the printer.
+
+use super::MAX_TEXT;
+use crate::profile::choices::{DialectName, Origin};
+use crate::profile::sizes::{self, PictureSize};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// `[machine]`: the printer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Machine {
+    /// Name of the printer.
+    #[schemars(length(max = MAX_TEXT))]
+    pub name: String,
+    /// The G-code that its firmware understands.
+    pub dialect: DialectName,
+    /// Size of the print volume in x.
+    #[schemars(range(min = 1, max = 5_000), extend("unit" = "mm"))]
+    pub bed_width: f64,
+    /// Size of the print volume in y.
+    #[schemars(range(min = 1, max = 5_000), extend("unit" = "mm"))]
+    pub bed_depth: f64,
+    /// Size of the print volume in z.
+    #[schemars(range(min = 1, max = 5_000), extend("unit" = "mm"))]
+    pub bed_height: f64,
+    /// Where on the bed x and y are 0.
+    #[schemars(extend("default" = "front-left"))]
+    pub origin: Origin,
+    /// Diameter of the nozzle.
+    #[schemars(range(min = 0.05, max = 2), extend("unit" = "mm", "default" = 0.4))]
+    pub nozzle_diameter: f64,
+    /// Number of the tool that prints.
+    #[schemars(range(min = 0, max = 1), extend("default" = 0))]
+    pub tool: u32,
+    /// Acceleration of moves that print, which {acceleration} in the start block stands for.
+    #[schemars(range(min = 1, max = 100_000), extend("unit" = "mm/s²"))]
+    pub acceleration: f64,
+    /// Whether E counts from the last move instead of from the start.
+    #[schemars(extend("default" = false))]
+    pub relative_e: bool,
+    /// Plastic that the hot end can melt; lines that need more are printed slower.
+    #[schemars(range(min = 0.1, max = 1_000), extend("unit" = "mm³/s"))]
+    pub max_volumetric_speed: f64,
+    /// Sizes of the pictures of the models at the head of the file, for hosts.
+    #[schemars(length(max = sizes::MOST), extend("unit" = "pixels", "default" = []))]
+    pub thumbnails: Vec<PictureSize>,
+    /// G-code before the print, with {placeholders}.
+    pub start_gcode: String,
+    /// G-code after the print, with {placeholders}.
+    pub end_gcode: String,
+}

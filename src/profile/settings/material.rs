@@ -1,0 +1,44 @@
+//! `[filament]`, `[cooling]`: the material, and what cools it.
+
+use super::MAX_TEXT;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// `[filament]`: the material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Filament {
+    /// Name of the material, such as PLA.
+    #[schemars(length(max = MAX_TEXT), extend("default" = "PLA"))]
+    pub name: String,
+    /// Diameter of the filament.
+    #[schemars(range(min = 0.5, max = 5), extend("unit" = "mm", "default" = 1.75))]
+    pub diameter: f64,
+    /// Density of the material.
+    #[schemars(range(min = 0.1, max = 20), extend("unit" = "g/cm³", "default" = 1.24))]
+    pub density: f64,
+    /// Temperature of the nozzle.
+    #[schemars(range(min = 0, max = 500), extend("unit" = "°C"))]
+    pub temperature: f64,
+    /// Temperature of the bed; 0 leaves it cold.
+    #[schemars(range(min = 0, max = 200), extend("unit" = "°C", "default" = 0))]
+    pub bed_temperature: f64,
+    /// Power of the part cooling fan.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 100))]
+    pub fan: f64,
+    /// First layer, counted from 1, that is printed with the fan on.
+    #[schemars(range(min = 1, max = 100_000), extend("unit" = "layer", "default" = 2))]
+    pub fan_from_layer: u32,
+    /// Price of the material; 0 means unknown.
+    #[schemars(range(min = 0, max = 1_000_000), extend("unit" = "money/kg", "default" = 0))]
+    pub cost: f64,
+}
+
+/// `[cooling]`: the fan on what needs more of it than `filament.fan`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cooling {
+    /// Power of the fan on bridges and overhanging walls, from filament.fan_from_layer on.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 100))]
+    pub bridge_fan: f64,
+}

@@ -1,0 +1,160 @@
+//! Settings: every key of a profile as a typed value. **The one declaration of each key.**
+//!
+//! A field here is a key. Its place in the struct is its place in a profile (`speed.wall`), its
+//! doc comment the key's meaning, its attributes the limits, the unit and the default:
+//!
+//! ```text
+//! /// Speed of walls.
+//! #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 27))]
+//! pub wall: f64,
+//! ```
+//!
+//! Everything else is derived from it: the table of keys that values are checked by
+//! ([`super::keys`]), `profile show`, the settings in a G-code file, the list in
+//! `profiles/README.md` and the JSON Schema for editors ([`super::schema`]).
+//! To add a key, add a field, and use it. Words:
+//!
+//! - **range**: lowest and highest value, both allowed.
+//! - **unit**: for people and editors; values are always in this unit.
+//! - **default**: the value where no profile has one. A key without a default must be set by
+//!   a profile, unless its type is an `Option`: then it may stay unset.
+//! - **choices**: keys that hold a word are enums, in [`super::choices`].
+
+mod dual;
+mod extrusion;
+mod limits;
+mod machine;
+mod material;
+mod speed;
+mod support;
+mod travel;
+
+use super::choices::{Angle, Floating, Pattern, Seam, WallOrder};
+pub use dual::Dual;
+pub use extrusion::Extrusion;
+pub use limits::MotionLimits;
+pub use machine::Machine;
+pub use material::{Cooling, Filament};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+pub use speed::Speed;
+pub use support::{Bridge, Support};
+pub use travel::{Retraction, Travel};
+
+/// Longest text on one line, in characters. Keeps every settings line of a G-code
+/// file below GPX's limit of 1023 bytes, even if each character is four bytes.
+pub const MAX_TEXT: usize = 200;
+
+/// All effective settings. Lengths are in mm, speeds in mm/s, angles in degrees.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// What the profile is for, in one line.
+    #[schemars(length(max = MAX_TEXT))]
+    pub description: String,
+
+    /// Height of a layer.
+    #[schemars(range(min = 0.02, max = 2), extend("unit" = "mm", "default" = 0.2))]
+    pub layer_height: f64,
+    /// Height of the first layer.
+    #[schemars(range(min = 0.02, max = 2), extend("unit" = "mm", "default" = 0.2))]
+    pub first_layer_height: f64,
+    /// Width of a line, and distance between neighbouring solid lines.
+    #[schemars(range(min = 0.05, max = 4), extend("unit" = "mm", "default" = 0.4))]
+    pub line_width: f64,
+    /// How far a simplified contour may lie from the model's.
+    #[schemars(range(min = 0, max = 0.5), extend("unit" = "mm", "default" = 0.01))]
+    pub tolerance: f64,
+
+    /// Number of walls.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "walls", "default" = 2))]
+    pub walls: u32,
+    /// Distance from the contour to the middle of the outer wall: 0.5 gives parts of the right
+    /// size, 0 puts the wall's middle on the contour.
+    #[schemars(range(min = 0, max = 1), extend("unit" = "line widths", "default" = 0.5))]
+    pub outer_wall_inset: f64,
+    /// Thinner parts are not printed; thicker ones get one bead where two walls do not fit.
+    #[schemars(range(min = 0.01, max = 10), extend("unit" = "mm", "default" = 0.1))]
+    pub min_feature: f64,
+    /// Minimum width of a bead; parts thinner than that get a bead this wide.
+    #[schemars(range(min = 25, max = 200), extend("unit" = "% of the nozzle", "default" = 85))]
+    pub min_bead_width: f64,
+    /// Maximum width of a single bead; where it would be wider, two share the room.
+    #[schemars(range(min = 100, max = 200), extend("unit" = "% of the line width", "default" = 175))]
+    pub max_bead_width: f64,
+    /// Which wall is printed first.
+    #[schemars(extend("default" = "inner-first"))]
+    pub wall_order: WallOrder,
+    /// Where a wall begins.
+    #[schemars(extend("default" = "rear"))]
+    pub seam: Seam,
+
+    /// A print that begins in the air is refused if a body hangs, refused anywhere, or warned of.
+    #[schemars(extend("default" = "refuse"))]
+    pub floating: Floating,
+
+    /// Solid layers at the top and at the bottom.
+    #[schemars(range(min = 0, max = 10_000), extend("unit" = "layers", "default" = 3))]
+    pub skin_layers: u32,
+    /// Solid layers at the top; unset means skin_layers.
+    #[schemars(range(min = 0, max = 10_000), extend("unit" = "layers"))]
+    pub top_layers: Option<u32>,
+    /// Solid layers at the bottom; unset means skin_layers.
+    #[schemars(range(min = 0, max = 10_000), extend("unit" = "layers"))]
+    pub bottom_layers: Option<u32>,
+    /// How far a skin reaches sideways into the infill, to hold on.
+    #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 1.2))]
+    pub skin_reach: f64,
+
+    /// Density of the sparse infill.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 20))]
+    pub infill: f64,
+    /// Rooms inside the walls narrower than this are filled solid.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 2))]
+    pub narrow_room: f64,
+    /// Pattern of the sparse infill.
+    #[schemars(extend("default" = "rectilinear"))]
+    pub pattern: Pattern,
+    /// Direction of the lines on even layers, from the x axis; odd layers are turned by 90.
+    /// auto takes the direction with the fewest turns.
+    #[schemars(extend("unit" = "degrees", "default" = "auto"))]
+    pub angle: Angle,
+    /// Whether the first skin above sparse infill runs across the lines below it and ends on one of
+    /// them, whatever its layer; off, the direction alternates with the layer alone.
+    #[schemars(extend("default" = true))]
+    pub skin_across_infill: bool,
+    /// How far skin and infill lines reach into the innermost wall.
+    #[schemars(range(min = 0, max = 1), extend("unit" = "line widths", "default" = 0.4))]
+    pub infill_overlap: f64,
+    /// How far an end of an infill line that leads to no other runs along the wall, at most; 0 also
+    /// keeps turns from running along walls.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 20))]
+    pub infill_anchor: f64,
+    /// Radius of the turns of infill, support and skin lines, where there is room; 0 leaves
+    /// them sharp.
+    #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.2))]
+    pub corner_radius: f64,
+
+    /// Dual injection: lines that are printed once for several layers.
+    pub dual: Dual,
+    /// Support under overhangs.
+    pub support: Support,
+    /// Skin that spans places where nothing is printed below.
+    pub bridge: Bridge,
+    /// How fast the nozzle moves.
+    pub speed: Speed,
+    /// How much filament a line takes.
+    pub extrusion: Extrusion,
+    /// Which way the nozzle goes without printing.
+    pub travel: Travel,
+    /// What happens to the filament around a travel.
+    pub retraction: Retraction,
+    /// The material.
+    pub filament: Filament,
+    /// The fan on what needs more of it.
+    pub cooling: Cooling,
+    /// The printer.
+    pub machine: Machine,
+    /// What the printer's planner holds itself to. It changes no move, only estimates of time.
+    pub limits: MotionLimits,
+}

@@ -1,0 +1,41 @@
+//! `[speed]`: how fast the nozzle moves.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// `[speed]`: how fast the nozzle moves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Speed {
+    /// Speed of walls.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 27))]
+    pub wall: f64,
+    /// Speed of skins.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 50))]
+    pub skin: f64,
+    /// Speed of walls that hang over nothing with their whole width. From half the width on they
+    /// slow down towards it; 0 prints them as any wall.
+    #[schemars(range(min = 0, max = 999), extend("unit" = "mm/s", "default" = 15))]
+    pub overhang: f64,
+    /// Speed of bridges.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 25))]
+    pub bridge: f64,
+    /// Speed of sparse infill that is one layer high.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 60))]
+    pub infill: f64,
+    /// Speed of sparse infill that is several layers high.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 60))]
+    pub thick_infill: f64,
+    /// Speed of support.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 50))]
+    pub support: f64,
+    /// Speed in x and y of moves that print nothing.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 90))]
+    pub travel: f64,
+    /// Speed of moves in z.
+    #[schemars(range(min = 0.1, max = 100), extend("unit" = "mm/s", "default" = 10))]
+    pub z: f64,
+    /// Speed on the first layer, of the speeds above but for travel and z.
+    #[schemars(range(min = 1, max = 200), extend("unit" = "%", "default" = 100))]
+    pub first_layer: f64,
+}
