@@ -60,7 +60,7 @@ pub fn compare(jobs: &[(String, Job)]) -> Result<Comparison> {
     Ok(Comparison {
         schema: SCHEMA,
         slicer: crate::NAME.to_owned(),
-        profile: jobs.first().map(|(_, job)| job.profile.clone()).unwrap_or_default(),
+        profile: jobs.first().map(|(_, job)| job.sources.to_string()).unwrap_or_default(),
         ways,
     })
 }

@@ -1,7 +1,7 @@
 //! Models + settings -> Job: what one run is asked for.
 
 use crate::mesh::Placement;
-use crate::profile::{Profile, Settings};
+use crate::profile::{Profile, Settings, Sources};
 use std::sync::Arc;
 
 /// Name and version of this program.
@@ -16,8 +16,8 @@ pub struct Job {
     pub placement: Placement,
     /// All effective settings.
     pub settings: Settings,
-    /// Name or file of the profile, for the report.
-    pub profile: String,
+    /// The profiles that the settings are from, for the report.
+    pub sources: Sources,
 }
 
 /// Where a model is read from.
@@ -42,7 +42,7 @@ impl Job {
             models: Vec::new(),
             placement: Placement::default(),
             settings: profile.settings,
-            profile: profile.name,
+            sources: profile.sources,
         }
     }
 

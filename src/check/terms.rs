@@ -116,7 +116,7 @@ impl Machine {
             low: [low[0], low[1], 0.0],
             high: [low[0] + size[0], low[1] + size[1], machine.bed_height],
             speed: [limits.speed_x, limits.speed_y, limits.speed_z, limits.speed_e],
-            flow: machine.max_volumetric_speed,
+            flow: settings.max_volumetric_speed(),
         }
     }
 }

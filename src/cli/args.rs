@@ -1,12 +1,13 @@
 //! Words of the command line -> Arguments: every flag, its help, and the settings it stands for.
 
 use super::preview::PreviewArgs;
+use super::profiles::{ProfileArgs, ShelfArgs};
 use super::words::{UNITS, factor, numbers, parts, sunk, triangles, unit, words};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
 use slicer::mesh::{Placement, Policy};
-use slicer::profile::{DEFAULT, Override, ValueOrigin};
+use slicer::profile::{Override, ValueOrigin};
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -104,16 +105,26 @@ pub(crate) enum Command {
 /// What to do with profiles.
 #[derive(Debug, Subcommand)]
 pub(crate) enum ProfileCommand {
-    /// List the built-in profiles
-    List,
+    /// List all profiles: printers, materials and prints
+    List {
+        #[command(flatten)]
+        shelf: ShelfArgs,
+    },
+    /// Print a short profile of your own, which inherits another one
+    New {
+        /// The profile to begin with
+        #[arg(value_name = "NAME")]
+        name: String,
+        #[command(flatten)]
+        shelf: ShelfArgs,
+    },
     /// Print all settings of a profile as TOML, each with where it comes from
     Show {
-        /// Built-in name or file (repeatable: a later one is laid over the earlier)
-        #[arg(value_name = "NAME", default_value = DEFAULT)]
+        /// Name or file (repeatable: a later one is laid over the earlier) [default: your default printer]
+        #[arg(value_name = "NAME")]
         names: Vec<String>,
-        /// Change a setting (repeatable)
-        #[arg(long, value_name = "KEY=VALUE")]
-        set: Vec<String>,
+        #[command(flatten)]
+        profiles: ProfileArgs,
         /// Say what each key means, too
         #[arg(short, long)]
         verbose: bool,
@@ -122,9 +133,11 @@ pub(crate) enum ProfileCommand {
     Schema,
     /// Check a profile file and say what is wrong
     Check {
-        /// Built-in name or file
-        #[arg(value_name = "FILE")]
-        name: String,
+        /// Name or file (repeatable: a later one is laid over the earlier)
+        #[arg(value_name = "FILE", required = true)]
+        names: Vec<String>,
+        #[command(flatten)]
+        profiles: ProfileArgs,
     },
 }
 
@@ -141,12 +154,8 @@ pub(crate) struct EstimateArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "FILE")]
     pub(crate) file: String,
-    /// Built-in profile, or a file if it has a `/` or ends in .toml: the machine's [limits]
-    #[arg(short, long, value_name = "NAME", default_value = DEFAULT)]
-    pub(crate) profile: Vec<String>,
-    /// Change any setting of the profile, such as limits.jerk_x=8 (repeatable)
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) profiles: ProfileArgs,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -168,12 +177,8 @@ pub(crate) struct CheckArgs {
     /// STL file that it was made from (repeatable); placed as the flags below say, then moved to where the lines are
     #[arg(long, value_name = "PART")]
     pub(crate) against: Vec<String>,
-    /// Built-in profile, or a file if it has a `/` or ends in .toml: the machine [default: the file's own settings]
-    #[arg(short, long, value_name = "NAME")]
-    pub(crate) profile: Vec<String>,
-    /// Change any setting of the profile, such as machine.bed_width=250 (repeatable)
-    #[arg(long, value_name = "KEY=VALUE", requires = "profile")]
-    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) profiles: ProfileArgs,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -190,12 +195,8 @@ pub(crate) struct CompareArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
-    /// Built-in profile, or a file if it has a `/` or ends in .toml (repeatable: a later one is laid over the earlier)
-    #[arg(short, long, value_name = "NAME", default_value = DEFAULT, help_heading = "Settings")]
-    pub(crate) profile: Vec<String>,
-    /// Change any setting of the profile, such as speed.wall=25 (repeatable)
-    #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
-    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) profiles: ProfileArgs,
     #[command(flatten)]
     pub(crate) settings: SettingArgs,
     #[command(flatten)]
@@ -212,12 +213,8 @@ pub(crate) struct SliceArgs {
     #[arg(short, long, value_name = "OUT", required = true)]
     pub(crate) output: Option<PathBuf>,
 
-    /// Built-in profile, or a file if it has a `/` or ends in .toml (repeatable: a later one is laid over the earlier)
-    #[arg(short, long, value_name = "NAME", default_value = DEFAULT, help_heading = "Settings")]
-    pub(crate) profile: Vec<String>,
-    /// Change any setting of the profile, such as speed.wall=25 (repeatable)
-    #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
-    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) profiles: ProfileArgs,
     #[command(flatten)]
     pub(crate) settings: SettingArgs,
 

@@ -1,8 +1,7 @@
 //! `slicer check` -> what is wrong with a G-code file, as lines or as JSON.
 
 use super::args::CheckArgs;
-use super::words;
-use super::{Outcome, input, output};
+use super::{Outcome, failure, input, output};
 use anyhow::Result;
 use slicer::check::finding::{Code, Count};
 use slicer::check::terms::Terms;
@@ -25,11 +24,11 @@ const MOST_SHOWN: usize = 5;
 /// # Errors
 /// A profile or setting that is wrong, a file or model that cannot be read, a file without a move.
 pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
-    let given = if args.profile.is_empty() {
-        None
-    } else {
-        Some(profile::load(&args.profile, &words::set_overrides(&args.set)?)?)
-    };
+    let profiles = &args.profiles;
+    if profiles.sets() && !profiles.any() {
+        return Err(failure::usage("--set changes a profile; name one with -p, too"));
+    }
+    let given = if profiles.any() { Some(profiles.load([])?) } else { None };
     let (name, mut source) = input::open(&args.file)?;
     let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
     let firmware = given.as_ref().map_or_else(Firmware::default, |p| input::firmware(&p.settings));
@@ -64,7 +63,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
 
 fn judged_by(given: Option<&Profile>, own: Option<&Profile>, models: &[String]) -> String {
     let by = match (given, own) {
-        (Some(profile), _) => format!("judged by the profile {}", profile.name),
+        (Some(profile), _) => format!("judged by the profile {}", profile.sources),
         (None, Some(_)) => "judged by its own settings".to_owned(),
         (None, None) => "judged without a profile".to_owned(),
     };

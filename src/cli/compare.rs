@@ -4,7 +4,7 @@ use super::args::CompareArgs;
 use super::{failure, output, words};
 use anyhow::Result;
 use slicer::compare::{self, Comparison, Way};
-use slicer::profile::{self, Override, Profile, ValueOrigin};
+use slicer::profile::{Override, Profile, ValueOrigin};
 use slicer::{Job, Model};
 use std::path::Path;
 
@@ -33,7 +33,7 @@ fn job(args: &CompareArgs, mut profile: Profile) -> Job {
         models: args.inputs.iter().map(Model::path).collect(),
         placement: args.place.placement(),
         settings: profile.settings,
-        profile: profile.name,
+        sources: profile.sources,
     }
 }
 
@@ -64,14 +64,13 @@ fn ways(args: &CompareArgs) -> Result<Vec<(String, Profile)>> {
 }
 
 fn load(args: &CompareArgs, more: &[(&str, &str)]) -> Result<Profile> {
-    let mut overrides = words::set_overrides(&args.set)?;
-    overrides.extend(args.settings.overrides());
+    let mut overrides = args.settings.overrides();
     overrides.extend(more.iter().map(|(key, value)| Override {
         key: (*key).to_owned(),
         value: (*value).to_owned(),
         origin: ValueOrigin::Set,
     }));
-    Ok(profile::load(&args.profile, &overrides)?)
+    args.profiles.load(overrides)
 }
 
 /// For people.

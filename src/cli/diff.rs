@@ -2,7 +2,8 @@
 
 mod text;
 
-use super::{Outcome, failure, input, output, words};
+use super::profiles::ProfileArgs;
+use super::{Outcome, failure, input, output};
 use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
@@ -58,13 +59,8 @@ pub(crate) struct DiffArgs {
     /// List all differences, not only the worst (JSON always does)
     #[arg(long)]
     pub(crate) all: bool,
-    /// Built-in profile, or a file if it has a `/` or ends in .toml: the machine's [limits]
-    /// [default: those that the files hold]
-    #[arg(short, long, value_name = "NAME")]
-    pub(crate) profile: Vec<String>,
-    /// Change any setting of the profile, such as limits.jerk_x=8 (repeatable)
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub(crate) set: Vec<String>,
+    #[command(flatten)]
+    pub(crate) profiles: ProfileArgs,
 }
 
 /// Exit code of files that are not equal.
@@ -113,12 +109,10 @@ fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Resul
 
 /// The profile by whose limits both files are timed, and where it is from.
 fn clock(args: &DiffArgs, a: &Print, b: &Print) -> Result<(Profile, String)> {
-    let overrides = words::set_overrides(&args.set)?;
-    let given = !args.profile.is_empty();
-    let default = [profile::DEFAULT.to_owned()];
-    let asked = profile::load(if given { &args.profile[..] } else { &default }, &overrides)?;
-    if given {
-        let origin = format!("profile {}", asked.name);
+    let overrides = args.profiles.overrides()?;
+    let asked = args.profiles.load([])?;
+    if args.profiles.any() {
+        let origin = format!("profile {}", asked.sources);
         return Ok((asked, origin));
     }
     for (print, file) in [(a, "A"), (b, "B")] {
@@ -132,7 +126,7 @@ fn clock(args: &DiffArgs, a: &Print, b: &Print) -> Result<(Profile, String)> {
             return Ok((recorded, format!("the settings in {file}")));
         }
     }
-    let origin = format!("profile {}", asked.name);
+    let origin = format!("profile {}", asked.sources);
     Ok((asked, origin))
 }
 

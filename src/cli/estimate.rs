@@ -1,11 +1,10 @@
 //! `slicer estimate` -> how long a G-code file takes, as a table or as JSON.
 
 use super::args::EstimateArgs;
-use super::{input, output, words};
+use super::{input, output};
 use anyhow::Result;
 use slicer::estimate::{self, Estimate, LayerTime, NotCounted, Options};
 use slicer::motion::Limits;
-use slicer::profile;
 use slicer::warning::plural;
 use std::path::Path;
 
@@ -14,7 +13,7 @@ use std::path::Path;
 /// # Errors
 /// A profile or setting that is wrong, a file that cannot be read or holds no move.
 pub(super) fn run(args: &EstimateArgs) -> Result<String> {
-    let profile = profile::load(&args.profile, &words::set_overrides(&args.set)?)?;
+    let profile = args.profiles.load([])?;
     let settings = &profile.settings;
     let options = Options {
         filament_diameter: settings.filament.diameter,

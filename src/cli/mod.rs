@@ -14,6 +14,7 @@ mod mesh;
 mod model;
 mod output;
 mod preview;
+mod profiles;
 mod progress;
 mod slice;
 mod summary;
@@ -135,25 +136,8 @@ fn say(text: &str) {
 
 fn other(command: &Command) -> Result<Outcome> {
     let text = match command {
-        Command::Profile(ProfileCommand::List) => list()?,
-        Command::Profile(ProfileCommand::Show { names, set, verbose }) => {
-            let profile = profile::load(names, &words::set_overrides(set)?)?;
-            profile::document(&profile, *verbose)
-        }
-        Command::Profile(ProfileCommand::Schema) => pretty(&profile::schema())?,
+        Command::Profile(command) => profile_command(command)?,
         Command::Report(ReportCommand::Schema) => pretty(&report::schema())?,
-        Command::Profile(ProfileCommand::Check { name }) => {
-            // A bare name that is a file here is meant as one: a check is about a file.
-            let bare = !name.contains('/') && !name.ends_with(".toml");
-            let built_in = profile::builtin_names().any(|known| known == name);
-            let file = bare && !built_in && Path::new(name).is_file();
-            let name_or_path = if file { format!("./{name}") } else { name.clone() };
-            let profile = profile::load([&name_or_path], &[])?;
-            for warning in slow_speeds(&profile.settings) {
-                say(&format!("warning: {warning}\n"));
-            }
-            format!("{name}: good\n")
-        }
         Command::Compare(args) => compare::run(args)?,
         Command::Check(args) => return check::run(args),
         Command::Estimate(args) => estimate::run(args)?,
@@ -171,11 +155,21 @@ fn pretty(schema: &impl serde::Serialize) -> Result<String> {
     output::json(schema, Path::new("-"))
 }
 
-fn list() -> Result<String> {
-    let mut text = String::new();
-    for name in profile::builtin_names() {
-        let profile = profile::load([name], &[])?;
-        text.push_str(&format!("{name:<16} {}\n", profile.settings.description));
-    }
-    Ok(text)
+fn profile_command(command: &ProfileCommand) -> Result<String> {
+    Ok(match command {
+        ProfileCommand::List { shelf } => profiles::list(&shelf.shelf())?,
+        ProfileCommand::New { name, shelf } => profiles::new(&shelf.shelf(), name)?,
+        ProfileCommand::Schema => pretty(&profile::schema())?,
+        ProfileCommand::Show { names, profiles, verbose } => {
+            profile::document(&profiles.load_after(names)?, *verbose)
+        }
+        ProfileCommand::Check { names, profiles } => {
+            let names: Vec<String> = names.iter().map(|name| profiles.meant(name)).collect();
+            let profile = profiles.load_after(&names)?;
+            for warning in slow_speeds(&profile.settings) {
+                say(&format!("warning: {warning}\n"));
+            }
+            format!("{}: good\n", names.join(" + "))
+        }
+    })
 }

@@ -11,6 +11,7 @@
 //! that names what there is instead. Outputs are put in place only when all are written.
 
 use super::output::{self, Sink};
+use super::profiles::ProfileArgs;
 use super::{failure, input, interrupt, model, say, usage, viewer, words};
 use anyhow::{Context as _, Result};
 use clap::{Args, ValueEnum};
@@ -19,7 +20,6 @@ use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
 use slicer::preview::cut::{Axis, Cut, Plane};
 use slicer::preview::drawing::{Drawing, Frame};
 use slicer::preview::{layer, png, svg};
-use slicer::profile;
 use slicer::reader::{Cause, Print};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -72,14 +72,8 @@ pub(crate) struct PreviewArgs {
     #[arg(long, value_name = "AXIS=MM", value_parser = plane, conflicts_with_all = ["layer", "all", "fit", "below", "travels"], help_heading = "Cut")]
     cut: Option<Plane>,
 
-    /// Built-in profile, or a file if it has a `/` or ends in .toml
-    ///
-    /// It gives the filament's diameter, for files that tell no widths; for a page the limits that its times depend on, too
-    #[arg(short, long, value_name = "NAME", default_value = profile::DEFAULT, help_heading = "Settings")]
-    profile: Vec<String>,
-    /// Change any setting of the profile, such as filament.diameter=2.85 (repeatable)
-    #[arg(long, value_name = "KEY=VALUE", help_heading = "Settings")]
-    set: Vec<String>,
+    #[command(flatten)]
+    profiles: ProfileArgs,
     /// Refuse a model with more triangles
     #[arg(hide_short_help = true, long, value_name = "N", default_value_t = DEFAULT_MAX_TRIANGLES, value_parser = words::triangles(), help_heading = "Model")]
     max_triangles: usize,
@@ -200,7 +194,7 @@ fn model_itself(args: &PreviewArgs, format: Format) -> Result<()> {
 
 /// The file's name for messages, and what it prints.
 fn read(args: &PreviewArgs) -> Result<(&str, Print)> {
-    let profile = profile::load(&args.profile, &words::set_overrides(&args.set)?)?;
+    let profile = args.profiles.load([])?;
     let (name, mut source) = input::open(&args.file)?;
     let settings = &profile.settings;
     let firmware = input::firmware(settings);
@@ -309,7 +303,7 @@ fn page(args: &PreviewArgs) -> Result<()> {
             "{flag} is for pictures, and a page shows everything; leave it out, or write .svg or .png"
         )));
     }
-    let profile = profile::load(&args.profile, &words::set_overrides(&args.set)?)?;
+    let profile = args.profiles.load([])?;
     let summary = viewer::write(&args.file, &args.output, &profile.settings)?;
     if !args.quiet {
         say(&summary);

@@ -3,13 +3,12 @@
 use super::args::SliceArgs;
 use super::failure::Output;
 use super::output::{self, Sink};
-use super::words;
 use super::{check, failure, input, interrupt, progress, say, summary, usage};
 use anyhow::{Context as _, Result};
 use slicer::check::terms::Terms;
 use slicer::error::Error;
 use slicer::gcode;
-use slicer::profile::{self, Profile};
+use slicer::profile::Profile;
 use slicer::progress::Progress;
 use slicer::reader::Print;
 use slicer::report::Report;
@@ -100,8 +99,7 @@ fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
         return usage::refuse("-o and --report name the same file; name two");
     }
     for product in std::iter::once(out).chain(report) {
-        let read =
-            args.inputs.iter().map(String::as_str).chain(args.profile.iter().map(String::as_str));
+        let read = args.inputs.iter().map(String::as_str).chain(args.profiles.names());
         if let Some(name) = read.into_iter().find(|name| same(product, Path::new(name))) {
             return usage::refuse(&format!(
                 "the output would replace {name}; choose another name for it"
@@ -123,9 +121,7 @@ fn findings(strict: bool, warnings: usize) -> u8 {
 }
 
 fn load(args: &SliceArgs) -> Result<Profile> {
-    let mut overrides = words::set_overrides(&args.set)?;
-    overrides.extend(args.settings.overrides());
-    Ok(profile::load(&args.profile, &overrides)?)
+    args.profiles.load(args.settings.overrides())
 }
 
 /// Runs the pipeline with the threads asked for, under a progress bar.
@@ -134,7 +130,7 @@ fn work(args: &SliceArgs, out: &Path, profile: Profile, sink: &mut Sink) -> Resu
         models: args.inputs.iter().map(Model::path).collect(),
         placement: args.place.placement(),
         settings: profile.settings,
-        profile: profile.name,
+        sources: profile.sources,
     };
     let progress = Arc::new(Progress::default());
     let _meter = progress::Meter::start(&progress, !args.quiet);

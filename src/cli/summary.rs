@@ -1,11 +1,29 @@
-//! Report -> lines for people: the three-line summary, and more with -v.
+//! Report -> lines for people: the four-line summary, and more with -v.
 
 use slicer::mesh::{MeshReport, faults};
 use slicer::profile::{Profile, dump};
 use slicer::report::Report;
 use std::time::Duration;
 
-/// What was made, in three lines.
+/// For which printer, material and print, and every file that had a say in it.
+fn chosen(report: &Report) -> String {
+    let of = |kind: &str| {
+        let last = report.profiles.iter().rev().find(|one| one.kind == Some(kind))?;
+        Some(format!("{kind} {}", last.name))
+    };
+    let mut parts: Vec<String> =
+        ["printer", "material", "print"].into_iter().filter_map(of).collect();
+    if !report.is_profile_chosen {
+        parts.push("none of them chosen: -p NAME, see `slicer profile list`".to_owned());
+    }
+    let files: Vec<&str> = report.profiles.iter().filter_map(|one| one.file.as_deref()).collect();
+    if !files.is_empty() {
+        parts.push(format!("with {}", files.join(", ")));
+    }
+    parts.join(", ")
+}
+
+/// What was made, in four lines.
 pub(crate) fn summary(report: &Report, took: Duration) -> String {
     let [x, y, z] = report.size_mm;
     let layers = &report.layers;
@@ -14,9 +32,11 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
         format!("; {} of {} groups of layers with thick infill", dual.thick_blocks, dual.blocks)
     });
     format!(
-        "{} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm\n\
+        "{}\n\
+         {} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm\n\
          filament {:.0} mm, {:.2} cm³, {:.1} g{}\n\
          prints in {}, sliced in {:.2} s{dual}\n",
+        chosen(report),
         layers.count,
         layers.height_mm,
         filament.length_mm,
@@ -102,16 +122,30 @@ pub(crate) fn settings(profile: &Profile) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use slicer::report::{DualReport, FilamentReport, LayersReport, RoleReport, TimeReport};
+    use slicer::report::{
+        DualReport, FilamentReport, LayersReport, ProfileReport, RoleReport, TimeReport,
+    };
 
     #[test]
-    fn the_summary_has_three_lines() {
+    fn the_summary_has_four_lines() {
         let role = |role: &str, filament_mm| RoleReport {
             role: role.to_owned(),
             filament_mm,
             ..RoleReport::default()
         };
+        let profile = |name: &str, kind, file: Option<&str>| ProfileReport {
+            name: name.to_owned(),
+            kind,
+            file: file.map(str::to_owned),
+        };
+        let profiles = vec![
+            profile("standard", Some("print"), None),
+            profile("petg", Some("material"), None),
+            profile("ender-3", Some("printer"), None),
+            profile("mine.toml", None, Some("a/mine.toml")),
+        ];
         let report = Report {
+            profiles,
             size_mm: [40.0, 30.0, 20.0],
             layers: LayersReport { count: 100, height_mm: 0.2, ..LayersReport::default() },
             roles: vec![role("outer wall", 30.0), role("skin", 0.0), role("thick infill", 90.0)],
@@ -127,7 +161,9 @@ mod tests {
         };
         assert_eq!(
             summary(&report, Duration::from_millis(1230)),
-            "100 layers of 0.2 mm, 40.0 x 30.0 x 20.0 mm\n\
+            "printer ender-3, material petg, print standard, none of them chosen: -p NAME, see \
+             `slicer profile list`, with a/mine.toml\n\
+             100 layers of 0.2 mm, 40.0 x 30.0 x 20.0 mm\n\
              filament 120 mm, 0.29 cm³, 0.4 g (outer wall 25 %, thick infill 75 %)\n\
              prints in 1 h 23 min, sliced in 1.23 s; 46 of 47 groups of layers with thick infill\n"
         );

@@ -25,7 +25,7 @@ pub(super) struct FlowLimit {
 
 impl FlowLimit {
     pub(super) fn new(settings: &Settings) -> Self {
-        Self { most: settings.machine.max_volumetric_speed, area: settings.filament_area() }
+        Self { most: settings.max_volumetric_speed(), area: settings.filament_area() }
     }
 
     /// The feed (mm/min) and the flow (mm³/s) of a bead that takes `filament` mm for each mm of

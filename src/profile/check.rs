@@ -47,7 +47,7 @@ impl Blame<'_> {
             ValueOrigin::Flag(_) => 0,
             ValueOrigin::Set | ValueOrigin::Program => 1,
             ValueOrigin::File { .. } | ValueOrigin::Recorded => 2,
-            ValueOrigin::Default => 3,
+            ValueOrigin::Default | ValueOrigin::Follows(_) => 3,
         };
         keys.iter().filter_map(|key| self.origins.get(*key)).min_by_key(rank).cloned()
     }

@@ -1,6 +1,7 @@
 //! Settings -> what follows from them together: sizes and counts that no single key holds.
 
 use super::{DualRatio, ExtrusionModel, Settings};
+use crate::units::Bounded as _;
 use std::f64::consts::PI;
 
 /// Slack for comparing lengths that were written as decimals, mm.
@@ -38,6 +39,13 @@ impl Settings {
         speeds
     }
 
+    /// The most plastic that the hot end melts of this material, mm³/s.
+    #[must_use]
+    pub fn max_volumetric_speed(&self) -> f64 {
+        let machine = self.machine.max_volumetric_speed;
+        self.filament.max_volumetric_speed.map_or(machine, |material| machine.at_most(material))
+    }
+
     /// The cross-section of the filament, mm².
     #[must_use]
     pub fn filament_area(&self) -> f64 {
@@ -60,7 +68,7 @@ impl Settings {
             DualRatio::Layers(layers) => layers,
             DualRatio::Auto(_) => {
                 let tall = ((self.max_bead_height() + SLACK_MM) / self.layer_height).floor();
-                let melts = (self.machine.max_volumetric_speed / self.layer_flow()).ceil();
+                let melts = (self.max_volumetric_speed() / self.layer_flow()).ceil();
                 tall.min(melts.max(2.0)) as u32
             }
         }

@@ -11,18 +11,31 @@
 use super::foreign::{self, Foreign};
 use super::keys::{self, Key};
 use super::origin::ValueOrigin;
-use super::shipped::{DEFAULT, builtin_names};
+use super::shelf::ProfileKind;
+use super::shipped::DEFAULT;
 use super::{old, suggest};
 use std::io;
 
 /// A profile or a setting that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum ProfileError {
-    /// No profile of this name is shipped.
-    #[error("unknown profile `{}`{}", name.escape_debug(), known_profiles(name))]
+    /// No profile has this name.
+    #[error("unknown profile `{}`{}", name.escape_debug(), known_profiles(name, known))]
     UnknownProfile {
         /// The name asked for.
         name: String,
+        /// Those that there are.
+        known: Vec<String>,
+    },
+    /// A profile that describes another thing than asked for.
+    #[error("{name} is a {is}, not a {wanted}; `slicer profile list` groups them")]
+    OtherKind {
+        /// The profile as the user named it.
+        name: String,
+        /// What it describes.
+        is: ProfileKind,
+        /// What was asked for.
+        wanted: ProfileKind,
     },
     /// A profile file that cannot be read.
     #[error("{file}: cannot read this profile: {source}; check the path")]
@@ -48,17 +61,21 @@ pub enum ProfileError {
         /// The parser's reason.
         source: Box<toml::de::Error>,
     },
-    /// `inherits` that is no text.
-    #[error("{origin}: inherits: must be the name of a profile or a file, in quotes")]
-    InheritsNoName {
+    /// `inherits` or a default that is no text.
+    #[error("{origin}: {key}: must be the name of a profile or a file, in quotes")]
+    NoName {
         /// Where it stands.
         origin: ValueOrigin,
+        /// `inherits`, or such as `defaults.material`.
+        key: String,
     },
-    /// `inherits` with a name that is not known.
-    #[error("{origin}: inherits: {source}")]
-    Inherits {
+    /// `inherits` or a default with a name that is not known.
+    #[error("{origin}: {key}: {source}")]
+    Named {
         /// Where it stands.
         origin: ValueOrigin,
+        /// `inherits`, or such as `defaults.material`.
+        key: String,
         /// What is wrong with the name.
         source: Box<ProfileError>,
     },
@@ -312,10 +329,9 @@ fn one_line(error: &toml::de::Error) -> String {
     error.message().replace('\n', ", ")
 }
 
-fn known_profiles(name: &str) -> String {
-    let hint = suggest::did_you_mean(name, builtin_names());
+fn known_profiles(name: &str, known: &[String]) -> String {
+    let hint = near(name, known);
     let hint = if hint.is_empty() { ".".to_owned() } else { hint };
-    let known: Vec<_> = builtin_names().collect();
     format!(
         "{hint} Known are {}; a file ends in .toml or is given as ./{}",
         known.join(", "),

@@ -74,6 +74,25 @@ pub struct Key {
     pub default: Option<Value>,
     /// Whether it may stay unset.
     pub optional: bool,
+    /// The key that gives its value where nobody sets it.
+    pub follows: Option<Follows>,
+}
+
+/// A key that another one follows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Follows {
+    /// Its dotted name; it holds a number.
+    pub key: String,
+    /// How many times its value.
+    pub times: f64,
+}
+
+impl Follows {
+    /// The value that follows from `number`. A float's last digits would show in files.
+    #[must_use]
+    pub fn of(&self, number: f64) -> f64 {
+        (number * self.times * 1e6).round() / 1e6
+    }
 }
 
 /// All keys, in the order in which they are declared, shown and written.
@@ -110,6 +129,10 @@ fn rows(prefix: &str, table: &Json, keys: &mut Vec<Key>) {
             doc: text("description"),
             default: schema.get("default").and_then(|json| Value::try_from(json).ok()),
             optional: types(schema).any(|one| one == "null"),
+            follows: schema.get("follows").map(|key| Follows {
+                key: key.as_str().unwrap_or_default().to_owned(),
+                times: schema["times"].as_f64().unwrap_or(1.0),
+            }),
         });
     }
 }

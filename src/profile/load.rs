@@ -1,12 +1,11 @@
-//! Profile names or files + overrides -> Profile: merges the layers and remembers where each value is from.
+//! Layers + overrides -> Profile: merges their values and remembers where each one is from.
 //!
-//! Words: a *layer* is the text of one profile; *merged* are the dotted keys that have a value
-//! so far, each with its origin. Values are merged from the most general to the most special, so
-//! that the last one written wins:
+//! Values are merged from the most general to the most special, so that the last one written wins:
 //!
 //! 1. the defaults of the keys,
-//! 2. for each profile asked for: what it inherits, then its own values,
-//! 3. the overrides of the command line, in their order.
+//! 2. the [`layers`](super::layers), one after the other,
+//! 3. the overrides of the command line, in their order,
+//! 4. keys that nobody set and that follow another one, such as the line's width the nozzle's.
 //!
 //! Each value is checked by its key when it is merged, so that a wrong one is reported with its
 //! own place even where another would win over it. At the end the keys are nested again and
@@ -14,58 +13,61 @@
 
 use super::error::{ProfileError, Result};
 use super::keys::{self, Kind};
-use super::origin::{Override, Profile, ValueOrigin};
-use super::shipped::{self, builtin_names};
+use super::layers::{Layer, Wanted, layers};
+use super::origin::{Override, Profile, Sources, ValueOrigin};
+use super::shelf::Shelf;
 use super::{Settings, check, parse};
 use serde::Deserialize;
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::Read as _;
-use std::path::{Path, PathBuf};
 use toml::Value;
 
-/// Bytes of a profile, at most; start and end blocks are the longest part of one. A device has no end.
-const MOST_BYTES: u64 = 1 << 20;
-
-/// Loads profiles, each laid over those before it, lays `overrides` over them in their order,
-/// and checks the result.
-///
-/// A name with a path separator or the ending `.toml` is a file, any other the
-/// name of a shipped profile. What no profile says is the key's default.
+/// Loads shipped profiles and files, each laid over those before it, lays `overrides` over them in
+/// their order, and checks the result.
 ///
 /// # Errors
-/// [`ProfileError`], one line that starts with the file and line or the flag:
-/// unreadable file, unknown profile, cyclic `inherits`, TOML syntax, unknown
-/// key, wrong type, out of range, a key without value, values that cannot print
-/// together, blocks that cannot be filled in.
+/// As [`load_from`].
 pub fn load(
     names: impl IntoIterator<Item = impl AsRef<str>>,
     overrides: &[Override],
 ) -> Result<Profile> {
-    let profile = merge(names, overrides)?;
+    let wanted: Vec<Wanted> = names.into_iter().map(|name| Wanted::any(name.as_ref())).collect();
+    load_from(&Shelf::default(), &wanted, overrides)
+}
+
+/// As [`load`], of profiles that are found on `shelf`; none at all is the default printer.
+///
+/// A name with a path separator or the ending `.toml` is a file, any other the name of a profile
+/// on the shelf. What no profile says is the key's default.
+///
+/// # Errors
+/// [`ProfileError`], one line that starts with the file and line or the flag: unreadable file,
+/// unknown profile, profile of another kind, cyclic `inherits`, TOML syntax, unknown key, wrong
+/// type, out of range, a key without value, values that cannot print together, blocks that cannot
+/// be filled in.
+pub fn load_from(shelf: &Shelf, wanted: &[Wanted], overrides: &[Override]) -> Result<Profile> {
+    let profile = merge(shelf, wanted, overrides)?;
     check::together(&profile.settings, &profile.origins)?;
     Ok(profile)
 }
 
-/// As [`load`], each value checked, but not whether they can print together.
-pub(super) fn merge(
-    names: impl IntoIterator<Item = impl AsRef<str>>,
-    overrides: &[Override],
-) -> Result<Profile> {
+/// As [`load_from`], each value checked, but not whether they can print together.
+pub(super) fn merge(shelf: &Shelf, wanted: &[Wanted], overrides: &[Override]) -> Result<Profile> {
     let mut merged = defaults();
-    let (mut known, mut shown) = (Vec::new(), Vec::new());
-    for name in names {
-        let layer = Layer::find(name.as_ref(), None)?;
-        known.push(layer.name.clone());
-        shown.push(layer.shown.clone());
-        merge_layer(layer, &mut Vec::new(), &mut merged)?;
+    let (layers, asked) = layers(wanted, shelf)?;
+    let sources = Sources { list: layers.iter().map(Layer::source).collect(), asked };
+    for (key, value, origin) in layers.into_iter().flat_map(Layer::settings) {
+        insert(&key, value, origin, &mut merged)?;
     }
     for given in overrides {
         merge_override(given, &mut merged)?;
     }
-    let settings = build(&shown.join(" + "), &merged)?;
+    follow(&mut merged);
+    cold_bed(&mut merged);
+    let last = sources.list.last();
+    let last = last.map_or("", |source| source.file.as_ref().unwrap_or(&source.name));
+    let settings = build(last, &merged)?;
     let origins = merged.into_iter().map(|(key, (_, origin))| (key, origin)).collect();
-    Ok(Profile { settings, origins, name: known.join(" + ") })
+    Ok(Profile { settings, origins, sources })
 }
 
 /// Key -> value and origin.
@@ -81,95 +83,30 @@ fn defaults() -> Merged {
     keys::KEYS.iter().filter_map(row).collect()
 }
 
-/// One profile text before it is read.
-struct Layer {
-    /// See [`Profile::name`].
-    name: String,
-    /// For messages: the path as the user wrote it.
-    shown: String,
-    /// `None` for a shipped profile.
-    path: Option<PathBuf>,
-    /// What tells two layers apart, whatever way they were named.
-    identity: PathBuf,
-}
-
-impl Layer {
-    /// The profile called `wanted`; relative files are looked for in `folder`.
-    fn find(wanted: &str, folder: Option<&Path>) -> Result<Self> {
-        if is_file_name(wanted) {
-            let path = folder.map_or_else(|| PathBuf::from(wanted), |dir| dir.join(wanted));
-            let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-            let identity = std::fs::canonicalize(&path).unwrap_or_else(|_| path.clone());
-            return Ok(Self {
-                name: name.unwrap_or_else(|| wanted.to_owned()),
-                shown: path.display().to_string(),
-                path: Some(path),
-                identity,
-            });
-        }
-        if builtin_names().any(|name| name == wanted) {
-            let name = wanted.to_owned();
-            return Ok(Self { shown: name.clone(), path: None, identity: wanted.into(), name });
-        }
-        Err(ProfileError::UnknownProfile { name: wanted.to_owned() })
-    }
-
-    fn text(&self) -> Result<String> {
-        let Some(path) = &self.path else {
-            return Ok(shipped::text(&self.name).unwrap_or_default().to_owned());
-        };
-        let shown = &self.shown;
-        let mut text = String::new();
-        let read = File::open(path)
-            .and_then(|file| file.take(MOST_BYTES + 1).read_to_string(&mut text))
-            .map_err(|source| ProfileError::Unreadable { file: shown.clone(), source })?;
-        if read as u64 > MOST_BYTES {
-            return Err(ProfileError::TooLarge { file: shown.clone() });
-        }
-        Ok(text)
-    }
-}
-
-fn is_file_name(name: &str) -> bool {
-    name.contains(['/', std::path::MAIN_SEPARATOR])
-        || Path::new(name).extension().is_some_and(|ending| ending == "toml")
-}
-
-/// Merges what `layer` inherits, then its own values. `chain` holds the layers being read.
-fn merge_layer(layer: Layer, chain: &mut Vec<Layer>, merged: &mut Merged) -> Result<()> {
-    let text = layer.text()?;
-    let entries = parse::document(&layer.shown, &text)?;
-    let shown = layer.shown.clone();
-    let folder = layer.path.as_ref().and_then(|path| path.parent()).map(Path::to_owned);
-    chain.push(layer);
-    if let Some(entry) = entries.iter().find(|entry| entry.key == "inherits") {
-        let origin = ValueOrigin::File { name: shown.clone(), line: entry.line };
-        let parent = inherited(entry, &origin, folder.as_deref())?;
-        if let Some(start) = chain.iter().position(|one| one.identity == parent.identity) {
-            let files = chain[start..].iter().chain([&parent]).map(|one| one.shown.clone());
-            return Err(ProfileError::Circle { origin, files: files.collect() });
-        }
-        merge_layer(parent, chain, merged)?;
-    }
-    chain.pop();
-    for entry in entries.into_iter().filter(|entry| entry.key != "inherits") {
-        if entry.is_empty_table() {
+/// Sets the keys that nobody set and that follow another key.
+fn follow(merged: &mut Merged) {
+    for key in keys::KEYS.iter() {
+        let Some(follows) = &key.follows else { continue };
+        let is_open = matches!(merged.get(&key.name), None | Some((_, ValueOrigin::Default)));
+        let led = merged.get(&follows.key).filter(|(_, origin)| *origin != ValueOrigin::Default);
+        let Some(number) = led.filter(|_| is_open).and_then(|(value, _)| parse::number(value))
+        else {
             continue;
+        };
+        // In range wherever the other is, which a test holds.
+        if let Ok(value) = key.check(Value::Float(follows.of(number))) {
+            merged.insert(key.name.clone(), (value, ValueOrigin::Follows(follows.key.clone())));
         }
-        let origin = ValueOrigin::File { name: shown.clone(), line: entry.line };
-        insert(&entry.key, entry.value, origin, merged)?;
     }
-    Ok(())
 }
 
-fn inherited(entry: &parse::Entry, origin: &ValueOrigin, folder: Option<&Path>) -> Result<Layer> {
-    let Value::String(wanted) = &entry.value else {
-        return Err(ProfileError::InheritsNoName { origin: origin.clone() });
-    };
-    Layer::find(wanted, folder).map_err(|source| {
-        let origin = origin.clone();
-        ProfileError::Inherits { origin, source: Box::new(source) }
-    })
+/// Keeps the bed cold that cannot be heated, whatever the material asks for.
+fn cold_bed(merged: &mut Merged) {
+    const SWITCH: &str = "machine.heated_bed";
+    if merged.get(SWITCH).is_some_and(|(value, _)| value.as_bool() == Some(false)) {
+        let cold = (Value::Float(0.0), ValueOrigin::Follows(SWITCH.to_owned()));
+        merged.insert("filament.bed_temperature".to_owned(), cold);
+    }
 }
 
 fn merge_override(given: &Override, merged: &mut Merged) -> Result<()> {
@@ -225,8 +162,7 @@ fn build(shown: &str, merged: &Merged) -> Result<Settings> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::profile::DEFAULT;
-    use crate::profile::{DualMode, RetractWhen};
+    use crate::profile::{DEFAULT, DualMode, RetractWhen, builtin_names};
     use std::fs;
 
     fn set(key: &str, value: &str) -> Override {
@@ -241,7 +177,7 @@ mod tests {
     fn every_shipped_profile_loads() {
         for name in builtin_names() {
             let profile = load([name], &[]).unwrap();
-            assert_eq!(profile.name, name);
+            assert_eq!(profile.sources.to_string(), name);
             assert!(!profile.settings.description.is_empty());
         }
         assert_eq!(builtin_names().next(), Some(DEFAULT));
@@ -256,7 +192,8 @@ mod tests {
         let end = 1.0 + settings.outer_wall_inset - settings.infill_overlap;
         assert!((end * settings.line_width - 0.3).abs() < 1e-9);
         // Inherited values keep the place they are written at.
-        assert!(thesis.origins["speed.wall"].to_string().starts_with("zcube-dual:"));
+        assert!(thesis.origins["walls"].to_string().starts_with("one-wall:"));
+        assert!(thesis.origins["retraction.length"].to_string().starts_with("zcube-dual:"));
         assert!(thesis.origins["dual.mode"].to_string().starts_with("thesis:"));
     }
 
@@ -385,9 +322,10 @@ mod tests {
         let profile = load(["witbox-1", file.to_str().unwrap()], &[]).unwrap();
         assert_eq!(profile.settings.filament.name, "PETG");
         assert_eq!(profile.settings.machine.name, "bq Witbox 1");
-        assert_eq!(profile.name, "witbox-1 + petg.toml");
+        assert_eq!(profile.sources.to_string(), "witbox-1 + petg.toml");
+        // Not over what a printer names as its usual material, which lies below all of them.
         let profile = load([file.to_str().unwrap(), "witbox-1"], &[]).unwrap();
-        assert_eq!(profile.settings.filament.name, "PLA");
+        assert_eq!(profile.settings.filament.name, "PETG");
     }
 
     #[test]
@@ -438,7 +376,7 @@ mod tests {
         let profile = load([&at("a.toml")], &[]).unwrap();
         assert_eq!((profile.settings.walls, profile.settings.infill), (3, 7.0));
         assert_eq!(profile.settings.machine.name, "bq Witbox 1");
-        assert_eq!(profile.name, "a.toml");
+        assert_eq!(profile.sources.to_string(), "a.toml");
 
         fs::write(at("b.toml"), "walls = 4\ninherits = \"./a.toml\"\n").unwrap();
         let message = load([&at("a.toml")], &[]).unwrap_err().to_string();

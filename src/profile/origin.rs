@@ -1,6 +1,7 @@
 //! Profile: settings with where each value comes from, and values that the command line gives.
 
 use super::Settings;
+use super::shelf::ProfileKind;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -11,10 +12,48 @@ pub struct Profile {
     pub settings: Settings,
     /// For each dotted key that is set, what set it last.
     pub origins: BTreeMap<String, ValueOrigin>,
-    /// Built-in name, or name of the file without its folder, so that an
-    /// output that quotes it does not depend on where the file lay. Of several
-    /// profiles all names, with ` + ` between them.
+    /// The profiles that had a say.
+    pub sources: Sources,
+}
+
+/// The profiles that had a say, the most general first.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Sources {
+    /// Each of them once for every time that it was laid.
+    pub list: Vec<Source>,
+    /// The names of those that were asked for, of a file without its folder, so that an output
+    /// that quotes them does not depend on where it lay. If none was, all are defaults.
+    pub asked: Vec<String>,
+}
+
+/// A profile that had a say.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    /// The built-in name, or the file's name without its folder.
     pub name: String,
+    /// What it describes; `None` for a file that may hold anything.
+    pub kind: Option<ProfileKind>,
+    /// The file as it was named or found; `None` for a shipped profile.
+    pub file: Option<String>,
+}
+
+impl Sources {
+    /// The name of the last profile of this kind.
+    #[must_use]
+    pub fn of(&self, kind: ProfileKind) -> Option<&str> {
+        let last = self.list.iter().rev().find(|source| source.kind == Some(kind));
+        last.map(|source| source.name.as_str())
+    }
+}
+
+impl fmt::Display for Sources {
+    /// The names that were asked for, with ` + ` between them, or that of the default printer.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.asked.is_empty() {
+            return f.write_str(self.of(ProfileKind::Printer).unwrap_or_default());
+        }
+        f.write_str(&self.asked.join(" + "))
+    }
 }
 
 /// What gave a setting its value. Displays as the start of an error message.
@@ -29,6 +68,8 @@ pub enum ValueOrigin {
         /// Line, from 1.
         line: usize,
     },
+    /// Another key, which this one follows where nobody sets it.
+    Follows(String),
     /// `--set`.
     Set,
     /// A flag of its own, such as `--layer-height`.
@@ -44,6 +85,7 @@ impl fmt::Display for ValueOrigin {
         match self {
             Self::File { name, line } => write!(f, "{name}:{line}"),
             Self::Default => f.write_str("default"),
+            Self::Follows(key) => write!(f, "follows {key}"),
             Self::Set => f.write_str("--set"),
             Self::Flag(flag) => f.write_str(flag),
             Self::Recorded => f.write_str("the file's own settings"),

@@ -46,6 +46,11 @@ pub(super) fn value(text: &str) -> Value {
         .map_or_else(|_| Value::String(text.to_owned()), |value| scalar(value.get_ref()))
 }
 
+/// The number that a value is.
+pub(super) fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+}
+
 fn flatten(table: &DeTable<'_>, prefix: &str, text: &str, entries: &mut Vec<Entry>) {
     for (name, value) in table {
         let key = format!("{prefix}{}", name.get_ref());

@@ -2,9 +2,11 @@
 
 use super::error::Result;
 use super::keys::KEYS;
+use super::layers::Wanted;
 use super::load::merge;
 use super::old::{is_ours, renewed};
 use super::origin::{Override, Profile, ValueOrigin};
+use super::shelf::Shelf;
 use super::shipped::DEFAULT;
 use super::show::NOT_DUMPED;
 
@@ -27,7 +29,7 @@ pub fn recorded(comments: &[(String, String)]) -> Result<Option<Profile>> {
             Some(Override { key, value, origin: ValueOrigin::Recorded })
         })
         .collect();
-    merge([DEFAULT], &overrides).map(Some)
+    merge(&Shelf::default(), &[Wanted::any(DEFAULT)], &overrides).map(Some)
 }
 
 #[cfg(test)]

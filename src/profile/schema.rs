@@ -1,11 +1,12 @@
 //! Settings -> JSON Schema: what editors complete and check a profile by, and what the table of keys is read from.
 
 use super::Settings;
+use super::shelf::ProfileKind;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
 /// The JSON Schema of a profile file: every key with its type, limits, unit, default and
-/// meaning. A profile may leave out any key, and may inherit another profile.
+/// meaning. A profile may leave out any key, and may inherit other profiles.
 #[must_use]
 pub fn schema() -> Value {
     let mut schema = all_keys();
@@ -14,15 +15,26 @@ pub fn schema() -> Value {
         "title": "Profile of slicer",
         "description": "Settings of a print: printer, material and quality.",
     });
+    let name = json!({ "type": "string" });
     let inherits = json!({
-        "type": "string",
-        "description": "Profile that gives every value that this one leaves out: the name of a \
-                        shipped profile, or a file, seen from this one's folder.",
+        "anyOf": [name, { "type": "array", "items": name }],
+        "description": "Profile that gives every value that this one leaves out, or a list of \
+                        them, later ones laid over earlier: the name of a profile, or a file, \
+                        seen from this one's folder.",
+    });
+    let kinds = ProfileKind::ALL.map(|kind| (kind.name().to_owned(), name.clone()));
+    let defaults = json!({
+        "type": "object",
+        "properties": Map::from_iter(kinds),
+        "additionalProperties": false,
+        "description": "Profiles that are laid below this one where a job names none of their \
+                        kind: a printer names its usual material and print.",
     });
     if let Value::Object(root) = &mut schema {
         root.extend(own.as_object().cloned().unwrap_or_default());
         if let Some(Value::Object(keys)) = root.get_mut("properties") {
             keys.shift_insert(0, "inherits".to_owned(), inherits);
+            keys.shift_insert(1, "defaults".to_owned(), defaults);
         }
     }
     schema

@@ -1,24 +1,57 @@
-//! Name -> text: the profiles that come with the program.
+//! Name -> text: the profiles that come with the program, by kind. A name stands for one of them alone.
 
-/// Name of the profile that is used where none is asked for.
+use super::shelf::ProfileKind;
+use ProfileKind::{Material, Print, Printer};
+
+/// Name of the printer that is used where none is asked for.
 pub const DEFAULT: &str = "zcube-dual";
 
-/// The shipped profiles: name and text.
-const BUILTIN: &[(&str, &str)] = &[
-    ("zcube-dual", include_str!("../../profiles/zcube-dual.toml")),
-    ("replicator", include_str!("../../profiles/replicator.toml")),
-    ("thesis", include_str!("../../profiles/thesis.toml")),
-    ("generic-marlin", include_str!("../../profiles/generic-marlin.toml")),
-    ("generic-klipper", include_str!("../../profiles/generic-klipper.toml")),
-    ("witbox-1", include_str!("../../profiles/witbox-1.toml")),
+/// A shipped profile: kind, name and text.
+macro_rules! shipped {
+    ($kind:ident, $folder:literal, $($name:literal)*) => {
+        &[$(($kind, $name, include_str!(concat!("../../profiles/", $folder, "/", $name, ".toml"))),)*]
+    };
+}
+
+const BUILTIN: [&[(ProfileKind, &str, &str)]; 3] = [
+    shipped!(Printer, "printers", "zcube-dual" "replicator" "witbox-1" "generic-marlin" "generic-klipper"),
+    shipped!(Material, "materials", "pla" "petg" "abs" "asa" "tpu" "pla-thesis"),
+    shipped!(Print, "prints", "standard" "draft" "fine" "strong" "one-wall" "thesis"),
 ];
 
-/// Names of the shipped profiles, [`DEFAULT`] first.
+fn all() -> impl Iterator<Item = &'static (ProfileKind, &'static str, &'static str)> {
+    BUILTIN.iter().copied().flatten()
+}
+
+/// Names of all shipped profiles, the printers first, and of these [`DEFAULT`].
 pub fn builtin_names() -> impl Iterator<Item = &'static str> {
-    BUILTIN.iter().map(|(name, _)| *name)
+    all().map(|(_, name, _)| *name)
+}
+
+/// Names of the shipped profiles of a kind.
+pub(super) fn names(kind: ProfileKind) -> impl Iterator<Item = &'static str> {
+    all().filter(move |(its, _, _)| *its == kind).map(|(_, name, _)| *name)
+}
+
+/// The kind of the shipped profile of this name.
+pub(super) fn kind(name: &str) -> Option<ProfileKind> {
+    all().find(|(_, known, _)| *known == name).map(|(kind, _, _)| *kind)
 }
 
 /// The text of the shipped profile of this name.
 pub(super) fn text(name: &str) -> Option<&'static str> {
-    BUILTIN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+    all().find(|(_, known, _)| *known == name).map(|(_, _, text)| *text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_over_the_kinds() {
+        let mut names: Vec<_> = builtin_names().collect();
+        assert_eq!(names[0], DEFAULT);
+        names.sort_unstable();
+        assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "{names:?}");
+    }
 }

@@ -31,6 +31,12 @@ pub fn dump(settings: &Settings) -> Vec<(String, String)> {
     std::iter::once((FORMAT_KEY.to_owned(), SETTINGS_FORMAT.to_string())).chain(lines).collect()
 }
 
+/// Every key that has a value, as dotted key and TOML value on one line.
+#[must_use]
+pub fn values(settings: &Settings) -> Vec<(String, String)> {
+    all(settings).into_iter().map(|(key, value)| (key.name.clone(), one_line(&value))).collect()
+}
+
 /// The whole profile as a TOML file that gives the same settings again: every key there is,
 /// each value with its origin as a comment, and a key that is unset as a comment. With
 /// `explain` also the unit, limits and meaning of each key.
@@ -137,6 +143,7 @@ mod tests {
         let mut settings = load(["zcube-dual"], &[]).unwrap().settings;
         settings.top_layers = Some(1);
         settings.bottom_layers = Some(1);
+        settings.filament.max_volumetric_speed = Some(1.0);
         let mut typed = BTreeSet::new();
         leaves("", &Value::try_from(&settings).unwrap(), &mut typed);
         let listed: BTreeSet<_> = keys::names().map(str::to_owned).collect();

@@ -3,7 +3,7 @@
 use super::tally::Tally;
 use super::{
     ApartReport, BlockReport, DualReport, FilamentReport, FlowReport, LayerTimeReport,
-    LayersReport, Report, RoleReport, SCHEMA, TimeReport, TravelReport,
+    LayersReport, ProfileReport, Report, RoleReport, SCHEMA, TimeReport, TravelReport,
 };
 use crate::fill::Role;
 use crate::gcode::Sums;
@@ -12,7 +12,7 @@ use crate::gcode::times::{LayerTime, Times};
 use crate::gcode::usage::Material;
 use crate::job::{self, Job};
 use crate::mesh::place::Placed;
-use crate::profile::{DualMode, DualPart, Settings};
+use crate::profile::{DualMode, DualPart, Settings, Sources};
 use crate::region::dual::audit::{Apart, Audit};
 use crate::slice::Heights;
 use crate::units::{sum_mm, to_mm, to_units};
@@ -34,7 +34,9 @@ pub fn report(
     Report {
         schema: SCHEMA,
         slicer: job::NAME.to_owned(),
-        profile: job.profile.clone(),
+        profile: job.sources.to_string(),
+        is_profile_chosen: !job.sources.asked.is_empty(),
+        profiles: profiles(&job.sources),
         models: placed.reports.clone(),
         size_mm: placed.size_mm,
         solid_mm3: tally.solid_mm3(),
@@ -56,7 +58,7 @@ pub fn report(
         time: time(times),
         flow: FlowReport {
             largest_mm3_s: usage.flows.largest,
-            limit_mm3_s: settings.machine.max_volumetric_speed,
+            limit_mm3_s: settings.max_volumetric_speed(),
         },
         dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits)),
         warnings: (placed.warnings.iter().cloned())
@@ -66,6 +68,18 @@ pub fn report(
             .collect(),
         check: None,
     }
+}
+
+fn profiles(sources: &Sources) -> Vec<ProfileReport> {
+    let mut list: Vec<ProfileReport> = Vec::new();
+    for source in &sources.list {
+        let kind = source.kind.map(|kind| kind.name());
+        let one = ProfileReport { name: source.name.clone(), kind, file: source.file.clone() };
+        if !list.contains(&one) {
+            list.push(one);
+        }
+    }
+    list
 }
 
 fn roles(sums: &Sums, settings: &Settings) -> Vec<RoleReport> {
@@ -125,7 +139,7 @@ fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
                 setting: (*role.facts().speed_keys.of(thick)).to_owned(),
                 asked_mm_s: speed(lowered.asked),
                 lowest_mm_s: speed(lowered.given),
-                limit_mm3_s: settings.machine.max_volumetric_speed,
+                limit_mm3_s: settings.max_volumetric_speed(),
             }));
         }
     }

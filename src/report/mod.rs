@@ -37,8 +37,12 @@ pub struct Report {
     pub schema: u32,
     /// Name and version of this program.
     pub slicer: String,
-    /// Profile asked for, by name or file.
+    /// Profiles asked for, by name or file; that of the default printer if none was.
     pub profile: String,
+    /// Whether any profile was asked for; otherwise all are defaults.
+    pub is_profile_chosen: bool,
+    /// The profiles that had a say, defaults included, the most general first.
+    pub profiles: Vec<ProfileReport>,
     /// Each model read, in the order given.
     pub models: Vec<MeshReport>,
     /// Size of the whole layout x, y, z, mm.
@@ -65,6 +69,19 @@ pub struct Report {
     /// The verdict of `--check`; absent without it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub check: Option<Verdict>,
+}
+
+/// A profile that had a say.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct ProfileReport {
+    /// Its name, of a file without its folder.
+    pub name: String,
+    /// `printer`, `material` or `print`; absent for a file that may hold anything.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kind: Option<&'static str>,
+    /// The file as it was named or found; absent for a profile that comes with the program.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
 }
 
 /// The layers of a print.

@@ -242,7 +242,7 @@ fn whole(bench: &Bench, model: &Model) {
         models: vec![slicer::Model::path(model.file.to_string_lossy())],
         placement: placement(),
         settings: model.settings.clone(),
-        profile: "generic-marlin".to_owned(),
+        sources: slicer::profile::Sources::default(),
     };
     let run = || slicer::slice(&job, &mut std::io::empty(), &Default::default());
     let group = bench.group("whole", model.name);

@@ -73,7 +73,7 @@ pub(crate) fn slice_file(
         models: vec![Model::path(path.to_str().unwrap())],
         placement: placement.clone(),
         settings: settings.clone(),
-        profile: "test".to_owned(),
+        sources: slicer::profile::Sources::default(),
     };
     let mut out = std::io::Cursor::new(Vec::new());
     let report = slicer::slice(&job, &mut out, &Progress::default())?;

@@ -176,7 +176,8 @@ fn damaged_models_are_refused_or_sliced() {
 
 #[test]
 fn damaged_profiles_are_refused_or_give_settings() {
-    let names = ["zcube-dual", "thesis", "generic-marlin", "generic-klipper"];
+    let names =
+        ["printers/zcube-dual", "prints/thesis", "printers/generic-marlin", "materials/petg"];
     let read = |name: &&str| std::fs::read(root().join(format!("profiles/{name}.toml"))).unwrap();
     let profiles: Vec<Vec<u8>> = names.iter().map(read).collect();
     profiles.iter().for_each(|text| properties::profile(text));

@@ -60,7 +60,7 @@ pub(crate) fn stl(bytes: &[u8]) {
         models: vec![slicer::Model::path("x.stl")],
         placement,
         settings,
-        profile: "generic-marlin".to_owned(),
+        sources: slicer::profile::Sources::default(),
     };
     let mut out = std::io::Cursor::new(Vec::new());
     match slicer::slice_placed(&job, &placed, &mut out, &Progress::default()) {

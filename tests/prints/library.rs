@@ -66,7 +66,7 @@ fn slice(
         models: vec![Model::bytes("model.stl", stl)],
         placement: placement.clone(),
         settings: settings("generic-marlin", &[("min_feature", "1")]),
-        profile: "test".to_owned(),
+        sources: slicer::profile::Sources::default(),
     };
     slicer::slice(&job, out, progress)
 }

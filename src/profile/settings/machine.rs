@@ -24,6 +24,9 @@ pub struct Machine {
     /// Size of the print volume in z.
     #[schemars(range(min = 1, max = 5_000), extend("unit" = "mm"))]
     pub bed_height: f64,
+    /// Whether the bed can be heated; if not, filament.bed_temperature is 0 for every material.
+    #[schemars(extend("default" = true))]
+    pub heated_bed: bool,
     /// Where on the bed x and y are 0.
     #[schemars(extend("default" = "front-left"))]
     pub origin: Origin,

@@ -29,6 +29,10 @@ pub struct Filament {
     /// First layer, counted from 1, that is printed with the fan on.
     #[schemars(range(min = 1, max = 100_000), extend("unit" = "layer", "default" = 2))]
     pub fan_from_layer: u32,
+    /// Most of this material that can be melted; the lesser of it and machine.max_volumetric_speed
+    /// holds. Unset, the machine's does.
+    #[schemars(range(min = 0.1, max = 1_000), extend("unit" = "mm³/s"))]
+    pub max_volumetric_speed: Option<f64>,
     /// Price of the material; 0 means unknown.
     #[schemars(range(min = 0, max = 1_000_000), extend("unit" = "money/kg", "default" = 0))]
     pub cost: f64,

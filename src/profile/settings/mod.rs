@@ -18,6 +18,8 @@
 //! - **unit**: for people and editors; values are always in this unit.
 //! - **default**: the value where no profile has one. A key without a default must be set by
 //!   a profile, unless its type is an `Option`: then it may stay unset.
+//! - **follows**: the key that gives the value, so many times its own, where no profile has one
+//!   but has that key.
 //! - **choices**: keys that hold a word are enums, in [`super::choices`].
 
 mod dual;
@@ -53,14 +55,15 @@ pub struct Settings {
     #[schemars(length(max = MAX_TEXT))]
     pub description: String,
 
-    /// Height of a layer.
-    #[schemars(range(min = 0.02, max = 2), extend("unit" = "mm", "default" = 0.2))]
+    /// Height of a layer; half the nozzle's diameter where nobody sets it.
+    #[schemars(range(min = 0.02, max = 2), extend("unit" = "mm", "default" = 0.2, "follows" = "machine.nozzle_diameter", "times" = 0.5))]
     pub layer_height: f64,
-    /// Height of the first layer.
-    #[schemars(range(min = 0.02, max = 2), extend("unit" = "mm", "default" = 0.2))]
+    /// Height of the first layer; half the nozzle's diameter where nobody sets it.
+    #[schemars(range(min = 0.02, max = 2), extend("unit" = "mm", "default" = 0.2, "follows" = "machine.nozzle_diameter", "times" = 0.5))]
     pub first_layer_height: f64,
-    /// Width of a line, and distance between neighbouring solid lines.
-    #[schemars(range(min = 0.05, max = 4), extend("unit" = "mm", "default" = 0.4))]
+    /// Width of a line, and distance between neighbouring solid lines; the nozzle's diameter where
+    /// nobody sets it.
+    #[schemars(range(min = 0.05, max = 4), extend("unit" = "mm", "default" = 0.4, "follows" = "machine.nozzle_diameter", "times" = 1))]
     pub line_width: f64,
     /// How far a simplified contour may lie from the model's.
     #[schemars(range(min = 0, max = 0.5), extend("unit" = "mm", "default" = 0.01))]

@@ -1,0 +1,215 @@
+//! Name -> text: the places where profiles are found, those of the user before the shipped ones.
+//!
+//! A job is made of three things that are swapped one by one:
+//!
+//! - *printer*: machine, limits, start and end blocks, retraction.
+//! - *material*: temperatures, fan, flow, density, price.
+//! - *print*: heights, walls, skins, infill, speeds, dual injection, support.
+//!
+//! A *shelf* is a list of folders. In a folder, `printers/NAME.toml`, `materials/NAME.toml` and
+//! `prints/NAME.toml` are found by `NAME`; the subfolder is the kind. After the last folder come the
+//! shipped profiles. A name with a path separator or the ending `.toml` is a file instead.
+
+use super::error::{ProfileError, Result};
+use super::{parse, shipped};
+use std::fmt;
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+/// Bytes of a profile, at most; start and end blocks are the longest part of one. A device has no end.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// File in a folder that stands for the default printer, if it is there.
+const DEFAULT_FILE: &str = "default.toml";
+
+/// Which of the three things of a job a profile describes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ProfileKind {
+    /// The machine.
+    Printer,
+    /// The filament.
+    Material,
+    /// How it is printed.
+    Print,
+}
+
+impl ProfileKind {
+    /// All kinds, in the order of lists.
+    pub const ALL: [Self; 3] = [Self::Printer, Self::Material, Self::Print];
+
+    /// Its name, which is also that of its key under `defaults`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Printer => "printer",
+            Self::Material => "material",
+            Self::Print => "print",
+        }
+    }
+
+    /// The subfolder of its profiles.
+    fn folder(self) -> &'static str {
+        match self {
+            Self::Printer => "printers",
+            Self::Material => "materials",
+            Self::Print => "prints",
+        }
+    }
+}
+
+impl fmt::Display for ProfileKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A profile that was found, before it is read.
+#[derive(Debug, Clone)]
+pub struct Found {
+    /// The built-in name, or the file's name without its folder, so that what quotes it does not
+    /// depend on where the file lay.
+    pub name: String,
+    /// For messages: the path, or the name of a shipped profile.
+    pub shown: String,
+    /// What it describes; `None` for a file that may hold anything.
+    pub kind: Option<ProfileKind>,
+    /// `None` for a shipped profile.
+    pub path: Option<PathBuf>,
+    /// What tells two profiles apart, whatever way they were named.
+    identity: PathBuf,
+}
+
+impl Found {
+    /// A file that the user names by its path.
+    fn file(path: PathBuf, kind: Option<ProfileKind>) -> Self {
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let identity = std::fs::canonicalize(&path).unwrap_or_else(|_| path.clone());
+        Self { name, shown: path.display().to_string(), kind, path: Some(path), identity }
+    }
+
+    /// A file on a shelf, which goes by its name without the ending.
+    fn shelved(path: PathBuf, kind: ProfileKind) -> Self {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        Self { name, ..Self::file(path, Some(kind)) }
+    }
+
+    fn shipped(kind: ProfileKind, name: &str) -> Self {
+        let (name, identity) = (name.to_owned(), PathBuf::from(name));
+        Self { shown: name.clone(), name, kind: Some(kind), path: None, identity }
+    }
+
+    /// Whether both are the same file or the same shipped profile.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.identity == other.identity
+    }
+
+    /// Its text.
+    ///
+    /// # Errors
+    /// [`ProfileError::Unreadable`], [`ProfileError::TooLarge`].
+    pub fn text(&self) -> Result<String> {
+        let Some(path) = &self.path else {
+            return Ok(shipped::text(&self.name).unwrap_or_default().to_owned());
+        };
+        let mut text = String::new();
+        let read = File::open(path)
+            .and_then(|file| file.take(MOST_BYTES + 1).read_to_string(&mut text))
+            .map_err(|source| ProfileError::Unreadable { file: self.shown.clone(), source })?;
+        if read as u64 > MOST_BYTES {
+            return Err(ProfileError::TooLarge { file: self.shown.clone() });
+        }
+        Ok(text)
+    }
+
+    /// What it is for, in one line; empty if it does not say.
+    ///
+    /// # Errors
+    /// As [`Self::text`], and [`ProfileError::Syntax`].
+    pub fn description(&self) -> Result<String> {
+        let entries = parse::document(&self.shown, &self.text()?)?;
+        let said = entries.iter().find(|entry| entry.key == "description");
+        Ok(said.and_then(|entry| entry.value.as_str()).unwrap_or_default().to_owned())
+    }
+}
+
+/// Where profiles are looked for by their names. Empty, it holds the shipped profiles alone.
+#[derive(Debug, Clone, Default)]
+pub struct Shelf {
+    folders: Vec<PathBuf>,
+}
+
+impl Shelf {
+    /// A shelf of these folders, the first one searched first. They need not exist.
+    #[must_use]
+    pub fn new(folders: Vec<PathBuf>) -> Self {
+        Self { folders }
+    }
+
+    /// The profile called `wanted`; relative files are looked for in `folder`. Those that `skip`
+    /// refuses are passed over: a profile may inherit the one that it stands in front of.
+    ///
+    /// # Errors
+    /// [`ProfileError::UnknownProfile`].
+    pub fn find(
+        &self,
+        wanted: &str,
+        folder: Option<&Path>,
+        skip: impl Fn(&Found) -> bool,
+    ) -> Result<Found> {
+        if is_file_name(wanted) {
+            let path = folder.map_or_else(|| PathBuf::from(wanted), |dir| dir.join(wanted));
+            return Ok(Found::file(path, None));
+        }
+        let file = format!("{wanted}.toml");
+        let place = |dir: &PathBuf, kind: ProfileKind| dir.join(kind.folder()).join(&file);
+        let kinds = |dir| ProfileKind::ALL.map(|kind| (place(dir, kind), kind));
+        let own = self.folders.iter().flat_map(kinds).filter(|(path, _)| path.is_file());
+        let own = own.map(|(path, kind)| Found::shelved(path, kind));
+        let shipped = shipped::kind(wanted).map(|kind| Found::shipped(kind, wanted));
+        own.chain(shipped).find(|found| !skip(found)).ok_or_else(|| ProfileError::UnknownProfile {
+            name: wanted.to_owned(),
+            known: self.all().into_iter().map(|found| found.name).collect(),
+        })
+    }
+
+    /// The printer of a job that names none: `default.toml` in the first folder that has one, or
+    /// else the shipped [`DEFAULT`](shipped::DEFAULT).
+    #[must_use]
+    pub fn default_printer(&self) -> Found {
+        let mut files = self.folders.iter().map(|dir| dir.join(DEFAULT_FILE));
+        files.find(|path| path.is_file()).map_or_else(
+            || Found::shipped(ProfileKind::Printer, shipped::DEFAULT),
+            |path| Found::file(path, Some(ProfileKind::Printer)),
+        )
+    }
+
+    /// Every profile that a name finds, by kind and name; the shipped ones in their own order
+    /// after those of the user.
+    #[must_use]
+    pub fn all(&self) -> Vec<Found> {
+        let mut all: Vec<Found> = Vec::new();
+        for kind in ProfileKind::ALL {
+            let mut own: Vec<Found> = Vec::new();
+            for folder in &self.folders {
+                let entries = std::fs::read_dir(folder.join(kind.folder())).into_iter().flatten();
+                let files = entries.flatten().map(|entry| entry.path());
+                let toml = files.filter(|path| path.extension().is_some_and(|end| end == "toml"));
+                own.extend(toml.map(|path| Found::shelved(path, kind)));
+            }
+            // The first folder wins.
+            own.sort_by(|a, b| a.name.cmp(&b.name));
+            own.dedup_by(|later, first| later.name == first.name);
+            let shipped = shipped::names(kind).map(|name| Found::shipped(kind, name));
+            let shipped = shipped.filter(|one| own.iter().all(|mine| mine.name != one.name));
+            all.extend(own.iter().cloned().chain(shipped));
+        }
+        all
+    }
+}
+
+fn is_file_name(name: &str) -> bool {
+    name.contains(['/', std::path::MAIN_SEPARATOR])
+        || Path::new(name).extension().is_some_and(|ending| ending == "toml")
+}
