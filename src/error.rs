@@ -125,6 +125,16 @@ pub enum Refusal {
         /// Width of a line, mm.
         line_width_mm: f64,
     },
+    /// The first layer lies where the start block primes the nozzle.
+    #[error(
+        "the start block primes the nozzle at x {:.1} y {:.1}, where the first layer lies; move the \
+         models with --at X,Y, use a smaller --scale, or change machine.start_gcode",
+        .at_mm[0], .at_mm[1]
+    )]
+    Primed {
+        /// Place in the machine's coordinates, mm.
+        at_mm: [f64; 2],
+    },
     /// The print would begin in the air.
     #[error("{0}")]
     Hanging(Hanging),

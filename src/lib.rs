@@ -77,6 +77,7 @@ use error::{Error, Refusal, Result};
 use pipeline::batches::{self, Setup};
 use pipeline::footing::Footing;
 use pipeline::place::{bed_corners, print_facts};
+use pipeline::prime;
 use pipeline::refuse;
 use pipeline::thumbnails::thumbnails;
 use units::to_units;
@@ -128,6 +129,8 @@ pub fn slice_placed(
     // Toolpaths -> text, one batch while the next is planned.
     let pictures = pictures.map_err(Error::Thumbnails)?;
     let facts = print_facts(placed, &heights);
+    let first = planned.front().and_then(|batch| batch.first());
+    prime::refuse(&settings, &facts, placed.offset, first)?;
     let mut writer = gcode::Writer::new(out, &settings, facts, placed.offset, &pictures)?;
     batches::write(&mut writer, planned, &mut planner, progress)?;
     let (audits, tally, footing) = planner.finish();

@@ -123,11 +123,11 @@ pub(crate) enum ProfileCommand {
         /// Name or file (repeatable: a later one is laid over the earlier) [default: your default printer]
         #[arg(value_name = "NAME")]
         names: Vec<String>,
-        #[command(flatten)]
-        profiles: ProfileArgs,
         /// Say what each key means, too
         #[arg(short, long)]
         verbose: bool,
+        #[command(flatten)]
+        profiles: ProfileArgs,
     },
     /// Print the JSON Schema of a profile, by which editors complete and check one
     Schema,
@@ -154,8 +154,6 @@ pub(crate) struct EstimateArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "FILE")]
     pub(crate) file: String,
-    #[command(flatten)]
-    pub(crate) profiles: ProfileArgs,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -165,6 +163,8 @@ pub(crate) struct EstimateArgs {
     /// Leave out what the file itself says of limits (M201, M203, M204, M205, SET_VELOCITY_LIMIT)
     #[arg(long)]
     pub(crate) fixed_limits: bool,
+    #[command(flatten)]
+    pub(crate) profiles: ProfileArgs,
 }
 
 /// Arguments of checking.
@@ -177,11 +177,11 @@ pub(crate) struct CheckArgs {
     /// STL file that it was made from (repeatable); placed as the flags below say, then moved to where the lines are
     #[arg(long, value_name = "PART")]
     pub(crate) against: Vec<String>,
-    #[command(flatten)]
-    pub(crate) profiles: ProfileArgs,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) profiles: ProfileArgs,
     #[command(flatten)]
     pub(crate) place: PlaceArgs,
 }
@@ -310,7 +310,7 @@ pub(crate) struct PlaceArgs {
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     copies: u32,
     /// Refuse models with more triangles, alone or together: 5 million take some 0.5 GB
-    #[arg(long, value_name = "N", default_value_t = DEFAULT_MAX_TRIANGLES, value_parser = triangles())]
+    #[arg(hide_short_help = true, long, value_name = "N", default_value_t = DEFAULT_MAX_TRIANGLES, value_parser = triangles())]
     max_triangles: usize,
     /// What to do about faults of a mesh: mend it, slice it as it is, or refuse it
     #[arg(long, value_name = "POLICY", default_value = "repair", value_parser = ["repair", "warn", "strict"])]

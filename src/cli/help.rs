@@ -167,7 +167,9 @@ const FISH_SLICES: &str = "-n \"not __fish_seen_subcommand_from @commands@\"";
 /// With the marks where profiles and keys are meant, in all commands.
 fn marked(command: Command) -> Command {
     let marked_here = command.mut_args(|arg| match arg.get_id().as_str() {
-        "profile" | "name" | "names" => arg.value_parser(PossibleValuesParser::new([PROFILES])),
+        "profile" | "material" | "print" | "name" | "names" => {
+            arg.value_parser(PossibleValuesParser::new([PROFILES]))
+        }
         "set" => arg.value_parser(PossibleValuesParser::new([KEYS])),
         _ => arg,
     });

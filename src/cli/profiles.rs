@@ -18,13 +18,13 @@ const NO_USER_CONFIG: &str = "SLICER_NO_USER_CONFIG";
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Settings")]
 pub(crate) struct ProfileArgs {
-    /// Printer, or any other profile: its name, or a file if it has a `/` or ends in .toml (repeatable: a later one is laid over the earlier)
+    /// Printer or other profile; a file if it has a `/` or ends in .toml (repeatable, later ones win)
     #[arg(short, long, value_name = "NAME")]
     pub(crate) profile: Vec<String>,
-    /// Material, laid over the printer's own [default: the printer's]
+    /// Material [default: the printer's]
     #[arg(long, value_name = "NAME")]
     material: Option<String>,
-    /// Heights, walls, skins, infill and speeds [default: the printer's]
+    /// Print, such as fine [default: the printer's]
     #[arg(long, value_name = "NAME")]
     print: Option<String>,
     /// Change any setting, such as speed.wall=25 (repeatable)

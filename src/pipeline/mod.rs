@@ -1,13 +1,15 @@
 //! Job + placed models -> stages: what the flow in `lib.rs` is put together from.
 //!
 //! Here is all code that names several stages at once: reading and placing ([`place`]), planning
-//! in batches ([`batches`]), what begins in the air ([`footing`]), the thumbnails ([`mod@thumbnails`]), what is refused
-//! ([`refuse`]), and outputs that cannot seek ([`spool`]).
+//! in batches ([`batches`]), what begins in the air ([`footing`]), the thumbnails
+//! ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs that cannot seek
+//! ([`spool`]).
 
 pub mod batches;
 pub mod footing;
 pub mod footprint;
 pub mod place;
+pub mod prime;
 pub mod refuse;
 pub mod spool;
 pub mod thumbnails;

@@ -182,31 +182,6 @@ fn help_is_a_product_with_examples_and_exit_codes() {
 }
 
 #[test]
-fn profiles_are_listed_shown_and_checked() {
-    let folder = folder();
-    slicer(&folder)
-        .args(["profile", "list"])
-        .assert()
-        .success()
-        .stdout(predicate::str::starts_with("zcube-dual ").and(predicate::str::contains("thesis")))
-        .stderr("");
-    let from_a_line = regex_lite::Regex::new("outer_wall_inset = 0  # thesis:\\d+").unwrap();
-    let shown = slicer(&folder)
-        .args(["profile", "show", "thesis", "--set", "walls=2"])
-        .assert()
-        .success()
-        .stdout(predicate::str::contains("walls = 2  # --set"))
-        .stdout(predicate::function(|text: &str| from_a_line.is_match(text)))
-        .stderr("");
-    fs::write(folder.path().join("mine.toml"), &shown.get_output().stdout).unwrap();
-    slicer(&folder)
-        .args(["profile", "check", "mine.toml"])
-        .assert()
-        .success()
-        .stdout("mine.toml: good\n");
-}
-
-#[test]
 fn completions_and_the_manual_are_printed() {
     let folder = folder();
     for words in [&["completions", "bash"][..], &["completions", "fish"], &["man"]] {
@@ -254,16 +229,16 @@ fn write_block(path: &Path) {
 }
 
 #[test]
-fn a_good_run_writes_its_products_and_a_summary_of_three_lines() {
+fn a_good_run_writes_its_products_and_a_summary_of_four_lines() {
     let folder = folder();
     write_block(&folder.path().join("block.stl"));
-    let three_lines = predicate::function(|text: &str| text.lines().count() == 3);
+    let four_lines = predicate::function(|text: &str| text.lines().count() == 4);
     slicer(&folder)
         .args(["block.stl", "-o", "a.gcode", "--report", "a.json", "--strict", "--dual"])
         .assert()
         .success()
         .stdout("")
-        .stderr(three_lines);
+        .stderr(four_lines);
     assert_eq!(files(folder.path()), ["a.gcode", "a.json", "block.stl", "part.stl"]);
     let report = fs::read(folder.path().join("a.json")).unwrap();
     assert!(serde_json::from_slice::<serde_json::Value>(&report).unwrap().is_object());

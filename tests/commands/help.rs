@@ -8,7 +8,7 @@ use std::fs;
 use std::process::Command as Process;
 
 /// Every command there is; those below have commands of their own.
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 17] = [
     "",
     "check",
     "compare",
@@ -21,6 +21,7 @@ const COMMANDS: [&str; 16] = [
     "profile",
     "profile check",
     "profile list",
+    "profile new",
     "profile schema",
     "profile show",
     "report",

@@ -11,5 +11,6 @@ mod help;
 mod hosts;
 mod mesh;
 mod preview;
+mod profiles;
 mod schema;
 mod viewer;

@@ -5,6 +5,7 @@
 use assert_cmd::Command;
 use boon::{Compiler, Schemas};
 use serde_json::Value;
+use slicer::profile::builtin_names;
 use slicer::profile::keys::{KEYS, Key, Kind};
 use std::fs;
 
@@ -28,16 +29,18 @@ fn shipped_profiles_are_as_their_schema_says_and_wrong_ones_are_not() {
     let is_valid = validator(&["profile", "schema"]);
     let read = |text: &str| toml::from_str::<Value>(text).unwrap();
     let mut count = 0;
-    for entry in fs::read_dir("profiles").unwrap() {
+    let folders = ["profiles/printers", "profiles/materials", "profiles/prints"];
+    for entry in folders.iter().flat_map(|folder| fs::read_dir(folder).unwrap()) {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|ending| ending == "toml") {
             is_valid(&read(&fs::read_to_string(&path).unwrap())).unwrap();
             count += 1;
         }
     }
-    assert!(count >= 6, "{count}");
+    assert_eq!(count, builtin_names().count());
     for text in [
         "inherits = \"thesis\"",
+        "inherits = [\"ender-3\", \"petg\"]\n[defaults]\nprint = \"fine\"",
         "angle = \"auto\"\n[dual]\nratio = 3\nparts = [\"infill\"]",
         "angle = -90.5\n[machine]\nthumbnails = [\"32x32\"]\n[support]\nenabled = true",
     ] {
@@ -45,6 +48,7 @@ fn shipped_profiles_are_as_their_schema_says_and_wrong_ones_are_not() {
     }
     for text in [
         "wals = 2",
+        "[defaults]\nprinte = \"fine\"",
         "walls = -1",
         "walls = 2.5",
         "seam = \"reer\"",

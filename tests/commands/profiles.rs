@@ -1,0 +1,186 @@
+//! Profiles of one's own and shipped ones -> what a run prints with, and what it says of it.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use assert_cmd::Command;
+use predicates::prelude::*;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// The program in `folder`, with profiles of one's own in its folder `config`.
+fn slicer(folder: &TempDir) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
+    let config = folder.path().join("config");
+    command.current_dir(folder.path()).env_remove("SLICER_NO_USER_CONFIG");
+    // The user's folder, by the conventions of the platforms.
+    command.env("XDG_CONFIG_HOME", &config).env("HOME", &config).env("APPDATA", &config);
+    command.env_remove("SLICER_PROFILES");
+    command
+}
+
+fn write(folder: &TempDir, name: &str, text: &str) {
+    let path = folder.path().join(name);
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    fs::write(path, text).unwrap();
+}
+
+/// The folder with the cube of the fixtures in it.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let cube = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/cube_20.stl");
+    fs::copy(cube, folder.path().join("part.stl")).unwrap();
+    folder
+}
+
+/// What standard error says of a run that slices the cube, a quarter as large.
+fn said(command: &mut Command, words: &[&str]) -> String {
+    let job = ["part.stl", "--scale", "0.25", "-o", "a.gcode"];
+    let done = command.args([&job[..], words].concat()).assert().success();
+    String::from_utf8(done.get_output().stderr.clone()).unwrap()
+}
+
+#[test]
+fn profiles_are_listed_by_kind_shown_and_checked() {
+    let folder = folder();
+    let kinds = regex_lite::Regex::new(
+        "(?s)^printers\n  zcube-dual .*\nmaterials\n  pla .*\nprints\n  standard .*  thesis ",
+    )
+    .unwrap();
+    slicer(&folder)
+        .args(["profile", "list"])
+        .assert()
+        .success()
+        .stdout(predicate::function(|text: &str| kinds.is_match(text)))
+        .stderr("");
+    let from_a_line = regex_lite::Regex::new("outer_wall_inset = 0  # thesis:\\d+").unwrap();
+    let shown = slicer(&folder)
+        .args(["profile", "show", "thesis", "--set", "walls=2"])
+        .assert()
+        .success()
+        .stdout(predicate::str::contains("walls = 2  # --set"))
+        .stdout(predicate::function(|text: &str| from_a_line.is_match(text)))
+        .stderr("");
+    fs::write(folder.path().join("mine.toml"), &shown.get_output().stdout).unwrap();
+    slicer(&folder)
+        .args(["profile", "check", "mine.toml"])
+        .assert()
+        .success()
+        .stdout("mine.toml: good\n");
+}
+
+#[test]
+fn the_summary_says_for_what_it_was_sliced_and_whether_that_was_chosen() {
+    let folder = folder();
+    let text = said(&mut slicer(&folder), &[]);
+    assert!(
+        text.starts_with("printer zcube-dual, material pla-thesis, print one-wall (none chosen"),
+        "{text}"
+    );
+    let text = said(
+        &mut slicer(&folder),
+        &["-p", "generic-klipper", "--material", "petg", "--print", "fine"],
+    );
+    assert!(text.starts_with("printer generic-klipper, material petg, print fine\n"), "{text}");
+    let gcode = fs::read_to_string(folder.path().join("a.gcode")).unwrap();
+    for line in ["layer_height = 0.12", "filament.temperature = 240", "filament.name = \"PETG\""] {
+        assert!(gcode.contains(&format!("\n; {line}\n")), "{line}");
+    }
+}
+
+#[test]
+fn every_file_that_had_a_say_is_named_but_not_in_the_gcode() {
+    let folder = folder();
+    write(&folder, "config/slicer/printers/secret-printer.toml", "inherits = \"generic-marlin\"\n");
+    write(&folder, "secret.toml", "infill = 11\n");
+    let words = ["-p", "secret-printer", "-p", "./secret.toml", "--report", "r.json"];
+    let text = said(&mut slicer(&folder), &words);
+    assert!(
+        text.starts_with("printer secret-printer, material pla, print standard; with "),
+        "{text}"
+    );
+    assert!(text.contains("secret-printer.toml, ./secret.toml\n"), "{text}");
+    let report: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path().join("r.json")).unwrap()).unwrap();
+    assert_eq!(report["profile"], "secret-printer + secret.toml");
+    let names: Vec<_> = report["profiles"].as_array().unwrap().iter().collect();
+    assert_eq!(names.len(), 5);
+    assert_eq!(names[4]["file"], "./secret.toml");
+    assert!(names[0].get("file").is_none());
+    let gcode = fs::read_to_string(folder.path().join("a.gcode")).unwrap();
+    assert!(gcode.contains("\n; infill = 11\n") && !gcode.contains("secret"));
+}
+
+#[test]
+fn ones_own_profiles_are_found_in_order_and_can_be_left_out() {
+    let folder = folder();
+    write(&folder, "config/slicer/default.toml", "inherits = \"generic-marlin\"\n");
+    write(&folder, "config/slicer/materials/mine.toml", "[filament]\ntemperature = 201\n");
+    write(&folder, "farm/materials/mine.toml", "[filament]\ntemperature = 202\n");
+    let text = said(&mut slicer(&folder), &[]);
+    assert!(text.starts_with("printer default.toml, material pla, print standard"), "{text}");
+    let shown = |command: &mut Command, words: &[&str]| {
+        let words = [&["profile", "show"], words].concat();
+        let done = command.args(words).assert().success();
+        String::from_utf8(done.get_output().stdout.clone()).unwrap()
+    };
+    let own = shown(&mut slicer(&folder), &["--material", "mine"]);
+    assert!(own.contains("\ntemperature = 201 ") && own.contains("\"Marlin printer\""), "{own}");
+    let farm = shown(slicer(&folder).env("SLICER_PROFILES", "farm"), &["--material", "mine"]);
+    assert!(farm.contains("\ntemperature = 202  # farm/materials/mine.toml:2\n"), "{farm}");
+    for command in [
+        slicer(&folder).args(["--no-user-config", "part.stl", "-o", "a", "--material", "mine"]),
+        slicer(&folder).env("SLICER_NO_USER_CONFIG", "1").args([
+            "part.stl",
+            "-o",
+            "a",
+            "--material",
+            "mine",
+        ]),
+    ] {
+        command.assert().code(2).stderr(predicate::str::contains("unknown profile `mine`"));
+    }
+    let text = said(slicer(&folder).env("SLICER_NO_USER_CONFIG", "1"), &[]);
+    assert!(text.starts_with("printer zcube-dual,"), "{text}");
+}
+
+#[test]
+fn a_new_profile_inherits_and_is_good() {
+    let folder = folder();
+    for (name, says) in [
+        ("generic-klipper", "\n[machine]\n# name = \"Klipper printer\"\n"),
+        ("petg", "\n[filament]\n# name = \"PETG\"\n# temperature = 240  # °C\n"),
+        ("fine", "\n# layer_height = 0.12  # mm\n"),
+    ] {
+        let new = slicer(&folder).args(["profile", "new", name]).assert().success();
+        let text = String::from_utf8(new.get_output().stdout.clone()).unwrap();
+        assert!(
+            text.contains(says) && text.contains(&format!("inherits = \"{name}\"\n")),
+            "{text}"
+        );
+        // What is in comments is said as it would be.
+        let spoken = text.replace("\n# Whatever", "").replace("\n# ", "\n");
+        let spoken = spoken.replace("# Whatever is not said here is as in", "#");
+        write(&folder, "mine.toml", &spoken.replace("\n`slicer", "\n# `slicer"));
+        slicer(&folder).args(["profile", "check", "mine.toml"]).assert().success();
+    }
+    slicer(&folder)
+        .args(["profile", "new", "pteg"])
+        .assert()
+        .code(2)
+        .stderr(predicate::str::contains("did you mean `petg`?"));
+}
+
+#[test]
+fn a_part_where_the_nozzle_is_primed_is_refused() {
+    let folder = folder();
+    slicer(&folder)
+        .args(["part.stl", "-p", "generic-marlin", "--at", "35,13", "-o", "a"])
+        .assert()
+        .code(3)
+        .stderr(predicate::str::starts_with("error: the start block primes the nozzle at x "));
+    slicer(&folder)
+        .args(["part.stl", "-q", "-p", "generic-marlin", "--at", "35,25", "-o", "a"])
+        .assert()
+        .success();
+}
