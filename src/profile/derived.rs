@@ -1,7 +1,6 @@
 //! Settings -> what follows from them together: sizes and counts that no single key holds.
 
 use super::{DualRatio, ExtrusionModel, Settings};
-use crate::units::Bounded as _;
 use std::f64::consts::PI;
 
 /// Slack for comparing lengths that were written as decimals, mm.
@@ -43,7 +42,7 @@ impl Settings {
     #[must_use]
     pub fn max_volumetric_speed(&self) -> f64 {
         let machine = self.machine.max_volumetric_speed;
-        self.filament.max_volumetric_speed.map_or(machine, |material| machine.at_most(material))
+        self.filament.max_volumetric_speed.map_or(machine, |material| machine.min(material))
     }
 
     /// The cross-section of the filament, mm².

@@ -10,8 +10,8 @@
 
 use super::foreign::{self, Foreign};
 use super::keys::{self, Key};
+use super::kind::ProfileKind;
 use super::origin::ValueOrigin;
-use super::shelf::ProfileKind;
 use super::shipped::DEFAULT;
 use super::{old, suggest};
 use std::io;

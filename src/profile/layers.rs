@@ -13,9 +13,10 @@
 //! over it.
 
 use super::error::{ProfileError, Result};
+use super::kind::ProfileKind;
 use super::origin::{Source, ValueOrigin};
 use super::parse::{self, Entry};
-use super::shelf::{Found, ProfileKind, Shelf};
+use super::shelf::{Found, Shelf};
 use std::path::Path;
 use toml::Value;
 

@@ -1,7 +1,7 @@
 //! Profile: settings with where each value comes from, and values that the command line gives.
 
 use super::Settings;
-use super::shelf::ProfileKind;
+use super::kind::ProfileKind;
 use std::collections::BTreeMap;
 use std::fmt;
 

@@ -1,7 +1,7 @@
 //! Settings -> JSON Schema: what editors complete and check a profile by, and what the table of keys is read from.
 
 use super::Settings;
-use super::shelf::ProfileKind;
+use super::kind::ProfileKind;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 

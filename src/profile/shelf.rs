@@ -1,18 +1,12 @@
 //! Name -> text: the places where profiles are found, those of the user before the shipped ones.
 //!
-//! A job is made of three things that are swapped one by one:
-//!
-//! - *printer*: machine, limits, start and end blocks, retraction.
-//! - *material*: temperatures, fan, flow, density, price.
-//! - *print*: heights, walls, skins, infill, speeds, dual injection, support.
-//!
 //! A *shelf* is a list of folders. In a folder, `printers/NAME.toml`, `materials/NAME.toml` and
 //! `prints/NAME.toml` are found by `NAME`; the subfolder is the kind. After the last folder come the
 //! shipped profiles. A name with a path separator or the ending `.toml` is a file instead.
 
 use super::error::{ProfileError, Result};
+use super::kind::ProfileKind;
 use super::{parse, shipped};
-use std::fmt;
 use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -23,44 +17,12 @@ const MOST_BYTES: u64 = 1 << 20;
 /// File in a folder that stands for the default printer, if it is there.
 const DEFAULT_FILE: &str = "default.toml";
 
-/// Which of the three things of a job a profile describes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum ProfileKind {
-    /// The machine.
-    Printer,
-    /// The filament.
-    Material,
-    /// How it is printed.
-    Print,
-}
-
-impl ProfileKind {
-    /// All kinds, in the order of lists.
-    pub const ALL: [Self; 3] = [Self::Printer, Self::Material, Self::Print];
-
-    /// Its name, which is also that of its key under `defaults`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Printer => "printer",
-            Self::Material => "material",
-            Self::Print => "print",
-        }
-    }
-
-    /// The subfolder of its profiles.
-    fn folder(self) -> &'static str {
-        match self {
-            Self::Printer => "printers",
-            Self::Material => "materials",
-            Self::Print => "prints",
-        }
-    }
-}
-
-impl fmt::Display for ProfileKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+/// The subfolder of a kind's profiles.
+fn folder_of(kind: ProfileKind) -> &'static str {
+    match kind {
+        ProfileKind::Printer => "printers",
+        ProfileKind::Material => "materials",
+        ProfileKind::Print => "prints",
     }
 }
 
@@ -163,7 +125,7 @@ impl Shelf {
             return Ok(Found::file(path, None));
         }
         let file = format!("{wanted}.toml");
-        let place = |dir: &PathBuf, kind: ProfileKind| dir.join(kind.folder()).join(&file);
+        let place = |dir: &PathBuf, kind: ProfileKind| dir.join(folder_of(kind)).join(&file);
         let kinds = |dir| ProfileKind::ALL.map(|kind| (place(dir, kind), kind));
         let own = self.folders.iter().flat_map(kinds).filter(|(path, _)| path.is_file());
         let own = own.map(|(path, kind)| Found::shelved(path, kind));
@@ -193,7 +155,7 @@ impl Shelf {
         for kind in ProfileKind::ALL {
             let mut own: Vec<Found> = Vec::new();
             for folder in &self.folders {
-                let entries = std::fs::read_dir(folder.join(kind.folder())).into_iter().flatten();
+                let entries = std::fs::read_dir(folder.join(folder_of(kind))).into_iter().flatten();
                 let files = entries.flatten().map(|entry| entry.path());
                 let toml = files.filter(|path| path.extension().is_some_and(|end| end == "toml"));
                 own.extend(toml.map(|path| Found::shelved(path, kind)));

@@ -1,6 +1,6 @@
 //! Name -> text: the profiles that come with the program, by kind. A name stands for one of them alone.
 
-use super::shelf::ProfileKind;
+use super::kind::ProfileKind;
 use ProfileKind::{Material, Print, Printer};
 
 /// Name of the printer that is used where none is asked for.
