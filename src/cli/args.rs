@@ -282,6 +282,9 @@ pub(crate) struct SettingArgs {
     /// Print support under overhangs
     #[arg(long)]
     support: bool,
+    /// Print layers that would take less time than this more slowly, s; 0 for none
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    min_layer_time: Option<String>,
     /// Temperature of the nozzle, °C
     #[arg(long, value_name = "CELSIUS", allow_negative_numbers = true)]
     temperature: Option<String>,
@@ -355,7 +358,7 @@ impl SettingArgs {
     }
 
     /// Each flag, the key it sets, and the value given.
-    fn all(&self) -> [(&'static str, &'static str, Option<String>); 15] {
+    fn all(&self) -> [(&'static str, &'static str, Option<String>); 16] {
         let switched = |on: bool, value: &str| on.then(|| value.to_owned());
         [
             ("--dual", "dual.mode", switched(self.dual, "pair")),
@@ -373,6 +376,7 @@ impl SettingArgs {
             ("--infill", "infill", self.infill.clone()),
             ("--pattern", "pattern", self.pattern.clone()),
             ("--support", "support.enabled", switched(self.support, "true")),
+            ("--min-layer-time", "cooling.min_layer_time", self.min_layer_time.clone()),
             ("--temperature", "filament.temperature", self.temperature.clone()),
         ]
     }

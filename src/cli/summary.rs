@@ -1,8 +1,8 @@
-//! Report -> lines for people: the four-line summary, and more with -v.
+//! Report -> lines for people: the four-line summary, a fifth on slower layers, and more with -v.
 
 use slicer::mesh::{MeshReport, faults};
 use slicer::profile::{Profile, dump};
-use slicer::report::Report;
+use slicer::report::{CoolingReport, Report};
 use std::time::Duration;
 
 /// For which printer, material and print, and every file that had a say in it.
@@ -35,7 +35,7 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
         "{}\n\
          {} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm\n\
          filament {:.0} mm, {:.2} cm³, {:.1} g{}\n\
-         prints in {}, sliced in {:.2} s{dual}\n",
+         prints in {}, sliced in {:.2} s{dual}\n{}",
         chosen(report),
         layers.count,
         layers.height_mm,
@@ -45,7 +45,28 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
         shares(report),
         duration(report.time.total_s),
         took.as_secs_f64(),
+        report.cooling.as_ref().map_or_else(String::new, slower),
     )
+}
+
+/// Which layers are slower than asked for, if any is.
+fn slower(cooling: &CoolingReport) -> String {
+    if cooling.slowed_layers + cooling.waits + cooling.quick_layers == 0 {
+        return String::new();
+    }
+    let mut line = format!(
+        "{} layers printed slower, down to {:.0} % of their speed, to take {} s each",
+        cooling.slowed_layers,
+        100.0 * cooling.lowest_factor,
+        cooling.min_layer_time_s
+    );
+    if cooling.waits > 0 {
+        line += &format!("; waits after {} of them, {}", cooling.waits, duration(cooling.waited_s));
+    }
+    if cooling.quick_layers > 0 {
+        line += &format!("; {} still take less, at cooling.min_speed", cooling.quick_layers);
+    }
+    line + "\n"
 }
 
 /// A time for people, such as `1 h 23 min`.

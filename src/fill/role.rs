@@ -8,7 +8,7 @@
 //!
 //! Roles that differ little from another one take its facts and change what differs.
 
-use crate::profile::{Extrusion, Speed};
+use crate::profile::{Cooling, Extrusion, Speed};
 use std::ops::{Index, IndexMut};
 
 /// What a path is printed for.
@@ -43,6 +43,17 @@ pub enum Place {
     Helper,
 }
 
+/// When a role is slowed down where a layer would take too little time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Slows {
+    /// What is not seen, before all else.
+    First,
+    /// Walls that are not seen.
+    Second,
+    /// What is seen, and what hangs: its speed shows.
+    Last,
+}
+
 /// What is particular to a role.
 #[derive(Debug, Clone, Copy)]
 pub struct RoleFacts {
@@ -58,6 +69,10 @@ pub struct RoleFacts {
     pub speed_keys: Both<&'static str>,
     /// Its speed, thin and thick.
     pub speed: fn(&Speed) -> Both<f64>,
+    /// When it is slowed down for a layer's least time.
+    pub slows: Slows,
+    /// Power of the fan on it, %; none where it is as usual.
+    pub fan: fn(&Cooling) -> Option<f64>,
     /// Filament per length of path, mm/mm, for profiles that set it explicitly.
     pub factor: fn(&Extrusion) -> f64,
 }
@@ -86,12 +101,15 @@ impl Role {
                 may_be_thick: false,
                 speed_keys: Both::same("speed.wall"),
                 speed: |speed| Both::same(speed.wall),
+                slows: Slows::Last,
+                fan: |_| None,
                 factor: |extrusion| extrusion.wall_factor,
             },
             Self::InnerWall => RoleFacts {
                 name: "inner wall",
                 annotation: "Perimeter",
                 may_be_thick: true,
+                slows: Slows::Second,
                 ..Self::OuterWall.facts()
             },
             Self::Overhang => RoleFacts {
@@ -99,6 +117,7 @@ impl Role {
                 annotation: "Overhang perimeter",
                 speed_keys: Both::same("speed.overhang"),
                 speed: |speed| Both::same(speed.overhang),
+                fan: |cooling| Some(cooling.overhang_fan.unwrap_or(cooling.bridge_fan)),
                 ..Self::OuterWall.facts()
             },
             Self::Skin => RoleFacts {
@@ -108,6 +127,8 @@ impl Role {
                 may_be_thick: true,
                 speed_keys: Both::same("speed.skin"),
                 speed: |speed| Both::same(speed.skin),
+                slows: Slows::First,
+                fan: |_| None,
                 factor: |extrusion| extrusion.skin_factor,
             },
             Self::Bridge => RoleFacts {
@@ -116,6 +137,8 @@ impl Role {
                 may_be_thick: false,
                 speed_keys: Both::same("speed.bridge"),
                 speed: |speed| Both::same(speed.bridge),
+                slows: Slows::Last,
+                fan: |cooling| Some(cooling.bridge_fan),
                 ..Self::Skin.facts()
             },
             Self::Infill => INFILL,
@@ -124,6 +147,7 @@ impl Role {
                 name: "support interface",
                 annotation: "Support material interface",
                 may_be_thick: false,
+                fan: |cooling| cooling.interface_fan,
                 ..SUPPORT
             },
         }
@@ -137,6 +161,8 @@ const INFILL: RoleFacts = RoleFacts {
     may_be_thick: true,
     speed_keys: Both { thin: "speed.infill", thick: "speed.thick_infill" },
     speed: |speed| Both { thin: speed.infill, thick: speed.thick_infill },
+    slows: Slows::First,
+    fan: |_| None,
     factor: |extrusion| extrusion.infill_factor,
 };
 
@@ -147,6 +173,8 @@ const SUPPORT: RoleFacts = RoleFacts {
     may_be_thick: true,
     speed_keys: Both::same("speed.support"),
     speed: |speed| Both::same(speed.support),
+    slows: Slows::First,
+    fan: |_| None,
     factor: |extrusion| extrusion.support_factor,
 };
 

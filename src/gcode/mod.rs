@@ -5,15 +5,20 @@
 //! - *Progress* lines (`M73`) tell the printer which part of the print is done.
 //!
 //! 1. [`moves`] turns a layer into machine moves; [`flow`] lowers feeds to the flow limit.
-//! 2. [`times`] runs the clock over these moves, layer by layer; [`usage`] sums their filament.
-//! 3. [`write`](mod@write) formats the moves in the printer's [`dialect`].
-//! 4. Layers go to the output in order as soon as their times are known, with placeholders for
+//! 2. [`cooling`] lowers those of layers that would take too little time. It holds back some layers,
+//!    since those above have a say.
+//! 3. [`times`] runs the clock over these moves, layer by layer; [`usage`] sums their filament.
+//! 4. [`write`](mod@write) formats the moves in the printer's [`dialect`], with the power of the
+//!    [`fan`].
+//! 5. Layers go to the output in order as soon as their times are known, with placeholders for
 //!    progress lines. These have a fixed length and are filled in at the end, when the total time
 //!    is known.
-//! 5. [`hosts`] writes the comments that hosts read at the head and the end of the file.
+//! 6. [`hosts`] writes the comments that hosts read at the head and the end of the file.
 
+pub mod cooling;
 pub mod dialect;
 mod error;
+pub mod fan;
 pub mod flow;
 pub mod hosts;
 pub mod moves;
@@ -28,7 +33,9 @@ use crate::motion::Limits;
 use crate::plan::Toolpath;
 use crate::profile::template::{self, PrintFacts};
 use crate::profile::{Settings, dump};
+use cooling::{Cooled, Cooling};
 pub use error::{Error, Result};
+use fan::FanParams;
 use hosts::Thumbnail;
 use moves::{MoveParams, Moves};
 pub use output::Output;
@@ -38,7 +45,7 @@ use rayon::prelude::*;
 use std::collections::VecDeque;
 use times::{Timer, Times};
 use usage::Usage;
-use write::{LayerText, WriteParams};
+use write::{Before, LayerText, WriteParams};
 
 /// Sums over a file.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -47,6 +54,8 @@ pub struct Sums {
     pub usage: Usage,
     /// Times.
     pub times: Times,
+    /// What cooling changed; none where nothing asks for it.
+    pub cooled: Option<Cooled>,
 }
 
 /// Writes one G-code file.
@@ -56,6 +65,9 @@ pub struct Writer<'a> {
     facts: PrintFacts,
     moves: MoveParams,
     params: WriteParams,
+    cooling: Option<Cooling>,
+    /// What is in force after the layers so far.
+    before: Before,
     timer: Timer,
     /// Layers whose times are not all known yet.
     waiting: VecDeque<LayerText>,
@@ -85,6 +97,8 @@ impl<'a> Writer<'a> {
             facts,
             moves: MoveParams::new(settings, offset),
             params: WriteParams::new(settings),
+            cooling: Cooling::new(settings, FanParams::new(settings).goes_by_time()),
+            before: Before::default(),
             timer: Timer::new(Limits::new(settings)),
             waiting: VecDeque::new(),
             progress: Progress::new(settings.machine.dialect),
@@ -108,28 +122,34 @@ impl<'a> Writer<'a> {
     pub fn layers(&mut self, layers: &[Toolpath]) -> Result<()> {
         // Few at once: moves and text take more memory than the layers themselves.
         let at_once = rayon::current_num_threads().max(4);
-        layers.chunks(at_once).try_for_each(|layers| self.together(layers))
+        layers.chunks(at_once).try_for_each(|layers| {
+            let params = &self.moves;
+            let moves: Vec<Moves> = layers.par_iter().map(|layer| params.moves(layer)).collect();
+            let ready = match &mut self.cooling {
+                Some(cooling) => cooling.layers(moves),
+                None => moves,
+            };
+            self.together(&ready)
+        })
     }
 
-    /// Writes layers, with the moves and the text of all of them in memory at once.
-    fn together(&mut self, layers: &[Toolpath]) -> Result<()> {
-        let (params, moves, timer) = (&self.params, &self.moves, &mut self.timer);
-        let walk = |layer| {
-            let moves = moves.moves(layer);
-            (Usage::of(&moves), moves)
-        };
-        let walked: Vec<(Usage, Moves)> = layers.par_iter().map(walk).collect();
-        let mut starts = Vec::with_capacity(layers.len());
-        for (usage, _) in &walked {
-            starts.push(self.usage.filament());
-            self.usage.add(usage);
+    /// Writes layers, with the text of all of them in memory at once.
+    fn together(&mut self, layers: &[Moves]) -> Result<()> {
+        let (params, timer) = (&self.params, &mut self.timer);
+        let used: Vec<Usage> = layers.par_iter().map(Usage::of).collect();
+        let mut befores = Vec::with_capacity(layers.len());
+        for (layer, used) in layers.iter().zip(&used) {
+            self.before.fan = params.fan(layer, self.before.fan);
+            befores.push(self.before);
+            self.usage.add(used);
+            self.before.e = self.usage.filament();
         }
         // The clock must see the layers in order. Their texts are independent of each other.
         let ((), texts) = rayon::join(
-            || walked.iter().for_each(|(_, moves)| timer.layer(moves)),
+            || layers.iter().for_each(|moves| timer.layer(moves)),
             || -> Vec<LayerText> {
-                let layers = walked.par_iter().zip(&starts);
-                layers.map(|((_, moves), &e)| params.layer(moves, e)).collect()
+                let layers = layers.par_iter().zip(&befores);
+                layers.map(|(moves, &before)| params.layer(moves, before)).collect()
             },
         );
         self.waiting.extend(texts);
@@ -145,6 +165,9 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// As [`Self::new`].
     pub fn finish(mut self) -> Result<Option<Sums>> {
+        if let Some(last) = self.cooling.as_mut().map(Cooling::finish) {
+            self.together(&last)?;
+        }
         if self.usage.filament() <= 0.0 {
             return Ok(None);
         }
@@ -153,7 +176,8 @@ impl<'a> Writer<'a> {
         let mut tail = self.params.finish(&self.moves, self.usage.filament());
         tail.extend_from_slice(self.progress.done().as_bytes());
         tail.extend_from_slice(format!(";TYPE:Custom\n{}", self.end).as_bytes());
-        let sums = Sums { usage: self.usage, times: self.timer.times().clone() };
+        let cooled = self.cooling.as_ref().map(|cooling| cooling.cooled().clone());
+        let sums = Sums { usage: self.usage, times: self.timer.times().clone(), cooled };
         tail.extend_from_slice(hosts::tail(self.facts.layers, &sums, self.settings).as_bytes());
         for (key, value) in dump(self.settings) {
             tail.extend_from_slice(format!("; {key} = {value}\n").as_bytes());

@@ -49,6 +49,8 @@ pub enum Kind {
     Retract,
     /// Pushes it forward again.
     Restore,
+    /// Stands still for so many ms.
+    Wait(u32),
     /// Lays a bead. A segment may end where it began, if it is shorter than the rounding of
     /// coordinates; its filament still counts.
     Extrude(Bead),
@@ -84,6 +86,8 @@ pub struct Moves {
     pub paths: Vec<usize>,
     /// Its plastic flow, and feeds that the flow limit lowered.
     pub flows: Flows,
+    /// Mean time of the layers of its group, s, where the fan goes by it.
+    pub group_seconds: Option<f64>,
 }
 
 /// The settings from which moves are made.
@@ -200,6 +204,7 @@ impl<'a> Walk<'a> {
             moves: Vec::with_capacity(most),
             paths: Vec::with_capacity(layer.moves.len()),
             flows: Flows::default(),
+            group_seconds: None,
         };
         Self { params, out, at, z: None, highest: layer.from.highest }
     }

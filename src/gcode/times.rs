@@ -27,6 +27,8 @@ pub struct Times {
     pub travel: f64,
     /// Retractions and restored filament, s.
     pub retraction: f64,
+    /// Standing still, s.
+    pub waiting: f64,
     /// The layers, in order.
     pub layers: Vec<LayerTime>,
 }
@@ -65,6 +67,7 @@ enum Part {
     Bead(Role, bool),
     Travel,
     Retraction,
+    Waiting,
 }
 
 /// A layer or a path that begins with the move of this number.
@@ -85,12 +88,7 @@ enum Begins {
 pub struct Timer {
     clock: Clock<Part>,
     ledger: Ledger,
-    /// Position of the nozzle, thousandths of a mm, if known.
-    at: Option<[Thousandths; 2]>,
-    /// Its z, grid units, if known.
-    z: Option<Coord>,
-    /// Filament of segments too short to be written, mm. It goes with the next move.
-    held: f64,
+    nozzle: Nozzle,
     /// Number of moves given to the clock.
     given: usize,
 }
@@ -100,7 +98,7 @@ impl Timer {
     #[must_use]
     pub fn new(limits: Limits) -> Self {
         let clock = Clock::new(limits);
-        Self { clock, ledger: Ledger::default(), at: None, z: None, held: 0.0, given: 0 }
+        Self { clock, ledger: Ledger::default(), nozzle: Nozzle::default(), given: 0 }
     }
 
     /// Times the next layer.
@@ -141,36 +139,58 @@ impl Timer {
     }
 
     fn step(&mut self, step: &Move) {
+        if let Kind::Wait(ms) = step.kind {
+            self.given += 1;
+            self.clock.dwell(f64::from(ms) / 1000.0, Part::Waiting);
+        } else if let Some(next) = self.nozzle.go(step) {
+            self.given += 1;
+            self.clock.push(next);
+        }
+    }
+}
+
+/// Where the nozzle is.
+#[derive(Debug, Clone, Default)]
+struct Nozzle {
+    /// Its position, thousandths of a mm, if known.
+    at: Option<[Thousandths; 2]>,
+    /// Its z, grid units, if known.
+    z: Option<Coord>,
+    /// Filament of segments too short to be written, mm. It goes with the next move.
+    held: f64,
+}
+
+impl Nozzle {
+    /// The move of the axes, if one moves.
+    fn go(&mut self, step: &Move) -> Option<motion::Move<Part>> {
         // The first travel starts where the start block ends, which is unknown here: it counts
         // as part of that block.
         let at = self.at.unwrap_or(step.to);
         let [x, y] = [0, 1].map(|k| f64::from(step.to[k].0 - at[k].0) / 1000.0);
-        let (delta, part) = match step.kind {
+        let (delta, tag) = match step.kind {
             Kind::Travel => {
                 self.at = Some(step.to);
                 ([x, y, 0.0, 0.0], Part::Travel)
             }
             Kind::Z => ([0.0, 0.0, self.rise_to(step.z), 0.0], Part::Travel),
             Kind::Retract | Kind::Restore => ([0.0, 0.0, 0.0, step.filament], Part::Retraction),
+            Kind::Wait(_) => return None,
             Kind::Extrude(bead) => {
                 self.at = Some(step.to);
                 self.held += step.filament;
                 let rise = self.rise_to(step.z);
                 if step.to == at && rise == 0.0 {
-                    return;
+                    return None;
                 }
                 let e = std::mem::take(&mut self.held);
                 ([x, y, rise, e], Part::Bead(bead.role, bead.thick))
             }
         };
-        if delta != [0.0; 4] {
-            self.given += 1;
-            let feed = MmPerMin(f64::from(step.feed)).into();
-            self.clock.push(motion::Move { delta, feed, tag: part });
-        }
+        let feed = MmPerMin(f64::from(step.feed)).into();
+        (delta != [0.0; 4]).then_some(motion::Move { delta, feed, tag })
     }
 
-    /// Moves the nozzle to `z`. Returns by how much it rises, mm; 0 if its height was unknown.
+    /// Moves to `z`. Returns by how much it rises, mm; 0 if its height was unknown.
     fn rise_to(&mut self, z: Coord) -> f64 {
         self.z.replace(z).map_or(0.0, |from| to_mm(z - from))
     }
@@ -202,6 +222,7 @@ impl Ledger {
                 Part::Bead(role, thick) => self.times.roles[role].of_mut(thick),
                 Part::Travel => &mut self.times.travel,
                 Part::Retraction => &mut self.times.retraction,
+                Part::Waiting => &mut self.times.waiting,
             } += timed.seconds;
         }
     }
@@ -235,6 +256,37 @@ impl Ledger {
         }
         self.ready.push_back(layer);
     }
+}
+
+/// How much longer than in the layer its last move is before it, and its first move after it, for
+/// [`between_its_likes`]: long enough for any speed.
+const RUN_UP: f64 = 1e6;
+
+/// How long a layer takes between layers that end and begin as it does, s: the corners at its two
+/// ends are about as sharp as in the print, whatever the layers beside it are.
+#[must_use]
+pub fn between_its_likes(layer: &Moves, limits: &Limits) -> f64 {
+    let below = layer.from.map(|_| layer.z - layer.height);
+    let mut nozzle = Nozzle { at: layer.from, z: below, held: 0.0 };
+    let mut clock = Clock::new(limits.clone());
+    let step = |delta, feed, tag| motion::Move { delta, feed, tag };
+    let goes = |step: &Move| nozzle.go(step).map(|next| (next.delta, next.feed));
+    let moves: Vec<_> = layer.moves.iter().map(goes).collect();
+    let far = |(delta, feed): ([f64; 4], _)| step(delta.map(|mm| RUN_UP * mm), feed, false);
+    let mut all = moves.iter().copied().flatten();
+    let first = all.next();
+    let last = all.next_back().or(first);
+    last.map(far).into_iter().for_each(|before| clock.push(before));
+    for (given, next) in layer.moves.iter().zip(moves) {
+        if let Kind::Wait(ms) = given.kind {
+            clock.dwell(f64::from(ms) / 1000.0, true);
+        } else if let Some((delta, feed)) = next {
+            clock.push(step(delta, feed, true));
+        }
+    }
+    first.map(far).into_iter().for_each(|after| clock.push(after));
+    clock.finish();
+    clock.drain().filter(|timed| timed.tag).map(|timed| timed.seconds).sum()
 }
 
 /// Formats a time as hosts read it, such as `1d 2h 3m 4s`.

@@ -50,7 +50,7 @@ impl Usage {
                     usage.travel_length += step.length;
                 }
                 Kind::Retract => usage.retractions += 1,
-                Kind::Restore | Kind::Z => {}
+                Kind::Restore | Kind::Z | Kind::Wait(_) => {}
             }
         }
         usage

@@ -13,6 +13,7 @@
 //! - Annotations come before the first move that they describe.
 
 use super::dialect::Dialect;
+use super::fan::{Fan, FanParams};
 use super::moves::{Bead, Kind, Move, MoveParams, Moves};
 use super::number::{push_fixed, thousandths};
 use crate::fill::Role;
@@ -40,11 +41,17 @@ pub struct LayerText {
 pub struct WriteParams {
     dialect: Dialect,
     relative_e: bool,
-    fan: f64,
-    /// Power of the fan on bridges.
-    bridge_fan: f64,
-    fan_from_layer: usize,
+    fan: FanParams,
     tool: u32,
+}
+
+/// What is in force when a layer begins.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Before {
+    /// Filament used so far, mm.
+    pub e: f64,
+    /// The fan, and what it is on the layer.
+    pub fan: Fan,
 }
 
 impl WriteParams {
@@ -54,23 +61,27 @@ impl WriteParams {
         Self {
             dialect: Dialect::new(settings.machine.dialect),
             relative_e: settings.machine.relative_e,
-            fan: settings.filament.fan,
-            bridge_fan: settings.cooling.bridge_fan,
-            fan_from_layer: settings.filament.fan_from_layer as usize,
+            fan: FanParams::new(settings),
             tool: settings.machine.tool,
         }
     }
 
-    /// The text of one layer; `e` is the filament used before, mm.
+    /// The fan on a layer, when `before` is that on the layer before.
     #[must_use]
-    pub fn layer(&self, layer: &Moves, e: f64) -> LayerText {
-        let mut text = Text::new(self, e);
+    pub fn fan(&self, layer: &Moves, before: Fan) -> Fan {
+        Fan { before: before.usual, usual: self.fan.usual(layer.layer, layer.group_seconds) }
+    }
+
+    /// The text of one layer.
+    #[must_use]
+    pub fn layer(&self, layer: &Moves, before: Before) -> LayerText {
+        let mut text = Text::new(self, before.e);
         // A move takes about 30 bytes.
         text.out.reserve(30 * layer.moves.len());
         let mut cuts = Vec::with_capacity(1 + layer.paths.len());
         text.annotations(layer);
         cuts.push(text.out.len());
-        text.begin(layer);
+        text.begin(layer, before.fan);
         let mut done = 0;
         for &first in &layer.paths {
             layer.moves[done..first].iter().for_each(|step| text.step(step));
@@ -109,8 +120,8 @@ struct Text<'a> {
     z: Option<Coord>,
     feed: u32,
     role: Option<Role>,
-    /// The fan's speed if this layer is printed with the fan on.
-    fan: Option<f64>,
+    /// The fan's power, and what is usual, if this layer is printed with the fan on.
+    fan: Option<(f64, f64)>,
     width: Coord,
     height: Coord,
 }
@@ -144,15 +155,10 @@ impl<'a> Text<'a> {
         self.height = layer.height;
     }
 
-    /// Writes the fan's speed and resets E at the beginning of a layer.
-    fn begin(&mut self, layer: &Moves) {
-        let from = self.params.fan_from_layer.max(1) - 1;
-        let fan = self.params.fan;
-        if fan > 0.0 && layer.layer == from {
-            let words = self.params.dialect.fan(fan, self.params.tool);
-            self.line(&words);
-        }
-        self.fan = (layer.layer >= from).then_some(fan);
+    /// Sets the fan and resets E at the beginning of a layer.
+    fn begin(&mut self, layer: &Moves, Fan { before, usual }: Fan) {
+        self.fan = usual.map(|usual| (before.unwrap_or(0.0), usual));
+        self.blow(None);
         self.restart_e();
         self.at = layer.from;
     }
@@ -164,14 +170,15 @@ impl<'a> Text<'a> {
         }
     }
 
-    /// Sets the fan to what `role` needs; at the end of a layer to what is usual.
+    /// Sets the fan to what `role` needs; at the ends of a layer to what is usual.
     fn blow(&mut self, role: Option<Role>) {
-        let hangs = matches!(role, Some(Role::Bridge | Role::Overhang));
-        let wanted = if hangs { self.params.bridge_fan } else { self.params.fan };
-        if self.fan.is_some_and(|fan| (fan - wanted).abs() > f64::EPSILON) {
+        let Some((power, usual)) = self.fan else { return };
+        let fan = &self.params.fan;
+        let wanted = role.and_then(|role| fan.roles()[role]).unwrap_or(usual);
+        if fan.differ(power, wanted) {
             let words = self.params.dialect.fan(wanted, self.params.tool);
             self.line(&words);
-            self.fan = Some(wanted);
+            self.fan = Some((wanted, usual));
         }
     }
 
@@ -188,6 +195,11 @@ impl<'a> Text<'a> {
                 self.end_move(step.feed);
             }
             Kind::Retract | Kind::Restore => self.pull(step.filament, step.feed),
+            Kind::Wait(time) => {
+                self.out.extend_from_slice(b"G4 P");
+                push_fixed::<0>(&mut self.out, i64::from(time));
+                self.out.push(b'\n');
+            }
             Kind::Extrude(bead) => {
                 self.announce(&bead);
                 self.e += step.filament;
@@ -314,7 +326,10 @@ mod tests {
     fn text(profile: &str) -> String {
         let settings = profile::load([profile], &[]).unwrap().settings;
         let moves = MoveParams::new(&settings, [150.0, 150.0]).moves(&toolpath());
-        String::from_utf8(WriteParams::new(&settings).layer(&moves, 1.0).text).unwrap()
+        String::from_utf8(
+            WriteParams::new(&settings).layer(&moves, Before { e: 1.0, ..Before::default() }).text,
+        )
+        .unwrap()
     }
 
     #[test]
@@ -362,7 +377,7 @@ G1 X150 E2.3 F3600
         points[1].z = 1_000;
         points.push(PathPoint { at: Point { x: 200_000, y: 0 }, ..points[1] });
         let moves = MoveParams::new(&settings, [0.0, 0.0]).moves(&hill);
-        let text = WriteParams::new(&settings).layer(&moves, 0.0).text;
+        let text = WriteParams::new(&settings).layer(&moves, Before::default()).text;
         let text = String::from_utf8(text).unwrap();
         let beads: Vec<&str> = text.lines().filter(|l| l.contains(" E0.")).collect();
         assert!(beads[0].starts_with("G1 X10 Z0.9 E"), "{text}");

@@ -62,6 +62,9 @@ pub struct Report {
     pub time: TimeReport,
     /// How fast the hot end melts filament.
     pub flow: FlowReport,
+    /// What a least time of a layer changed; absent without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cooling: Option<CoolingReport>,
     /// Dual injection; absent where it is off.
     pub dual: Option<DualReport>,
     /// Findings.
@@ -172,6 +175,54 @@ pub struct FlowReport {
     pub largest_mm3_s: f64,
     /// The most that the hot end can melt, mm³/s.
     pub limit_mm3_s: f64,
+}
+
+/// What `cooling.min_layer_time` changed.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+pub struct CoolingReport {
+    /// The least time of a layer, s.
+    pub min_layer_time_s: f64,
+    /// No line is slowed down below this, mm/s.
+    pub min_speed_mm_s: f64,
+    /// Layers with slower lines.
+    pub slowed_layers: usize,
+    /// Of these, layers that would take long enough: only their outer walls are slower, to be like
+    /// those of the layers beside them.
+    pub evened_layers: usize,
+    /// The lowest share of its speed that any line was left; 1 if none is slower.
+    pub lowest_factor: f64,
+    /// The kinds of lines, in the order in which they are slowed down.
+    pub kinds: Vec<SlowedReport>,
+    /// Times that the nozzle waits beside the part.
+    pub waits: usize,
+    /// How long it waits in all, s.
+    pub waited_s: f64,
+    /// Layers that take less than the least time all the same.
+    pub quick_layers: usize,
+    /// The first of them, 100 at most.
+    pub quick: Vec<QuickLayerReport>,
+}
+
+/// How one kind of lines was slowed down.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+pub struct SlowedReport {
+    /// `infill, skin, support`, `inner walls`, or `outer walls, overhangs, bridges`.
+    pub kind: String,
+    /// Layers on which some of them are slower.
+    pub layers: usize,
+    /// The lowest share of its speed that one was left; 1 if none is slower.
+    pub lowest_factor: f64,
+}
+
+/// A layer that stays too quick.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+pub struct QuickLayerReport {
+    /// Its number, counted from 1.
+    pub layer: usize,
+    /// Its top above the bed, mm.
+    pub z_mm: f64,
+    /// Its time, s.
+    pub time_s: f64,
 }
 
 /// What dual injection did. Lengths are those of lines, without the turns between them;

@@ -14,7 +14,7 @@ use slicer::Job;
 use slicer::fill::{self, FillParams};
 use slicer::gcode::moves::{MoveParams, Moves};
 use slicer::gcode::times::Timer;
-use slicer::gcode::write::WriteParams;
+use slicer::gcode::write::{Before, WriteParams};
 use slicer::mesh::place::{Placed, place};
 use slicer::mesh::{Bed, Placement, read};
 use slicer::motion::Limits;
@@ -226,7 +226,9 @@ fn gcode(bench: &Bench, model: &Model) {
     group.time("moves", moves);
     let layers: Vec<Moves> = moves();
     let params = WriteParams::new(&model.settings);
-    let text = || layers.iter().map(|layer| params.layer(layer, 0.0).text.len()).sum::<usize>();
+    let text = || {
+        layers.iter().map(|layer| params.layer(layer, Before::default()).text.len()).sum::<usize>()
+    };
     group.time("text", text);
     group.time("times", || {
         let mut timer = Timer::new(Limits::new(&model.settings));

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod cooling;
 mod fixtures;
 mod floating;
 mod golden;

@@ -1,4 +1,4 @@
-//! `[filament]`, `[cooling]`: the material, and what cools it.
+//! `[filament]`: the material.
 
 use super::MAX_TEXT;
 use schemars::JsonSchema;
@@ -23,7 +23,7 @@ pub struct Filament {
     /// Temperature of the bed; 0 leaves it cold.
     #[schemars(range(min = 0, max = 200), extend("unit" = "°C", "default" = 0))]
     pub bed_temperature: f64,
-    /// Power of the part cooling fan.
+    /// Power of the part cooling fan; at most, where cooling.min_fan lowers it.
     #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 100))]
     pub fan: f64,
     /// First layer, counted from 1, that is printed with the fan on.
@@ -36,13 +36,4 @@ pub struct Filament {
     /// Price of the material; 0 means unknown.
     #[schemars(range(min = 0, max = 1_000_000), extend("unit" = "money/kg", "default" = 0))]
     pub cost: f64,
-}
-
-/// `[cooling]`: the fan on what needs more of it than `filament.fan`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Cooling {
-    /// Power of the fan on bridges and overhanging walls, from filament.fan_from_layer on.
-    #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 100))]
-    pub bridge_fan: f64,
 }

@@ -22,6 +22,7 @@
 //!   but has that key.
 //! - **choices**: keys that hold a word are enums, in [`super::choices`].
 
+mod cooling;
 mod dual;
 mod extrusion;
 mod limits;
@@ -32,11 +33,12 @@ mod support;
 mod travel;
 
 use super::choices::{Angle, Floating, Pattern, Seam, WallOrder};
+pub use cooling::Cooling;
 pub use dual::Dual;
 pub use extrusion::Extrusion;
 pub use limits::MotionLimits;
 pub use machine::Machine;
-pub use material::{Cooling, Filament};
+pub use material::Filament;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 pub use speed::Speed;
@@ -154,7 +156,7 @@ pub struct Settings {
     pub retraction: Retraction,
     /// The material.
     pub filament: Filament,
-    /// The fan on what needs more of it.
+    /// How a layer gets the time and the air that it needs to set.
     pub cooling: Cooling,
     /// The printer.
     pub machine: Machine,
