@@ -9,6 +9,7 @@
 //! thick and thin, and why some are not thick. Units stand at the end of each name; the
 //! meaning of a field never changes without a new [`SCHEMA`] number.
 
+mod cooling;
 pub mod make;
 pub mod tally;
 

@@ -198,11 +198,11 @@ fn what_is_inside_slows_down_first_and_outer_walls_last() {
         let tower = Solid::cuboid([-half, -half, 0.0], [half, half, 6.0]);
         let run = slice(&tower.stl(), "generic-marlin", &[]);
         let took = seconds(&run);
-        for k in 5..20 {
+        for (k, took) in took.iter().enumerate().take(20).skip(5) {
             let feed = |kinds: &[Kind]| feeds(&run, kinds)[k];
             let (a, b, c) = (feed(&INSIDE), feed(&[Kind::InnerWall]), feed(&[Kind::OuterWall]));
             assert!(a <= inside && b <= inner && c <= outer, "{side}: {a} {b} {c}");
-            assert!(took[k] < 1.01 * LEAST || (a, b, c) == (3600.0, 1620.0, 1620.0), "{}", took[k]);
+            assert!(*took < 1.01 * LEAST || (a, b, c) == (3600.0, 1620.0, 1620.0), "{took}");
             // A kind is only slower if those before it are as slow as they may be.
             assert!(b == 1620.0 || a <= SLOWEST, "{side}: {a} {b} {c}");
             assert!(c == 1620.0 || a <= SLOWEST && b <= SLOWEST, "{side}: {a} {b} {c}");

@@ -8,11 +8,11 @@
 //!   a pair is quick, since the other has the infill of both: what is slow on one of them is slow on
 //!   all, where it is seen.
 //!
-//! 1. [`slowing`] tells which layers are quick, and the cap on outer walls that each needs.
-//! 2. [`even`] gives each group the lowest cap of its layers, and raises and lowers it from group to
+//! 1. `slowing` tells which layers are quick, and the cap on outer walls that each needs.
+//! 2. `even` gives each group the lowest cap of its layers, and raises and lowers it from group to
 //!    group by small steps only. It holds back the groups that a later one may still slow down.
-//! 3. [`slowing`] then slows down the rest of each layer, as little as the least time asks for.
-//! 4. [`waiting`] lets the nozzle wait where that is not enough.
+//! 3. `slowing` then slows down the rest of each layer, as little as the least time asks for.
+//! 4. `waiting` lets the nozzle wait where that is not enough.
 
 mod even;
 mod slowing;
