@@ -229,16 +229,15 @@ fn write_block(path: &Path) {
 }
 
 #[test]
-fn a_good_run_writes_its_products_and_a_summary_of_four_lines() {
+fn a_good_run_writes_its_products_and_a_summary_of_four_lines_and_one_on_quick_layers() {
     let folder = folder();
     write_block(&folder.path().join("block.stl"));
-    let four_lines = predicate::function(|text: &str| text.lines().count() == 4);
-    slicer(&folder)
-        .args(["block.stl", "-o", "a.gcode", "--report", "a.json", "--strict", "--dual"])
-        .assert()
-        .success()
-        .stdout("")
-        .stderr(four_lines);
+    let args = ["block.stl", "-o", "a.gcode", "--report", "a.json", "--strict", "--dual"];
+    for (seconds, lines) in [("0", 4), ("10", 5)] {
+        let as_many = predicate::function(move |text: &str| text.lines().count() == lines);
+        let run = slicer(&folder).args(args).args(["--min-layer-time", seconds]).assert();
+        run.success().stdout("").stderr(as_many);
+    }
     assert_eq!(files(folder.path()), ["a.gcode", "a.json", "block.stl", "part.stl"]);
     let report = fs::read(folder.path().join("a.json")).unwrap();
     assert!(serde_json::from_slice::<serde_json::Value>(&report).unwrap().is_object());

@@ -87,7 +87,7 @@ fn the_thesis_parts_take_as_long_as_kept() {
 fn compare_says_of_the_bracket_what_is_kept() {
     let mut command = assert_cmd::Command::cargo_bin("slicer").unwrap();
     command.arg("compare").arg(fixtures().join("bracket.stl")).args(["-p", "generic-marlin"]);
-    command.args(["--layer-height", "0.1", "--support"]);
+    command.args(["--layer-height", "0.1", "--support", "--min-layer-time", "0"]);
     let out = command.assert().success().get_output().stdout.clone();
     check("bracket-compare.txt", &String::from_utf8(out).unwrap());
 }
