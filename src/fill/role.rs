@@ -146,8 +146,8 @@ impl Role {
             Self::SupportInterface => RoleFacts {
                 name: "support interface",
                 annotation: "Support material interface",
-                may_be_thick: false,
                 fan: |cooling| cooling.interface_fan,
+                may_be_thick: false,
                 ..SUPPORT
             },
         }
