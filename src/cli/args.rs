@@ -270,6 +270,9 @@ pub(crate) struct SettingArgs {
     /// Number of walls
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     walls: Option<String>,
+    /// Where walls begin: at a hidden corner in one line, at the rear, near the nozzle, or anywhere
+    #[arg(long, value_name = "PLACE", value_parser = PossibleValuesParser::new(words("seam")))]
+    seam: Option<String>,
     /// Solid layers at the top and at the bottom
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     skin_layers: Option<String>,
@@ -369,6 +372,7 @@ impl SettingArgs {
             ("--first-layer-height", "first_layer_height", self.first_layer_height.clone()),
             ("--line-width", "line_width", self.line_width.clone()),
             ("--walls", "walls", self.walls.clone()),
+            ("--seam", "seam", self.seam.clone()),
             ("--skin-layers", "skin_layers", self.skin_layers.clone()),
             // A profile may tell top and bottom apart; the flag means both.
             ("--skin-layers", "top_layers", self.skin_layers.clone()),

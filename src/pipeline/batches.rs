@@ -10,7 +10,7 @@ use crate::fill::{self, FillParams};
 use crate::gcode::Writer;
 use crate::geom::Point;
 use crate::plan::order::{self, Unordered};
-use crate::plan::{Head, PlanParams, Toolpath, travel};
+use crate::plan::{Head, PlanParams, Seams, Toolpath, travel};
 use crate::profile::Settings;
 use crate::progress::Progress;
 use crate::region::dual::audit::Audit;
@@ -73,6 +73,7 @@ impl Setup {
             fill: &self.fill,
             plan: &self.plan,
             head: Head::default(),
+            seams: Seams::default(),
             tally: Tally::default(),
             footing,
         };
@@ -122,6 +123,7 @@ struct Orderer<'a> {
     plan: &'a PlanParams,
     /// Where the head is after the layers so far.
     head: Head,
+    seams: Seams,
     tally: Tally,
     footing: Footing,
 }
@@ -137,7 +139,8 @@ impl Orderer<'_> {
         // The end of a layer decides where the next begins, so that they are ordered in sequence.
         let mut ordered = Vec::with_capacity(regions.len());
         for (region, (footprint, paths)) in regions.iter().zip(unordered) {
-            let paths = order::order(paths, self.head.at.unwrap_or_default(), plan);
+            let at = self.head.at.unwrap_or_default();
+            let paths = order::order(paths, at, &mut self.seams, plan);
             let next = self.head.after(&region.layer, &paths);
             ordered.push((region, std::mem::replace(&mut self.head, next), paths));
             self.tally.layer(region);

@@ -2,7 +2,7 @@
 //!
 //! 1. [`order::Unordered`] divides paths among islands. An *island* is one outer contour with
 //!    everything that is printed inside it.
-//! 2. [`mod@order`] sorts the paths of each island, nearest first.
+//! 2. [`mod@order`] sorts the paths of each island, nearest first. Where walls begin, `seam` says.
 //! 3. [`tour`] reorders runs of them where that saves time.
 //! 4. [`travel`] decides for each path how the travel to it goes: straight or round a corner, with or
 //!    without a retraction.
@@ -15,11 +15,13 @@ mod crossings;
 mod detour;
 pub mod order;
 mod params;
+mod seam;
 pub mod tour;
 pub mod travel;
 mod wipe;
 
 pub use params::PlanParams;
+pub use seam::Seams;
 
 use crate::fill::Path;
 use crate::geom::Point;

@@ -8,15 +8,17 @@
 //! 2. The island nearest to the nozzle is next. Its walls come first, then skin, then infill; the
 //!    next path is always the one with the nearest end. Helpers come after all islands.
 //! 3. Walls are sorted by depth, from outside or from inside as the settings say. Their seams are at
-//!    the vertex nearest to the nozzle, or at the rear.
-//! 4. With seams at the rear, the next layer begins near where this one began. So the last paths are
+//!    the vertex nearest to the nozzle, at the rear, or where [`seam`] put them.
+//! 4. With seams in a line, the next layer begins near where this one began. So the last paths are
 //!    also sorted backwards from there, and the shorter order wins.
 //!
 //! Of equally near paths the first in the list wins, so that the order is always the same.
 
+use super::seam::{self, Seams};
 use super::{PlanParams, tour};
 use crate::fill::{Path, Place, Role, Shape};
 use crate::geom::{Contour, Point, double_area, edges, encloses};
+use crate::profile::Seam;
 
 /// The paths of one layer, divided among islands but not sorted.
 #[derive(Debug, Default)]
@@ -46,20 +48,22 @@ impl Island {
     }
 }
 
-/// Sorts the paths of a layer, starting from `at`.
+/// Sorts the paths of a layer, starting from `at`. `seams` are those of the layers before.
 #[must_use]
-pub fn order(paths: Unordered, mut at: Point, params: &PlanParams) -> Vec<Path> {
+pub fn order(paths: Unordered, mut at: Point, seams: &mut Seams, params: &PlanParams) -> Vec<Path> {
     let Unordered { mut islands, helpers } = paths;
     let mut out = Vec::new();
     while let Some(k) = nearest(islands.iter().map(|i| i.distance2(at))) {
-        let Island { walls, inside } = islands.remove(k);
+        let Island { mut walls, inside } = islands.remove(k);
+        seams.place(&mut walls, params.seam);
         order_walls(walls, &mut at, params, &mut out);
         order_by_role(inside, Place::Inside, &mut at, &mut out);
     }
     order_by_role(helpers, Place::Helper, &mut at, &mut out);
-    if params.seam_rear {
+    if matches!(params.seam, Seam::Rear | Seam::Aligned) {
         lead_back(&mut out);
     }
+    seams.next_layer();
     out
 }
 
@@ -160,13 +164,27 @@ fn order_walls(mut walls: Vec<Path>, at: &mut Point, params: &PlanParams, out: &
         let Some((_, k, from)) = best else { break };
         let mut wall = walls.remove(k);
         match wall.shape {
-            Shape::Loop { .. } => wall.begin_at(from),
-            Shape::Open if from > 0 => wall.reverse(),
-            Shape::Open => {}
+            Shape::Loop { depth } => {
+                wall.begin_at(from);
+                // The next wall's seam is sought from here, so that a moved seam moves no other.
+                *at = wall.end();
+                if depth % 2 == 1 && params.stagger > 0 {
+                    seam::advance(&mut wall, params.stagger);
+                }
+                if params.seam_gap > 0 {
+                    seam::cut(&mut wall, params.seam_gap);
+                }
+            }
+            Shape::Open => {
+                if from > 0 {
+                    wall.reverse();
+                }
+                *at = wall.end();
+            }
         }
-        *at = wall.end();
         out.push(wall);
     }
+    *at = out.last().map_or(*at, Path::end);
 }
 
 /// The index of the point where `wall` begins: its seam, or the nearer end of an open wall.
@@ -176,10 +194,13 @@ fn seam(wall: &Path, at: Point, params: &PlanParams) -> usize {
     if wall.shape == Shape::Open {
         return near(0).min(near(last)).1;
     }
-    let place = |k: usize| {
-        if params.seam_rear { (-i64::from(wall.points[k].at.y), k) } else { near(k) }
+    let rear = |k: usize| (-i64::from(wall.points[k].at.y), k);
+    let first = match params.seam {
+        Seam::Nearest => (0..last).map(near).min(),
+        Seam::Rear => (0..last).map(rear).min(),
+        Seam::Aligned | Seam::Random => None,
     };
-    (0..last).map(place).min().map(|(_, k)| k).unwrap_or_default()
+    first.map(|(_, k)| k).unwrap_or_default()
 }
 
 /// Sorts open paths nearest first, entering each at its nearer end.

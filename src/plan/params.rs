@@ -1,16 +1,26 @@
 //! Settings -> PlanParams: converts the settings that the plan stage needs.
 
 use super::detour::DetourParams;
-use crate::profile::{RetractWhen, Seam, Settings, WallOrder};
+use crate::profile::{RetractWhen, Seam, SeamInner, Settings, WallOrder};
 use crate::units::{Bounded as _, Coord, UNITS_PER_MM, to_units};
+
+/// How far seams are moved sideways, in line widths: further than a seam's own bulge is wide, and not so
+/// far that the way to the next wall shows.
+const STAGGER: f64 = 4.0;
 
 /// The settings that the plan stage needs.
 #[derive(Debug, Clone)]
 pub struct PlanParams {
     /// The outer wall is printed before the inner walls.
     pub(super) outer_first: bool,
-    /// Seams are at the rearmost vertex of each wall, not at the nearest.
-    pub(super) seam_rear: bool,
+    /// Where walls begin.
+    pub(super) seam: Seam,
+    /// How far the seam of every other wall is moved along it, grid units.
+    pub(super) stagger: Coord,
+    /// How far a closed wall ends before its beginning, grid units.
+    pub(super) seam_gap: Coord,
+    /// How far the nozzle goes on once an outer wall is closed, grid units.
+    pub(super) seam_wipe: Coord,
     /// All travels of at least `min_travel` retract, not only those that leave the part.
     pub(super) retract_always: bool,
     /// Travels shorter than this never retract, grid units.
@@ -33,7 +43,13 @@ impl PlanParams {
     pub fn new(settings: &Settings) -> Self {
         Self {
             outer_first: settings.wall_order == WallOrder::OuterFirst,
-            seam_rear: settings.seam == Seam::Rear,
+            seam: settings.seam,
+            stagger: match settings.seam_inner {
+                SeamInner::Aligned => 0,
+                SeamInner::Staggered => to_units(STAGGER * settings.line_width),
+            },
+            seam_gap: to_units(settings.seam_gap),
+            seam_wipe: to_units(settings.seam_wipe),
             retract_always: settings.retraction.when == RetractWhen::Always,
             min_travel: to_units(settings.retraction.min_travel),
             max_travel: Some(to_units(settings.retraction.max_travel)).filter(|&most| most > 0),

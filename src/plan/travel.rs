@@ -16,7 +16,7 @@ use super::detour::detour;
 use super::tour::{self, Cost};
 use super::wipe::wipe;
 use super::{Head, PlanParams, PrintMove, Toolpath};
-use crate::fill::Path;
+use crate::fill::{Path, Shape};
 use crate::geom::{Contour, Point};
 use crate::slice::Layer;
 
@@ -52,13 +52,18 @@ impl Travels<'_> {
         let Some(from) = at else {
             return PrintMove { retract: self.params.retracts, ..PrintMove::to(path) };
         };
+        // Past its seam an outer wall hides what still comes out of the nozzle.
+        let closed = last.filter(|last| last.shape == Shape::Loop { depth: 0 });
+        let past = closed.map(|last| wipe(last, self.params.seam_wipe)).unwrap_or_default();
+        let from = past.last().copied().unwrap_or(from);
         if !self.retracts(from, path.start()) {
-            return PrintMove::to(path);
+            return PrintMove { via: past, ..PrintMove::to(path) };
         }
-        if let Some(via) = self.detour(from, path.start()) {
-            return PrintMove { via, ..PrintMove::to(path) };
+        if let Some(way) = self.detour(from, path.start()) {
+            return PrintMove { via: [past, way].concat(), ..PrintMove::to(path) };
         }
-        let wipe = last.map(|last| wipe(last, self.params.wipe)).unwrap_or_default();
+        let most = self.params.wipe.max(if closed.is_some() { self.params.seam_wipe } else { 0 });
+        let wipe = last.map(|last| wipe(last, most)).unwrap_or_default();
         PrintMove { retract: true, wipe, ..PrintMove::to(path) }
     }
 }

@@ -1,8 +1,8 @@
 //! Path + length -> Wipe: the way back along a line, on which the nozzle leaves what still oozes.
 //!
 //! After a retraction a little plastic still comes out. It does no harm on the line that was just
-//! printed. A loop is gone over again from its beginning, which is also its end; any other line
-//! backwards from its end.
+//! printed. A loop is gone over again from its beginning, where it also ends, perhaps after a gap; any
+//! other line backwards from its end.
 
 use crate::fill::{Path, PathPoint, Shape};
 use crate::geom::Point;
@@ -16,7 +16,8 @@ pub(super) fn wipe(path: &Path, length: Coord) -> Vec<Point> {
     }
     match path.shape {
         Shape::Open => along(path.points.iter().rev(), length),
-        Shape::Loop { .. } => along(path.points.iter(), length),
+        Shape::Loop { .. } if path.start() == path.end() => along(path.points.iter(), length),
+        Shape::Loop { .. } => along(path.points.last().into_iter().chain(&path.points), length),
     }
 }
 

@@ -30,6 +30,21 @@ pub enum Seam {
     Nearest,
     /// At the vertex furthest back (largest y).
     Rear,
+    /// In one line up the part: at a corner that hides it, the sharpest concave one before the
+    /// sharpest convex one.
+    Aligned,
+    /// Anywhere, the same on every run.
+    Random,
+}
+
+/// See [`Settings::seam_inner`](super::Settings::seam_inner).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SeamInner {
+    /// Beside the outer wall's seam.
+    Aligned,
+    /// Every other wall moved sideways, so that no two seams lie side by side.
+    Staggered,
 }
 
 /// Pattern of the sparse infill.

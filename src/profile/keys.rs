@@ -251,7 +251,7 @@ mod tests {
         let kinds = [
             ("speed.wall", Kind::Number { min: 0.1, max: 999.0 }),
             ("fan_from_layer", Kind::Count { min: 1, max: 100_000 }),
-            ("seam", Kind::Word(words(&["nearest", "rear"]))),
+            ("seam", Kind::Word(words(&["nearest", "rear", "aligned", "random"]))),
             ("dual.parts", Kind::Words(words(&["infill", "support", "inner-walls", "inner-skin"]))),
             ("angle", Kind::NumberOrAuto { min: -360.0, max: 360.0 }),
             ("dual.ratio", Kind::CountOrAuto { min: 2, max: 50 }),

@@ -19,7 +19,7 @@ use slicer::mesh::place::{Placed, place};
 use slicer::mesh::{Bed, Placement, read};
 use slicer::motion::Limits;
 use slicer::plan::order::{self, Unordered};
-use slicer::plan::{Head, PlanParams, Toolpath, travel};
+use slicer::plan::{Head, PlanParams, Seams, Toolpath, travel};
 use slicer::profile::{self, Override, Settings, ValueOrigin};
 use slicer::region::dual::groups::Grouping;
 use slicer::region::prepare::{LayerRows, prepare};
@@ -198,10 +198,10 @@ fn fill_and_plan(bench: &Bench, model: &Model) {
     let group = bench.group("plan", model.name);
     group.time("fill", paths);
     let order = |all: Vec<Vec<fill::Path>>| {
-        let mut head = Head::default();
+        let (mut head, mut seams) = (Head::default(), Seams::default());
         for (region, paths) in regions.iter().zip(all) {
             let paths = Unordered::new(paths, &region.layer.contours);
-            let paths = order::order(paths, head.at.unwrap_or_default(), &plan);
+            let paths = order::order(paths, head.at.unwrap_or_default(), &mut seams, &plan);
             head = head.after(&region.layer, &paths);
         }
         head
@@ -212,10 +212,10 @@ fn fill_and_plan(bench: &Bench, model: &Model) {
 /// All toolpaths of a print to moves, to text and to times.
 fn gcode(bench: &Bench, model: &Model) {
     let (fill, plan) = (fill_params(model), PlanParams::new(&model.settings));
-    let mut head = Head::default();
+    let (mut head, mut seams) = (Head::default(), Seams::default());
     let toolpath = |region: &Region| {
         let paths = Unordered::new(fill::paths(region, &fill), &region.layer.contours);
-        let paths = order::order(paths, head.at.unwrap_or_default(), &plan);
+        let paths = order::order(paths, head.at.unwrap_or_default(), &mut seams, &plan);
         let next = head.after(&region.layer, &paths);
         travel::toolpath(&region.layer, paths, std::mem::replace(&mut head, next), &plan)
     };

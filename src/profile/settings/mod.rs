@@ -32,7 +32,7 @@ mod speed;
 mod support;
 mod travel;
 
-use super::choices::{Angle, Floating, Pattern, Seam, WallOrder};
+use super::choices::{Angle, Floating, Pattern, Seam, SeamInner, WallOrder};
 pub use cooling::Cooling;
 pub use dual::Dual;
 pub use extrusion::Extrusion;
@@ -93,6 +93,15 @@ pub struct Settings {
     /// Where a wall begins.
     #[schemars(extend("default" = "rear"))]
     pub seam: Seam,
+    /// Where inner walls begin: beside the outer wall's seam, or moved sideways by turns.
+    #[schemars(extend("default" = "aligned"))]
+    pub seam_inner: SeamInner,
+    /// How far a closed wall ends before its beginning, so that the seam bulges less.
+    #[schemars(range(min = 0, max = 2), extend("unit" = "mm", "default" = 0))]
+    pub seam_gap: f64,
+    /// How far the nozzle goes on over an outer wall's beginning once it is closed, without filament.
+    #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 0))]
+    pub seam_wipe: f64,
 
     /// A print that begins in the air is refused if a body hangs, refused anywhere, or warned of.
     #[schemars(extend("default" = "refuse"))]
