@@ -10,6 +10,7 @@
 //! point; the middle of a bead stays inside its region.
 
 pub mod gap_closing;
+mod monotonic;
 mod path;
 mod role;
 pub mod rounding;
@@ -51,6 +52,10 @@ pub struct FillParams {
     skin_rounding: Rounding,
     /// Plastic of the lines of bridges: 1 fills their distance.
     bridge_flow: f64,
+    /// The lines of tops come one beside the other.
+    monotonic: bool,
+    /// Beads along gaps have a role of their own.
+    gaps: bool,
     tool: u8,
 }
 
@@ -68,6 +73,8 @@ impl FillParams {
             rounding: Rounding { radius },
             skin_rounding: Rounding { radius: radius.min(line_width / SKIN_ROUNDING) },
             bridge_flow: settings.bridge.flow / 100.0,
+            monotonic: settings.top_monotonic,
+            gaps: settings.speed.gap.is_some(),
             tool: u8::try_from(settings.machine.tool).unwrap_or(u8::MAX),
         }
     }
@@ -133,10 +140,27 @@ impl Maker<'_> {
         let (frame, rounding) = (skin.raster.frame, self.params.skin_rounding);
         let params = LineParams { line_width: skin.raster.pitch, ..self.params.lines };
         let (lines, slivers) = gap_closing::close(&skin.crossed(), &params);
-        let lines = skin::zigzags(&lines, &params);
-        let role = if skin.bridges { Role::Bridge } else { Role::Skin };
-        for polyline in lines.iter().chain(&skin.beads).chain(&slivers) {
+        let in_turn = skin.top && self.params.monotonic;
+        let lines = skin::zigzags(&lines, in_turn, &params);
+        let role = match skin {
+            Skin { bridges: true, .. } => Role::Bridge,
+            Skin { top: true, .. } => Role::TopSkin,
+            _ => Role::Skin,
+        };
+        let first = self.out.len();
+        for polyline in &lines {
             self.polyline(role, skin.layers, frame, polyline, rounding);
+        }
+        if in_turn {
+            let turns = self.out[first..].iter_mut().zip(first as u32..);
+            turns.for_each(|(path, turn)| path.shape = Shape::InTurn { turn });
+        }
+        for bead in &skin.beads {
+            self.polyline(role, skin.layers, frame, bead, rounding);
+        }
+        let gap = if self.params.gaps { Role::Gap } else { role };
+        for sliver in &slivers {
+            self.polyline(gap, skin.layers, frame, sliver, rounding);
         }
         for bead in &skin.room_beads {
             self.polyline(Role::Infill, skin.layers, frame, bead, rounding);
@@ -181,7 +205,7 @@ impl Maker<'_> {
         // A thread beside a skin's edge would lie on the skin's last line.
         let least = self.params.line_width * LEAST_SLIVER / 10;
         slivers.retain(|sliver| sliver.iter().any(|point| point.width >= least));
-        slivers.extend(skin::zigzags(&lines, &self.params.lines));
+        slivers.extend(skin::zigzags(&lines, false, &self.params.lines));
         slivers
     }
 

@@ -24,6 +24,11 @@ pub struct PathPoint {
 pub enum Shape {
     /// Either end may come first.
     Open,
+    /// Printed in its own direction, and in its turn.
+    InTurn {
+        /// After all of its island and role with a lesser turn.
+        turn: u32,
+    },
     /// Closed: the last point repeats the first, and any point may become the first. Loops are
     /// ordered by their depth.
     Loop {

@@ -26,6 +26,10 @@ pub enum Role {
     Bridge,
     /// Sparse infill.
     Infill,
+    /// Beads along gaps that no line of skin reaches, if they have a speed of their own.
+    Gap,
+    /// Skin that is seen from above; last in its island, so that the nozzle does not pass over it.
+    TopSkin,
     /// Support.
     Support,
     /// Dense support next to the part.
@@ -66,7 +70,7 @@ pub struct RoleFacts {
     /// Whether it may be printed for several layers at once.
     pub may_be_thick: bool,
     /// The settings keys of its speed, thin and thick.
-    pub speed_keys: Both<&'static str>,
+    pub speed_keys: fn(&Speed) -> Both<&'static str>,
     /// Its speed, thin and thick.
     pub speed: fn(&Speed) -> Both<f64>,
     /// When it is slowed down for a layer's least time.
@@ -78,14 +82,16 @@ pub struct RoleFacts {
 }
 
 impl Role {
-    /// All roles, in the order of reports.
-    pub const ALL: [Self; 8] = [
+    /// All roles, in the order of reports and of what lies inside an island.
+    pub const ALL: [Self; 10] = [
         Self::OuterWall,
         Self::InnerWall,
         Self::Overhang,
         Self::Skin,
         Self::Bridge,
         Self::Infill,
+        Self::Gap,
+        Self::TopSkin,
         Self::Support,
         Self::SupportInterface,
     ];
@@ -99,8 +105,8 @@ impl Role {
                 annotation: "External perimeter",
                 place: Place::Walls,
                 may_be_thick: false,
-                speed_keys: Both::same("speed.wall"),
-                speed: |speed| Both::same(speed.wall),
+                speed_keys: |speed| own(speed.outer_wall, "speed.outer_wall", "speed.wall"),
+                speed: |speed| Both::same(speed.outer_wall.unwrap_or(speed.wall)),
                 slows: Slows::Last,
                 fan: |_| None,
                 factor: |extrusion| extrusion.wall_factor,
@@ -109,39 +115,33 @@ impl Role {
                 name: "inner wall",
                 annotation: "Perimeter",
                 may_be_thick: true,
+                speed_keys: |speed| own(speed.inner_wall, "speed.inner_wall", "speed.wall"),
+                speed: |speed| Both::same(speed.inner_wall.unwrap_or(speed.wall)),
                 slows: Slows::Second,
                 ..Self::OuterWall.facts()
             },
             Self::Overhang => RoleFacts {
                 name: "overhanging wall",
                 annotation: "Overhang perimeter",
-                speed_keys: Both::same("speed.overhang"),
+                speed_keys: |_| Both::same("speed.overhang"),
                 speed: |speed| Both::same(speed.overhang),
                 fan: |cooling| Some(cooling.overhang_fan.unwrap_or(cooling.bridge_fan)),
                 ..Self::OuterWall.facts()
             },
-            Self::Skin => RoleFacts {
-                name: "skin",
-                annotation: "Solid infill",
-                place: Place::Inside,
-                may_be_thick: true,
-                speed_keys: Both::same("speed.skin"),
-                speed: |speed| Both::same(speed.skin),
-                slows: Slows::First,
-                fan: |_| None,
-                factor: |extrusion| extrusion.skin_factor,
-            },
+            Self::Skin => SKIN,
             Self::Bridge => RoleFacts {
                 name: "bridge",
                 annotation: "Bridge infill",
                 may_be_thick: false,
-                speed_keys: Both::same("speed.bridge"),
+                speed_keys: |_| Both::same("speed.bridge"),
                 speed: |speed| Both::same(speed.bridge),
                 slows: Slows::Last,
                 fan: |cooling| Some(cooling.bridge_fan),
-                ..Self::Skin.facts()
+                ..SKIN
             },
             Self::Infill => INFILL,
+            Self::TopSkin => TOP_SKIN,
+            Self::Gap => GAP,
             Self::Support => SUPPORT,
             Self::SupportInterface => RoleFacts {
                 name: "support interface",
@@ -154,12 +154,46 @@ impl Role {
     }
 }
 
+/// The key of a speed that is `usual` where it has none of its own.
+fn own(speed: Option<f64>, key: &'static str, usual: &'static str) -> Both<&'static str> {
+    Both::same(if speed.is_some() { key } else { usual })
+}
+
+const SKIN: RoleFacts = RoleFacts {
+    name: "skin",
+    annotation: "Solid infill",
+    place: Place::Inside,
+    may_be_thick: true,
+    speed_keys: |_| Both::same("speed.skin"),
+    speed: |speed| Both::same(speed.skin),
+    slows: Slows::First,
+    fan: |_| None,
+    factor: |extrusion| extrusion.skin_factor,
+};
+
+const TOP_SKIN: RoleFacts = RoleFacts {
+    name: "top skin",
+    annotation: "Top solid infill",
+    may_be_thick: false,
+    speed_keys: |speed| own(speed.top_skin, "speed.top_skin", "speed.skin"),
+    speed: |speed| Both::same(speed.top_skin.unwrap_or(speed.skin)),
+    ..SKIN
+};
+
+const GAP: RoleFacts = RoleFacts {
+    name: "gap",
+    annotation: "Gap fill",
+    speed_keys: |speed| own(speed.gap, "speed.gap", "speed.skin"),
+    speed: |speed| Both::same(speed.gap.unwrap_or(speed.skin)),
+    ..SKIN
+};
+
 const INFILL: RoleFacts = RoleFacts {
     name: "infill",
     annotation: "Internal infill",
     place: Place::Inside,
     may_be_thick: true,
-    speed_keys: Both { thin: "speed.infill", thick: "speed.thick_infill" },
+    speed_keys: |_| Both { thin: "speed.infill", thick: "speed.thick_infill" },
     speed: |speed| Both { thin: speed.infill, thick: speed.thick_infill },
     slows: Slows::First,
     fan: |_| None,
@@ -171,7 +205,7 @@ const SUPPORT: RoleFacts = RoleFacts {
     annotation: "Support material",
     place: Place::Helper,
     may_be_thick: true,
-    speed_keys: Both::same("speed.support"),
+    speed_keys: |_| Both::same("speed.support"),
     speed: |speed| Both::same(speed.support),
     slows: Slows::First,
     fan: |_| None,

@@ -1,5 +1,6 @@
 //! Lines of a skin -> zigzags: neighbouring solid lines joined end to end, straight across.
 
+use super::monotonic::in_order;
 use super::variable_width::{self, Joined, Line, LineParams};
 use crate::geom::Point;
 use crate::geom::polyline::{LinePoint, Polyline};
@@ -30,8 +31,10 @@ const LEAST_SHARE: f64 = 0.85;
 /// A join is a bead of full width along the wall. Lines reach into the wall with their round ends, so
 /// that a join between two ends would lie in it. Both ends are moved back by most of the
 /// overlap, measured at right angles to the join: then its edge lies near the wall's.
+///
+/// `monotonic` zigzags are to be printed one after the other as they come, each in its direction.
 #[must_use]
-pub fn zigzags(lines: &[Line], params: &LineParams) -> Vec<Polyline> {
+pub fn zigzags(lines: &[Line], monotonic: bool, params: &LineParams) -> Vec<Polyline> {
     let pitch = params.line_width;
     let rows: Vec<&[Line]> = lines.chunk_by(|a, b| a.row == b.row).collect();
     let solid = |line: &Line| Some(line.span).filter(|s| s.len() >= LEAST);
@@ -41,7 +44,9 @@ pub fn zigzags(lines: &[Line], params: &LineParams) -> Vec<Polyline> {
     };
     // Rows are sorted, but rows without skin are missing.
     let line = |row: i32, index: usize| &rows[rows.partition_point(|r| r[0].row < row)][index];
-    link(spans, 1, pitch, join)
+    let zigzags = link(spans, 1, pitch, join);
+    let zigzags = if monotonic { in_order(zigzags, pitch) } else { zigzags };
+    zigzags
         .into_iter()
         .map(|zigzag| {
             let mut polyline = Vec::with_capacity(2 * zigzag.len());

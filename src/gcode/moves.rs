@@ -15,7 +15,7 @@
 //! 4. Where width or height change, compute the feed again, clamped to the flow limit.
 
 use super::flow::{FlowLimit, Flows, Lowered, feed, whole_feed};
-use crate::fill::{Both, Path, PathPoint, Role, RoleTable};
+use crate::fill::{Both, Path, PathPoint, Role, RoleTable, Shape};
 use crate::geom::Point;
 use crate::plan::{PrintMove, Toolpath};
 use crate::profile::{ExtrusionModel, Settings};
@@ -101,6 +101,8 @@ pub struct MoveParams {
     feeds: RoleTable<Both<f64>>,
     /// Factor on the feeds of the first layer.
     first_layer: f64,
+    /// Factor on the feeds of closed walls shorter than this, grid units.
+    small_loop: (f64, f64),
     travel_feed: f64,
     z_feed: f64,
     retract: f64,
@@ -127,6 +129,7 @@ impl MoveParams {
                 Both { thin: feed(speed.thin), thick: feed(speed.thick) }
             }),
             first_layer: s.first_layer / 100.0,
+            small_loop: (s.small_loop / 100.0, s.small_loop_length * UNITS_PER_MM),
             travel_feed: feed(s.travel),
             z_feed: feed(s.z),
             retract: settings.retraction.length,
@@ -141,10 +144,26 @@ impl MoveParams {
         self.rates[bead.role] * length_mm * to_mm(bead.width) * to_mm(bead.height)
     }
 
-    /// The feed asked for where a path hangs by `hang` % of its width, mm/min. From half to the
-    /// whole width it falls to that of overhangs.
-    fn asked(&self, path: &Path, hang: u8) -> f64 {
+    /// The feed asked for where nothing hangs, mm/min: small loops are slower.
+    fn usual(&self, path: &Path) -> f64 {
         let usual = *self.feeds[path.role].of(path.is_thick());
+        let (factor, limit) = self.small_loop;
+        if factor >= 1.0 || !matches!(path.shape, Shape::Loop { .. }) {
+            return usual;
+        }
+        let mut left = limit;
+        for ends in path.points.windows(2) {
+            left -= length(&ends[0], &ends[1]);
+            if left <= 0.0 {
+                return usual;
+            }
+        }
+        factor * usual
+    }
+
+    /// The feed asked for where a path hangs by `hang` % of its width, mm/min. From half to the
+    /// whole width it falls from the `usual` one to that of overhangs.
+    fn asked(&self, usual: f64, hang: u8) -> f64 {
         let share = (f64::from(hang) / 50.0 - 1.0).at_least(0.0);
         usual - share * (usual - self.feeds[Role::Overhang].thin).at_least(0.0)
     }
@@ -271,12 +290,13 @@ impl<'a> Walk<'a> {
         // No bead has a negative width, so that the first segment always computes its feed.
         let mut bead = Bead { role: path.role, thick, height: 0, width: -1 };
         let (mut feed, mut hang) = (0, 0);
+        let usual = self.params.usual(path);
         for ends in path.points.windows(2) {
             let (from, to) = (&ends[0], &ends[1]);
             if (to.width, to.height, to.hang) != (bead.width, bead.height, hang) {
                 (bead.width, bead.height, hang) = (to.width, to.height, to.hang);
                 bead.role = if hang > 0 { Role::Overhang } else { path.role };
-                feed = self.feed(&bead, self.params.asked(path, hang) * slow);
+                feed = self.feed(&bead, self.params.asked(usual, hang) * slow);
             }
             let length = length(from, to) / UNITS_PER_MM;
             self.out.moves.push(Move {

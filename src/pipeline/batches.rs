@@ -20,6 +20,7 @@ use crate::region::window::{self, Window};
 use crate::region::{Region, RegionParams};
 use crate::report::tally::Tally;
 use crate::slice::{Heights, Slicer};
+use crate::units::to_units;
 use rayon::prelude::*;
 use std::collections::VecDeque;
 
@@ -43,9 +44,11 @@ impl Setup {
     pub fn new(settings: &Settings, heights: &Heights) -> Self {
         let mut region = RegionParams::new(settings);
         // No more can be skin than there is; each layer looks at as many neighbours as this.
-        let most = heights.count();
-        (region.skins.top, region.skins.bottom) =
-            (region.skins.top.min(most), region.skins.bottom.min(most));
+        let count = |count: usize, thickness: f64| {
+            count.max(heights.layers_of(to_units(thickness))).min(heights.count())
+        };
+        region.skins.top = count(region.skins.top, settings.top_thickness);
+        region.skins.bottom = count(region.skins.bottom, settings.bottom_thickness);
         Self {
             region,
             rules: Rules::new(settings),

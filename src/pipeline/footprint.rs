@@ -44,7 +44,7 @@ impl Rules {
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         // Thick infill lies on other layers than it fills, so that the beads of one do not tell.
-        let by_beads = settings.top_skins() == 0 && settings.dual.mode == DualMode::Off;
+        let by_beads = !settings.has_top_skins() && settings.dual.mode == DualMode::Off;
         Self { least_room: settings.min_feature * UNITS_PER_MM, by_beads }
     }
 }

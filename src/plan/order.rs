@@ -67,10 +67,19 @@ pub fn order(paths: Unordered, mut at: Point, seams: &mut Seams, params: &PlanPa
     out
 }
 
-/// Sorts paths by role, and nearest first within a role.
+/// Sorts paths by role, and nearest first within a role. Then come those that have their turns.
 fn order_by_role(mut paths: Vec<Path>, place: Place, at: &mut Point, out: &mut Vec<Path>) {
+    let turn = |path: &Path| match path.shape {
+        Shape::InTurn { turn } => Some(turn),
+        Shape::Open | Shape::Loop { .. } => None,
+    };
     for role in Role::ALL.into_iter().filter(|role| role.facts().place == place) {
-        order_open(paths.extract_if(.., |path| path.role == role).collect(), at, out);
+        let mut open: Vec<Path> = paths.extract_if(.., |path| path.role == role).collect();
+        let mut in_turn: Vec<Path> = open.extract_if(.., |path| turn(path).is_some()).collect();
+        order_open(open, at, out);
+        in_turn.sort_by_key(turn);
+        *at = in_turn.last().map_or(*at, Path::end);
+        out.extend(in_turn);
     }
 }
 
@@ -146,7 +155,7 @@ fn nearest(distances: impl Iterator<Item = i64>) -> Option<usize> {
 fn order_walls(mut walls: Vec<Path>, at: &mut Point, params: &PlanParams, out: &mut Vec<Path>) {
     let depth = |wall: &Path| match wall.shape {
         Shape::Loop { depth } => depth,
-        Shape::Open => 0,
+        Shape::Open | Shape::InTurn { .. } => 0,
     };
     while let Some(next) = {
         let depths = walls.iter().map(depth);
@@ -175,7 +184,7 @@ fn order_walls(mut walls: Vec<Path>, at: &mut Point, params: &PlanParams, out: &
                     seam::cut(&mut wall, params.seam_gap);
                 }
             }
-            Shape::Open => {
+            Shape::Open | Shape::InTurn { .. } => {
                 if from > 0 {
                     wall.reverse();
                 }

@@ -14,7 +14,7 @@
 //! Nearly all changes are rejected by a bound that needs no square root. Only the few others compute
 //! whether their legs retract. Where a run begins and ends stays, so that layers remain independent.
 
-use crate::fill::{Path, Place};
+use crate::fill::{Path, Place, Shape};
 use crate::geom::Point;
 use std::cell::LazyCell;
 use std::ops::Range;
@@ -74,8 +74,11 @@ pub fn improve(paths: Vec<Path>, from: Option<Point>, cost: &impl Cost) -> Vec<P
     paths.into_iter().flatten().collect()
 }
 
-/// The group within which `path` may change places; `None` for walls, which stay.
+/// The group within which `path` may change places; `None` for what stays: walls, and what has its turn.
 pub(super) fn free(path: &Path) -> Option<bool> {
+    if matches!(path.shape, Shape::InTurn { .. }) {
+        return None;
+    }
     match path.role.facts().place {
         Place::Walls => None,
         Place::Inside => Some(false),

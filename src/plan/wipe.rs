@@ -15,7 +15,7 @@ pub(super) fn wipe(path: &Path, length: Coord) -> Vec<Point> {
         return Vec::new();
     }
     match path.shape {
-        Shape::Open => along(path.points.iter().rev(), length),
+        Shape::Open | Shape::InTurn { .. } => along(path.points.iter().rev(), length),
         Shape::Loop { .. } if path.start() == path.end() => along(path.points.iter(), length),
         Shape::Loop { .. } => along(path.points.last().into_iter().chain(&path.points), length),
     }

@@ -10,13 +10,19 @@ const SLACK_MM: f64 = 1e-9;
 const SLOW_MM_S: f64 = 2.0;
 
 impl Settings {
-    /// Solid layers at the top.
+    /// Solid layers at the top, at least; the thickness may ask for more.
     #[must_use]
     pub fn top_skins(&self) -> u32 {
         self.top_layers.unwrap_or(self.skin_layers)
     }
 
-    /// Solid layers at the bottom.
+    /// Whether tops are closed by skin.
+    #[must_use]
+    pub fn has_top_skins(&self) -> bool {
+        self.top_skins() > 0 || self.top_thickness > 0.0
+    }
+
+    /// Solid layers at the bottom, at least; the thickness may ask for more.
     #[must_use]
     pub fn bottom_skins(&self) -> u32 {
         self.bottom_layers.unwrap_or(self.skin_layers)
@@ -34,6 +40,13 @@ impl Settings {
             ("speed.thick_infill", speed.thick_infill),
             ("speed.support", speed.support),
         ];
+        let own = [
+            ("speed.outer_wall", speed.outer_wall),
+            ("speed.inner_wall", speed.inner_wall),
+            ("speed.top_skin", speed.top_skin),
+            ("speed.gap", speed.gap),
+        ];
+        speeds.extend(own.into_iter().filter_map(|(key, speed)| Some((key, speed?))));
         speeds.retain(|(_, speed)| *speed < SLOW_MM_S);
         speeds
     }

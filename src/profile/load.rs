@@ -61,6 +61,7 @@ pub(super) fn merge(shelf: &Shelf, wanted: &[Wanted], overrides: &[Override]) ->
     for given in overrides {
         merge_override(given, &mut merged)?;
     }
+    counts_hold_alone(&mut merged);
     follow(&mut merged);
     cold_bed(&mut merged);
     let last = sources.list.last();
@@ -118,6 +119,23 @@ fn merge_override(given: &Override, merged: &mut Merged) -> Result<()> {
         value => value,
     };
     insert(&given.key, value, given.origin.clone(), merged)
+}
+
+/// Numbers of skin layers, and the thickness that a number given for this run switches off.
+const COUNTED: &[([&str; 2], &str)] = &[
+    (["skin_layers", "top_layers"], "top_thickness"),
+    (["skin_layers", "bottom_layers"], "bottom_thickness"),
+];
+
+/// Whoever asks for 2 layers gets 2, whatever thickness a profile has; unless he gave both.
+fn counts_hold_alone(merged: &mut Merged) {
+    for (counts, thickness) in COUNTED {
+        let given = |key: &str| merged.get(key).map(|(_, at)| at).filter(|at| at.is_given());
+        let count = counts.iter().rev().find_map(|key| given(key)).cloned();
+        if let Some(origin) = count.filter(|_| given(thickness).is_none()) {
+            merged.insert((*thickness).to_owned(), (Value::Float(0.0), origin));
+        }
+    }
 }
 
 fn insert(key: &str, value: Value, origin: ValueOrigin, merged: &mut Merged) -> Result<()> {
@@ -312,6 +330,25 @@ mod tests {
         let message =
             refused(&[set("machine.start_gcode", "G21"), set("filament.bed_temperature", "60")]);
         assert!(message.contains("would have no effect"), "{message}");
+    }
+
+    #[test]
+    fn a_number_of_skin_layers_given_for_the_run_holds_alone() {
+        let thickness = |given: &[Override]| {
+            let settings = load(["generic-marlin"], given).unwrap().settings;
+            [settings.top_thickness, settings.bottom_thickness]
+        };
+        assert_eq!(thickness(&[]), [0.8, 0.8]);
+        assert_eq!(thickness(&[set("skin_layers", "2")]), [0.0, 0.0]);
+        assert_eq!(thickness(&[set("bottom_layers", "2")]), [0.8, 0.0]);
+        let both = [set("top_thickness", "1.2"), set("skin_layers", "2")];
+        assert_eq!(thickness(&both), [1.2, 0.0]);
+        // A profile's own number stands beside its thickness.
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.toml");
+        fs::write(&file, "inherits = \"generic-marlin\"\nskin_layers = 2\n").unwrap();
+        let profile = load([file.to_str().unwrap()], &[]).unwrap();
+        assert_eq!(profile.settings.top_thickness, 0.8);
     }
 
     #[test]

@@ -34,7 +34,8 @@ pub(super) fn renamed(name: &str) -> Option<&'static str> {
 
 /// Whether this key of today is a speed that was in mm/min in format 1.
 pub(super) fn was_per_minute(name: &str) -> bool {
-    let speed = name.starts_with("speed.") && name != "speed.first_layer";
+    let other = ["speed.first_layer", "speed.small_loop", "speed.small_loop_length"];
+    let speed = name.starts_with("speed.") && !other.contains(&name);
     speed || name.starts_with("limits.speed_") || name == "retraction.speed"
 }
 
@@ -121,6 +122,6 @@ mod tests {
             assert!(keys::find(old).is_none(), "{old}");
             assert!(keys::find(new).is_some(), "{new}");
         }
-        assert_eq!(KEYS.iter().filter(|key| was_per_minute(&key.name)).count(), 14);
+        assert_eq!(KEYS.iter().filter(|key| was_per_minute(&key.name)).count(), 18);
     }
 }

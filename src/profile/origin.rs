@@ -80,6 +80,14 @@ pub enum ValueOrigin {
     Program,
 }
 
+impl ValueOrigin {
+    /// Whether it was given for this run alone: by a flag, `--set`, or the program that embeds the library.
+    #[must_use]
+    pub fn is_given(&self) -> bool {
+        matches!(self, Self::Set | Self::Flag(_) | Self::Program)
+    }
+}
+
 impl fmt::Display for ValueOrigin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

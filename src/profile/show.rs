@@ -144,6 +144,12 @@ mod tests {
         settings.top_layers = Some(1);
         settings.bottom_layers = Some(1);
         settings.filament.max_volumetric_speed = Some(1.0);
+        let speed = &mut settings.speed;
+        for own in
+            [&mut speed.outer_wall, &mut speed.inner_wall, &mut speed.top_skin, &mut speed.gap]
+        {
+            *own = Some(20.0);
+        }
         let mut typed = BTreeSet::new();
         leaves("", &Value::try_from(&settings).unwrap(), &mut typed);
         let listed: BTreeSet<_> = keys::names().map(str::to_owned).collect();

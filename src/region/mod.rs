@@ -33,6 +33,7 @@ pub mod rooms;
 pub mod scan;
 pub mod support;
 mod taper;
+pub mod tops;
 pub mod wall_beads;
 mod wall_samples;
 pub mod walls;
@@ -108,6 +109,8 @@ pub struct Skin {
     pub room_beads: Vec<Polyline>,
     /// Its lines span places where nothing is printed below.
     pub bridges: bool,
+    /// It is seen from above, and told apart from what is not.
+    pub top: bool,
 }
 
 /// Skin on one raster.

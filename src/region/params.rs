@@ -23,6 +23,8 @@ pub struct RegionParams {
     pub beads: BeadParams,
     /// For bridges.
     pub bridges: BridgeParams,
+    /// Whether skin that is seen from above is told apart.
+    pub tops: bool,
     /// Whether walls that hang are told apart.
     pub overhangs: bool,
     /// All rasters in use.
@@ -151,6 +153,7 @@ impl RegionParams {
                 wall_to_fill: insets.fill - walls.inset_of(walls.count),
                 overlap: to_units(overlap * w),
             },
+            tops: settings.top_monotonic || settings.speed.top_skin.is_some(),
             overhangs: settings.speed.overhang > 0.0,
             bridges: BridgeParams {
                 anchor: settings.bridge.enabled.then(|| to_units(settings.bridge.anchor)),

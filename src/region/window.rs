@@ -28,7 +28,7 @@ use super::prepare::{LayerRows, Own, prepare};
 use super::queue::Queue;
 use super::support::{SupportLayer, SupportPatterns};
 use super::walls::{self, Wall};
-use super::{Region, Skin, SkinRows, Sparse, SupportLines};
+use super::{Region, Skin, SkinRows, Sparse, SupportLines, tops};
 use crate::geom::frame::Frame;
 use crate::geom::polyline::Polyline;
 use crate::geom::spans::Rows;
@@ -269,10 +269,29 @@ impl<'a> Window<'a> {
                 if let Some(floor) = floor.as_ref().filter(|_| layers == 1) {
                     skin = landing::land(skin, r, &mut left, floor, &self.params.rasters);
                 }
-                skins.push(Self::skin(self.params, (r, other), layers, areas, skin));
+                for (part, top) in self.tops(k, (r, other), layers, skin) {
+                    let skin = Self::skin(self.params, (r, other), layers, areas, part);
+                    skins.push(Skin { top, ..skin });
+                }
             }
         }
         Some((skins, left))
+    }
+
+    /// What of the skin of layer `k`, on two rasters, is seen from above, and what not. What is printed
+    /// for several layers never is.
+    fn tops(
+        &self,
+        k: usize,
+        (along, across): (usize, usize),
+        layers: u32,
+        skin: first_skin::Both,
+    ) -> Vec<(first_skin::Both, bool)> {
+        if layers > 1 || !self.params.tops || self.params.skins.top == 0 {
+            return vec![(skin, false)];
+        }
+        let covers = [along, across].map(|r| Some(&self.rows.get(k + 1)?.skin(r).cover));
+        tops::divide(skin, covers, (self.params.skins.line_width, self.params.beads.overlap))
     }
 
     /// The skin of layer `k` by the number of layers that it is printed for, on the raster of its
@@ -358,6 +377,7 @@ impl<'a> Window<'a> {
             beads: Vec::new(),
             room_beads: Vec::new(),
             bridges: false,
+            top: false,
         }
     }
 
@@ -368,8 +388,16 @@ impl<'a> Window<'a> {
             |(laid, (own, Laid { beads, room_beads, filling, bridges, hanging }))| {
                 let Filling { mut skins, infill, support, walls: printed } = laid;
                 // Wall beads are for this layer alone.
+                let k = own.layer.index;
+                let above = self.rows.get(k + 1).map(|rows| &rows.skin(skin_turn(k).0).cover);
+                let beads = if self.params.tops && self.params.skins.top > 0 {
+                    tops::add_seen(&mut skins, beads, above)
+                } else {
+                    beads
+                };
                 if let Some(skin) = skins.first_mut() {
-                    (skin.beads, skin.room_beads) = (beads, room_beads);
+                    skin.beads.extend(beads);
+                    skin.room_beads = room_beads;
                 }
                 skins.extend(bridges);
                 let Own { layer, walls, thin_mm2, .. } = own;

@@ -138,7 +138,7 @@ fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
         for (thick, lowered) in lowered.iter() {
             warnings.extend(lowered.map(|lowered| Warning::FlowLimited {
                 role: role_name(role, thick),
-                setting: (*role.facts().speed_keys.of(thick)).to_owned(),
+                setting: (*(role.facts().speed_keys)(&settings.speed).of(thick)).to_owned(),
                 asked_mm_s: speed(lowered.asked),
                 lowest_mm_s: speed(lowered.given),
                 limit_mm3_s: settings.max_volumetric_speed(),

@@ -57,6 +57,17 @@ impl Heights {
         self.tops[k] - below
     }
 
+    /// The number of successive layers that are together as thick as `thickness`, wherever they lie;
+    /// all layers if they are thinner.
+    #[must_use]
+    pub fn layers_of(&self, thickness: Coord) -> usize {
+        let below = |(k, top): (usize, &Coord)| {
+            let bottom = top.checked_sub(thickness).filter(|&bottom| bottom >= 0)?;
+            Some(k + 1 - self.tops[..k + 1].partition_point(|&other| other <= bottom))
+        };
+        self.tops.iter().enumerate().filter_map(below).max().unwrap_or(self.count())
+    }
+
     /// Top of layer `k` above the bed.
     #[must_use]
     pub fn top(&self, k: usize) -> Coord {
@@ -99,6 +110,18 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(|k| heights.plane(k)), [1500, 3500, 5250, 6750]);
         assert_eq!([0, 1, 2, 3].map(|k| heights.height(k)), [3000, 1000, 2500, 500]);
         assert_eq!((heights.stack(3, 2), heights.stack(3, 4)), (3000, 7000));
+    }
+
+    #[test]
+    fn as_many_layers_as_a_thickness_takes() {
+        let even = Heights::even(2_000, 2_000, 100_000);
+        assert_eq!([0, 1, 2_000, 2_001, 8_000].map(|t| even.layers_of(t)), [0, 1, 1, 2, 4]);
+        assert_eq!(Heights::even(2_000, 1_200, 100_000).layers_of(8_000), 7);
+        // A thick first layer helps only at the bed, a thin one asks for one more there.
+        assert_eq!(Heights::even(3_000, 2_000, 100_000).layers_of(8_000), 4);
+        assert_eq!(Heights::even(1_000, 2_000, 100_000).layers_of(8_000), 5);
+        assert_eq!(Heights::even(2_000, 2_000, 6_000).layers_of(8_000), 3);
+        assert_eq!(Heights::default().layers_of(8_000), 0);
     }
 
     #[test]

@@ -143,7 +143,7 @@ impl Print {
                 "Custom" => Kind::Custom,
                 "External perimeter" => Kind::OuterWall,
                 "Perimeter" => Kind::InnerWall,
-                "Solid infill" => Kind::Skin,
+                "Solid infill" | "Top solid infill" | "Gap fill" => Kind::Skin,
                 "Bridge infill" => Kind::Bridge,
                 "Internal infill" => Kind::Infill,
                 "Support material" => Kind::Support,

@@ -59,7 +59,9 @@ fn voids(run: &Run, solid: &Solid) -> (usize, Vec<(usize, [f64; 2])>) {
     };
     let sections: Vec<Section> = (0..count).map(cut).collect();
     let holds = |k: usize, p: [f64; 2]| sections.get(k).is_some_and(|s| s.is_inside(p));
-    let (top, bottom) = (run.settings.top_skins() as usize, run.settings.bottom_skins() as usize);
+    let as_thick = |thickness: f64| (thickness / run.settings.layer_height).round() as usize;
+    let top = as_thick(run.settings.top_thickness).max(run.settings.top_skins() as usize);
+    let bottom = as_thick(run.settings.bottom_thickness).max(run.settings.bottom_skins() as usize);
     let (low, high) = sections[0].extent().unwrap();
     let (mut all, mut found) = (0, Vec::new());
     for (k, section) in sections.iter().enumerate() {
@@ -183,7 +185,8 @@ proptest! {
         let infill = format!("{infill}");
         let mode = if dual { "pair" } else { "off" };
         let angle = if turned { "45" } else { "0" };
-        let set = [("infill", infill.as_str()), ("dual.mode", mode), ("angle", angle)];
+        let skins = ("skin_layers", "3");
+        let set = [("infill", infill.as_str()), ("dual.mode", mode), ("angle", angle), skins];
         let run = slice(&step(size, block, at).stl(), "generic-marlin", &set);
         let free = free_ends(&run.print);
         prop_assert!(free.is_empty(), "{} free ends: {:?}", free.len(), free);

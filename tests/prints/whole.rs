@@ -532,7 +532,7 @@ fn thick_lines_are_on_the_upper_layers_of_pairs_and_twice_as_high() {
 fn every_number_of_layers_ends_with_skins_and_leaves_no_layer_hollow() {
     for count in 7..=14_usize {
         let block = Solid::cuboid([0.0; 3], [16.0, 16.0, 0.2 * count as f64]).stl();
-        let run = slice(&block, "generic-marlin", &[DUAL]);
+        let run = slice(&block, "generic-marlin", &[DUAL, ("skin_layers", "3")]);
         assert_eq!(run.print.layers.len(), count);
         let skin = layers(&run, |m| m.kind == Kind::Skin);
         assert_eq!(skin, (0..3).chain(count - 3..count).collect(), "{count} layers");

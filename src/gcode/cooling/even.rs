@@ -10,6 +10,7 @@
 //! no group that can come is slow enough to reach them.
 
 use super::slowing::{NO_CAP, Need, Slowing};
+use crate::fill::Role;
 use crate::gcode::flow::{feed, whole_feed};
 use crate::gcode::moves::Moves;
 use crate::profile::{DualMode, Settings};
@@ -76,7 +77,8 @@ impl Even {
         // Without a least time no group gets a cap, so that none is held.
         let slows = settings.cooling.min_layer_time > 0.0;
         let slowest = whole_feed(feed(settings.cooling.min_speed));
-        let fastest = whole_feed(feed(settings.speed.wall));
+        let wall = (Role::OuterWall.facts().speed)(&settings.speed).thin;
+        let fastest = whole_feed(feed(wall));
         Self {
             ratio: if dual { settings.dual_ratio().max(1) as usize } else { 1 },
             slowest: if slows { slowest } else { fastest },

@@ -116,6 +116,17 @@ pub struct Settings {
     /// Solid layers at the bottom; unset means skin_layers.
     #[schemars(range(min = 0, max = 10_000), extend("unit" = "layers"))]
     pub bottom_layers: Option<u32>,
+    /// Thickness of the skin at the top: as many layers as it or their number asks for, whichever
+    /// are more. A number given by a flag or `--set` holds alone.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 0.8))]
+    pub top_thickness: f64,
+    /// Thickness of the skin at the bottom, as that at the top.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 0.8))]
+    pub bottom_thickness: f64,
+    /// Whether the lines of a top that is seen are printed one beside the other in one direction, so
+    /// that light falls alike on all of them.
+    #[schemars(extend("default" = true))]
+    pub top_monotonic: bool,
     /// How far a skin reaches sideways into the infill, to hold on.
     #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 1.2))]
     pub skin_reach: f64,

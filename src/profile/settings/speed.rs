@@ -10,9 +10,28 @@ pub struct Speed {
     /// Speed of walls.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 27))]
     pub wall: f64,
+    /// Speed of the outermost wall; unset means speed.wall.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s"))]
+    pub outer_wall: Option<f64>,
+    /// Speed of the walls inside it; unset means speed.wall.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s"))]
+    pub inner_wall: Option<f64>,
+    /// Speed of closed walls shorter than small_loop_length, of the speeds above: a small loop has
+    /// no time to cool and is all turns.
+    #[schemars(range(min = 1, max = 100), extend("unit" = "%", "default" = 60))]
+    pub small_loop: f64,
+    /// Closed walls shorter than this are small loops: 15 mm go around a hole of 4.8 mm.
+    #[schemars(range(min = 0, max = 1_000), extend("unit" = "mm", "default" = 15))]
+    pub small_loop_length: f64,
     /// Speed of skins.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 50))]
     pub skin: f64,
+    /// Speed of skin that is seen from above; unset means speed.skin.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s"))]
+    pub top_skin: Option<f64>,
+    /// Speed of beads along gaps that no line of skin reaches; unset means that of the skin.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s"))]
+    pub gap: Option<f64>,
     /// Speed of walls that hang over nothing with their whole width. From half the width on they
     /// slow down towards it; 0 prints them as any wall.
     #[schemars(range(min = 0, max = 999), extend("unit" = "mm/s", "default" = 15))]

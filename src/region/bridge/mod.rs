@@ -220,6 +220,7 @@ fn lay(
         beads: Vec::new(),
         room_beads: Vec::new(),
         bridges: true,
+        top: false,
     }
 }
 
