@@ -8,7 +8,7 @@
 //! 2. The island nearest to the nozzle is next. Its walls come first, then skin, then infill; the
 //!    next path is always the one with the nearest end. Helpers come after all islands.
 //! 3. Walls are sorted by depth, from outside or from inside as the settings say. Their seams are at
-//!    the vertex nearest to the nozzle, at the rear, or where [`seam`] put them.
+//!    the vertex nearest to the nozzle, at the rear, or where `seam` put them.
 //! 4. With seams in a line, the next layer begins near where this one began. So the last paths are
 //!    also sorted backwards from there, and the shorter order wins.
 //!

@@ -343,7 +343,7 @@ fn skin_that_one_layer_leaves_to_another_is_printed_there() {
     for (height, first) in [("0.2", "0.2"), ("0.15", "0.2"), ("0.1", "0.2")] {
         let heights = [("layer_height", height), ("first_layer_height", first)];
         let filament = |parts: &str| {
-            let dual = [("dual.mode", "pair"), ("dual.parts", parts)];
+            let dual = [("dual.mode", "pair"), ("dual.parts", parts), ("skin_layers", "3")];
             let set: Vec<_> = heights.into_iter().chain(dual).collect();
             slice(&comb(), "generic-marlin", &set).report.filament.length_mm
         };
@@ -409,9 +409,11 @@ fn filament(run: &Run, kind: Kind) -> f64 {
 #[test]
 fn inner_skins_are_printed_for_the_group_and_visible_skins_are_not() {
     let parts = ("dual.parts", "inner-skin");
-    let plain = slice(&fixture("cube_20.stl"), "generic-marlin", &[]);
+    let skins = ("skin_layers", "3");
+    let plain = slice(&fixture("cube_20.stl"), "generic-marlin", &[skins]);
     for mode in MODES {
-        let run = slice(&fixture("cube_20.stl"), "generic-marlin", &[("dual.mode", mode), parts]);
+        let set = [("dual.mode", mode), parts, skins];
+        let run = slice(&fixture("cube_20.stl"), "generic-marlin", &set);
         assert_eq!(
             heights(&run, Kind::Skin).into_iter().collect::<Vec<_>>(),
             [(0, 1), (2, 2), (98, 2), (99, 1)],
