@@ -14,6 +14,7 @@
 //!
 //! Both ways give the same contours in the same order, from the same first vertex. Tests compare them.
 
+use super::nest::{extent, meet};
 use super::parallel::{parallel, parallel_and_lost};
 use super::simple::windings;
 use super::{Contour, Point, double_area, side};
@@ -79,6 +80,89 @@ pub fn difference(contours: &[Contour], others: &[Contour], tolerance: Coord) ->
     let (contours, others) = (to_library(contours), to_library(others));
     let left = difference_64(&contours, &others, FillRule::NonZero);
     from_library(&clipper2_rust::simplify_paths(&left, f64::from(tolerance), true))
+}
+
+/// The stretches of `loops` that lie outside of `areas` (as from [`union`], or overlapping): open
+/// polylines, in the order of the library. A loop that is cut nowhere is not among them: see
+/// [`Cut::whole`].
+#[must_use]
+pub fn cut(loops: Vec<Contour>, areas: &[Contour]) -> Cut {
+    let mut cut = Cut::default();
+    let (areas, boxes) = (to_library(areas), areas.iter().filter_map(extent).collect::<Vec<_>>());
+    for one in loops {
+        let near = extent(&one).is_some_and(|own| boxes.iter().any(|other| meet(own, *other)));
+        if !near {
+            cut.whole.push(one);
+            continue;
+        }
+        let mut closed = path(&one);
+        closed.extend(closed.first().copied());
+        let mut clipper = Clipper64::new();
+        clipper.add_open_subject(&vec![closed.clone()]);
+        clipper.add_clip(&areas);
+        let (mut none, mut left) = (Paths64::new(), Paths64::new());
+        clipper.execute(ClipType::Difference, FillRule::NonZero, &mut none, Some(&mut left));
+        let pieces: Vec<Vec<Point>> =
+            left.iter().map(|path| path.iter().map(point).collect()).collect();
+        match &pieces[..] {
+            [all] if all.first() == all.last() && all.len() >= closed.len() => cut.whole.push(one),
+            _ => cut.pieces.extend(joined(pieces, one[0])),
+        }
+    }
+    cut
+}
+
+/// What is left of loops.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Cut {
+    /// Loops that lie outside as a whole.
+    pub whole: Vec<Contour>,
+    /// Stretches of the others.
+    pub pieces: Vec<Vec<Point>>,
+}
+
+/// Joins the piece that ends where its loop was opened with the one that begins there.
+fn joined(mut pieces: Vec<Vec<Point>>, at: Point) -> Vec<Vec<Point>> {
+    let ends = |piece: &Vec<Point>| piece.last() == Some(&at);
+    let begins = |piece: &Vec<Point>| piece.first() == Some(&at);
+    // The library may turn open paths round.
+    for piece in &mut pieces {
+        if piece.len() > 1 && (begins(piece) && ends(piece)) {
+            return pieces;
+        }
+    }
+    let touching: Vec<usize> =
+        (0..pieces.len()).filter(|&k| begins(&pieces[k]) || ends(&pieces[k])).collect();
+    let [a, b] = touching[..] else { return pieces };
+    let mut second = pieces.remove(b);
+    let first = &mut pieces[a];
+    if !ends(first) {
+        first.reverse();
+    }
+    if !begins(&second) {
+        second.reverse();
+    }
+    first.extend(second.into_iter().skip(1));
+    pieces
+}
+
+/// What beads along `lines` cover that are `width` wide, with gaps up to `closed` filled in.
+#[must_use]
+pub fn covered<'a>(
+    lines: impl Iterator<Item = &'a [Point]>,
+    width: Coord,
+    closed: Coord,
+) -> Vec<Contour> {
+    let paths: Paths64 = lines.map(path).collect();
+    let grown = |width: Coord| {
+        let (join, end) = (JoinType::Square, EndType::Square);
+        let reach = f64::from(width) / 2.0;
+        from_library(&inflate_paths_64(&paths, reach, join, end, MITER_LIMIT, 0.0))
+    };
+    // What is shrunk again loses the round corners of the beads: they are added once more.
+    let mut all = inset(&union(&grown(width + closed)), (closed / 2).max(1));
+    all.extend(grown(width));
+    union(&all)
 }
 
 fn offset(contours: &[Contour], distance: f64) -> Vec<Contour> {
@@ -167,14 +251,14 @@ fn clean(curves: &Paths64) -> Paths64 {
 }
 
 fn to_library(contours: &[Contour]) -> Paths64 {
-    contours.iter().map(path).collect()
+    contours.iter().map(|contour| path(contour)).collect()
 }
 
 fn from_library(paths: &Paths64) -> Vec<Contour> {
     paths.iter().map(|path| path.iter().map(point).collect()).filter(is_shape).collect()
 }
 
-fn path(contour: &Contour) -> Path64 {
+fn path(contour: &[Point]) -> Path64 {
     contour.iter().map(|p| Point64::new(i64::from(p.x), i64::from(p.y))).collect()
 }
 
