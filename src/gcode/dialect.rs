@@ -36,6 +36,21 @@ impl Dialect {
         }
     }
 
+    /// The command that sets the nozzle to `celsius`, without a wait.
+    #[must_use]
+    pub fn nozzle(self, celsius: f64, tool: u32) -> String {
+        match self.name {
+            DialectName::Makerbot => format!("M104 S{celsius} T{tool}"),
+            DialectName::Marlin | DialectName::Klipper => format!("M104 S{celsius}"),
+        }
+    }
+
+    /// The command that sets the bed to `celsius`, without a wait.
+    #[must_use]
+    pub fn bed(self, celsius: f64) -> String {
+        format!("M140 S{celsius}")
+    }
+
     /// The command that reports `percent` of the print as done and how many minutes are left.
     /// Its length does not depend on the numbers, so that it can be filled in later.
     #[must_use]

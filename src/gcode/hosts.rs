@@ -75,6 +75,8 @@ pub(super) fn tail(layers: usize, sums: &Sums, settings: &Settings) -> String {
     let kind = material(&filament.name);
     let kind = kind.map_or_else(String::new, |kind| format!("; filament_type = {kind}\n"));
     let (nozzle, bed) = (filament.temperature, filament.bed_temperature);
+    let (first_nozzle, first_bed) =
+        (settings.first_temperature(), settings.first_bed_temperature());
     format!(
         "\n; filament used [mm] = {mm:.2}\n; filament used [cm3] = {cm3:.2}\n\
          ; filament used [g] = {grams:.2}\n{cost}; total filament used [g] = {grams:.2}\n\
@@ -82,8 +84,8 @@ pub(super) fn tail(layers: usize, sums: &Sums, settings: &Settings) -> String {
          ; estimated printing time (normal mode) = {time}\n\n\
          ; printer_model = {}\n; nozzle_diameter = {}\n\
          {kind}; filament_settings_id = \"{}\"\n; single_extruder_multi_material = 0\n\
-         ; first_layer_temperature = {nozzle}\n; temperature = {nozzle}\n\
-         ; first_layer_bed_temperature = {bed}\n; bed_temperature = {bed}\n\n",
+         ; first_layer_temperature = {first_nozzle}\n; temperature = {nozzle}\n\
+         ; first_layer_bed_temperature = {first_bed}\n; bed_temperature = {bed}\n\n",
         machine.name,
         machine.nozzle_diameter,
         filament.name.replace('"', "\\\""),

@@ -106,8 +106,11 @@ impl<'a> Writer<'a> {
             end: String::new(),
         };
         // Both blocks at once: one that cannot be filled in is refused before anything is written.
-        writer.end = writer.block("machine.end_gcode", &settings.machine.end_gcode)?;
-        let block = writer.block("machine.start_gcode", &settings.machine.start_gcode)?;
+        let values = template::values(settings, &facts);
+        writer.end = template::render("machine.end_gcode", &settings.machine.end_gcode, &values)?;
+        let values = template::start_values(settings, &facts);
+        let block =
+            template::render("machine.start_gcode", &settings.machine.start_gcode, &values)?;
         let e_mode = if settings.machine.relative_e { "M83" } else { "M82" };
         let head = hosts::head(facts.layers, thumbnails);
         let start = format!("{head};TYPE:Custom\n{block}{e_mode}\nG92 E0\n");
@@ -194,11 +197,5 @@ impl<'a> Writer<'a> {
             self.progress.layer(&layer, &schedule, &mut self.out)?;
         }
         Ok(())
-    }
-
-    /// A block of the profile with its placeholders replaced.
-    fn block(&self, name: &str, block: &str) -> Result<String> {
-        let values = template::values(self.settings, &self.facts);
-        Ok(template::render(name, block, &values)?)
     }
 }

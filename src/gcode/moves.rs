@@ -90,6 +90,17 @@ pub struct Moves {
     pub group_seconds: Option<f64>,
 }
 
+/// How the first layer differs from others.
+#[derive(Debug, Clone, Copy)]
+struct FirstLayer {
+    /// Factor on its feeds.
+    slow: f64,
+    /// Its highest feed, mm/min.
+    most: f64,
+    /// Factor on its filament.
+    flow: f64,
+}
+
 /// The settings from which moves are made.
 #[derive(Debug, Clone)]
 pub struct MoveParams {
@@ -99,8 +110,7 @@ pub struct MoveParams {
     rates: RoleTable<f64>,
     /// Requested feeds by role, mm/min.
     feeds: RoleTable<Both<f64>>,
-    /// Factor on the feeds of the first layer.
-    first_layer: f64,
+    first_layer: FirstLayer,
     /// Factor on the feeds of closed walls shorter than this, grid units.
     small_loop: (f64, f64),
     travel_feed: f64,
@@ -128,7 +138,11 @@ impl MoveParams {
                 let speed = (role.facts().speed)(s);
                 Both { thin: feed(speed.thin), thick: feed(speed.thick) }
             }),
-            first_layer: s.first_layer / 100.0,
+            first_layer: FirstLayer {
+                slow: s.first_layer / 100.0,
+                most: feed(s.first_layer_max),
+                flow: x.first_layer / 100.0,
+            },
             small_loop: (s.small_loop / 100.0, s.small_loop_length * UNITS_PER_MM),
             travel_feed: feed(s.travel),
             z_feed: feed(s.z),
@@ -139,9 +153,10 @@ impl MoveParams {
         }
     }
 
-    /// Filament for `length_mm` of a bead, mm.
-    fn filament(&self, bead: &Bead, length_mm: f64) -> f64 {
-        self.rates[bead.role] * length_mm * to_mm(bead.width) * to_mm(bead.height)
+    /// Filament for `length_mm` of a bead of a layer, mm.
+    fn filament(&self, bead: &Bead, length_mm: f64, layer: usize) -> f64 {
+        let all = self.rates[bead.role] * length_mm * to_mm(bead.width) * to_mm(bead.height);
+        if layer == 0 { all * self.first_layer.flow } else { all }
     }
 
     /// The feed asked for where nothing hangs, mm/min: small loops are slower.
@@ -161,11 +176,13 @@ impl MoveParams {
         factor * usual
     }
 
-    /// The feed asked for where a path hangs by `hang` % of its width, mm/min. From half to the
+    /// The feed asked for where a path of a layer hangs by `hang` % of its width, mm/min. From half to the
     /// whole width it falls from the `usual` one to that of overhangs.
-    fn asked(&self, usual: f64, hang: u8) -> f64 {
+    fn asked(&self, usual: f64, hang: u8, layer: usize) -> f64 {
         let share = (f64::from(hang) / 50.0 - 1.0).at_least(0.0);
-        usual - share * (usual - self.feeds[Role::Overhang].thin).at_least(0.0)
+        let asked = usual - share * (usual - self.feeds[Role::Overhang].thin).at_least(0.0);
+        let FirstLayer { slow, most, .. } = self.first_layer;
+        if layer == 0 { (asked * slow).at_most(most) } else { asked }
     }
 
     /// The moves of one layer.
@@ -286,7 +303,6 @@ impl<'a> Walk<'a> {
 
     fn path(&mut self, path: &Path) {
         let thick = path.is_thick();
-        let slow = if self.out.layer == 0 { self.params.first_layer } else { 1.0 };
         // No bead has a negative width, so that the first segment always computes its feed.
         let mut bead = Bead { role: path.role, thick, height: 0, width: -1 };
         let (mut feed, mut hang) = (0, 0);
@@ -296,7 +312,7 @@ impl<'a> Walk<'a> {
             if (to.width, to.height, to.hang) != (bead.width, bead.height, hang) {
                 (bead.width, bead.height, hang) = (to.width, to.height, to.hang);
                 bead.role = if hang > 0 { Role::Overhang } else { path.role };
-                feed = self.feed(&bead, self.params.asked(usual, hang) * slow);
+                feed = self.feed(&bead, self.params.asked(usual, hang, self.out.layer));
             }
             let length = length(from, to) / UNITS_PER_MM;
             self.out.moves.push(Move {
@@ -304,7 +320,7 @@ impl<'a> Walk<'a> {
                 z: self.out.z + to.z,
                 feed,
                 length,
-                filament: self.params.filament(&bead, length),
+                filament: self.params.filament(&bead, length, self.out.layer),
                 kind: Kind::Extrude(bead),
             });
             self.highest = self.highest.max(self.out.z + to.z);
@@ -317,7 +333,8 @@ impl<'a> Walk<'a> {
 
     /// The feed of a bead, clamped to the flow limit, mm/min.
     fn feed(&mut self, bead: &Bead, asked: f64) -> u32 {
-        let (given, flow) = self.params.limit.feed(self.params.filament(bead, 1.0), asked);
+        let filament = self.params.filament(bead, 1.0, self.out.layer);
+        let (given, flow) = self.params.limit.feed(filament, asked);
         let feeds = Lowered { asked: whole_feed(asked), given };
         self.out.flows.note(bead.role, bead.thick, flow, feeds);
         given

@@ -43,6 +43,8 @@ pub struct WriteParams {
     relative_e: bool,
     fan: FanParams,
     tool: u32,
+    /// The commands for temperatures that the second layer has and the first has not.
+    after_first: Vec<String>,
 }
 
 /// What is in force when a layer begins.
@@ -63,6 +65,7 @@ impl WriteParams {
             relative_e: settings.machine.relative_e,
             fan: FanParams::new(settings),
             tool: settings.machine.tool,
+            after_first: after_first(settings),
         }
     }
 
@@ -159,6 +162,10 @@ impl<'a> Text<'a> {
     fn begin(&mut self, layer: &Moves, Fan { before, usual }: Fan) {
         self.fan = usual.map(|usual| (before.unwrap_or(0.0), usual));
         self.blow(None);
+        if layer.layer == 1 {
+            let params = self.params;
+            params.after_first.iter().for_each(|words| self.line(words));
+        }
         self.restart_e();
         self.at = layer.from;
     }
@@ -292,6 +299,17 @@ impl<'a> Text<'a> {
         // Writing to a vector cannot fail.
         let _ = writeln!(self.out, "{text}");
     }
+}
+
+/// The commands for what is hotter or colder after the first layer.
+fn after_first(settings: &Settings) -> Vec<String> {
+    let (filament, dialect) = (&settings.filament, Dialect::new(settings.machine.dialect));
+    let differs = |first: f64, other: f64| (first - other).abs() > f64::EPSILON;
+    let nozzle = differs(settings.first_temperature(), filament.temperature)
+        .then(|| dialect.nozzle(filament.temperature, settings.machine.tool));
+    let bed = differs(settings.first_bed_temperature(), filament.bed_temperature)
+        .then(|| dialect.bed(filament.bed_temperature));
+    nozzle.into_iter().chain(bed).collect()
 }
 
 /// mm of filament in 10⁻⁵ mm.

@@ -109,7 +109,7 @@ fn blocks(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
             no_host_codes(key, &text).map_err(|conflict| blame.error(&[key], conflict))?;
         }
     }
-    let celsius = settings.filament.bed_temperature;
+    let celsius = settings.first_bed_temperature();
     if celsius > 0.0 && !machine.start_gcode.contains("{bed_temperature}") {
         let keys = ["filament.bed_temperature", "machine.start_gcode"];
         return Err(blame.error(&keys, Conflict::BedStaysCold { celsius }));

@@ -47,6 +47,22 @@ pub enum SeamInner {
     Staggered,
 }
 
+/// See [`Brim::place`](super::Brim::place).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum BrimPlace {
+    /// Outside, of what would come loose without.
+    Auto,
+    /// No brim.
+    Off,
+    /// Around parts.
+    Outside,
+    /// In their holes.
+    Inside,
+    /// Around them and in their holes.
+    Both,
+}
+
 /// Pattern of the sparse infill.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -1,6 +1,6 @@
 //! Settings -> what follows from them together: sizes and counts that no single key holds.
 
-use super::{DualRatio, ExtrusionModel, Settings};
+use super::{BrimPlace, DualRatio, ExtrusionModel, Settings};
 use std::f64::consts::PI;
 
 /// Slack for comparing lengths that were written as decimals, mm.
@@ -26,6 +26,28 @@ impl Settings {
     #[must_use]
     pub fn bottom_skins(&self) -> u32 {
         self.bottom_layers.unwrap_or(self.skin_layers)
+    }
+
+    /// Temperature of the nozzle on the first layer, °C.
+    #[must_use]
+    pub fn first_temperature(&self) -> f64 {
+        self.filament.first_layer_temperature.unwrap_or(self.filament.temperature)
+    }
+
+    /// Temperature of the bed on the first layer, °C.
+    #[must_use]
+    pub fn first_bed_temperature(&self) -> f64 {
+        self.filament.first_layer_bed_temperature.unwrap_or(self.filament.bed_temperature)
+    }
+
+    /// How far a brim that is asked for reaches beyond its part, mm; 0 where none is printed, or only
+    /// where it is needed.
+    #[must_use]
+    pub fn brim_reach(&self) -> f64 {
+        match self.brim.place {
+            BrimPlace::Outside | BrimPlace::Both => self.brim.gap + self.brim.width,
+            BrimPlace::Auto | BrimPlace::Off | BrimPlace::Inside => 0.0,
+        }
     }
 
     /// Print speeds that are so slow, in mm/s, that they are hardly meant: key and value.

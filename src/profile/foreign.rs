@@ -64,6 +64,19 @@ const KEYS: &[(&str, &[&str])] = &[
     ("support.xy_distance", &["support_material_xy_spacing", "support_object_xy_distance", "support_xy_distance"]),
     ("support.z_distance", &["support_material_contact_distance", "support_top_z_distance", "support_bottom_z_distance", "support_z_distance", "support_top_distance"]),
     ("support.stands_on", &["support_material_buildplate_only", "support_on_build_plate_only", "support_type"]),
+    ("skirt.loops", &["skirts", "skirt_loops", "skirt_line_count"]),
+    ("skirt.distance", &["skirt_distance", "skirt_gap"]),
+    ("skirt.min_length", &["min_skirt_length", "skirt_brim_minimal_length"]),
+    ("skirt.layers", &["skirt_height"]),
+    ("brim.where", &["brim_type", "adhesion_type", "brim_location", "brim_outside_only"]),
+    ("brim.width", &["brim_width", "brim_line_count"]),
+    ("brim.gap", &["brim_object_gap", "brim_separation", "brim_gap"]),
+    ("xy_compensation", &["xy_size_compensation", "xy_contour_compensation", "xy_offset"]),
+    ("hole_compensation", &["xy_hole_compensation", "hole_xy_offset"]),
+    ("elephant_foot", &["elefant_foot_compensation", "xy_offset_layer_0"]),
+    ("extrusion.first_layer", &["first_layer_flow_ratio", "initial_layer_flow_ratio", "material_flow_layer_0"]),
+    ("filament.first_layer_temperature", &["first_layer_temperature", "nozzle_temperature_initial_layer", "material_print_temperature_layer_0"]),
+    ("filament.first_layer_bed_temperature", &["first_layer_bed_temperature", "hot_plate_temp_initial_layer", "bed_temperature_initial_layer", "material_bed_temperature_layer_0"]),
     ("speed.wall", &["perimeter_speed", "speed_wall", "print_speed", "speed_print"]),
     ("speed.outer_wall", &["external_perimeter_speed", "outer_wall_speed", "speed_wall_0"]),
     ("speed.inner_wall", &["inner_wall_speed", "speed_wall_x"]),
@@ -91,8 +104,8 @@ const KEYS: &[(&str, &[&str])] = &[
     ("filament.name", &["filament_type", "filament_settings_id", "material_name"]),
     ("filament.diameter", &["filament_diameter", "material_diameter"]),
     ("filament.density", &["filament_density", "material_density"]),
-    ("filament.temperature", &["temperature", "first_layer_temperature", "nozzle_temperature", "nozzle_temperature_initial_layer", "material_print_temperature"]),
-    ("filament.bed_temperature", &["bed_temperature", "first_layer_bed_temperature", "hot_plate_temp", "material_bed_temperature"]),
+    ("filament.temperature", &["temperature", "nozzle_temperature", "material_print_temperature"]),
+    ("filament.bed_temperature", &["bed_temperature", "hot_plate_temp", "material_bed_temperature"]),
     ("filament.fan", &["max_fan_speed", "fan_max_speed", "fan_speed", "fan_always_on", "cool_fan_speed", "cool_fan_speed_max", "cool_fan_enabled", "cooling"]),
     ("filament.fan_from_layer", &["disable_fan_first_layers", "close_fan_the_first_x_layers"]),
     ("filament.cost", &["filament_cost", "material_cost"]),
@@ -138,8 +151,7 @@ const KEYS: &[(&str, &[&str])] = &[
 /// What we cannot do, and what others call its settings.
 #[rustfmt::skip]
 const NOT_SUPPORTED: &[(&str, &[&str])] = &[
-    ("a brim", &["brim", "brim_width", "brim_type", "brim_object_gap", "brim_separation", "brim_line_count", "brim_ears", "adhesion_type"]),
-    ("a skirt", &["skirt", "skirts", "skirt_loops", "skirt_distance", "skirt_height", "skirt_line_count", "skirt_gap", "min_skirt_length"]),
+    ("brims at corners alone", &["brim_ears", "brim_ears_max_angle", "brim_smart_ordering"]),
     ("a raft", &["raft", "raft_layers", "raft_margin", "raft_airgap", "raft_first_layer_density"]),
     ("ironing", &["ironing", "ironing_type", "ironing_enabled"]),
     ("a spiral vase", &["spiral_vase", "spiral_mode", "magic_spiralize"]),
@@ -154,7 +166,6 @@ const NOT_SUPPORTED: &[(&str, &[&str])] = &[
     ("an acceleration for each kind of line", &["perimeter_acceleration", "external_perimeter_acceleration", "infill_acceleration", "first_layer_acceleration", "outer_wall_acceleration", "inner_wall_acceleration", "acceleration_wall", "acceleration_infill"]),
     ("a wipe tower", &["wipe_tower", "prime_tower_enable", "enable_prime_tower"]),
     ("printing with several tools", &["infill_extruder", "perimeter_extruder", "solid_infill_extruder", "support_material_extruder", "extruder_nr", "wall_extruder_nr"]),
-    ("compensation of sizes", &["elefant_foot_compensation", "xy_size_compensation", "xy_hole_compensation", "xy_contour_compensation", "xy_offset", "xy_offset_layer_0"]),
     ("an interface below the part", &["support_material_interface_layers", "support_interface_top_layers", "support_interface_enable"]),
     ("tree support", &["support_structure", "support_material_style", "support_tree_angle"]),
     ("pressure advance", &["pressure_advance", "enable_pressure_advance"]),
@@ -190,7 +201,7 @@ mod tests {
         for name in ["perimeters", "wall-loops", "Wall_Line_Count", "machine.perimeters"] {
             assert_eq!(meaning(name), Some(Foreign::Key("walls")), "{name}");
         }
-        assert_eq!(meaning("brim-width"), Some(Foreign::NotSupported("a brim")));
+        assert_eq!(meaning("brim-width"), Some(Foreign::Key("brim.width")));
         assert_eq!(meaning("wals"), None);
     }
 }

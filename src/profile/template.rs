@@ -50,6 +50,22 @@ pub fn values(settings: &Settings, print: &PrintFacts) -> Vec<(&'static str, Str
     ]
 }
 
+/// As [`values`], for the block before the first layer: its temperatures are that layer's.
+#[must_use]
+pub fn start_values(settings: &Settings, print: &PrintFacts) -> Vec<(&'static str, String)> {
+    let first = [
+        ("temperature", settings.first_temperature()),
+        ("bed_temperature", settings.first_bed_temperature()),
+    ];
+    let mut values = values(settings, print);
+    for (name, value) in &mut values {
+        if let Some((_, celsius)) = first.iter().find(|(known, _)| known == name) {
+            *value = number(*celsius);
+        }
+    }
+    values
+}
+
 /// Fills `block` in: `{name}` becomes its value, `{{` and `}}` become braces.
 /// `name` is the block's key, for messages. Lines end with a newline alone, the
 /// last one too.

@@ -14,6 +14,9 @@ pub struct Extrusion {
     /// Factor on every amount of filament.
     #[schemars(range(min = 0.05, max = 5), extend("unit" = "times", "default" = 1))]
     pub multiplier: f64,
+    /// Plastic on the first layer; 100 is as much as on others.
+    #[schemars(range(min = 20, max = 200), extend("unit" = "%", "default" = 100))]
+    pub first_layer: f64,
     /// Layer height at which the factors hold; other heights scale them.
     #[schemars(range(min = 0.02, max = 2), extend("unit" = "mm", "default" = 0.2))]
     pub factor_height: f64,

@@ -23,6 +23,12 @@ pub struct Filament {
     /// Temperature of the bed; 0 leaves it cold.
     #[schemars(range(min = 0, max = 200), extend("unit" = "°C", "default" = 0))]
     pub bed_temperature: f64,
+    /// Temperature of the nozzle on the first layer; unset means temperature.
+    #[schemars(range(min = 0, max = 500), extend("unit" = "°C"))]
+    pub first_layer_temperature: Option<f64>,
+    /// Temperature of the bed on the first layer; unset means bed_temperature.
+    #[schemars(range(min = 0, max = 200), extend("unit" = "°C"))]
+    pub first_layer_bed_temperature: Option<f64>,
     /// Power of the part cooling fan; at most, where cooling.min_fan lowers it.
     #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 100))]
     pub fan: f64,

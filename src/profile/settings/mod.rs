@@ -22,6 +22,7 @@
 //!   but has that key.
 //! - **choices**: keys that hold a word are enums, in [`super::choices`].
 
+mod adhesion;
 mod cooling;
 mod dual;
 mod extrusion;
@@ -33,6 +34,7 @@ mod support;
 mod travel;
 
 use super::choices::{Angle, Floating, Pattern, Seam, SeamInner, WallOrder};
+pub use adhesion::{Brim, Skirt};
 pub use cooling::Cooling;
 pub use dual::Dual;
 pub use extrusion::Extrusion;
@@ -70,6 +72,17 @@ pub struct Settings {
     /// How far a simplified contour may lie from the model's.
     #[schemars(range(min = 0, max = 0.5), extend("unit" = "mm", "default" = 0.01))]
     pub tolerance: f64,
+
+    /// How far outlines are moved outwards, inwards if negative; holes stay.
+    #[schemars(range(min = -2, max = 2), extend("unit" = "mm", "default" = 0))]
+    pub xy_compensation: f64,
+    /// How far holes are widened, narrowed if negative.
+    #[schemars(range(min = -2, max = 2), extend("unit" = "mm", "default" = 0))]
+    pub hole_compensation: f64,
+    /// How far the first layer is drawn in, since it is pressed wide; layers above it by as much less
+    /// as they lie higher.
+    #[schemars(range(min = 0, max = 2), extend("unit" = "mm", "default" = 0))]
+    pub elephant_foot: f64,
 
     /// Number of walls.
     #[schemars(range(min = 0, max = 100), extend("unit" = "walls", "default" = 2))]
@@ -166,6 +179,10 @@ pub struct Settings {
     pub support: Support,
     /// Skin that spans places where nothing is printed below.
     pub bridge: Bridge,
+    /// Loops around everything.
+    pub skirt: Skirt,
+    /// Lines beside the first layer.
+    pub brim: Brim,
     /// How fast the nozzle moves.
     pub speed: Speed,
     /// How much filament a line takes.

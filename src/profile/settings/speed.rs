@@ -55,6 +55,9 @@ pub struct Speed {
     #[schemars(range(min = 0.1, max = 100), extend("unit" = "mm/s", "default" = 10))]
     pub z: f64,
     /// Speed on the first layer, of the speeds above but for travel and z.
-    #[schemars(range(min = 1, max = 200), extend("unit" = "%", "default" = 100))]
+    #[schemars(range(min = 1, max = 200), extend("unit" = "%", "default" = 50))]
     pub first_layer: f64,
+    /// Highest speed on the first layer, but for travel and z.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 50))]
+    pub first_layer_max: f64,
 }
