@@ -135,6 +135,20 @@ pub enum Refusal {
         /// Place in the machine's coordinates, mm.
         at_mm: [f64; 2],
     },
+    /// Skirt or brim reach beyond the bed.
+    #[error(
+        "the {what} would reach {} beyond the bed; use a smaller {what}, {}another place (--at) or a \
+         smaller --scale",
+        sides(*.over_mm),
+        if *.what == "brim" { "fewer --copies, " } else { "skirt.distance, " }
+    )]
+    BesideBed {
+        /// Which of them.
+        what: &'static str,
+        /// How far they reach beyond the left and right, then the front and back; 0 where they do
+        /// not.
+        over_mm: [[f64; 2]; 2],
+    },
     /// The print would begin in the air.
     #[error("{0}")]
     Hanging(Hanging),
@@ -207,6 +221,16 @@ pub enum Hanging {
         /// Support is asked for, but this setting keeps it away.
         kept_away: Option<&'static str>,
     },
+}
+
+/// Such as `2 mm at the left and 0.5 mm at the back`.
+fn sides(over_mm: [[f64; 2]; 2]) -> String {
+    let names = ["the left", "the right", "the front", "the back"];
+    let over = over_mm.into_iter().flatten().zip(names).filter(|(over, _)| *over > 0.0);
+    // Rounded up, so that moving by it is enough.
+    let side =
+        |(over, name): (f64, &str)| format!("{} mm at {name}", (over * 100.0).ceil() / 100.0);
+    over.map(side).collect::<Vec<_>>().join(" and ")
 }
 
 /// How what hangs may be carried, where this setting keeps support away.

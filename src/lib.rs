@@ -70,7 +70,7 @@ pub mod units;
 pub mod warning;
 
 pub use job::{Job, Model, NAME};
-pub use pipeline::place::{bed, place};
+pub use pipeline::place::{bed, place, spaced};
 pub use pipeline::spool::slice_to;
 
 use error::{Error, Refusal, Result};
@@ -79,6 +79,7 @@ use pipeline::footing::Footing;
 use pipeline::place::{bed_corners, print_facts};
 use pipeline::prime;
 use pipeline::refuse;
+use pipeline::sticking::Sticking;
 use pipeline::thumbnails::thumbnails;
 use units::to_units;
 
@@ -94,11 +95,12 @@ pub fn slice(
     progress: &progress::Progress,
 ) -> Result<report::Report> {
     let bed = bed(&job.settings.machine);
-    let placed = place(&job.models, &job.placement, &bed, progress)?;
+    let placement = spaced(&job.placement, &job.settings);
+    let placed = place(&job.models, &placement, &bed, progress)?;
     slice_placed(job, &placed, out, progress)
 }
 
-/// As [`slice()`], of the models as [`place`] gave them.
+/// As [`slice()`], of the models as [`place`] gave them, [`spaced`] as the settings need it.
 ///
 /// # Errors
 /// As [`slice()`].
@@ -114,7 +116,10 @@ pub fn slice_placed(
     let tolerance = to_units(job.settings.tolerance);
     let (settings, slicer) = rayon::join(
         || pipeline::settle(&job.settings, &placed.mesh),
-        || slice::Slicer::new(&placed.mesh, &placed.adjacency, heights.clone(), tolerance),
+        || {
+            slice::Slicer::new(&placed.mesh, &placed.adjacency, heights.clone(), tolerance)
+                .moved(pipeline::compensation(&job.settings))
+        },
     );
     refuse::gaps(job, placed, &slicer, progress)?;
 
@@ -123,12 +128,14 @@ pub fn slice_placed(
     let setup = Setup::new(&settings, &heights);
     let corners = bed_corners(&bed(&settings.machine), placed.offset);
     let footing = Footing::new(&settings, placed.offset);
-    let mut planner = setup.planner(&slicer, corners, footing);
+    let sticking = Sticking::new(&settings, placed, &heights, corners);
+    let mut planner = setup.planner(&slicer, corners, footing, sticking);
     let (pictures, planned) = rayon::join(|| thumbnails(&settings, placed), || planner.ahead());
 
     // Toolpaths -> text, one batch while the next is planned.
     let pictures = pictures.map_err(Error::Thumbnails)?;
-    let facts = print_facts(placed, &heights);
+    let stuck = planner.stuck()?;
+    let facts = print_facts(placed, &heights, stuck.extent);
     let first = planned.front().and_then(|batch| batch.first());
     prime::refuse(&settings, &facts, placed.offset, first)?;
     let mut writer = gcode::Writer::new(out, &settings, facts, placed.offset, &pictures)?;
@@ -140,5 +147,7 @@ pub fn slice_placed(
 
     let mut report = report::make::report(job, placed, &heights, &sums, &audits, &tally);
     report.warnings.extend(hangs);
+    report.warnings.extend(stuck.warning);
+    report.brim = stuck.brim;
     Ok(report)
 }

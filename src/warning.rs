@@ -60,6 +60,13 @@ pub enum Warning {
         /// Whether support is asked for.
         supported: bool,
     },
+    /// Islands that need a brim, for which the bed has no room.
+    BrimLeftOut {
+        /// How many.
+        islands: usize,
+        /// How many islands the first layer has.
+        of: usize,
+    },
     /// Bytes after the last triangle of a binary STL.
     TrailingBytes {
         /// The model's file.
@@ -135,6 +142,7 @@ impl fmt::Display for Warning {
                  {}turn the part with --rotate",
                 if *supported { "" } else { "use --support, or " }
             ),
+            Self::BrimLeftOut { islands, of } => f.write_str(&left_out(*islands, *of)),
             Self::TrailingBytes { file, count } => {
                 write!(f, "{file}: ignored {} after the last triangle", plural(*count, "byte"))
             }
@@ -156,6 +164,15 @@ impl fmt::Display for Warning {
             ),
         }
     }
+}
+
+/// That a brim was left out.
+fn left_out(islands: usize, of: usize) -> String {
+    format!(
+        "{islands} of {} on the bed may come loose, but a brim would reach beyond the bed: none is \
+         printed there; use another place (--at), a smaller brim.width or fewer copies",
+        plural(of as u64, "island")
+    )
 }
 
 /// How what hangs may be carried, where this setting keeps support away.

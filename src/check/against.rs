@@ -119,10 +119,14 @@ impl Judge<'_> {
         let (printed, closed) = (own.or(&reaching), solid.or(&reaching));
         let printable = cut.opened(lattice, self.line_width * PRINTABLE / 2.0);
         let along = cut.along(lattice, RIM);
+        let moved = self.terms.moved_at(self.print.layers[index].z - self.heights[index]);
 
         let mut verdict = Verdict::default();
         let rim = here.and(&along).and(&printable);
         let open = rim.minus(&printed);
+        let beside =
+            |open: Rows| if moved > 0.0 { open.minus(&cut.along(lattice, moved)) } else { open };
+        let open = beside(open);
         verdict.areas.rim = self.shares(&rim, &open);
         let patches = self.patches(&open, index, Code::OpenOutline, |area| {
             format!("{area} mm² along the outline are not printed")
@@ -131,7 +135,7 @@ impl Judge<'_> {
 
         let bare = here.minus(&above.inside).or(&here.minus(&below.inside));
         let exposed = bare.and(&printable);
-        let open = exposed.minus(&closed);
+        let open = beside(exposed.minus(&closed));
         verdict.areas.surface = self.shares(&exposed, &open);
         // What the outline lacks is reported already.
         let open = open.minus(&rim);
@@ -141,7 +145,8 @@ impl Judge<'_> {
         verdict.findings.extend(patches);
 
         if self.has_roles {
-            let near = if RIM == MOST_OUT { along } else { cut.along(lattice, MOST_OUT) };
+            let most = MOST_OUT + moved;
+            let near = if RIM == most { along } else { cut.along(lattice, most) };
             let out = own.minus(&here.or(&near));
             let patches = self.patches(&out, index, Code::OutsidePart, |area| {
                 format!("{area} mm² are printed beside the part")

@@ -82,7 +82,7 @@ pub(super) fn loose(pile: &Pile, chain: &[Step], pieces: &[Piece]) -> Vec<Loose>
         let ends = [first > 0, end < pieces.len()];
         let judge = Judge { pile, chain };
         match chain[run[0].step].role {
-            Role::Support => {}
+            Role::Support | Role::Adhesion => {}
             Role::OuterWall | Role::InnerWall => {
                 // A loop may begin in the air.
                 let closes = is_closed(chain) && ends != [false; 2];

@@ -207,7 +207,7 @@ impl Judge<'_> {
     fn patch(&mut self, lines: &[&Line], pile: &Pile) -> usize {
         let length = lines.iter().map(|line| line.length).sum();
         let carriers = || lines.iter().flat_map(|line| line.carriers.iter().copied());
-        let is_part = lines.iter().any(|line| line.first.role != Role::Support);
+        let is_part = lines.iter().any(|line| !is_beside(line.first.role));
         let body = self.bodies.add((length, is_part), carriers());
         for line in lines {
             self.measured.longest_bridge = self.measured.longest_bridge.max(line.longest_bridge);
@@ -269,4 +269,9 @@ impl Judge<'_> {
 
 fn length_of(samples: &[Sample]) -> f64 {
     samples.iter().map(|sample| sample.length).sum()
+}
+
+/// Whether lines of this role are printed beside the part, which does not stand by them.
+fn is_beside(role: Role) -> bool {
+    matches!(role, Role::Support | Role::Adhesion)
 }

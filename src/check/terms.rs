@@ -19,6 +19,8 @@ pub struct Terms {
     pub flow: [f64; 3],
     /// Diameter of the nozzle, mm, if it is known.
     pub nozzle: Option<f64>,
+    /// How far the file's own settings move contours: outlines, holes, the first layer; mm.
+    pub moved: [f64; 3],
     /// Density of the sparse infill asked for, as a part of 1, if it is known.
     pub infill: Option<f64>,
 }
@@ -66,9 +68,18 @@ impl Terms {
             filament_area: PI * diameter * diameter / 4.0,
             is_own: own.is_some(),
             flow: own.map_or([1.0; 3], flow),
+            moved: own.map_or([0.0; 3], |own| {
+                [own.xy_compensation.abs(), own.hole_compensation.abs(), own.elephant_foot]
+            }),
             nozzle: own.map(of).or_else(nozzle).or_else(|| settings.map(of)),
             infill: by_file(),
         }
+    }
+
+    /// How far the outline of a layer that begins at this height may lie from the model's, mm.
+    pub(super) fn moved_at(&self, bottom: f64) -> f64 {
+        let [outline, hole, foot] = self.moved;
+        outline.max(hole) + (foot - bottom).max(0.0)
     }
 
     /// Width of a box of a line's height and plastic, mm, whatever the file says.

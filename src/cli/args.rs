@@ -2,9 +2,10 @@
 
 use super::preview::PreviewArgs;
 use super::profiles::{ProfileArgs, ShelfArgs};
-use super::words::{UNITS, factor, numbers, parts, sunk, triangles, unit, words};
+use super::words::{UNITS, brim, factor, numbers, parts, sunk, triangles, unit, words};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+use slicer::mesh::place::GAP_MM;
 use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
 use slicer::mesh::{Placement, Policy};
 use slicer::profile::{Override, ValueOrigin};
@@ -288,6 +289,12 @@ pub(crate) struct SettingArgs {
     /// Print layers that would take less time than this more slowly, s; 0 for none
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     min_layer_time: Option<String>,
+    /// Print a brim of this width around the parts, mm; 0 prints none
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    brim: Option<String>,
+    /// Print so many loops around everything
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    skirt: Option<String>,
     /// Temperature of the nozzle, °C
     #[arg(long, value_name = "CELSIUS", allow_negative_numbers = true)]
     temperature: Option<String>,
@@ -327,6 +334,7 @@ impl PlaceArgs {
     /// As the mesh stage takes it.
     pub(crate) fn placement(&self) -> Placement {
         Placement {
+            gap: GAP_MM,
             unit: unit(&self.unit),
             scale: self.scale,
             rotate: self.rotate,
@@ -361,7 +369,7 @@ impl SettingArgs {
     }
 
     /// Each flag, the key it sets, and the value given.
-    fn all(&self) -> [(&'static str, &'static str, Option<String>); 17] {
+    fn all(&self) -> [(&'static str, &'static str, Option<String>); 20] {
         let switched = |on: bool, value: &str| on.then(|| value.to_owned());
         [
             ("--dual", "dual.mode", switched(self.dual, "pair")),
@@ -381,6 +389,9 @@ impl SettingArgs {
             ("--pattern", "pattern", self.pattern.clone()),
             ("--support", "support.enabled", switched(self.support, "true")),
             ("--min-layer-time", "cooling.min_layer_time", self.min_layer_time.clone()),
+            ("--brim", "brim.width", self.brim.clone()),
+            ("--brim", "brim.where", self.brim.as_deref().map(brim)),
+            ("--skirt", "skirt.loops", self.skirt.clone()),
             ("--temperature", "filament.temperature", self.temperature.clone()),
         ]
     }

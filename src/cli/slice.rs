@@ -153,7 +153,8 @@ fn slice_and_check(
 ) -> Result<Report> {
     let settings = &job.settings;
     let bed = slicer::bed(&settings.machine);
-    let placed = slicer::place(&job.models, &job.placement, &bed, progress)?;
+    let placement = slicer::spaced(&job.placement, settings);
+    let placed = slicer::place(&job.models, &placement, &bed, progress)?;
     let mut report =
         slicer::slice_placed(job, &placed, sink, progress).map_err(|e| named(e, out))?;
     if !check {

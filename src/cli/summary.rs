@@ -2,7 +2,7 @@
 
 use slicer::mesh::{MeshReport, faults};
 use slicer::profile::{Profile, dump};
-use slicer::report::{CoolingReport, Report};
+use slicer::report::{BrimReport, CoolingReport, Report};
 use std::time::Duration;
 
 /// For which printer, material and print, and every file that had a say in it.
@@ -79,13 +79,24 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// Mendings that leave no doubt, one line a model.
+/// Mendings that leave no doubt, one line a model; then a brim that nobody asked for.
 pub(crate) fn notes(report: &Report) -> String {
     let note = |model: &MeshReport| {
         let what = faults::tidied(&model.mended)?;
         Some(format!("note: {}: mended: {what}\n", model.file))
     };
-    report.models.iter().filter_map(note).collect()
+    report.models.iter().filter_map(note).chain(report.brim.as_ref().map(brim)).collect()
+}
+
+/// Where a brim was printed, and why.
+fn brim(brim: &BrimReport) -> String {
+    let BrimReport { width_mm, islands, of, why } = brim;
+    let places =
+        if of == islands { String::new() } else { format!(" around {islands} of {of} islands") };
+    format!(
+        "note: a brim of {width_mm} mm{places}, for {} (--brim 0 leaves it out)\n",
+        why.join(", ")
+    )
 }
 
 /// How the filament is shared out, such as ` (outer wall 30 %, skin 70 %)`.

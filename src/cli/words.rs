@@ -51,6 +51,12 @@ pub(super) fn parts(list: &str) -> String {
     if list.trim() == "all" { all() } else { list.to_owned() }
 }
 
+/// Where a brim of this width is: around the parts, or nowhere.
+pub(super) fn brim(width: &str) -> String {
+    let none = width.trim().parse::<f64>().is_ok_and(|width| width == 0.0);
+    if none { "off" } else { "outside" }.to_owned()
+}
+
 /// The words that a setting may have.
 pub(super) fn words(key: &str) -> impl Iterator<Item = &'static str> {
     let words = match keys::find(key).map(|key| &key.kind) {

@@ -9,6 +9,7 @@
 //! Guaranteed to the next stage: every path has at least one point; a loop repeats its first
 //! point; the middle of a bead stays inside its region.
 
+pub mod adhesion;
 pub mod gap_closing;
 mod monotonic;
 mod path;

@@ -34,6 +34,10 @@ pub enum Role {
     Support,
     /// Dense support next to the part.
     SupportInterface,
+    /// Loops around everything, which fill the nozzle.
+    Skirt,
+    /// Lines beside the first layer, which hold it.
+    Brim,
 }
 
 /// Where a role has its place in the order of a layer.
@@ -43,8 +47,18 @@ pub enum Place {
     Walls,
     /// Inside the walls of its island, role after role.
     Inside,
+    /// Not part of the model: before everything else of the layer, in the order given.
+    First,
     /// Not part of the model: after all islands of the layer.
     Helper,
+}
+
+impl Place {
+    /// Whether what is there is part of the model.
+    #[must_use]
+    pub fn is_of_part(self) -> bool {
+        matches!(self, Self::Walls | Self::Inside)
+    }
 }
 
 /// When a role is slowed down where a layer would take too little time.
@@ -83,7 +97,7 @@ pub struct RoleFacts {
 
 impl Role {
     /// All roles, in the order of reports and of what lies inside an island.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::OuterWall,
         Self::InnerWall,
         Self::Overhang,
@@ -94,6 +108,8 @@ impl Role {
         Self::TopSkin,
         Self::Support,
         Self::SupportInterface,
+        Self::Skirt,
+        Self::Brim,
     ];
 
     /// What is particular to it.
@@ -150,6 +166,14 @@ impl Role {
                 may_be_thick: false,
                 ..SUPPORT
             },
+            // As fast as walls: what holds a part on the bed is laid with care.
+            Self::Skirt => RoleFacts {
+                name: "skirt",
+                annotation: "Skirt/Brim",
+                place: Place::First,
+                ..Self::OuterWall.facts()
+            },
+            Self::Brim => RoleFacts { name: "brim", ..Self::Skirt.facts() },
         }
     }
 }

@@ -13,7 +13,6 @@
 //!   models; [`Error::is_usage`] tells these from the others.
 
 use super::faults::{Counted, Fault, place_text};
-use super::place::shelves::GAP_MM;
 use super::read::ReadError;
 
 /// The result of everything in this stage that can fail.
@@ -117,12 +116,14 @@ pub enum Error {
 
     /// The models do not fit the bed side by side.
     #[error(
-        "{models} models with gaps of {GAP_MM} mm do not fit the bed of {} mm; print fewer at once",
+        "{models} models with gaps of {gap_mm} mm do not fit the bed of {} mm; print fewer at once",
         sides(bed_mm)
     )]
     BedFull {
         /// Models, with their copies.
         models: usize,
+        /// The gaps between them, mm.
+        gap_mm: f64,
         /// Width and depth of the bed.
         bed_mm: [f64; 2],
     },

@@ -5,8 +5,9 @@
 
 use super::footing::Footing;
 use super::footprint::{Footprint, Rules, footprint};
-use crate::error::Result;
-use crate::fill::{self, FillParams};
+use super::sticking::{Sticking, Stuck};
+use crate::error::{Refusal, Result};
+use crate::fill::{self, FillParams, Path};
 use crate::gcode::Writer;
 use crate::geom::Point;
 use crate::plan::order::{self, Unordered};
@@ -66,6 +67,7 @@ impl Setup {
         slicer: &'a Slicer<'a>,
         bed: (Point, Point),
         footing: Footing,
+        sticking: Sticking<'a>,
     ) -> Planner<'a> {
         let supports = self
             .support
@@ -79,6 +81,7 @@ impl Setup {
             seams: Seams::default(),
             tally: Tally::default(),
             footing,
+            sticking,
         };
         Planner { window, regions: None, orderer }
     }
@@ -96,6 +99,14 @@ impl Planner<'_> {
     /// Plans the first batches.
     pub fn ahead(&mut self) -> VecDeque<Vec<Toolpath>> {
         self.by_ref().take(AHEAD).collect()
+    }
+
+    /// What was done so that the print sticks; known once the first batch is planned.
+    ///
+    /// # Errors
+    /// [`Refusal::BesideBed`].
+    pub fn stuck(&self) -> Result<Stuck, Refusal> {
+        self.orderer.sticking.stuck()
     }
 
     /// What dual injection did, what the layers add up to, and what they stand on.
@@ -129,16 +140,25 @@ struct Orderer<'a> {
     seams: Seams,
     tally: Tally,
     footing: Footing,
+    sticking: Sticking<'a>,
 }
 
 impl Orderer<'_> {
     fn toolpaths(&mut self, regions: &[Region]) -> Vec<Toolpath> {
         let (fill, plan, rules) = (self.fill, self.plan, self.rules);
-        let unordered = |region: &Region| {
+        let filled = |region: &Region| {
             let paths = fill::paths(region, fill);
-            (footprint(region, &paths, rules), Unordered::new(paths, &region.layer.contours))
+            (footprint(region, &paths, rules), paths)
         };
-        let unordered: Vec<(Footprint, Unordered)> = regions.par_iter().map(unordered).collect();
+        let mut filled: Vec<(Footprint, Vec<Path>)> = regions.par_iter().map(filled).collect();
+        for (region, (_, paths)) in regions.iter().zip(&mut filled) {
+            paths.extend(self.sticking.layer(&region.layer, paths));
+        }
+        let unordered = |(region, (footprint, paths)): (&Region, (Footprint, Vec<Path>))| {
+            (footprint, Unordered::new(paths, &region.layer.contours))
+        };
+        let unordered: Vec<(Footprint, Unordered)> =
+            regions.par_iter().zip(filled).map(unordered).collect();
         // The end of a layer decides where the next begins, so that they are ordered in sequence.
         let mut ordered = Vec::with_capacity(regions.len());
         for (region, (footprint, paths)) in regions.iter().zip(unordered) {

@@ -8,7 +8,7 @@
 //! Most islands are found to touch by a place near a corner. The contours are only subtracted from each
 //! other where no such place is in both.
 
-use crate::fill::{Path, Place};
+use crate::fill::Path;
 use crate::geom::{Contour, Point, double_area, edges, encloses, polygon};
 use crate::profile::{DualMode, Settings};
 use crate::region::Region;
@@ -80,7 +80,7 @@ pub fn footprint(region: &Region, paths: &[Path], rules: Rules) -> Footprint {
         Some(contours) => islands(&contours),
         None => islands(&region.layer.contours),
     };
-    for path in paths.iter().filter(|path| path.role.facts().place != Place::Helper) {
+    for path in paths.iter().filter(|path| path.role.facts().place.is_of_part()) {
         let at = path.start();
         let holds = |(_, island): &(usize, &Island)| islands.len() == 1 || island.encloses(at);
         let all = islands.iter().enumerate().filter(holds);

@@ -1,9 +1,9 @@
 //! Job + placed models -> stages: what the flow in `lib.rs` is put together from.
 //!
 //! Here is all code that names several stages at once: reading and placing ([`place`]), planning
-//! in batches ([`batches`]), what begins in the air ([`footing`]), the thumbnails
-//! ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs that cannot seek
-//! ([`spool`]).
+//! in batches ([`batches`]), what begins in the air ([`footing`]), skirt and brim ([`sticking`]),
+//! the thumbnails ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs that
+//! cannot seek ([`spool`]).
 
 pub mod batches;
 pub mod footing;
@@ -11,7 +11,9 @@ pub mod footprint;
 pub mod place;
 pub mod prime;
 pub mod refuse;
+mod rise;
 pub mod spool;
+pub mod sticking;
 pub mod thumbnails;
 
 use crate::error::Refusal;
@@ -19,7 +21,7 @@ use crate::mesh::Mesh;
 use crate::mesh::place::Placed;
 use crate::profile::{Angle, Settings};
 use crate::region::angle;
-use crate::slice::Heights;
+use crate::slice::{Compensation, Heights};
 use crate::units::to_units;
 
 /// The settings with all that depends on the model decided.
@@ -30,6 +32,16 @@ pub fn settle(settings: &Settings, mesh: &Mesh) -> Settings {
         given => given,
     };
     Settings { angle, ..settings.clone() }
+}
+
+/// How far contours are moved.
+#[must_use]
+pub fn compensation(settings: &Settings) -> Compensation {
+    Compensation {
+        outline: to_units(settings.xy_compensation),
+        hole: to_units(settings.hole_compensation),
+        foot: to_units(settings.elephant_foot),
+    }
 }
 
 /// The layers that the models are cut into, at least one.

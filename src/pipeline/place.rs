@@ -5,7 +5,7 @@ use crate::geom::Point;
 use crate::job::Model;
 use crate::mesh::{self, Bed, Placement, place::Placed};
 use crate::profile::template::PrintFacts;
-use crate::profile::{Machine, Origin};
+use crate::profile::{Machine, Origin, Settings};
 use crate::progress::Progress;
 use crate::slice::Heights;
 use crate::units::{to_mm, to_units};
@@ -35,6 +35,15 @@ pub fn place(
     Ok(mesh::place::place(models, placement, bed)?)
 }
 
+/// `placement` with room for brims between models, where they are asked for. A brim that is only
+/// printed where it is needed gets none: where two meet they grow together.
+#[must_use]
+pub fn spaced(placement: &Placement, settings: &Settings) -> Placement {
+    let brims = 2.0 * settings.brim_reach();
+    let room = if brims > 0.0 { brims + settings.line_width } else { 0.0 };
+    Placement { gap: placement.gap.max(room), ..placement.clone() }
+}
+
 /// The machine's print volume.
 #[must_use]
 pub fn bed(machine: &Machine) -> Bed {
@@ -55,15 +64,22 @@ pub fn bed_corners(bed: &Bed, offset: [f64; 2]) -> (Point, Point) {
     (corner(bed.min), corner(bed.max))
 }
 
-/// What the start and end blocks may name.
+/// What the start and end blocks may name. `beside` is the box around skirt and brim, in the layout.
 #[must_use]
-pub fn print_facts(placed: &Placed, heights: &Heights) -> PrintFacts {
+pub fn print_facts(
+    placed: &Placed,
+    heights: &Heights,
+    beside: Option<(Point, Point)>,
+) -> PrintFacts {
     let half = [placed.size_mm[0] / 2.0, placed.size_mm[1] / 2.0];
-    let [x, y] = placed.offset;
+    let (low, high) = beside.map_or(([0.0; 2], [0.0; 2]), |(low, high)| {
+        ([to_mm(low.x), to_mm(low.y)], [to_mm(high.x), to_mm(high.y)])
+    });
+    let at = placed.offset;
     PrintFacts {
         layers: heights.count(),
-        min: [x - half[0], y - half[1]],
-        max: [x + half[0], y + half[1]],
+        min: [0, 1].map(|axis| at[axis] + low[axis].min(-half[axis])),
+        max: [0, 1].map(|axis| at[axis] + high[axis].max(half[axis])),
         height: to_mm(heights.top(heights.count() - 1)),
     }
 }

@@ -6,7 +6,8 @@
 //!
 //! 1. Each path goes to the smallest outer contour around its start.
 //! 2. The island nearest to the nozzle is next. Its walls come first, then skin, then infill; the
-//!    next path is always the one with the nearest end. Helpers come after all islands.
+//!    next path is always the one with the nearest end. Helpers come after all islands; those that
+//!    make the print stick, such as a brim, before them, in their own order.
 //! 3. Walls are sorted by depth, from outside or from inside as the settings say. Their seams are at
 //!    the vertex nearest to the nozzle, at the rear, or where `seam` put them.
 //! 4. With seams in a line, the next layer begins near where this one began. So the last paths are
@@ -25,6 +26,8 @@ use crate::profile::Seam;
 pub struct Unordered {
     /// The paths inside each outer contour.
     islands: Vec<Island>,
+    /// Paths printed before all islands, in this order.
+    first: Vec<Path>,
     /// Paths printed after all islands, in either direction.
     helpers: Vec<Path>,
 }
@@ -51,8 +54,9 @@ impl Island {
 /// Sorts the paths of a layer, starting from `at`. `seams` are those of the layers before.
 #[must_use]
 pub fn order(paths: Unordered, mut at: Point, seams: &mut Seams, params: &PlanParams) -> Vec<Path> {
-    let Unordered { mut islands, helpers } = paths;
+    let Unordered { mut islands, first, helpers } = paths;
     let mut out = Vec::new();
+    first.into_iter().for_each(|path| out.push(entered(path, &mut at)));
     while let Some(k) = nearest(islands.iter().map(|i| i.distance2(at))) {
         let Island { mut walls, inside } = islands.remove(k);
         seams.place(&mut walls, params.seam);
@@ -87,9 +91,11 @@ impl Unordered {
     /// Divides the paths of a layer among its outer contours.
     #[must_use]
     pub fn new(mut paths: Vec<Path>, contours: &[Contour]) -> Self {
-        let helper = |path: &mut Path| path.role.facts().place == Place::Helper;
-        let helpers = paths.extract_if(.., helper).collect();
-        Self { islands: islands(paths, contours), helpers }
+        let mut take = |place: Place| -> Vec<Path> {
+            paths.extract_if(.., |path| path.role.facts().place == place).collect()
+        };
+        let (first, helpers) = (take(Place::First), take(Place::Helper));
+        Self { islands: islands(paths, contours), first, helpers }
     }
 }
 
@@ -194,6 +200,25 @@ fn order_walls(mut walls: Vec<Path>, at: &mut Point, params: &PlanParams, out: &
         out.push(wall);
     }
     *at = out.last().map_or(*at, Path::end);
+}
+
+/// `path`, beginning at its point nearest to the nozzle.
+fn entered(path: Path, at: &mut Point) -> Path {
+    let last = path.points.len() - 1;
+    let places = if path.shape == Shape::Open { vec![0, last] } else { (0..=last).collect() };
+    let nearest = places.into_iter().min_by_key(|&k| (path.points[k].at.distance2(*at), k));
+    begun(path, nearest.unwrap_or_default(), at)
+}
+
+/// `path`, beginning at point `from`: one of its ends if it is open. The nozzle is at its end then.
+fn begun(mut path: Path, from: usize, at: &mut Point) -> Path {
+    match path.shape {
+        Shape::Loop { .. } => path.begin_at(from),
+        Shape::Open | Shape::InTurn { .. } if from > 0 => path.reverse(),
+        Shape::Open | Shape::InTurn { .. } => {}
+    }
+    *at = path.end();
+    path
 }
 
 /// The index of the point where `wall` begins: its seam, or the nearer end of an open wall.

@@ -80,7 +80,7 @@ pub(super) fn free(path: &Path) -> Option<bool> {
         return None;
     }
     match path.role.facts().place {
-        Place::Walls => None,
+        Place::Walls | Place::First => None,
         Place::Inside => Some(false),
         Place::Helper => Some(true),
     }

@@ -31,6 +31,7 @@ impl Colour {
             Role::Skin => ([243, 183, 70], [191, 93, 0]),
             Role::Infill => ([78, 211, 255], [16, 89, 178]),
             Role::Support => ([113, 176, 157], [0, 76, 32]),
+            Role::Adhesion => ([144, 40, 248], [70, 0, 130]),
             Role::Other => ([191, 175, 124], [136, 120, 88]),
             Role::Travel => ([213, 94, 0], [213, 94, 0]),
             Role::Retraction => ([140, 40, 160], [140, 40, 160]),
@@ -68,12 +69,12 @@ mod tests {
 
     #[test]
     fn every_role_has_its_own_colour_and_a_shade_of_it() {
-        let drawn = &Role::ALL[..6];
+        let drawn = &Role::ALL[..7];
         let all = |thick| drawn.iter().map(move |role| Colour::of(*role, thick));
         let mut colours: Vec<Colour> = all(false).chain(all(true)).collect();
         colours.sort_unstable();
         colours.dedup();
-        assert_eq!(colours.len(), 12);
+        assert_eq!(colours.len(), 14);
     }
 
     #[test]

@@ -16,6 +16,8 @@ pub enum Role {
     Infill,
     /// Support.
     Support,
+    /// Skirt and brim: what is printed on the bed beside the part, so that it sticks.
+    Adhesion,
     /// Anything else that extrudes, and all of it in files without comments.
     Other,
     /// The nozzle moves without extruding, sideways or in z.
@@ -56,16 +58,20 @@ const NAMES: &[(&str, Role)] = &[
     ("support", Role::Support),
     ("supportinterface", Role::Support),
     ("supporttransition", Role::Support),
+    ("skirt/brim", Role::Adhesion),
+    ("skirt", Role::Adhesion),
+    ("brim", Role::Adhesion),
 ];
 
 impl Role {
     /// All of them, in the order of reports.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::OuterWall,
         Self::InnerWall,
         Self::Skin,
         Self::Infill,
         Self::Support,
+        Self::Adhesion,
         Self::Other,
         Self::Travel,
         Self::Retraction,
@@ -80,6 +86,7 @@ impl Role {
             Self::Skin => "skin",
             Self::Infill => "infill",
             Self::Support => "support",
+            Self::Adhesion => "skirt and brim",
             Self::Other => "other",
             Self::Travel => "travel",
             Self::Retraction => "retraction",
@@ -108,7 +115,10 @@ mod tests {
             ("Top surface", Role::Skin),
             ("FILL", Role::Infill),
             ("Support material interface", Role::Support),
-            ("SKIRT", Role::Other),
+            ("SKIRT", Role::Adhesion),
+            ("Skirt/Brim", Role::Adhesion),
+            ("Brim", Role::Adhesion),
+            ("Prime tower", Role::Other),
             ("", Role::Other),
         ] {
             assert_eq!(Role::of_name(name.as_bytes()), role, "{name}");

@@ -68,6 +68,7 @@ pub fn report(
             .chain(slow_speeds(settings))
             .chain(slowed_down(&usage.flows, settings))
             .collect(),
+        brim: None,
         check: None,
     }
 }

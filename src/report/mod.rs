@@ -68,6 +68,9 @@ pub struct Report {
     pub cooling: Option<CoolingReport>,
     /// Dual injection; absent where it is off.
     pub dual: Option<DualReport>,
+    /// The brim that was printed although nobody asked for it; absent without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub brim: Option<BrimReport>,
     /// Findings.
     pub warnings: Vec<Warning>,
     /// The verdict of `--check`; absent without it.
@@ -86,6 +89,19 @@ pub struct ProfileReport {
     /// The file as it was named or found; absent for a profile that comes with the program.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
+}
+
+/// A brim where `brim.where` is `auto`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+pub struct BrimReport {
+    /// Width asked for, mm.
+    pub width_mm: f64,
+    /// Islands of the first layer that have one.
+    pub islands: usize,
+    /// All islands of the first layer.
+    pub of: usize,
+    /// What would make them come loose, in words.
+    pub why: Vec<String>,
 }
 
 /// The layers of a print.

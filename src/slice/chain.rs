@@ -11,13 +11,13 @@
 //! 3. The chain continues in the triangle across that edge. So chaining walks over the mesh's
 //!    adjacency and never compares distances.
 //! 4. Close open chains by straight lines, shortest gap first. Report the longest gap.
-//! 5. Simplify the contours, and unite them.
+//! 5. Simplify the contours, unite them, and move them by what the printer gets wrong.
 //!
 //! Bucketing follows Minetto, Volpato, Stolfi, Gregori and da Silva, "An optimal algorithm for 3D
 //! triangle mesh slicing", Computer-Aided Design 92 (2017): linear in triangles and segments.
 
 use super::simplify::{canonical, simplify};
-use super::{Heights, Layer};
+use super::{Compensation, Heights, Layer};
 use crate::geom::cells::Cells;
 use crate::geom::{Contour, Point, polygon};
 use crate::mesh::Mesh;
@@ -39,6 +39,7 @@ pub struct Slicer<'a> {
     adjacency: &'a Adjacency,
     heights: Heights,
     tolerance: Coord,
+    compensation: Compensation,
     /// Layers in each block but the last.
     block: usize,
     /// Triangles by block; a triangle is in each block whose planes it crosses.
@@ -93,7 +94,14 @@ impl<'a> Slicer<'a> {
         let triangles = || (0_u32..).take(mesh.triangles.len());
         let cells = Cells::new(blocks, triangles, |t| reach(&mesh.triangles[t as usize]));
         let free = Mutex::default();
-        Self { mesh, adjacency, heights, tolerance, block, cells, below, free }
+        let compensation = Compensation::default();
+        Self { mesh, adjacency, heights, tolerance, compensation, block, cells, below, free }
+    }
+
+    /// The same with contours moved.
+    #[must_use]
+    pub fn moved(self, compensation: Compensation) -> Self {
+        Self { compensation, ..self }
     }
 
     /// The layers' heights.
@@ -179,6 +187,7 @@ impl<'a> Slicer<'a> {
         // Sorted, so that the union does not depend on the order of the triangles.
         contours.sort_unstable();
         let contours = polygon::union(&contours);
+        let contours = self.compensation.apply(contours, k, &self.heights);
         Layer {
             index: k,
             z: self.heights.top(k),

@@ -8,11 +8,13 @@
 //! around solid and clockwise around holes, and stay within the given tolerance of the mesh.
 
 mod chain;
+mod compensate;
 mod heights;
 mod simplify;
 pub mod volume;
 
 pub use chain::Slicer;
+pub use compensate::Compensation;
 pub use heights::Heights;
 
 use crate::geom::{Contour, double_area};

@@ -97,6 +97,7 @@ fn colour(kind: Kind, thick: bool) -> String {
         Kind::Skin | Kind::Bridge => Role::Skin,
         Kind::Infill => Role::Infill,
         Kind::Support | Kind::SupportInterface => Role::Support,
+        Kind::Brim => Role::Adhesion,
         Kind::Custom => Role::Other,
     };
     Colour::of(role, thick).hex()

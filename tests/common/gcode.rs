@@ -16,6 +16,8 @@ pub(crate) enum Kind {
     Infill,
     Support,
     SupportInterface,
+    /// Skirt and brim.
+    Brim,
 }
 
 /// The kinds of walls.
@@ -148,6 +150,7 @@ impl Print {
                 "Internal infill" => Kind::Infill,
                 "Support material" => Kind::Support,
                 "Support material interface" => Kind::SupportInterface,
+                "Skirt/Brim" => Kind::Brim,
                 "Overhang perimeter" => Kind::Overhang,
                 other => return Err(format!("unknown type {other}")),
             };

@@ -13,6 +13,7 @@ mod metamorphic;
 mod models;
 mod seams;
 mod skins;
+mod sticking;
 mod support;
 mod tables;
 mod thin;

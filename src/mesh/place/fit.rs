@@ -12,11 +12,16 @@ const MAX_SCALE: f64 = 1e9;
 
 /// Refuses numbers that make no sense.
 pub(super) fn check_placement(placement: &Placement) -> Result<()> {
-    let Placement { scale, rotate, sink, at, copies, .. } = *placement;
+    let Placement { scale, rotate, sink, at, gap, copies, .. } = *placement;
     if !(scale > 0.0 && scale <= MAX_SCALE) {
         return Err(Error::Scale { scale, most: MAX_SCALE });
     }
-    if !rotate.iter().chain([&sink]).chain(at.iter().flatten()).all(|number| number.is_finite()) {
+    if !rotate
+        .iter()
+        .chain([&sink, &gap])
+        .chain(at.iter().flatten())
+        .all(|number| number.is_finite())
+    {
         return Err(Error::NotFinite);
     }
     if copies == 0 {

@@ -58,7 +58,7 @@ pub struct Placed {
 /// Each model is scaled; turned about x, then y, then z; set down on the bed; and moved so that
 /// the middle of its bounding box is at the origin. Only then are coordinates rounded to the
 /// grid: a shifted file gives the same mesh, and a mirrored file the mirrored mesh, as far as its
-/// numbers allow. Several models and copies are laid out in rows, [`GAP_MM`] apart. Corners that
+/// numbers allow. Several models and copies are laid out in rows, with the gap asked for. Corners that
 /// round to one grid point stay different vertices, so that a closed mesh stays closed.
 ///
 /// # Errors
@@ -123,7 +123,9 @@ fn lay_out(parts: &[Part], placement: &Placement, bed: &Bed) -> Result<Layout> {
     }
     // One unit more, since boxes were rounded up to even sizes.
     let bed = bed_mm.map(|side| i64::from(to_units(side.min(MAX_COORDINATE_MM))) + 1);
-    shelves(&boxes, bed).ok_or(Error::BedFull { models, bed_mm })
+    let gap_mm = placement.gap.min(MAX_COORDINATE_MM);
+    let full = Error::BedFull { models, gap_mm, bed_mm };
+    shelves(&boxes, bed, i64::from(to_units(gap_mm))).ok_or(full)
 }
 
 /// Puts all copies into one mesh.
@@ -167,6 +169,7 @@ mod tests {
         scale: 1.0,
         rotate: [0.0; 3],
         at: None,
+        gap: GAP_MM,
         copies: 1,
         max_triangles: MAX_TRIANGLES,
         policy: Policy::Repair,

@@ -1,5 +1,6 @@
 //! What a user asks for -> Placement: unit, scale, turn, place, copies, and the bed that all must fit.
 
+use super::shelves::GAP_MM;
 use crate::mesh::read::DEFAULT_MAX_TRIANGLES;
 use crate::units::MAX_COORDINATE_MM;
 
@@ -16,6 +17,8 @@ pub struct Placement {
     pub sink: f64,
     /// Where the middle of the layout goes, in the machine's coordinates, mm; the bed's middle if `None`.
     pub at: Option<[f64; 2]>,
+    /// Distance between the bounding boxes of neighbouring models, mm.
+    pub gap: f64,
     /// How many times each model is printed.
     pub copies: u32,
     /// Most triangles of a file, and of all models and copies together.
@@ -33,6 +36,7 @@ impl Default for Placement {
             rotate: [0.0; 3],
             sink: 0.0,
             at: None,
+            gap: GAP_MM,
             copies: 1,
             max_triangles: DEFAULT_MAX_TRIANGLES,
             policy: Policy::Repair,

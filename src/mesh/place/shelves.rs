@@ -1,9 +1,9 @@
 //! Boxes -> positions: lays models out on one bed, in rows.
 
-use crate::units::{Coord, to_units};
+use crate::units::Coord;
 
-/// Distance between the bounding boxes of neighbouring models, mm: about as much as other
-/// slicers leave. Less leaves no room for stringing and brims; more fits fewer models.
+/// Usual distance between the bounding boxes of neighbouring models, mm: about as much as other
+/// slicers leave. Less leaves no room for stringing; more fits fewer models.
 pub const GAP_MM: f64 = 5.0;
 
 /// Row widths that are tried at most, so that 10 000 boxes take a million steps. With fewer, large
@@ -20,14 +20,13 @@ pub(super) struct Layout {
     pub(super) size: [i64; 2],
 }
 
-/// Lays `boxes` (width and depth, even numbers of units) out in rows, [`GAP_MM`] apart, the
+/// Lays `boxes` (width and depth, even numbers of units) out in rows, `gap` units apart, the
 /// deepest first, so that boxes of similar depth share a row. Several row widths are tried; of
 /// those that fit the bed, the one wins that leaves the widest margin. `None` if none fits.
 ///
 /// Shelf packing by decreasing depth: Coffman, Garey, Johnson and Tarjan 1980, "Performance
 /// bounds for level-oriented two-dimensional packing algorithms" (next-fit decreasing height).
-pub(super) fn shelves(boxes: &[[i64; 2]], bed: [i64; 2]) -> Option<Layout> {
-    let gap = i64::from(to_units(GAP_MM));
+pub(super) fn shelves(boxes: &[[i64; 2]], bed: [i64; 2], gap: i64) -> Option<Layout> {
     let room = |[width, depth]: [i64; 2]| i128::from(width + gap) * i128::from(depth + gap);
     if boxes.iter().map(|&size| room(size)).sum::<i128>() > room(bed) {
         return None;
@@ -97,7 +96,7 @@ mod tests {
 
     #[test]
     fn one_box_lies_in_the_middle() {
-        let layout = shelves(&[[400, 202]], [1000, 1000]).unwrap();
+        let layout = shelves(&[[400, 202]], [1000, 1000], GAP).unwrap();
         assert_eq!(layout, Layout { middles: vec![[0, 0]], size: [400, 202] });
     }
 
@@ -105,13 +104,13 @@ mod tests {
     fn boxes_keep_apart() {
         let boxes: Vec<[i64; 2]> =
             (0..37).map(|i| [100_000 + 2 * (i * 7919 % 90_000), 50_000 + i * 4000]).collect();
-        let layout = shelves(&boxes, [2_200_000, 2_200_000]).unwrap();
+        let layout = shelves(&boxes, [2_200_000, 2_200_000], GAP).unwrap();
         check(&boxes, &layout);
     }
 
     #[test]
     fn nine_squares_make_a_square() {
-        let layout = shelves(&[[200_000, 200_000]; 9], [2_200_000, 2_200_000]).unwrap();
+        let layout = shelves(&[[200_000, 200_000]; 9], [2_200_000, 2_200_000], GAP).unwrap();
         check(&[[200_000, 200_000]; 9], &layout);
         assert_eq!(layout.size, [700_000, 700_000]);
     }
@@ -119,8 +118,8 @@ mod tests {
     #[test]
     fn a_full_bed_is_filled_and_no_more() {
         let bed = [1_100_000, 1_100_000];
-        assert!(shelves(&[[525_000, 525_000]; 4], bed).is_some());
-        assert!(shelves(&[[525_000, 525_000]; 5], bed).is_none());
-        assert!(shelves(&[[525_002, 525_000]; 4], bed).is_none());
+        assert!(shelves(&[[525_000, 525_000]; 4], bed, GAP).is_some());
+        assert!(shelves(&[[525_000, 525_000]; 5], bed, GAP).is_none());
+        assert!(shelves(&[[525_002, 525_000]; 4], bed, GAP).is_none());
     }
 }

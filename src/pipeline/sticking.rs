@@ -1,0 +1,149 @@
+//! Settings + first layer -> skirt and brim, judged against the bed.
+//!
+//! What was asked for and does not fit the bed is refused, like a part; a brim that nobody asked for
+//! is left out with a warning.
+
+use super::rise::rise;
+use crate::error::Refusal;
+use crate::fill::adhesion::{Adhesion, AdhesionParams, Base};
+use crate::fill::{Path, Role};
+use crate::geom::Point;
+use crate::geom::nest::{Nest, extent};
+use crate::mesh::place::Placed;
+use crate::profile::{BrimPlace, Settings};
+use crate::report::BrimReport;
+use crate::slice::{Heights, Layer};
+use crate::units::{Coord, to_mm};
+use crate::warning::Warning;
+
+/// What makes a print stick, laid when its first layer is known.
+pub struct Sticking<'a> {
+    params: Option<AdhesionParams>,
+    placed: &'a Placed,
+    heights: &'a Heights,
+    /// The bed's corners.
+    bed: (Point, Point),
+    /// Nobody asked for the brim.
+    is_auto: bool,
+    width_mm: f64,
+    /// What is still to be printed, by layer.
+    layers: Vec<Vec<Path>>,
+    stuck: Result<Stuck, Refusal>,
+}
+
+/// What was done so that the print sticks.
+#[derive(Debug, Clone, Default)]
+pub struct Stuck {
+    /// A brim that nobody asked for.
+    pub brim: Option<BrimReport>,
+    /// One that was left out.
+    pub warning: Option<Warning>,
+    /// The box around skirt and brim in the layout, grid units.
+    pub extent: Option<(Point, Point)>,
+}
+
+impl<'a> Sticking<'a> {
+    /// Ready to lay what `settings` ask for, within these corners of the bed.
+    #[must_use]
+    pub fn new(
+        settings: &Settings,
+        placed: &'a Placed,
+        heights: &'a Heights,
+        bed: (Point, Point),
+    ) -> Self {
+        Self {
+            params: AdhesionParams::new(settings),
+            placed,
+            heights,
+            bed,
+            is_auto: settings.brim.place == BrimPlace::Auto,
+            width_mm: settings.brim.width,
+            layers: Vec::new(),
+            stuck: Ok(Stuck::default()),
+        }
+    }
+
+    /// What is printed first on a layer, of which `paths` are the others. Layers come from the lowest
+    /// on.
+    pub fn layer(&mut self, layer: &Layer, paths: &[Path]) -> Vec<Path> {
+        if let Some(params) = self.params.take_if(|_| layer.index == 0) {
+            let adhesion = self.lay(&params, layer, paths);
+            self.stuck = self.judge(&adhesion);
+            self.layers = adhesion.layers;
+        }
+        self.layers.get_mut(layer.index).map(std::mem::take).unwrap_or_default()
+    }
+
+    /// What was done; known once the first layer was given.
+    ///
+    /// # Errors
+    /// [`Refusal::BesideBed`].
+    pub fn stuck(&self) -> Result<Stuck, Refusal> {
+        self.stuck.clone()
+    }
+
+    fn lay(&self, params: &AdhesionParams, layer: &Layer, paths: &[Path]) -> Adhesion {
+        let (mesh, heights) = (&self.placed.mesh, self.heights);
+        let count = params.skirt_layers().clamp(1, heights.count());
+        let top = heights.top(count - 1);
+        let is_beside = |z: Coord| count > 1 && z <= top;
+        let above =
+            mesh.vertices.iter().filter(|v| is_beside(v[2])).map(|&[x, y, _]| Point { x, y });
+        let above: Vec<Point> = above.collect();
+        let base = Base {
+            contours: &layer.contours,
+            paths,
+            heights: &(0..count).map(|k| heights.height(k)).collect::<Vec<_>>(),
+            above: &above,
+            top: mesh.top(),
+            bed: self.bed,
+        };
+        let nest = Nest::new(&layer.contours);
+        let island = |k: usize| nest.parents[k].filter(|_| !nest.is_outer[k]).unwrap_or(k);
+        let islands: Vec<usize> = (0..layer.contours.len()).map(island).collect();
+        params.lay(&base, |contours| rise(mesh, heights.plane(0), contours, &islands))
+    }
+
+    /// Refuses what does not fit the bed, and says what was decided.
+    fn judge(&self, adhesion: &Adhesion) -> Result<Stuck, Refusal> {
+        let mut stuck = Stuck::default();
+        for role in [Role::Brim, Role::Skirt] {
+            let beads = adhesion.layers.iter().flatten().filter(|path| path.role == role);
+            let points = beads.flat_map(|path| &path.points).map(|p| (p.at, p.width / 2));
+            let corners = |(p, half): (Point, Coord)| {
+                [-half, half].map(|by| Point { x: p.x + by, y: p.y + by })
+            };
+            let own = extent(&points.flat_map(corners).collect::<Vec<_>>());
+            let Some((low, high)) = own else { continue };
+            let beyond = |own: Coord, bed: Coord| to_mm((own - bed).max(0));
+            let (first, last) = self.bed;
+            let over_mm = [
+                [beyond(first.x, low.x), beyond(high.x, last.x)],
+                [beyond(first.y, low.y), beyond(high.y, last.y)],
+            ];
+            // Rounded to the grid, as parts are.
+            if over_mm.iter().flatten().any(|over| *over > 0.000_15) {
+                return Err(Refusal::BesideBed { what: role.facts().name, over_mm });
+            }
+            let all: Vec<Point> = [low, high]
+                .into_iter()
+                .chain(stuck.extent.into_iter().flat_map(|(low, high)| [low, high]))
+                .collect();
+            stuck.extent = extent(&all);
+        }
+        if self.is_auto && !adhesion.loose.is_empty() {
+            let mut why: Vec<_> = adhesion.loose.iter().map(|(_, why)| *why).collect();
+            why.sort_unstable();
+            why.dedup();
+            stuck.brim = Some(BrimReport {
+                width_mm: self.width_mm,
+                islands: adhesion.loose.len(),
+                of: adhesion.islands,
+                why: why.iter().map(|why| why.words().to_owned()).collect(),
+            });
+        }
+        stuck.warning = (adhesion.left_out > 0)
+            .then_some(Warning::BrimLeftOut { islands: adhesion.left_out, of: adhesion.islands });
+        Ok(stuck)
+    }
+}
