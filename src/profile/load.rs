@@ -105,8 +105,10 @@ fn follow(merged: &mut Merged) {
 fn cold_bed(merged: &mut Merged) {
     const SWITCH: &str = "machine.heated_bed";
     if merged.get(SWITCH).is_some_and(|(value, _)| value.as_bool() == Some(false)) {
-        let cold = (Value::Float(0.0), ValueOrigin::Follows(SWITCH.to_owned()));
-        merged.insert("filament.bed_temperature".to_owned(), cold);
+        for key in ["filament.bed_temperature", "filament.first_layer_bed_temperature"] {
+            let cold = (Value::Float(0.0), ValueOrigin::Follows(SWITCH.to_owned()));
+            merged.insert(key.to_owned(), cold);
+        }
     }
 }
 
