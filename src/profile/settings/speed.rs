@@ -18,7 +18,7 @@ pub struct Speed {
     pub inner_wall: Option<f64>,
     /// Speed of closed walls shorter than small_loop_length, of the speeds above: a small loop has
     /// no time to cool and is all turns.
-    #[schemars(range(min = 1, max = 100), extend("unit" = "%", "default" = 60))]
+    #[schemars(range(min = 1, max = 100), extend("unit" = "%", "default" = 80))]
     pub small_loop: f64,
     /// Closed walls shorter than this are small loops: 15 mm go around a hole of 4.8 mm.
     #[schemars(range(min = 0, max = 1_000), extend("unit" = "mm", "default" = 15))]
