@@ -150,6 +150,9 @@ mod tests {
         {
             *own = Some(20.0);
         }
+        let cooling = &mut settings.cooling;
+        (cooling.min_fan, cooling.overhang_fan) = (Some(1.0), Some(1.0));
+        cooling.interface_fan = Some(1.0);
         let mut typed = BTreeSet::new();
         leaves("", &Value::try_from(&settings).unwrap(), &mut typed);
         let listed: BTreeSet<_> = keys::names().map(str::to_owned).collect();
