@@ -34,8 +34,9 @@ pub(super) fn renamed(name: &str) -> Option<&'static str> {
 
 /// Whether this key of today is a speed that was in mm/min in format 1.
 pub(super) fn was_per_minute(name: &str) -> bool {
-    let other = ["speed.first_layer", "speed.small_loop", "speed.small_loop_length"];
-    let speed = name.starts_with("speed.") && !other.contains(&name);
+    let other = ["speed.small_loop", "speed.small_loop_length"];
+    let first = name.starts_with("speed.first_layer");
+    let speed = name.starts_with("speed.") && !first && !other.contains(&name);
     speed || name.starts_with("limits.speed_") || name == "retraction.speed"
 }
 

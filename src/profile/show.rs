@@ -153,6 +153,8 @@ mod tests {
         let cooling = &mut settings.cooling;
         (cooling.min_fan, cooling.overhang_fan) = (Some(1.0), Some(1.0));
         cooling.interface_fan = Some(1.0);
+        settings.filament.first_layer_temperature = Some(1.0);
+        settings.filament.first_layer_bed_temperature = Some(1.0);
         let mut typed = BTreeSet::new();
         leaves("", &Value::try_from(&settings).unwrap(), &mut typed);
         let listed: BTreeSet<_> = keys::names().map(str::to_owned).collect();

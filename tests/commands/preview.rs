@@ -405,7 +405,7 @@ fn seen(Colour(bytes): Colour, eye: &[[f64; 3]; 3]) -> [f64; 3] {
 
 #[test]
 fn colours_are_told_apart_by_all_eyes() {
-    let roles = &Role::ALL[..6];
+    let roles = &Role::ALL[..7];
     let colours: Vec<_> =
         roles.iter().flat_map(|r| [false, true].map(|thick| Colour::of(*r, thick))).collect();
     for eye in &EYES {

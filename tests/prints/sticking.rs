@@ -438,3 +438,17 @@ fn what_is_not_needed_changes_no_move() {
     assert_eq!(moves(&[NO_BRIM, ("brim.width", "9"), ("skirt.distance", "2")]), plain);
     assert_eq!(moves(&[("brim.where", "outside"), ("brim.width", "0")]), plain);
 }
+
+#[test]
+fn what_is_too_thin_to_be_printed_gets_no_brim() {
+    // A tower with a thread beside it.
+    let tower = Solid::cuboid([0.0; 3], [5.0, 5.0, 40.0]);
+    let both = tower.and(&Solid::cuboid([30.0, 0.0, 0.0], [30.3, 5.0, 40.0]));
+    for set in [vec![], vec![("brim.where", "outside")]] {
+        let set = [&set[..], &[("min_feature", "0.5")]].concat();
+        let run = slice(&both.stl(), "generic-marlin", &set);
+        let middle = run.middle()[0];
+        let all = places(&first(&run, Kind::Brim));
+        assert!(!all.is_empty() && all.iter().all(|(_, at)| at[0] < middle), "{set:?}");
+    }
+}

@@ -329,7 +329,7 @@ fn space(run: &crate::common::Run, kind: Kind, thick: bool) -> f64 {
     beads.map(|m| m.length() * m.width * m.height).sum()
 }
 
-const KINDS: [Kind; 8] = [
+const KINDS: [Kind; 9] = [
     Kind::OuterWall,
     Kind::InnerWall,
     Kind::Overhang,
@@ -338,6 +338,7 @@ const KINDS: [Kind; 8] = [
     Kind::Infill,
     Kind::Support,
     Kind::SupportInterface,
+    Kind::Brim,
 ];
 
 #[test]
@@ -370,7 +371,7 @@ fn filament_is_the_factor_times_the_length_and_thick_lines_take_twice_that() {
         let run = slice(&crate::common::fixture(name), "zcube-dual", &set);
         for m in run.print.beads().filter(|m| m.length() > 1.0 && (m.width - 0.4).abs() < 1e-9) {
             let factor = match m.kind {
-                Kind::OuterWall | Kind::InnerWall | Kind::Overhang => 0.05,
+                Kind::OuterWall | Kind::InnerWall | Kind::Overhang | Kind::Brim => 0.05,
                 _ if run.print.is_thick(m) => 0.08,
                 _ => 0.04,
             };
@@ -379,7 +380,7 @@ fn filament_is_the_factor_times_the_length_and_thick_lines_take_twice_that() {
             // Lines in a zig-zag carry what its round turns save, at most 4 %, and thick ones
             // what is too short to be printed beside them, at most a twentieth.
             let off = match m.kind {
-                Kind::OuterWall | Kind::InnerWall | Kind::Overhang => 0.002,
+                Kind::OuterWall | Kind::InnerWall | Kind::Overhang | Kind::Brim => 0.002,
                 _ if run.print.is_thick(m) => 0.093,
                 _ => 0.041,
             };

@@ -13,7 +13,7 @@ mod skirt;
 
 use super::{Path, PathPoint, Place, Role, Shape};
 use crate::geom::nest::{Nest, extent};
-use crate::geom::{Contour, Point, edges, polygon};
+use crate::geom::{Contour, Point, edges, encloses, polygon};
 use crate::profile::{BrimPlace, Settings};
 use crate::units::{Coord, to_units};
 use brim::{BrimParams, Ground};
@@ -89,13 +89,18 @@ impl AdhesionParams {
     #[must_use]
     pub fn lay(&self, base: &Base<'_>, rise: impl FnOnce(&[Contour]) -> Vec<Rise>) -> Adhesion {
         let nest = Nest::new(base.contours);
+        let printed = printed(base);
         let mut adhesion = Adhesion { islands: nest.outer().count(), ..Adhesion::default() };
+        if !printed.contains(&true) {
+            return adhesion;
+        }
         let support = self.support(base.paths);
         let mut beads = Vec::new();
         if let Some(params) = &self.brim {
-            let mut chosen = vec![true; base.contours.len()];
+            let mut chosen = printed.clone();
             if self.is_auto {
                 adhesion.loose = loose::loose(base.contours, &nest, base.top, rise);
+                adhesion.loose.retain(|(k, _)| printed[*k]);
                 let all = adhesion.loose.len();
                 let fits = |k: usize| is_within(&base.contours[k], params.reach(), base.bed);
                 adhesion.loose.retain(|(k, _)| fits(*k));
@@ -148,6 +153,19 @@ impl AdhesionParams {
         }
         polygon::covered(lines.iter().map(Vec::as_slice), self.line_width, self.support_gap)
     }
+}
+
+/// For each contour whether some line of the part begins inside it: what is too thin to be printed needs
+/// nothing to hold it.
+fn printed(base: &Base<'_>) -> Vec<bool> {
+    let of_part = base.paths.iter().filter(|path| path.role.facts().place.is_of_part());
+    let starts: Vec<Point> = of_part.map(Path::start).collect();
+    let holds = |contour: &Contour| {
+        let Some((low, high)) = extent(contour) else { return false };
+        let near = |p: &&Point| p.x >= low.x && p.y >= low.y && p.x <= high.x && p.y <= high.y;
+        starts.iter().filter(near).any(|p| encloses(edges(contour), *p))
+    };
+    base.contours.iter().map(holds).collect()
 }
 
 /// Whether a contour fits the bed with `reach` around it.
