@@ -1,8 +1,8 @@
 //! First layer -> Adhesion: skirt and brim, which are printed before everything else.
 //!
 //! 1. [`loose`] tells which islands would come loose without a brim, if nobody has decided.
-//! 2. [`brim`] lays lines beside the islands that get one.
-//! 3. [`skirt`] lays loops around all of it.
+//! 2. `brim` lays lines beside the islands that get one.
+//! 3. `skirt` lays loops around all of it.
 //!
 //! Where support stands is taken from its paths, whatever its pattern: what lies between its lines
 //! belongs to it.
