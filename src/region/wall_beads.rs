@@ -25,6 +25,7 @@ use super::wall_samples::{MOST_BEADS, NARROWEST, SHORT, WallSample, samples};
 use crate::geom::frame::Frame;
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::raster::Raster;
+use crate::geom::segment::way;
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
 use crate::units::Coord;
@@ -34,6 +35,9 @@ use crate::units::Coord;
 /// beads overlap walls.
 const SLACK: f64 = 0.15;
 
+/// The square of the length from which on a normal is that of a corner: rounding.
+const LONGER: f64 = 1.0 + 1e-9;
+
 /// A point of a bead.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Place {
@@ -41,6 +45,17 @@ struct Place {
     width: f64,
     /// Minimum distance from all walls.
     clear: f64,
+    /// The normal of the side that it lies beside; longer than 1 beside a corner.
+    normal: [f64; 2],
+}
+
+impl Place {
+    /// Whether it leads on to `next` in the direction of its side. All do beside a corner.
+    fn leads_to(&self, next: &Self, turn: f64) -> bool {
+        let [x, y] = self.normal;
+        let [u, v] = way(self.at, next.at);
+        x * x + y * y > LONGER || turn * (u * y - v * x) > 0.0
+    }
 }
 
 /// The beads that cover the narrow parts of the exposed skin `crossed` along `walls`. These are
@@ -81,7 +96,12 @@ fn place(sample: &WallSample, index: usize, near: &Near, params: &BeadParams) ->
     let away = edge + from + width / 2.0;
     let [x, y] = [0, 1].map(|k| sample.at[k] + away * sample.normal[k]);
     let clear = away - SLACK * w;
-    near.is_free([[x, y]], clear).then_some(Place { at: [x, y], width, clear })
+    near.is_free([[x, y]], clear).then_some(Place {
+        at: [x, y],
+        width,
+        clear,
+        normal: sample.normal,
+    })
 }
 
 /// The arcs of bead `index` on a lap, without those that are too short. An arc that goes all
@@ -113,8 +133,24 @@ fn arcs(lap: &[WallSample], index: usize, near: &Near, params: &BeadParams) -> V
         }
         open = true;
     }
+    arcs.iter_mut().for_each(go_on);
     arcs.retain(|arc| length(arc) >= short);
     arcs
+}
+
+/// Takes away the places of an arc from which it would step back. Around a small curve the sides of a
+/// bead are shorter than those of the wall, and samples near their ends lie beyond its corners.
+fn go_on(arc: &mut Vec<Place>) {
+    for turn in [-1.0, 1.0] {
+        let mut kept: Vec<Place> = Vec::with_capacity(arc.len());
+        for place in arc.drain(..) {
+            if kept.last().is_none_or(|last| place.leads_to(last, turn)) {
+                kept.push(place);
+            }
+        }
+        kept.reverse();
+        *arc = kept;
+    }
 }
 
 /// Whether a bead may go straight from one place to the next: they are near, and no wall pokes in
@@ -157,9 +193,11 @@ fn bead(arc: &[Place]) -> Polyline {
 mod tests {
     use super::*;
     use crate::geom::polygon;
+    use crate::geom::segment::dot;
     use crate::profile;
     use crate::region::RegionParams;
     use crate::region::scan::Scan;
+    use crate::units::{nearest, sin_cos};
 
     /// The beads of a part with one wall and lines along x, whose skin is exposed up to `covered`
     /// from its contour.
@@ -213,6 +251,23 @@ mod tests {
     fn a_solid_layer_has_no_beads_not_even_in_its_corners() {
         let (beads, _) = beads(&block(200_000, 150_000), 100_000);
         assert!(beads.is_empty(), "{beads:?}");
+    }
+
+    #[test]
+    fn beads_in_a_round_pin_never_step_back() {
+        for (corners, radius) in [(24, 7_000.0), (48, 8_000.0), (48, 10_000.0), (96, 12_000.0)] {
+            let at = |k: usize| {
+                let (sin, cos) = sin_cos(360.0 * k as f64 / corners as f64);
+                Point { x: nearest(radius * cos) as Coord, y: nearest(radius * sin) as Coord }
+            };
+            let (beads, _) = beads(&[(0..corners).map(at).collect()], 50_000);
+            for bead in &beads {
+                let step = |p: &[LinePoint]| [p[1].u - p[0].u, p[1].v - p[0].v].map(f64::from);
+                let steps: Vec<[f64; 2]> = bead.windows(2).map(step).collect();
+                assert!(steps.windows(2).all(|s| dot(s[0], s[1]) > 0.0), "{radius}: {bead:?}");
+            }
+            assert!(!beads.is_empty(), "{radius}");
+        }
     }
 
     #[test]
