@@ -3,12 +3,16 @@
 use super::Wall;
 use crate::geom::{Contour, double_area};
 use crate::region::params::WallParams;
-use crate::units::UNITS_PER_MM;
+use crate::units::{Coord, UNITS_PER_MM};
 
 /// Limit for the tangent of half a turn, when the strip outside a wall is computed. The offset cuts
 /// off sharper corners, so what is outside of them is not printed. A larger value misses thin
 /// tips; a smaller one counts every acute corner as thin.
 const SHARPEST_CORNER: f64 = 1.75;
+
+/// What an inset may lose, in squares of a line: the tips of sharp corners. A larger value leaves out
+/// short fins; a smaller one only costs time.
+const LEAST: f64 = 0.5;
 
 /// The area of `contours` that `walls` leave open outside the outer loops, mm². It is their area
 /// less that of the loops with a strip of the inset around them. The strip around a polygon has
@@ -18,16 +22,36 @@ pub(super) fn outside_loops(contours: &[Contour], loops: &[Wall], params: &WallP
     if params.count == 0 || params.outer_inset == 0 {
         return 0.0;
     }
-    let d = f64::from(params.outer_inset);
+    let outer = loops.iter().filter(|w| w.depth == 0).map(|w| &w.path);
+    (outside(contours, outer, params.outer_inset) / (UNITS_PER_MM * UNITS_PER_MM)).max(0.0)
+}
+
+/// Whether something is too thin for an inset: `inner`, which are those of `outer` by `distance`, with
+/// a strip as wide around them do not make up `outer`.
+pub(super) fn loses(
+    (outer, inner): (&[Contour], &[Contour]),
+    distance: Coord,
+    params: &WallParams,
+) -> bool {
+    let line = f64::from(params.line_width);
+    outside(outer, inner.iter(), distance) > LEAST * line * line
+}
+
+/// The area of `contours` that lies beyond a strip as wide as `distance` around `insets`, in square
+/// grid units.
+fn outside<'a>(
+    contours: &[Contour],
+    insets: impl Iterator<Item = &'a Contour>,
+    distance: Coord,
+) -> f64 {
+    let d = f64::from(distance);
     let area = |c: &Contour| double_area(c) as f64 / 2.0;
     let strip = |c: &Contour| {
         let (length, turns) = length_and_turns(c);
         length * d + turns * d * d
     };
     let whole: f64 = contours.iter().map(area).sum();
-    let outer = loops.iter().filter(|w| w.depth == 0);
-    let walled: f64 = outer.map(|w| area(&w.path) + strip(&w.path)).sum();
-    ((whole - walled) / (UNITS_PER_MM * UNITS_PER_MM)).max(0.0)
+    whole - insets.map(|c| area(c) + strip(c)).sum::<f64>()
 }
 
 /// The area that single beads cover, mm², with a half circle at each end.

@@ -11,7 +11,8 @@
 //!    *leads* and lays the bead. So the arcs of all leading samples cover nearly everything once.
 //! 3. Where sides of different length look at each other, none may lead. Samples that are still
 //!    far from all arcs make arcs of their own.
-//! 4. Join arcs whose ends meet, and drop short ones.
+//! 4. Join arcs whose ends meet, and drop short ones. Where walls cross, their ends run on
+//!    (`junctions`).
 
 use super::{Layout, Share, Wall};
 use crate::geom::segment::{along, dot, way};
@@ -36,6 +37,10 @@ const NEIGHBOURS: f64 = 1.5;
 /// 0 it sticks out by half its width.
 const CLEAR: f64 = 0.5;
 
+/// The same where the other side is a corner that sticks into the part: there the strip turns, and its
+/// outer sides are further away than the bead shall come. A smaller value lays beads beyond the turn.
+const CLEAR_OF_CORNER: f64 = 0.9;
+
 /// Shorter beads are dropped, in line widths: the outermost ones, and those between loops. They
 /// leave less open than a start and a stop spoil; a letter's dot is longer.
 const SHORT: [f64; 2] = [0.4, 2.0];
@@ -43,24 +48,30 @@ const SHORT: [f64; 2] = [0.4, 2.0];
 /// Where two neighbouring samples are further apart, in line widths, a corner may lie between them.
 const CORNER: f64 = 0.6;
 
+/// Corners nearer to a sample are rounding errors: the sample is the corner (10 µm).
+const LEAST_CORNER: f64 = 100.0;
+
+/// How many samples behind a join a ring begins: its corner needs two samples on either side.
+const SEAM: usize = 3;
+
 /// Samples nearer than this part of their bead's width to an arc already have their bead.
 const SAME: f64 = 0.6;
 
 /// A place of a middle bead.
 #[derive(Debug, Clone, Copy)]
-struct Sample {
-    place: Place,
+pub(super) struct Sample {
+    pub(super) place: Place,
     /// How many loops lie on either side.
-    loops: u32,
+    pub(super) loops: u32,
     /// Whether this side lays the bead.
     leads: bool,
 }
 
 /// A run of neighbouring samples.
-type Arc = Vec<Sample>;
+pub(super) type Arc = Vec<Sample>;
 
-/// The middle beads of a layer.
-pub(super) fn beads(layout: &Layout<'_>) -> Vec<Wall> {
+/// The arcs along which middle beads run.
+pub(super) fn beads(layout: &Layout<'_>) -> Vec<Arc> {
     let mut first = 0;
     let lap = |contour: &Contour| {
         let lap = lap(contour, first, layout);
@@ -78,12 +89,15 @@ pub(super) fn beads(layout: &Layout<'_>) -> Vec<Wall> {
     all.extend(left.filter(|arc| length(arc) >= w));
     join(&mut all, w);
     for arc in &mut all {
-        sharpen(arc, w);
-        reach_end(arc, layout);
-        arc.reverse();
-        reach_end(arc, layout);
+        sharpen(arc, layout);
+        if !is_ring(arc) {
+            reach_end(arc, layout);
+            arc.reverse();
+            reach_end(arc, layout);
+        }
     }
-    all.iter().filter(|arc| is_long(arc, w)).map(wall).collect()
+    all.retain(|arc| is_long(arc, w));
+    all
 }
 
 /// The sides of middle beads, to find whether a place has one.
@@ -96,12 +110,19 @@ pub(super) fn near(beads: &[Wall], layout: &Layout<'_>) -> Near {
     Near::of_edges(all.collect(), 2.0 * layout.line_width)
 }
 
+/// Whether an arc ends where it begins.
+pub(super) fn is_ring(arc: &Arc) -> bool {
+    let ends = arc.first().zip(arc.last());
+    arc.len() > 3 && ends.is_some_and(|(a, b)| a.place.at == b.place.at)
+}
+
 fn is_long(arc: &Arc, w: f64) -> bool {
     let between = arc.iter().all(|s| s.loops > 0);
     length(arc) >= SHORT[usize::from(between)] * w
 }
 
-fn wall(arc: &Arc) -> Wall {
+/// The bead along an arc.
+pub(super) fn wall(arc: &Arc) -> Wall {
     let places: Vec<Place> = arc.iter().map(|s| s.place).collect();
     let depth = arc.iter().map(|s| s.loops).min().unwrap_or_default();
     let (mut path, mut widths) = tapered(&places);
@@ -166,7 +187,8 @@ fn sample(
     let (share, opposite) = layout.share(at, normal, guess).filter(|(share, _)| share.middle)?;
     let Share { width, loops, .. } = share;
     let middle = along(at, opposite.radius, normal);
-    let clear = layout.outline.is_free(middle, CLEAR * opposite.radius);
+    let clear = if opposite.corner { CLEAR_OF_CORNER } else { CLEAR };
+    let clear = layout.outline.is_free(middle, clear * opposite.radius);
     let place = Place { at: middle, width };
     clear.then_some(Sample { place, loops, leads: index < opposite.side })
 }
@@ -217,6 +239,9 @@ fn join(arcs: &mut Vec<Arc>, w: f64) {
         let ends = arc.first().zip(arc.last());
         let gap = ends.map_or(f64::MAX, |(a, b)| distance(a.place.at, b.place.at));
         if gap > 0.0 && gap <= NEIGHBOURS * w && length(arc) > 3.0 * NEIGHBOURS * w {
+            // A corner may lie between its ends: it begins a little further on.
+            let seam = SEAM.min(arc.len());
+            arc.rotate_left(seam);
             arc.extend(arc.first().copied());
         }
     }
@@ -260,8 +285,10 @@ fn reach_end(arc: &mut Arc, layout: &Layout<'_>) {
     last.place.at = at(far);
 }
 
-/// Adds the corners that samples leave out: near the outside of a corner nothing is opposite.
-fn sharpen(arc: &mut Arc, w: f64) {
+/// Adds the corners that samples leave out: near the outside of a corner nothing is opposite. The room
+/// of a sharp corner may hold a loop.
+fn sharpen(arc: &mut Arc, layout: &Layout<'_>) {
+    let w = layout.line_width;
     let at = |arc: &Arc, k: usize| arc[k].place.at;
     let mut k = 1;
     while k + 2 < arc.len() {
@@ -269,8 +296,9 @@ fn sharpen(arc: &mut Arc, w: f64) {
         let (before, after) = (way(at(arc, k - 1), a), way(b, at(arc, k + 2)));
         if distance(a, b) > CORNER * w
             && let Some(corner) = meet(a, before, b, after, NEIGHBOURS * w)
+            && let width = f64::midpoint(arc[k].place.width, arc[k + 1].place.width)
+            && layout.is_clear(corner, arc[k].loops, width)
         {
-            let width = f64::midpoint(arc[k].place.width, arc[k + 1].place.width);
             arc.insert(k + 1, Sample { place: Place { at: corner, width }, ..arc[k] });
             k += 1;
         }
@@ -295,8 +323,10 @@ fn meet(
     }
     let (ahead, back) = (cross(between, after) / turn, cross(between, before) / turn);
     let corner = along(a, ahead, before);
-    let near = distance(a, corner).at_least(distance(b, corner)) <= most;
-    (ahead > 0.0 && back < 0.0 && near).then_some(corner)
+    let (from, to) = (distance(a, corner), distance(b, corner));
+    // On a straight way the two meet where one of them begins.
+    let between = ahead > 0.0 && back < 0.0 && from.at_most(to) > LEAST_CORNER;
+    (between && from.at_least(to) <= most).then_some(corner)
 }
 
 fn length(arc: &Arc) -> f64 {

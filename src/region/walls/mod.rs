@@ -13,7 +13,8 @@
 //!    to each other ([`thin`]). The inset one further, cut in the same way, is the core.
 //! 2. Where the core is cut off, count the loops that are left. They and a middle bead, if there is
 //!    room for one, share the room evenly (`share_room`): loops are moved and widened
-//!    (`loops`), and the middle bead gets its share of the width (`middle`).
+//!    (`loops`), and the middle bead gets its share of the width (`middle`). Where walls meet, middle
+//!    beads run on into the room between them (`junctions`).
 //!
 //! So the loops that exist decide where middle beads run, the middle beads that exist decide how wide
 //! the loops are, and no place gets two counts. A
@@ -23,6 +24,7 @@
 //! beads.
 
 mod dots;
+mod junctions;
 mod loops;
 mod lost;
 mod middle;
@@ -102,7 +104,9 @@ fn around_cores(
         core => return (Walls { walls, core: None, lost_mm2 }, core),
     };
     let layout = Layout::new(contours, &levels, &core, params);
-    let beads = middle::beads(&layout);
+    let mut arcs = middle::beads(&layout);
+    junctions::run_on(&mut arcs, &layout);
+    let beads: Vec<Wall> = arcs.iter().map(middle::wall).collect();
     let near = middle::near(&beads, &layout);
     walls.iter_mut().for_each(|wall| loops::share(wall, &near, &layout));
     let lost_mm2 = (lost_mm2 - lost::under_beads(&beads)).max(0.0);
@@ -110,8 +114,8 @@ fn around_cores(
     (Walls { walls, core: Some(core), lost_mm2 }, None)
 }
 
-/// The loops of each depth, and the core if the layer `may_be_thin`. Also whether each contour has
-/// its loop at each depth, so that nothing is too thin.
+/// The loops of each depth, and the core if the layer `may_be_thin`. Also whether each loop goes all
+/// around at each depth, so that nothing is too thin.
 fn levels(
     contours: &[Contour],
     may_be_thin: bool,
@@ -126,7 +130,7 @@ fn levels(
         if may_be_thin {
             let cut;
             (level, cut) = thin::open(level, (outer, distance), depth, params);
-            whole &= !cut && level.len() == contours.len();
+            whole &= !cut && !lost::loses((outer, &level), distance, params);
         }
         levels.push(level);
     }
@@ -220,6 +224,12 @@ impl<'a> Layout<'a> {
         }
         let room = thickness + 2.0 * self.params.outside();
         Some((share_room(room, loops, self.params)?, opposite))
+    }
+
+    /// Whether a bead of this `width` at `at` lies on no loop deeper than `loops` and not on the core.
+    fn is_clear(&self, at: [f64; 2], loops: u32, width: f64) -> bool {
+        let deeper = &self.levels[loops as usize..];
+        deeper.iter().all(|level| level.is_free([at], f64::midpoint(self.line_width, width)))
     }
 
     /// Whether a loop of this depth, or the core, runs beside the place `at` of the contour.

@@ -55,6 +55,17 @@ pub(super) struct Opposite {
     pub radius: f64,
     /// The index of the side that it touches: sides count through all contours.
     pub side: u32,
+    /// Whether it touches no side there, but a corner that sticks into the part.
+    pub corner: bool,
+}
+
+/// What a circle touches.
+#[derive(Debug, Clone, Copy)]
+struct Touch {
+    radius: f64,
+    corner: bool,
+    /// Whether that is opposite to the place of the circle.
+    opposite: bool,
 }
 
 /// The sides of contours, sorted into cells.
@@ -105,22 +116,22 @@ impl Outline {
             None if near < self.most => self.touched(at, normal, self.most),
             touched => touched,
         };
-        let (radius, side) = touched?;
+        let (Touch { radius, corner, opposite }, side) = touched?;
         *guess = radius;
-        side.map(|side| Opposite { radius, side })
+        opposite.then_some(Opposite { radius, side, corner })
     }
 
-    /// The radius of the smallest circle at `at` that touches a side, if it is below `most`, and the
-    /// side if it is opposite.
-    fn touched(&self, at: [f64; 2], normal: [f64; 2], most: f64) -> Option<(f64, Option<u32>)> {
+    /// What the smallest circle at `at` that touches a side touches, if its radius is below `most`, and
+    /// the index of that side.
+    fn touched(&self, at: [f64; 2], normal: [f64; 2], most: f64) -> Option<(Touch, u32)> {
         let middle = along(at, most, normal);
         let area = Area::around(std::iter::once(middle), most);
         let mut best = most;
         let mut found = None;
         for side in self.grid.cells(area.corners()).flat_map(|cells| self.cells.of(cells)) {
-            if let Some((radius, opposite)) = touch(side, at, normal, best) {
-                best = radius;
-                found = Some((radius, opposite.then_some(side.index)));
+            if let Some(touch) = touch(side, at, normal, best) {
+                best = touch.radius;
+                found = Some((touch, side.index));
             }
         }
         found
@@ -139,9 +150,8 @@ impl Outline {
     }
 }
 
-/// The circle at `at` that touches `side` or its start, if it is smaller than `most`, and whether
-/// they are opposite to `at`.
-fn touch(side: &Side, at: [f64; 2], normal: [f64; 2], most: f64) -> Option<(f64, bool)> {
+/// The circle at `at` that touches `side` or its start, if it is smaller than `most`.
+fn touch(side: &Side, at: [f64; 2], normal: [f64; 2], most: f64) -> Option<Touch> {
     let mut best = None;
     let mut least = most;
     let m = side.normal();
@@ -152,7 +162,7 @@ fn touch(side: &Side, at: [f64; 2], normal: [f64; 2], most: f64) -> Option<(f64,
         let t = dot(way(side.from, centre), side.along);
         if radius < least && (0.0..=side.length).contains(&t) {
             least = radius;
-            best = Some((radius, facing >= OPPOSITE));
+            best = Some(Touch { radius, corner: false, opposite: facing >= OPPOSITE });
         }
     }
     let arm = way(at, side.from);
@@ -162,7 +172,7 @@ fn touch(side: &Side, at: [f64; 2], normal: [f64; 2], most: f64) -> Option<(f64,
         let radius = square / (2.0 * ahead);
         let facing = 2.0 * ahead * ahead / square.at_least(1.0) - 1.0;
         if radius < least && facing > BOUNDS {
-            best = Some((radius, facing >= OPPOSITE_CORNER));
+            best = Some(Touch { radius, corner: true, opposite: facing >= OPPOSITE_CORNER });
         }
     }
     best
