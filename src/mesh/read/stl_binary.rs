@@ -146,8 +146,10 @@ fn read_facets(
 
 /// Normal and corners of a record of [`RECORD`] bytes.
 fn vectors(record: &[u8]) -> [[f32; 3]; 4] {
-    let number = |at: usize| {
-        f32::from_le_bytes([record[at], record[at + 1], record[at + 2], record[at + 3]])
-    };
-    std::array::from_fn(|vector| std::array::from_fn(|axis| number(vector * 12 + axis * 4)))
+    let mut vectors = [[0.0; 3]; 4];
+    let (numbers, _) = record.as_chunks();
+    for (number, bytes) in vectors.as_flattened_mut().iter_mut().zip(numbers) {
+        *number = f32::from_le_bytes(*bytes);
+    }
+    vectors
 }
