@@ -12,7 +12,7 @@ use super::divide::LayerAreas;
 use super::first_skin::Both;
 use super::per_raster::Rasters;
 use super::rooms;
-use super::scan::around;
+use super::scan::{around, around_on};
 use crate::geom::Point;
 use crate::geom::islands::Islands;
 use crate::geom::polyline::LinePoint;
@@ -21,6 +21,7 @@ use crate::geom::spans::{Rows, Span, merge};
 use crate::pattern::Pattern;
 use crate::units::Coord;
 use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// An end may lie this far beyond what carries it, in quarters of a line's width: its own plastic
@@ -135,19 +136,24 @@ pub struct Floor<'a> {
 }
 
 impl Floor<'_> {
-    /// The stretches of the rows of `raster` that lie on its lines.
-    fn printed(&self, raster: Raster) -> Rows {
+    /// The stretches of the rows of `raster` that lie on its lines, as far as `ends` may reach.
+    fn printed(&self, raster: Raster, ends: &Ends) -> Rows {
+        let far = (LONGEST + 2) * self.line_width;
+        let is_near = |p: Point, q: Point| {
+            p.x.max(q.x) >= ends.along.start - far && p.x.min(q.x) <= ends.along.end + far
+        };
         let mut edges = Vec::new();
         for pattern in &self.patterns {
             let its = pattern.raster();
             let Some(areas) = self.areas.on(its) else { continue };
             let at = |p: &LinePoint| raster.frame.enter(its.frame.leave(Point { x: p.u, y: p.v }));
             for strand in pattern.strands(&areas.infill, self.line_width, self.line_width) {
-                let edge = |w: &[LinePoint]| (at(&w[0]), at(&w[1]), self.line_width / 2);
-                edges.extend(strand.windows(2).map(edge));
+                let points: Vec<Point> = strand.iter().map(at).collect();
+                let near = points.windows(2).filter(|w| is_near(w[0], w[1]));
+                edges.extend(near.map(|w| (w[0], w[1], self.line_width / 2)));
             }
         }
-        around(&edges, raster)
+        around_on(ends.rows.clone(), &edges, raster)
     }
 }
 
@@ -164,10 +170,8 @@ pub fn land(
     let own = [along, 1 - along].map(|r| rasters.skin(r));
     let (w, infill, below) =
         (floor.line_width, &areas.skin(along).infill, &floor.areas.skin(along).infill);
-    if !hangs(&skin[0], infill, below) {
-        return skin;
-    }
-    let printed = floor.printed(own[0]);
+    let Some(ends) = Ends::of(&skin[0], infill, below) else { return skin };
+    let printed = floor.printed(own[0], &ends);
     let more = beyond(&skin[0], &Around { infill, below, printed: &printed, line_width: w });
     let more = broad(more, floor.least_rows);
     if more.is_empty() {
@@ -215,18 +219,34 @@ fn broad(rows: Rows, least: i32) -> Rows {
     islands.select(|island| high[island].1 - high[island].0 + 1 >= least)
 }
 
-/// Whether an end of `skin` at `infill` may lie on nothing: there is sparse infill `below`.
-fn hangs(skin: &Rows, infill: &Rows, below: &Rows) -> bool {
-    skin.iter().any(|(j, row)| {
-        let (infill, below) = (infill.row(j), below.row(j));
-        let is_over = |u: Coord| below.iter().any(|s| s.start < u && u < s.end);
-        let hangs = |s: &Span| {
-            infill.iter().any(|room| {
-                room.start == s.end && is_over(s.end) || room.end == s.start && is_over(s.start)
-            })
-        };
-        row.iter().any(hangs)
-    })
+/// Where the ends lie that may lie on nothing.
+struct Ends {
+    rows: Range<i32>,
+    along: Span,
+}
+
+impl Ends {
+    /// The ends of `skin` at `infill` with sparse infill `below`; `None` if there are none.
+    fn of(skin: &Rows, infill: &Rows, below: &Rows) -> Option<Self> {
+        let mut ends: Option<Self> = None;
+        for (j, row) in skin.iter() {
+            let (infill, below) = (infill.row(j), below.row(j));
+            let is_over = |u: Coord| below.iter().any(|s| s.start < u && u < s.end);
+            let is_free = |u: Coord, right: bool| {
+                let is_at = |room: &Span| u == if right { room.start } else { room.end };
+                infill.iter().any(is_at) && is_over(u)
+            };
+            let both = row.iter().flat_map(|s| [(s.end, true), (s.start, false)]);
+            for (u, _) in both.filter(|&(u, right)| is_free(u, right)) {
+                let ends =
+                    ends.get_or_insert(Self { rows: j..j, along: Span { start: u, end: u } });
+                ends.rows.end = j + 1;
+                ends.along.start = ends.along.start.min(u);
+                ends.along.end = ends.along.end.max(u);
+            }
+        }
+        ends
+    }
 }
 
 #[cfg(test)]

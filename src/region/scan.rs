@@ -19,6 +19,7 @@ use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span, merge, subtract};
 use crate::geom::{Contour, Point, edges, side};
 use crate::units::{Bounded as _, Coord, between, nearest};
+use std::ops::Range;
 
 /// Rows this much above and below an edge are searched too (2 µm). Rounding the contours to the
 /// grid moves their ends by less. At 0 an inset may keep places near a vertex; a larger value only
@@ -100,7 +101,17 @@ impl Scan {
 /// each, in the raster's frame.
 #[must_use]
 pub fn around(edges: &[(Point, Point, Coord)], raster: Raster) -> Rows {
-    let all = edges.iter().map(|&(p, q, r)| Stretch::whole(p, q, r, raster));
+    around_on(i32::MIN..i32::MAX, edges, raster)
+}
+
+/// As [`around`], on the rows `wanted` only.
+#[must_use]
+pub fn around_on(wanted: Range<i32>, edges: &[(Point, Point, Coord)], raster: Raster) -> Rows {
+    let all = edges.iter().map(|&(p, q, r)| {
+        let Stretch { capsule, rows } = Stretch::whole(p, q, r, raster);
+        let rows = rows.start.max(wanted.start)..rows.end.min(wanted.end);
+        Stretch { capsule, rows }
+    });
     let mut chords = chords(&all.collect::<Vec<_>>(), raster);
     let mut out = Rows::starting_at(chords.first);
     for j in chords.range() {
@@ -134,10 +145,7 @@ struct Buckets<T> {
 
 impl<T: Copy + Default> Buckets<T> {
     /// Reserves room in the rows `range`: one item for each of `stretches` that reaches a row.
-    fn new(
-        range: std::ops::Range<i32>,
-        stretches: impl Iterator<Item = std::ops::Range<i32>>,
-    ) -> Self {
+    fn new(range: Range<i32>, stretches: impl Iterator<Item = Range<i32>>) -> Self {
         let first = range.start;
         let index = |j: i32| (j - first) as usize;
         // The change of the number of stretches from row to row.
@@ -157,7 +165,7 @@ impl<T: Copy + Default> Buckets<T> {
         Self { first, starts, ends, items: vec![T::default(); sum as usize] }
     }
 
-    fn range(&self) -> std::ops::Range<i32> {
+    fn range(&self) -> Range<i32> {
         self.first..self.first + self.ends.len() as i32
     }
 
@@ -245,7 +253,7 @@ fn wound(crossings: &[Crossing], out: &mut Vec<Span>) {
 /// A capsule around an edge, and the rows on which it matters.
 struct Stretch {
     capsule: Capsule,
-    rows: std::ops::Range<i32>,
+    rows: Range<i32>,
 }
 
 impl Stretch {
