@@ -8,7 +8,7 @@
 use super::params::SkinParams;
 use super::prepare::LayerRows;
 use crate::geom::raster::Raster;
-use crate::geom::spans::{Rows, Span, intersect};
+use crate::geom::spans::{Rows, Span, intersect, subtract};
 use crate::units::Coord;
 use std::sync::Arc;
 
@@ -40,9 +40,23 @@ pub fn exposed<'a>(
     params: &SkinParams,
 ) -> Rows {
     let Some(rows) = layers(k).and_then(|rows| rows.on(raster)) else { return Rows::default() };
-    let fill = &rows.fill;
-    let covered = covered(fill, k, raster, layers, params);
-    fill.minus(&covered).filter(|_, span| span.len() >= i64::from(LEAST_SKIN))
+    let cover = |rows: &'a LayerRows| rows.on(raster).map(|rows| &rows.cover);
+    let neighbours: Option<Vec<&Rows>> =
+        neighbours(k, layers, params).and_then(|all| all.into_iter().map(cover).collect());
+    let mut out = Rows::with_room(rows.fill.range().start, rows.fill.range().len(), 0);
+    let (mut covered, mut left) = (Covered::default(), Vec::new());
+    for (j, row) in rows.fill.iter() {
+        left.clear();
+        match &neighbours {
+            Some(neighbours) => {
+                covered.subtract(row, neighbours.iter().map(|c| c.row(j)), &mut left)
+            }
+            None => left.extend_from_slice(row),
+        }
+        let kept = left.iter().filter(|span| span.len() >= i64::from(LEAST_SKIN));
+        out.push_row(|spans| spans.extend(kept));
+    }
+    out
 }
 
 /// Divides the `fill` rows of a layer into skin and infill. `pitch` is the distance of the rows;
@@ -109,40 +123,38 @@ pub(super) fn neighbours<'a>(
     below.chain(above).collect()
 }
 
-/// The part of `fill` that all neighbours within the number of skin layers cover.
-fn covered<'a>(
-    fill: &Rows,
-    k: usize,
-    raster: Raster,
-    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
-    params: &SkinParams,
-) -> Rows {
-    let cover = |rows: &'a LayerRows| rows.on(raster).map(|rows| &rows.cover);
-    let neighbours: Option<Vec<&Rows>> =
-        neighbours(k, layers, params).and_then(|all| all.into_iter().map(cover).collect());
-    let mut out = Rows::with_room_of(fill, fill.range().start);
-    let (mut now, mut next) = (Vec::<Span>::new(), Vec::new());
-    for (j, row) in fill.iter() {
-        now.clear();
-        if let Some(neighbours) = &neighbours {
-            now.extend_from_slice(row);
-            for cover in neighbours {
-                let cover = cover.row(j);
-                // Mostly one span covers all there is.
-                if let ([c], [first, .., last] | [first @ last]) = (cover, &now[..])
-                    && c.start <= first.start
-                    && last.end <= c.end
-                {
-                    continue;
-                }
-                next.clear();
-                intersect(&now, cover, &mut next);
-                std::mem::swap(&mut now, &mut next);
-            }
+/// What all neighbours cover of a row; the lists are used again for each row.
+#[derive(Default)]
+struct Covered {
+    now: Vec<Span>,
+    next: Vec<Span>,
+}
+
+impl Covered {
+    /// Appends to `left` what one of the `covers` leaves of a `row`.
+    fn subtract<'a>(
+        &mut self,
+        row: &[Span],
+        covers: impl Iterator<Item = &'a [Span]>,
+        left: &mut Vec<Span>,
+    ) {
+        let ([first, .., last] | [first @ last]) = row else { return };
+        // Mostly one span covers all there is.
+        let is_whole =
+            |cover: &[Span]| matches!(cover, [c] if c.start <= first.start && last.end <= c.end);
+        let mut partial = covers.filter(|cover| !is_whole(cover)).peekable();
+        if partial.peek().is_none() {
+            return;
         }
-        out.push_row(|spans| spans.extend_from_slice(&now));
+        self.now.clear();
+        self.now.extend_from_slice(row);
+        for cover in partial {
+            self.next.clear();
+            intersect(&self.now, cover, &mut self.next);
+            std::mem::swap(&mut self.now, &mut self.next);
+        }
+        subtract(row, &self.now, left);
     }
-    out
 }
 
 /// Turns infill shorter than `least` between two pieces of skin into skin. Such a hole would
