@@ -143,8 +143,8 @@ pub fn outlines(
     for (j, index) in grid.all_runs() {
         if !seen[index] {
             grid.walk(j, index, &mut seen, &mut walked);
-            let outline = with_corners(&walked, pitch.max(columns.pitch));
-            out.push(moved(&outline, f64::from(inwards)));
+            let (outline, ring) = with_corners(&walked, pitch.max(columns.pitch));
+            out.push(moved(&outline, &ring, f64::from(inwards)));
         }
     }
     out
@@ -330,7 +330,7 @@ impl Ring {
 }
 
 /// An outline with the corners that lie within cells, and whether each point is one of these.
-fn with_corners(outline: &[Corner], cell: Coord) -> Vec<(Corner, bool)> {
+fn with_corners(outline: &[Corner], cell: Coord) -> (Vec<(Corner, bool)>, Ring) {
     let ring = Ring::new(outline.iter().map(|corner| corner.at));
     let mut out = Vec::with_capacity(ring.len() + 8);
     for (k, &p) in outline.iter().enumerate() {
@@ -351,13 +351,15 @@ fn with_corners(outline: &[Corner], cell: Coord) -> Vec<(Corner, bool)> {
             out.push((Corner { at, end: None, wall: p.wall && q.wall }, true));
         }
     }
-    out
+    // Most outlines bend too little for corners.
+    let whole = out.len() == ring.len();
+    let ring = if whole { ring } else { Ring::new(out.iter().map(|(corner, _)| corner.at)) };
+    (out, ring)
 }
 
 /// An outline moved inwards where it is at a wall. Ends of rows stay on their row. Points on
 /// columns that a corner has passed are dropped.
-fn moved(outline: &[(Corner, bool)], inwards: f64) -> Outline {
-    let ring = Ring::new(outline.iter().map(|(corner, _)| corner.at));
+fn moved(outline: &[(Corner, bool)], ring: &Ring, inwards: f64) -> Outline {
     let moved = |(k, (corner, _)): (usize, &(Corner, bool))| {
         if !corner.wall {
             return *corner;
@@ -391,7 +393,9 @@ fn moved(outline: &[(Corner, bool)], inwards: f64) -> Outline {
         let (corner, inserted) = outline[k];
         inserted || corner.end.is_some() || !(passed(k) || passed(ring.before(k, 1)))
     };
-    (0..ring.len()).filter(stays).map(|k| all[k]).collect()
+    let mut out = Outline::with_capacity(all.len());
+    out.extend((0..all.len()).filter(stays).map(|k| all[k]));
+    out
 }
 
 #[cfg(test)]

@@ -127,7 +127,7 @@ pub(super) fn strands(
             let span = &mut all[end.line].span;
             *(if end.side == Side::Left { &mut span.start } else { &mut span.end }) = at;
         }
-        let arcs = Arcs { outline, ends: &ends, lines, rows: region.rows, width };
+        let arcs = Arcs::new(outline, &ends, lines, region.rows, width);
         arcs.join(&mut all, &mut links);
         arcs.anchor(&mut all, f64::from(lines.anchor));
     }
@@ -159,24 +159,38 @@ fn ends(outline: &Outline, spans: &[(i32, Span)], lines: Places) -> Vec<End> {
 struct Arcs<'a> {
     outline: &'a Outline,
     ends: &'a [End],
+    /// How long each arc is.
+    lengths: Vec<f64>,
     lines: Places,
     rows: &'a Rows,
     width: Coord,
 }
 
-impl Arcs<'_> {
+impl<'a> Arcs<'a> {
+    fn new(
+        outline: &'a Outline,
+        ends: &'a [End],
+        lines: Places,
+        rows: &'a Rows,
+        width: Coord,
+    ) -> Self {
+        let mut arcs = Self { outline, ends, lengths: Vec::new(), lines, rows, width };
+        arcs.lengths = (0..ends.len()).map(|k| arcs.length(k)).collect();
+        arcs
+    }
+
     /// The places of arc `k` on the outline, with both ends.
-    fn places(&self, k: usize) -> impl DoubleEndedIterator<Item = usize> {
+    fn places(&self, k: usize) -> impl DoubleEndedIterator<Item = usize> + use<> {
         let n = self.outline.len();
         let (from, to) = (self.ends[k].at, self.ends[(k + 1) % self.ends.len()].at);
-        let to = if to > from { to } else { to + n };
-        (from..=to).map(move |k| k % n)
+        let (ahead, around) = if to > from { (to + 1, 0) } else { (n, to + 1) };
+        (from..ahead).chain(0..around)
     }
 
     fn length(&self, k: usize) -> f64 {
-        let places: Vec<usize> = self.places(k).collect();
-        let at = |k: usize| self.outline[k].at;
-        places.windows(2).map(|w| at(w[0]).distance(at(w[1]))).sum()
+        let places = self.places(k).map(|k| self.outline[k].at);
+        let nexts = self.places(k).skip(1).map(|k| self.outline[k].at);
+        places.zip(nexts).map(|(a, b)| a.distance(b)).sum()
     }
 
     /// The points between the first and the last of `points`, without those that matter little.
@@ -194,7 +208,7 @@ impl Arcs<'_> {
         }
         let longest = (LONGEST_JOIN * i64::from(self.width)) as f64;
         let short = |k: usize| {
-            let length = self.length(k);
+            let length = self.lengths[k];
             let line = |k: usize| all[self.ends[k % n].line].span.len();
             let shorter = line(k).min(line(k + 1));
             length <= longest && length <= (LONGEST_BY_LINE * shorter) as f64
@@ -229,7 +243,7 @@ impl Arcs<'_> {
         let left = |k: usize| {
             let next = self.ends[(k + 1) % n];
             let is_join = joined(all, k) == Some((next.line, next.side));
-            if is_join && n > 1 { 0.0 } else { self.length(k) - f64::from(self.width) }
+            if is_join && n > 1 { 0.0 } else { self.lengths[k] - f64::from(self.width) }
         };
         let mut left: Vec<f64> = (0..n).map(left).collect();
         for k in (0..n).filter(|&k| joined(all, k).is_none()).collect::<Vec<_>>() {
