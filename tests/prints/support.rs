@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use crate::common::{Solid, slice, solid::circle};
+use crate::common::{Kind, Solid, slice, solid::circle};
 use proptest::prelude::*;
 use slicer::check::finding::{Code, Finding};
 use slicer::check::terms::Terms;
@@ -63,5 +63,47 @@ fn support_over_a_slope_stands_on_it() {
         let run = slice(&part.stl(), "generic-marlin", &[("support.enabled", "true")]);
         let found = faults(&run.text);
         assert!(found.is_empty(), "{angle}: {found:?}");
+    }
+}
+
+/// How much support there is, mm of lines.
+fn length(solid: &Solid, set: &[(&str, &str)]) -> f64 {
+    let set: Vec<(&str, &str)> = [&[("support.enabled", "true")], set].concat();
+    let run = slice(&solid.stl(), "generic-marlin", &set);
+    let kinds = [Kind::Support, Kind::SupportInterface];
+    kinds.iter().flat_map(|&kind| run.print.of(kind)).map(|line| line.length()).sum()
+}
+
+/// A round or square ledge around a column.
+#[test]
+fn a_sliver_beyond_the_threshold_gets_no_support() {
+    let corners = [4, 48];
+    for (height, n) in [0.1, 0.2, 0.3].into_iter().zip(corners.iter().cycle()) {
+        let ledge = |reach: f64| {
+            let top = Solid::cylinder(8.0 + reach, 2.0, *n).shifted([0.0, 0.0, 4.8]);
+            Solid::cylinder(8.0, 6.0, *n).and(&top)
+        };
+        // Corners make the ledge of the square narrower than its radius says.
+        let side = (std::f64::consts::PI / *n as f64).cos();
+        let layers = height.to_string();
+        for angle in ["0", "30"] {
+            let set = [("layer_height", layers.as_str()), ("angle", angle)];
+            let of = |reach: f64| length(&ledge(reach / side), &set);
+            assert!(of(1.1 * height + 0.03) <= 0.0, "{height} {angle}");
+            assert!(of(2.0 * height + 0.1) > 50.0, "{height} {angle}");
+        }
+    }
+}
+
+/// A cone on its tip, steeper or flatter than the threshold.
+#[test]
+fn slopes_flatter_than_the_threshold_get_support() {
+    for (degrees, wanted) in [(30.0_f64, true), (46.0, false), (60.0, false)] {
+        for height in ["0.1", "0.2", "0.3"] {
+            let far = 6.0 / degrees.to_radians().tan();
+            let cone = Solid::tower(&[(circle(4.0, 48), 0.0), (circle(4.0 + far, 48), 6.0)]);
+            let found = length(&cone, &[("layer_height", height)]) > 0.0;
+            assert_eq!(found, wanted, "{degrees} {height}");
+        }
     }
 }
