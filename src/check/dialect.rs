@@ -45,16 +45,54 @@ const MARLIN_M: &[u32] = &[
 /// Marlin's M-codes from here on are rare ones (M700 and more), which all count as known.
 const MARLIN_RARE: u32 = 700;
 
+/// G-codes of RepRapFirmware 3.
+const RRF_G: &[u32] = &[
+    0, 1, 2, 3, 4, 10, 11, 17, 18, 19, 20, 21, 28, 29, 30, 31, 32, 38, 53, 54, 55, 56, 57, 58, 59,
+    60, 68, 69, 90, 91, 92, 93, 94,
+];
+
+/// M-codes of RepRapFirmware 3 below [`RRF_OWN`].
+const RRF_M: &[u32] = &[
+    0, 1, 2, 3, 4, 5, 17, 18, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 32, 36, 37, 38, 39, 42,
+    73, 80, 81, 82, 83, 84, 85, 92, 98, 99, 101, 102, 103, 104, 105, 106, 107, 108, 109, 110, 111,
+    112, 114, 115, 116, 117, 118, 119, 120, 121, 122, 140, 141, 143, 144, 150, 190, 191, 200, 201,
+    203, 204, 205, 206, 207, 208, 220, 221, 226, 260, 261, 280, 290, 291, 292, 300, 301, 302, 303,
+    304, 305, 307, 308, 309, 350, 374, 375, 376, 400, 401, 402, 404, 408, 409, 450, 451, 452, 453,
+    470, 471, 472, 486,
+];
+
+/// From here on RepRapFirmware's M-codes set it up, and one that is not its own may be a macro file of
+/// the user's: all count as known.
+const RRF_OWN: u32 = 500;
+
+/// G-codes of the Ultimaker 2.
+const ULTIMAKER_G: &[u32] = &[0, 1, 2, 3, 4, 10, 11, 28, 29, 30, 90, 91, 92];
+
+/// M-codes of the Ultimaker 2.
+const ULTIMAKER_M: &[u32] = &[
+    0, 1, 17, 18, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 42, 80, 81, 82, 83, 84, 85, 92,
+    104, 105, 106, 107, 109, 114, 115, 117, 119, 120, 121, 140, 190, 201, 202, 203, 204, 205, 206,
+    207, 208, 209, 218, 220, 221, 240, 280, 300, 301, 302, 303, 304, 350, 351, 400, 401, 500, 501,
+    502, 503, 540, 600, 601, 605, 606, 907, 908, 923, 928, 999,
+];
+
 /// Whether the firmware knows the command, or at least accepts it without a complaint.
 pub(super) fn knows(dialect: DialectName, letter: u8, number: u32) -> bool {
     let (g, m) = match dialect {
         DialectName::Makerbot => (GPX_G, GPX_M),
         DialectName::Klipper => (KLIPPER_G, KLIPPER_M),
         DialectName::Marlin => (MARLIN_G, MARLIN_M),
+        DialectName::Reprapfirmware => (RRF_G, RRF_M),
+        DialectName::Ultigcode => (ULTIMAKER_G, ULTIMAKER_M),
+    };
+    let all_from = match dialect {
+        DialectName::Marlin => MARLIN_RARE,
+        DialectName::Reprapfirmware => RRF_OWN,
+        _ => u32::MAX,
     };
     match letter {
         b'G' => g.contains(&number),
-        b'M' => m.contains(&number) || (dialect == DialectName::Marlin && number >= MARLIN_RARE),
+        b'M' => m.contains(&number) || number >= all_from,
         // Tools.
         b'T' => true,
         _ => false,

@@ -14,6 +14,11 @@ pub(super) struct Heat {
 }
 
 impl Heat {
+    /// Of a printer that heats the nozzle by itself before it reads the file.
+    pub(super) fn by_printer() -> Self {
+        Self { hot: true, ..Self::default() }
+    }
+
     /// A command for a heater.
     pub(super) fn set(&mut self, heating: &Heating) {
         if heating.heater == Heater::Bed {

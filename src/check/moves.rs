@@ -66,6 +66,8 @@ fn codes(print: &Print, terms: &Terms, found: &mut Findings, notes: &mut Vec<Str
         DialectName::Makerbot => "GPX",
         DialectName::Marlin => "Marlin",
         DialectName::Klipper => "Klipper",
+        DialectName::Reprapfirmware => "RepRapFirmware",
+        DialectName::Ultigcode => "the Ultimaker 2",
     };
     for (&(letter, number), &line) in &print.commands {
         if !dialect::knows(machine.dialect, letter, number) {
@@ -131,7 +133,7 @@ impl<'a> Walk<'a> {
             filament_area,
             layer: None,
             printing: print.start.end..last.max(print.start.end),
-            heat: Heat::default(),
+            heat: if print.summary.volumes_by > 0.0 { Heat::by_printer() } else { Heat::default() },
             stranger: None,
             heated_by_macro: None,
             is_cold_reported: false,

@@ -11,7 +11,7 @@ use slicer::diff::{Difference, Side, Tolerances, diff};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::profile::{self, Profile};
-use slicer::reader::{Cause, Print};
+use slicer::reader::{Cause, Firmware, Print};
 use std::path::Path;
 
 const DIFF_RULES: &str = "\
@@ -102,7 +102,14 @@ fn print((name, bytes): &(&str, Vec<u8>)) -> Result<Print> {
 
 fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Result<Side> {
     let settings = &clock.settings;
-    let options = Options { filament_diameter: settings.filament.diameter, ..Options::default() };
+    // Whatever the clock's dialect, both files are read alike; but an Ultimaker 2 knows what its own
+    // files leave to it.
+    let firmware = match input::firmware(settings) {
+        own @ Firmware::Ultimaker(_) => own,
+        _ => Firmware::default(),
+    };
+    let filament_diameter = settings.filament.diameter;
+    let options = Options { filament_diameter, firmware, ..Options::default() };
     let time = estimate(&mut bytes.as_slice(), name, &Limits::new(settings), options)?;
     Ok(Side::new(bytes, print, time))
 }

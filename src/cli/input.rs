@@ -1,8 +1,8 @@
 //! Path -> bytes of a G-code file, from a file or from standard input.
 
 use slicer::profile::{DialectName, Settings};
-use slicer::reader::Firmware;
-use slicer::reader::{Cause, Error};
+use slicer::reader::{Cause, Error, Firmware, OwnFilament};
+use slicer::units::MmPerS;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read as _};
 
@@ -37,6 +37,13 @@ pub(super) fn read(file: &str) -> Result<(&str, Vec<u8>), Error> {
 pub(super) fn firmware(settings: &Settings) -> Firmware {
     match settings.machine.dialect {
         DialectName::Marlin => Firmware::Marlin,
-        DialectName::Klipper | DialectName::Makerbot => Firmware::Other,
+        DialectName::Klipper | DialectName::Makerbot | DialectName::Reprapfirmware => {
+            Firmware::Other
+        }
+        DialectName::Ultigcode => Firmware::Ultimaker(OwnFilament {
+            diameter: settings.filament.diameter,
+            retraction: settings.retraction.length,
+            speed: MmPerS(settings.retraction.speed),
+        }),
     }
 }

@@ -34,6 +34,7 @@ use crate::plan::Toolpath;
 use crate::profile::template::{self, PrintFacts};
 use crate::profile::{Settings, dump};
 use cooling::{Cooled, Cooling};
+use dialect::Dialect;
 pub use error::{Error, Result};
 use fan::FanParams;
 use hosts::Thumbnail;
@@ -112,7 +113,8 @@ impl<'a> Writer<'a> {
         let block =
             template::render("machine.start_gcode", &settings.machine.start_gcode, &values)?;
         let e_mode = if settings.machine.relative_e { "M83" } else { "M82" };
-        let head = hosts::head(facts.layers, thumbnails);
+        // Its numbers are filled in at the end.
+        let head = dialect_head(settings, 0.0, 0.0) + &hosts::head(facts.layers, thumbnails);
         let start = format!("{head};TYPE:Custom\n{block}{e_mode}\nG92 E0\n");
         writer.out.put(start.as_bytes())?;
         Ok(writer)
@@ -187,6 +189,11 @@ impl<'a> Writer<'a> {
         }
         self.out.put(&tail)?;
         self.progress.fill_in(sums.times.total(), &mut self.out)?;
+        let plastic = sums.usage.filament() * self.settings.filament_area();
+        let head = dialect_head(self.settings, sums.times.total(), plastic);
+        if !head.is_empty() {
+            self.out.put_at(0, head.as_bytes())?;
+        }
         Ok(Some(sums))
     }
 
@@ -198,4 +205,10 @@ impl<'a> Writer<'a> {
         }
         Ok(())
     }
+}
+
+/// The lines that the dialect needs first of all.
+fn dialect_head(settings: &Settings, seconds: f64, plastic: f64) -> String {
+    let machine = &settings.machine;
+    Dialect::new(machine.dialect).head(seconds, plastic, machine.nozzle_diameter)
 }

@@ -64,6 +64,6 @@ impl Progress {
     }
 
     fn line(&self, percent: u64, minutes: u64) -> String {
-        self.dialect.progress(percent, minutes) + "\n"
+        self.dialect.progress(percent, minutes)
     }
 }

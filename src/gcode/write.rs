@@ -42,6 +42,8 @@ pub struct WriteParams {
     dialect: Dialect,
     relative_e: bool,
     fan: FanParams,
+    /// What E counts for each mm of filament.
+    e_per_mm: f64,
     tool: u32,
     /// The commands for temperatures that the second layer has and the first has not.
     after_first: Vec<String>,
@@ -60,9 +62,11 @@ impl WriteParams {
     /// Takes what formatting needs from `settings`.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
+        let dialect = Dialect::new(settings.machine.dialect);
         Self {
-            dialect: Dialect::new(settings.machine.dialect),
+            dialect,
             relative_e: settings.machine.relative_e,
+            e_per_mm: dialect.e_per_mm(settings.filament_area()),
             fan: FanParams::new(settings),
             tool: settings.machine.tool,
             after_first: after_first(settings),
@@ -115,7 +119,7 @@ struct Text<'a> {
     out: Vec<u8>,
     /// Filament used so far, mm.
     e: f64,
-    /// E as last written, 10⁻⁵ mm.
+    /// E as last written, 10⁻⁵ of its unit.
     written_e: i64,
     /// Position of the nozzle, thousandths of a mm.
     at: Option<[Thousandths; 2]>,
@@ -136,7 +140,7 @@ impl<'a> Text<'a> {
             params,
             out: Vec::new(),
             e,
-            written_e: ticks(e),
+            written_e: ticks(e * params.e_per_mm),
             at: None,
             z: None,
             feed: 0,
@@ -219,6 +223,9 @@ impl<'a> Text<'a> {
     }
 
     fn pull(&mut self, by: f64, feed: u32) {
+        if let Some([back, forth]) = self.params.dialect.own_retraction() {
+            return self.line(if by < 0.0 { back } else { forth });
+        }
         self.out.extend_from_slice(b"G1");
         self.e += by;
         self.push_e();
@@ -272,7 +279,7 @@ impl<'a> Text<'a> {
     /// Writes E as a rounded sum, or as the difference of two rounded sums: so rounding errors
     /// never add up.
     fn push_e(&mut self) {
-        let now = ticks(self.e);
+        let now = ticks(self.e * self.params.e_per_mm);
         let value = if self.params.relative_e { now - self.written_e } else { now };
         self.written_e = now;
         self.out.extend_from_slice(b" E");
@@ -305,6 +312,9 @@ impl<'a> Text<'a> {
 fn after_first(settings: &Settings) -> Vec<String> {
     let (filament, dialect) = (&settings.filament, Dialect::new(settings.machine.dialect));
     let differs = |first: f64, other: f64| (first - other).abs() > f64::EPSILON;
+    if !dialect.heats() {
+        return Vec::new();
+    }
     let nozzle = differs(settings.first_temperature(), filament.temperature)
         .then(|| dialect.nozzle(filament.temperature, settings.machine.tool));
     let bed = differs(settings.first_bed_temperature(), filament.bed_temperature)
@@ -312,9 +322,9 @@ fn after_first(settings: &Settings) -> Vec<String> {
     nozzle.into_iter().chain(bed).collect()
 }
 
-/// mm of filament in 10⁻⁵ mm.
-fn ticks(mm: f64) -> i64 {
-    nearest(mm * 100_000.0)
+/// A value of E in 10⁻⁵ of its unit.
+fn ticks(e: f64) -> i64 {
+    nearest(e * 100_000.0)
 }
 
 #[cfg(test)]

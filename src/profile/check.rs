@@ -19,6 +19,13 @@ const NOT_FOR_MAKERBOT: &[&str] = &[
     "M117", "M118", "M201", "M203", "M204", "M205",
 ];
 
+/// Codes by which a file would heat an Ultimaker 2, which heats for the material in it, or would
+/// make its E a length.
+const NOT_FOR_ULTIGCODE: &[&str] = &["M104", "M109", "M140", "M190", "M200"];
+
+/// Codes with which RepRapFirmware ends a job, heaters off.
+const ENDS_RRF: &[&str] = &["M0", "M1", "M2"];
+
 /// Checks what no single key can tell.
 ///
 /// # Errors
@@ -105,17 +112,20 @@ fn blocks(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
         let text = template::render(key, block, &values)
             .map_err(|source| ProfileError::Block { origin: blame.origin(&[key]), source })?;
         no_control(key, &text).map_err(|conflict| blame.error(&[key], conflict))?;
-        if machine.dialect == DialectName::Makerbot {
-            no_host_codes(key, &text).map_err(|conflict| blame.error(&[key], conflict))?;
-        }
+        let starts = key == "machine.start_gcode";
+        let (codes, why) = refused(machine.dialect, starts);
+        without(key, &text, codes, why).map_err(|conflict| blame.error(&[key], conflict))?;
     }
     let celsius = settings.first_bed_temperature();
-    if celsius > 0.0 && !machine.start_gcode.contains("{bed_temperature}") {
+    let heats = machine.dialect != DialectName::Ultigcode;
+    if celsius > 0.0 && heats && !machine.start_gcode.contains("{bed_temperature}") {
         let keys = ["filament.bed_temperature", "machine.start_gcode"];
         return Err(blame.error(&keys, Conflict::BedStaysCold { celsius }));
     }
+    // The writer says the mode after the block. Before it only the block's own moves need one, and a
+    // macro has its own.
     let says_relative = ["M83", "{e_mode}"].iter().any(|code| machine.start_gcode.contains(code));
-    if machine.relative_e && !says_relative {
+    if machine.relative_e && !says_relative && machine.start_gcode.lines().any(moves_filament) {
         let keys = ["machine.relative_e", "machine.start_gcode"];
         return Err(blame.error(&keys, Conflict::RelativeEUnsaid));
     }
@@ -131,12 +141,41 @@ fn no_control(block: &'static str, text: &str) -> Result<(), Conflict> {
     Ok(())
 }
 
-fn no_host_codes(block: &'static str, text: &str) -> Result<(), Conflict> {
+/// Whether a line of a block is a move with a word for E.
+fn moves_filament(line: &str) -> bool {
+    let mut words = line.split([';', '(']).next().unwrap_or_default().split_whitespace();
+    matches!(words.next(), Some("G0" | "G1")) && words.any(|word| word.starts_with('E'))
+}
+
+/// Codes that a block must not hold in this dialect, and what they would do.
+fn refused(dialect: DialectName, starts: bool) -> (&'static [&'static str], &'static str) {
+    match dialect {
+        DialectName::Makerbot => (
+            NOT_FOR_MAKERBOT,
+            "a file for GPX, which drops it or makes the printer wait for a host",
+        ),
+        DialectName::Ultigcode => (
+            NOT_FOR_ULTIGCODE,
+            "a file for an Ultimaker 2, which is set for its material by itself",
+        ),
+        DialectName::Reprapfirmware if starts => {
+            (ENDS_RRF, "a start block for RepRapFirmware, which ends the job there")
+        }
+        DialectName::Reprapfirmware | DialectName::Marlin | DialectName::Klipper => (&[], ""),
+    }
+}
+
+fn without(
+    block: &'static str,
+    text: &str,
+    codes: &[&str],
+    why: &'static str,
+) -> Result<(), Conflict> {
     for (index, line) in text.lines().enumerate() {
         let code = line.split([';', '(']).next().and_then(|code| code.split_whitespace().next());
-        if let Some(code) = code.filter(|code| NOT_FOR_MAKERBOT.contains(code)) {
+        if let Some(code) = code.filter(|code| codes.contains(code)) {
             let code = code.to_owned();
-            return Err(Conflict::HostCommand { block, line: index + 1, code });
+            return Err(Conflict::ForbiddenCode { block, line: index + 1, code, why });
         }
     }
     Ok(())

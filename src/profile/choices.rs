@@ -225,6 +225,10 @@ pub enum DialectName {
     Marlin,
     /// Klipper.
     Klipper,
+    /// RepRapFirmware, of Duet boards.
+    Reprapfirmware,
+    /// The Ultimaker 2's firmware, which heats and retracts by itself; E is plastic in mm³.
+    Ultigcode,
 }
 
 /// See [`Machine::origin`](super::Machine::origin).

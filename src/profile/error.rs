@@ -259,10 +259,10 @@ pub enum Conflict {
         /// The temperature.
         celsius: f64,
     },
-    /// Relative E that nothing tells the printer of.
+    /// A start block that pushes filament without saying how E counts.
     #[error(
-        "machine.relative_e = true, but machine.start_gcode contains neither M83 nor {{e_mode}}; \
-         put {{e_mode}} on a line of its own"
+        "machine.relative_e = true, but machine.start_gcode moves E and contains neither M83 nor \
+         {{e_mode}}; put {{e_mode}} on a line of its own before that"
     )]
     RelativeEUnsaid,
     /// A character that printers may take for anything, and terminals obey.
@@ -275,18 +275,17 @@ pub enum Conflict {
         /// The character.
         character: char,
     },
-    /// A command that GPX cannot have in a file.
-    #[error(
-        "{block}, line {line} of it: {code} must not be in a file for GPX, which drops it or \
-         makes the printer wait for a host; remove the line"
-    )]
-    HostCommand {
+    /// A command that the dialect cannot have in this block.
+    #[error("{block}, line {line} of it: {code} must not be in {why}; remove the line")]
+    ForbiddenCode {
         /// The block's key.
         block: &'static str,
         /// Line, from 1.
         line: usize,
         /// The command.
         code: String,
+        /// In what, and what it would do there.
+        why: &'static str,
     },
 }
 

@@ -28,6 +28,11 @@ pub fn meaning(name: &str) -> Option<Foreign> {
     })
 }
 
+/// Our keys, each with its names in other slicers.
+pub fn names() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
+    KEYS.iter().copied()
+}
+
 /// Our key, and what others call it.
 #[rustfmt::skip]
 const KEYS: &[(&str, &[&str])] = &[

@@ -14,7 +14,7 @@ macro_rules! shipped {
 }
 
 const BUILTIN: [&[(ProfileKind, &str, &str)]; 3] = [
-    shipped!(Printer, "printers", "zcube-dual" "replicator" "witbox-1" "generic-marlin" "generic-klipper"),
+    shipped!(Printer, "printers", "zcube-dual" "replicator" "replicator-2" "replicator-2x" "witbox-1" "witbox-2" "ender-3" "prusa-mk3s" "prusa-mk4" "voron-2.4" "ultimaker-2" "generic-marlin" "generic-klipper" "generic-reprapfirmware"),
     shipped!(Material, "materials", "pla" "petg" "abs" "asa" "tpu" "pla-thesis"),
     shipped!(Print, "prints", "standard" "draft" "fine" "strong" "one-wall" "thesis"),
 ];

@@ -14,6 +14,8 @@ pub(super) enum Mark {
     Width(f64),
     /// `;HEIGHT:`, mm.
     Height(f64),
+    /// `;FLAVOR:UltiGCode`: E is plastic in mm³, from here on.
+    Volumes,
 }
 
 /// The meaning of a comment, given without its `;`.
@@ -23,6 +25,7 @@ pub(super) fn mark(comment: &[u8]) -> Option<Mark> {
     let after = |prefix: &[u8]| comment.strip_prefix(prefix).map(<[u8]>::trim_ascii);
     match comment.first()? {
         b'T' => after(b"TYPE:").map(Role::of_name).map(Mark::Role),
+        b'F' if comment == b"FLAVOR:UltiGCode" => Some(Mark::Volumes),
         b'F' => after(b"FEATURE:").map(Role::of_name).map(Mark::Role),
         b'L' if comment == b"LAYER_CHANGE" => Some(Mark::Layer),
         b'L' => after(b"LAYER:").map(|_| Mark::Layer),

@@ -94,7 +94,7 @@ pub struct Motion {
 }
 
 /// What was read besides the events.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Summary {
     /// Lines in all.
     pub lines: u64,
@@ -104,10 +104,13 @@ pub struct Summary {
     pub first_unknown: u64,
     /// Retractions by the printer's own settings (G10, G11), whose length is not in the file.
     pub firmware_retractions: u64,
+    /// Cross-section of the filament by which volumes of E were taken for lengths, mm²; 0 where E is
+    /// a length. The printer of such a file (`;FLAVOR:UltiGCode`) heats by itself.
+    pub volumes_by: f64,
 }
 
 /// Whose rules a file is read by, where firmwares differ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Firmware {
     /// Filament is relative after M83 or G91: Klipper and most others.
     #[default]
@@ -115,6 +118,20 @@ pub enum Firmware {
     /// G90 and G91 say so of the filament as well, and the last of M82, M83, G90 and G91 counts:
     /// Marlin 2.
     Marlin,
+    /// As [`Self::Other`], and the printer is set up like this, which counts in files that leave it
+    /// to the printer (`;FLAVOR:UltiGCode`).
+    Ultimaker(OwnFilament),
+}
+
+/// What an Ultimaker 2 knows of its filament, and files for it do not say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OwnFilament {
+    /// Its diameter, mm.
+    pub diameter: f64,
+    /// How far G10 pulls it back, mm.
+    pub retraction: f64,
+    /// How fast, and how fast G11 pushes it out again.
+    pub speed: MmPerS,
 }
 
 /// Reads G-code and hands each event to `sink` with its line, counted from 1, in the file's order.

@@ -277,6 +277,12 @@ impl Builder {
         self.divide();
         let area = PI * diameter * diameter / 4.0;
         let print = &mut self.print;
+        // Read before the file said its diameter, which stands at its end.
+        if summary.volumes_by > 0.0 {
+            let scale = (summary.volumes_by / area) as f32;
+            print.moves.iter_mut().for_each(|step| step.filament *= scale);
+            print.summary.volumes_by = area;
+        }
         let start = (&print.start, SOME_HEIGHT);
         let height = |rise: f64| if rise > HIGHEST { SOME_HEIGHT } else { rise };
         let layers = print.layers.iter().map(|layer| (&layer.moves, height(layer.height)));

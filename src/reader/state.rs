@@ -8,6 +8,8 @@
 //! - F holds until the next F, times M220's factor;
 //! - Sailfish counts the filament of its two tools apart, as A and B; there E is the current tool's.
 //!   Elsewhere all tools share one counter;
+//! - E counts mm of filament, or mm³ of plastic in an Ultimaker 2's files, whose G10 and G11 are
+//!   moves of the filament where it is known how far they go;
 //! - role, width and height hold from one comment to the next;
 //! - arcs (G2, G3) become straight pieces.
 //!
@@ -18,11 +20,15 @@ use super::arc::Arc;
 use super::heat;
 use super::marks::{Mark, mark};
 use super::words::{self, Code, Words};
-use super::{Change, Event, Firmware, Motion, Role, Summary, Wait};
+use super::{Change, Event, Firmware, Motion, OwnFilament, Role, Summary, Wait};
 use crate::units::{MmPerMin, MmPerS};
+use std::f64::consts::PI;
 
 /// Feed before the file names one: Marlin's.
 const FIRST_FEED: MmPerS = MmPerS(25.0);
+
+/// Diameter of an Ultimaker 2's filament where nobody says it, mm: the only one that is sold for it.
+const ULTIMAKER_DIAMETER: f64 = 2.85;
 
 /// Millimetres in an inch.
 const INCH: f64 = 25.4;
@@ -53,6 +59,8 @@ pub(super) struct State {
     unit: f64,
     relative: bool,
     relative_filament: bool,
+    /// What the printer's own retraction has pulled back, mm.
+    pulled: f64,
     role: Role,
     width: Option<f64>,
     height: Option<f64>,
@@ -72,6 +80,7 @@ impl Default for State {
             unit: 1.0,
             relative: false,
             relative_filament: false,
+            pulled: 0.0,
             role: Role::Other,
             width: None,
             height: None,
@@ -108,6 +117,10 @@ impl State {
             Some(Mark::Width(width)) => self.width = Some(width),
             Some(Mark::Height(height)) => self.height = Some(height),
             Some(Mark::Layer) => sink(Event::Layer { marked: true }),
+            Some(Mark::Volumes) => {
+                let diameter = self.own().map_or(ULTIMAKER_DIAMETER, |own| own.diameter);
+                self.summary.volumes_by = PI * diameter * diameter / 4.0;
+            }
             None => sink(Event::Comment(comment.to_vec())),
         }
     }
@@ -160,6 +173,9 @@ impl State {
                     sink(Event::Heating(heating));
                 }
             }
+            (b'G', 10 | 11) if self.known_retraction() > 0.0 => {
+                self.retract(code.number == 10, sink)
+            }
             (b'G', 10 | 11) => {
                 self.summary.firmware_retractions += 1;
                 sink(Event::FirmwareRetraction { back: code.number == 10 });
@@ -194,6 +210,29 @@ impl State {
             _ => return is_harmless(code),
         }
         true
+    }
+
+    /// What the printer knows of its filament, if it is known here.
+    fn own(&self) -> Option<OwnFilament> {
+        if let Firmware::Ultimaker(own) = self.firmware { Some(own) } else { None }
+    }
+
+    /// How far G10 pulls back, mm; 0 where only the printer knows.
+    fn known_retraction(&self) -> f64 {
+        let own = self.own().filter(|_| self.summary.volumes_by > 0.0);
+        own.map_or(0.0, |own| own.retraction)
+    }
+
+    /// A move of the filament alone. A second G10 pulls no further back.
+    fn retract(&mut self, back: bool, sink: &mut dyn FnMut(Event)) {
+        let pulled = if back { self.known_retraction() } else { 0.0 };
+        let filament = std::mem::replace(&mut self.pulled, pulled) - pulled;
+        let feed = self.own().map_or(self.feed, |own| own.speed);
+        if filament != 0.0 {
+            let at = self.at.map(Option::unwrap_or_default);
+            let (role, width, height) = (Role::Retraction, self.width, self.height);
+            sink(Event::Move(Motion { from: at, to: at, filament, feed, role, width, height }));
+        }
     }
 
     fn straight(&mut self, words: Words<'_>, sink: &mut dyn FnMut(Event)) {
@@ -258,6 +297,12 @@ impl State {
 
     /// How far the filament is to move, mm.
     fn push_filament(&mut self, to: Option<(u8, f64)>) -> f64 {
+        let by = self.push_e(to);
+        if self.summary.volumes_by > 0.0 { by / self.summary.volumes_by } else { by }
+    }
+
+    /// How far E is to move.
+    fn push_e(&mut self, to: Option<(u8, f64)>) -> f64 {
         let Some((letter, value)) = to else { return 0.0 };
         let counter = self.counter(letter);
         let by_axes = self.relative && self.firmware != Firmware::Marlin;

@@ -6,6 +6,7 @@ use assert_cmd::Command;
 use boon::{Compiler, Schemas};
 use serde_json::Value;
 use slicer::profile::builtin_names;
+use slicer::profile::foreign;
 use slicer::profile::keys::{KEYS, Key, Kind};
 use std::fs;
 
@@ -29,10 +30,9 @@ fn shipped_profiles_are_as_their_schema_says_and_wrong_ones_are_not() {
     let is_valid = validator(&["profile", "schema"]);
     let read = |text: &str| toml::from_str::<Value>(text).unwrap();
     let mut count = 0;
-    let folders = ["profiles/printers", "profiles/materials", "profiles/prints"];
-    for entry in folders.iter().flat_map(|folder| fs::read_dir(folder).unwrap()) {
-        let path = entry.unwrap().path();
-        if path.extension().is_some_and(|ending| ending == "toml") {
+    for kind in ["printers", "materials", "prints"] {
+        for entry in fs::read_dir(format!("profiles/{kind}")).unwrap() {
+            let path = entry.unwrap().path();
             is_valid(&read(&fs::read_to_string(&path).unwrap())).unwrap();
             count += 1;
         }
@@ -129,17 +129,40 @@ fn default(key: &Key) -> String {
     }
 }
 
-#[test]
-fn the_list_of_keys_is_as_declared() {
+/// Our keys beside their names in other slicers.
+fn list_of_names() -> String {
+    let row = |(ours, theirs): (&str, &[&str])| {
+        let theirs: Vec<String> = theirs.iter().map(|name| format!("`{name}`")).collect();
+        format!("| `{ours}` | {} |\n", theirs.join(", "))
+    };
+    let rows: String = foreign::names().map(row).collect();
+    format!("\n| here | there |\n|---|---|\n{rows}\n")
+}
+
+/// Compares what stands in the list of profiles between two marks with what is `made` for it.
+fn is_as_declared(begin: &str, end: &str, made: &str) {
     let kept = fs::read_to_string(LIST).unwrap();
-    let (before, rest) = kept.split_once(BEGIN).unwrap();
-    let (_, after) = rest.split_once(END).unwrap();
-    let made = format!("{before}{BEGIN}{}{END}{after}", list_of_keys());
+    let (before, rest) = kept.split_once(begin).unwrap();
+    let (_, after) = rest.split_once(end).unwrap();
+    let made = format!("{before}{begin}{made}{end}{after}");
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
         fs::write(LIST, made).unwrap();
         panic!("{LIST} is rewritten; look at it, and unset UPDATE_GOLDEN");
     }
-    assert!(kept == made, "{LIST} does not list the keys as src/profile/settings/ declares them");
+    assert!(
+        kept == made,
+        "{LIST} does not list what src/profile/ declares; see \"All keys\" there"
+    );
+}
+
+#[test]
+fn the_list_of_keys_is_as_declared() {
+    is_as_declared(BEGIN, END, &list_of_keys());
+}
+
+#[test]
+fn the_list_of_names_is_as_declared() {
+    is_as_declared("<!-- names: begin -->\n", "<!-- names: end -->\n", &list_of_names());
 }
 
 #[test]
