@@ -168,12 +168,18 @@ mod tests {
                 continue;
             };
             for word in words {
-                let given = crate::profile::Override {
-                    key: key.name.clone(),
-                    value: word.clone(),
+                let set = |key: &str, value: &str| crate::profile::Override {
+                    key: key.to_owned(),
+                    value: value.to_owned(),
                     origin: crate::profile::ValueOrigin::Set,
                 };
-                let settings = load(["zcube-dual"], &[given]).unwrap().settings;
+                // No dialect refuses anything in blocks without a line.
+                let given = [
+                    set(&key.name, word),
+                    set("machine.start_gcode", ""),
+                    set("machine.end_gcode", ""),
+                ];
+                let settings = load(["zcube-dual"], &given).unwrap().settings;
                 let shown = dump(&settings).into_iter().find(|(name, _)| *name == key.name);
                 assert_eq!(shown.unwrap().1, format!("\"{word}\""));
             }
