@@ -162,7 +162,9 @@ fn an_ultimakers_file_says_what_its_printer_asks_for_and_nothing_more() {
     let number =
         |line: &str, key: &str| -> f64 { line.strip_prefix(key).unwrap().trim().parse().unwrap() };
     let (seconds, plastic) = (number(lines[1], ";TIME:"), number(lines[2], ";MATERIAL:"));
-    assert!((seconds - time.seconds).abs() < 0.01 * time.seconds, "{seconds} {}", time.seconds);
+    // The way from the origin to the print is not the slicer's: it does not know where the head is.
+    let way = f64::hypot(150.0, 150.0) / 90.0;
+    assert!((seconds + way - time.seconds).abs() < 1.5, "{seconds} {}", time.seconds);
     let area = std::f64::consts::PI * 2.85 * 2.85 / 4.0;
     let used: f64 = print.lines().map(|step| f64::from(step.filament) * area).sum();
     assert!((plastic - used).abs() < 1.0 + 1e-4 * used, "{plastic} {used}");
