@@ -37,7 +37,7 @@ runs=(
 # count MODEL ARGUMENT...: prints how many instructions it takes.
 count() {
     env -i valgrind --tool=callgrind --callgrind-out-file=/dev/null \
-        "$slicer" -q "$@" -p generic-marlin --threads 1 -o /dev/null 2>&1 |
+        "$slicer" -q "$@" -p generic-marlin -p "$bench/plain.toml" --threads 1 -o /dev/null 2>&1 |
         awk '/refs:/ { gsub(",", "", $NF); print $NF }' | grep . || die "cannot count: $*"
 }
 

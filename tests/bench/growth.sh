@@ -62,10 +62,10 @@ cost() {
     for ((round = 0; round < rounds; round++)); do
         # Unlike GNU time, the shell tells thousandths.
         TIMEFORMAT='%3U %3S'
-        { time "$slicer" -q "$@" -p generic-marlin --walls 1 --threads 1 -o "$work/out" 2>"$work/log"; } \
+        { time "$slicer" -q "$@" -p generic-marlin -p "$bench/plain.toml" --walls 1 --threads 1 -o "$work/out" 2>"$work/log"; } \
             2>&1 | awk '{ print 1000 * ($1 + $2) }'
     done | sort -n | head -n 1
-    /usr/bin/time -q -f %M -o "$work/kib" "$slicer" -q "$@" -p generic-marlin --walls 1 \
+    /usr/bin/time -q -f %M -o "$work/kib" "$slicer" -q "$@" -p generic-marlin -p "$bench/plain.toml" --walls 1 \
         --threads 1 -o "$work/out" 2>"$work/log" || die "$(cat "$work/log")"
     cat "$work/kib"
 }

@@ -1,5 +1,5 @@
 # Sourced by peers.sh, times.sh and broken.sh: where the slicers are, and how each is called so that
-# all do the same work (peers.ini, peers-cura.conf).
+# all do the same work (plain.toml, peers.ini, peers-cura.conf).
 #
 #   SLICER=...    our program, if not target/release/slicer
 #   PRUSA=... SLIC3R=... CURAENGINE=...   the others, if not found by name
@@ -52,7 +52,7 @@ command_of() {
     local program=$1 model=$2 out=$3
     shift 3
     case $program in
-    ours) command=("$slicer" -q "$model" -p generic-marlin --walls "${walls:-1}" "$@" -o "$out") ;;
+    ours) command=("$slicer" -q "$model" -p generic-marlin -p "$bench/plain.toml" --walls "${walls:-1}" "$@" -o "$out") ;;
     prusa) command=("$prusa" --export-gcode --load "$bench/peers.ini" "$@" "$model" -o "$out") ;;
     prusa_too)
         command=("$PRUSA_TOO" --export-gcode --load "$bench/peers.ini" "$@" "$model" -o "$out")

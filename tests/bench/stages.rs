@@ -40,6 +40,9 @@ const LARGE: [(&str, &str); 4] = [
     ("brain", "scan_brain_mni152_500k.stl"),
 ];
 
+/// Without what makes a print stick, cool and look well.
+const PLAIN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bench/plain.toml");
+
 /// A model, and what it becomes under the settings of the comparison: one wall, dual.
 struct Model {
     name: &'static str,
@@ -58,7 +61,7 @@ impl Model {
         };
         let overrides = [set("walls", "1"), set("dual.mode", "pair")];
         let settings =
-            profile::load(["generic-marlin"], &overrides).expect("it is shipped").settings;
+            profile::load(["generic-marlin", PLAIN], &overrides).expect("they are here").settings;
         let bytes = std::fs::read(&file).expect("the model can be read");
         let params = RegionParams::new(&settings);
         Self { name, file, bytes, settings, params }
