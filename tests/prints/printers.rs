@@ -92,13 +92,15 @@ fn every_printer_prints_every_material_in_every_way() {
 }
 
 #[test]
-fn each_of_them_prints_the_bracket() {
-    let [printers, materials, prints] = ProfileKind::ALL.map(names);
+fn one_printer_of_each_kind_prints_the_bracket() {
     let bracket = fixture("bracket.stl");
-    // Each printer, and each material and print at least once.
-    let jobs: Vec<[&str; 3]> = (0..printers.len())
-        .map(|k| [&*printers[k], &*materials[k % materials.len()], &*prints[k / 2 % prints.len()]])
-        .collect();
+    let jobs = [
+        ["replicator-2", "pla", "strong"],
+        ["prusa-mk3s", "petg", "standard"],
+        ["voron-2.4", "abs", "draft"],
+        ["ultimaker-2", "tpu", "one-wall"],
+        ["generic-reprapfirmware", "asa", "fine"],
+    ];
     jobs.par_iter().for_each(|names| passes(&bracket, *names));
 }
 
