@@ -123,7 +123,7 @@ fn bash_offers_profiles_and_keys() {
         asked("bash", &line)
     };
     let Some(profiles) = offered(&["part.stl", "-p", "generic-"]) else { return };
-    assert_eq!(profiles, "generic-klipper\ngeneric-marlin\n");
+    assert_eq!(profiles, "generic-klipper\ngeneric-marlin\ngeneric-reprapfirmware\n");
     assert_eq!(offered(&["check", "a.gcode", "--profile", "the"]).unwrap(), "thesis\n");
     // Bash is told to put no space after a key.
     assert_eq!(offered(&["part.stl", "--set", "speed.wa"]).unwrap(), "-o nospace\nspeed.wall=\n");
