@@ -59,8 +59,7 @@ mod tests {
     fn flags_of_other_slicers_are_answered_by_ours() {
         let command = Arguments::command();
         for (flag, told) in [
-            ("--brim", "a brim is not supported yet; "),
-            ("--skirt", "a skirt is not supported yet; "),
+            ("--raft", "a raft is not supported yet; "),
             ("--fill-density", "use --infill; "),
             ("--fill-density=20", "use --infill; "),
             ("--nozzle-diameter", "use --set machine.nozzle_diameter=VALUE; "),

@@ -1,4 +1,12 @@
-//! Report -> lines for people: the four-line summary, a fifth on slower layers, and more with -v.
+//! Report -> lines for people: the summary, and more with -v.
+//!
+//! 1. For which printer, material and print, and which files had a say.
+//! 2. The layers and the size of the layout.
+//! 3. The filament, and how it is shared out among roles.
+//! 4. How long it prints, and what dual injection did.
+//! 5. Which layers are printed slower to take their least time, if any are.
+//!
+//! Notes, such as of what was mended or of a brim that nobody asked for, stand before it.
 
 use slicer::mesh::{MeshReport, faults};
 use slicer::profile::{Profile, dump};

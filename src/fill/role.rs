@@ -159,13 +159,7 @@ impl Role {
             Self::TopSkin => TOP_SKIN,
             Self::Gap => GAP,
             Self::Support => SUPPORT,
-            Self::SupportInterface => RoleFacts {
-                name: "support interface",
-                annotation: "Support material interface",
-                fan: |cooling| cooling.interface_fan,
-                may_be_thick: false,
-                ..SUPPORT
-            },
+            Self::SupportInterface => SUPPORT_INTERFACE,
             // As fast as walls: what holds a part on the bed is laid with care.
             Self::Skirt => RoleFacts {
                 name: "skirt",
@@ -234,6 +228,14 @@ const SUPPORT: RoleFacts = RoleFacts {
     slows: Slows::First,
     fan: |_| None,
     factor: |extrusion| extrusion.support_factor,
+};
+
+const SUPPORT_INTERFACE: RoleFacts = RoleFacts {
+    name: "support interface",
+    annotation: "Support material interface",
+    fan: |cooling| cooling.interface_fan,
+    may_be_thick: false,
+    ..SUPPORT
 };
 
 /// A value for each role.

@@ -3,6 +3,11 @@
 //! Names are those of PrusaSlicer and Slic3r, of OrcaSlicer and Bambu Studio, and of
 //! CuraEngine, as keys of a profile and as flags. Whoever comes from there writes them
 //! by habit; a guess by spelling would answer with something else that looks alike.
+//!
+//! - A *meaning* is our key, whose unit may differ, or that there is no such thing here yet.
+//! - Each name has one meaning. A name that several of them use for different things has the most
+//!   usual one.
+//! - To take up a feature, move its names from the second table to a row of the first.
 
 /// What a name of another slicer means here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

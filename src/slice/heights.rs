@@ -65,7 +65,13 @@ impl Heights {
             let bottom = top.checked_sub(thickness).filter(|&bottom| bottom >= 0)?;
             Some(k + 1 - self.tops[..k + 1].partition_point(|&other| other <= bottom))
         };
-        self.tops.iter().enumerate().filter_map(below).max().unwrap_or(self.count())
+        if thickness <= 0 {
+            return 0;
+        }
+        // At the bed, whatever the first layer's height.
+        let first = self.tops.partition_point(|&top| top < thickness) + 1;
+        let above = self.tops.iter().enumerate().filter_map(below).max().unwrap_or_default();
+        first.min(self.count()).max(above)
     }
 
     /// Top of layer `k` above the bed.

@@ -17,7 +17,7 @@ static CUBE: LazyLock<String> =
 /// The cube with a line of its top missing and a command that Marlin does not know.
 fn faulty() -> String {
     let mut lines: Vec<&str> = CUBE.lines().collect();
-    let top = lines.iter().rposition(|line| *line == ";TYPE:Solid infill").unwrap();
+    let top = lines.iter().rposition(|line| *line == ";TYPE:Top solid infill").unwrap();
     let long = |line: &str| line.contains(" E") && line.contains(" F");
     let at = top + lines[top..].iter().position(|line| long(line)).unwrap();
     let (travel, rest) = lines[at].split_once(" E").unwrap();

@@ -179,6 +179,10 @@ impl Print {
         let mut values = BTreeMap::new();
         for word in words {
             let (letter, value) = word.split_at(1);
+            // `G28 W`: a letter alone.
+            if command == "G28" && value.is_empty() {
+                continue;
+            }
             let plain = value.bytes().all(|b| b.is_ascii_digit() || b == b'.' || b == b'-');
             let value = value.parse::<f64>().ok().filter(|_| plain);
             if values.insert(letter, value.ok_or("bad number")?).is_some() {

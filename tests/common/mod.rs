@@ -50,8 +50,25 @@ pub(crate) fn as_it_is() -> Placement {
     Placement::default()
 }
 
-/// The effective settings of `profile` with `set` laid over it, as `--set` would.
+/// What makes a print stick, cool and look well changes speeds, skins and first layers. Laws about
+/// other things are held without it.
+const PLAIN: [(&str, &str); 6] = [
+    ("cooling.min_layer_time", "0"),
+    ("speed.first_layer", "100"),
+    ("speed.first_layer_max", "999"),
+    ("brim.where", "off"),
+    ("top_thickness", "0"),
+    ("bottom_thickness", "0"),
+];
+
+/// The effective settings of `profile` with `set` laid over it, as `--set` would, and over what is
+/// [plain](PLAIN).
 pub(crate) fn settings(profile: &str, set: &[(&str, &str)]) -> Settings {
+    shipped(profile, &[&PLAIN, set].concat())
+}
+
+/// The effective settings of `profile` with `set` laid over it, as `--set` would.
+pub(crate) fn shipped(profile: &str, set: &[(&str, &str)]) -> Settings {
     let overrides: Vec<Override> = set
         .iter()
         .map(|(key, value)| Override {
@@ -87,10 +104,14 @@ pub(crate) fn slice_placed(
     set: &[(&str, &str)],
     placement: &Placement,
 ) -> Run {
+    slice_with(stl, settings(profile, set), placement)
+}
+
+/// Slices `stl` with these settings, laid out as `placement` says.
+pub(crate) fn slice_with(stl: &[u8], settings: Settings, placement: &Placement) -> Run {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("model.stl");
     std::fs::write(&path, stl).unwrap();
-    let settings = settings(profile, set);
     let (text, report) = slice_file(&path, &settings, placement).unwrap();
     let print = Print::read(&text).unwrap();
     Run { text, print, report, settings }
@@ -99,6 +120,11 @@ pub(crate) fn slice_placed(
 /// Slices `stl` in the middle of the bed.
 pub(crate) fn slice(stl: &[u8], profile: &str, set: &[(&str, &str)]) -> Run {
     slice_placed(stl, profile, set, &as_it_is())
+}
+
+/// As [`slice`], with all that makes a print stick, cool and look well.
+pub(crate) fn slice_shipped(stl: &[u8], profile: &str, set: &[(&str, &str)]) -> Run {
+    slice_with(stl, shipped(profile, set), &as_it_is())
 }
 
 /// The bytes of a file of `fixtures/`.

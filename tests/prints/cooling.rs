@@ -6,7 +6,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use crate::common::solid::{circle, rectangle};
-use crate::common::{Kind, Run, Solid, fixture, slice};
+use crate::common::{Kind, Run, Solid, fixture, slice_shipped};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use std::sync::LazyLock;
@@ -53,8 +53,8 @@ fn pair(name: &str, solid: &Solid, profile: &str, more: &[(&str, &str)], ratio: 
     let free: Vec<_> = set.iter().copied().chain([("cooling.min_layer_time", "0")]).collect();
     Pair {
         what: format!("{name}, {profile}, groups of {ratio}"),
-        cooled: slice(&solid.stl(), profile, &set),
-        free: slice(&solid.stl(), profile, &free),
+        cooled: slice_shipped(&solid.stl(), profile, &set),
+        free: slice_shipped(&solid.stl(), profile, &free),
         ratio,
     }
 }
@@ -196,7 +196,7 @@ fn what_is_inside_slows_down_first_and_outer_walls_last() {
     ] {
         let half = side / 2.0;
         let tower = Solid::cuboid([-half, -half, 0.0], [half, half, 6.0]);
-        let run = slice(&tower.stl(), "generic-marlin", &[]);
+        let run = slice_shipped(&tower.stl(), "generic-marlin", &[]);
         let took = seconds(&run);
         for (k, took) in took.iter().enumerate().take(20).skip(5) {
             let feed = |kinds: &[Kind]| feeds(&run, kinds)[k];
@@ -214,7 +214,7 @@ fn what_is_inside_slows_down_first_and_outer_walls_last() {
 fn bytes_do_not_depend_on_threads() {
     let text = |threads: usize, set: &[(&str, &str)]| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| slice(&cone().stl(), "generic-marlin", set).text)
+        pool.install(|| slice_shipped(&cone().stl(), "generic-marlin", set).text)
     };
     let ways: [&[(&str, &str)]; 3] = [
         &[],
@@ -237,7 +237,7 @@ fn a_print_without_quick_layers_is_the_same_with_and_without_a_least_time() {
     let brick = Solid::cuboid([0.0; 3], [12.0, 12.0, 4.0]).stl();
     let lines = |seconds: &str| {
         let set = [("dual.mode", "pair"), ("cooling.min_layer_time", seconds)];
-        let run = slice(&brick, "generic-marlin", &set);
+        let run = slice_shipped(&brick, "generic-marlin", &set);
         let lines = run.text.lines().filter(|line| !line.starts_with("; cooling.min_layer_time"));
         lines.map(str::to_owned).collect::<Vec<_>>()
     };
@@ -338,12 +338,13 @@ fn the_fan_goes_by_layer_time_and_role_in_each_dialect() {
         ("cooling.fan_full_from_layer", "5"),
         ("cooling.overhang_fan", "60"),
         ("cooling.interface_fan", "50"),
+        ("cooling.bridge_fan", "100"),
     ];
     let on = |percent: f64| (percent * 2.55).round() as u32;
     for (profile, switches) in
         [("generic-marlin", false), ("generic-klipper", false), ("zcube-dual", true)]
     {
-        let run = slice(&fixture("overhang.stl"), profile, &set);
+        let run = slice_shipped(&fixture("overhang.stl"), profile, &set);
         let mut kinds = std::collections::BTreeSet::new();
         for (layer, kind, power) in blows(&run) {
             let usual = [0.0, 20.0, 40.0, 60.0].get(layer).copied().unwrap_or(80.0);

@@ -6,7 +6,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use crate::common::checks::sound;
-use crate::common::{fixture, fixtures, slice};
+use crate::common::{fixture, fixtures, slice_shipped};
 use std::fs;
 
 /// Differing lines shown, at most.
@@ -18,7 +18,7 @@ const SET: [(&str, &str); 3] =
     [("dual.mode", "pair"), ("skin_layers", "2"), ("machine.thumbnails", "[]")];
 
 fn check(name: &str, profile: &str) {
-    let run = slice(&fixture(&format!("{name}.stl")), profile, &SET);
+    let run = slice_shipped(&fixture(&format!("{name}.stl")), profile, &SET);
     sound(&run.print, &run.settings, name);
     let file = format!("golden/{name}@{profile}.gcode");
     let path = fixtures().join(&file);

@@ -5,7 +5,7 @@
 use crate::common::section::distance;
 use crate::common::solid::{Outline, circle, rectangle, star};
 use crate::common::{
-    Kind, Move, Run, Section, Solid, as_it_is, checks, damage, slice, slice_placed,
+    Kind, Move, Run, Section, Solid, as_it_is, checks, damage, shipped, slice_shipped, slice_with,
 };
 use proptest::prelude::*;
 use slicer::mesh::Placement;
@@ -72,7 +72,7 @@ proptest! {
         let solid = Solid::prism(&outline, 0.0, 1.0);
         let (width_text, gap_text) = (width.to_string(), gap.to_string());
         let set = [("brim.where", "outside"), ("brim.width", &width_text), ("brim.gap", &gap_text)];
-        let run = slice(&solid.stl(), "generic-marlin", &set);
+        let run = slice_shipped(&solid.stl(), "generic-marlin", &set);
         let (line, section) = (run.settings.line_width, section(&run, &solid));
         let chains = first(&run, Kind::Brim);
         let lines = (width / line).round();
@@ -106,7 +106,7 @@ proptest! {
         let width_text = width.to_string();
         let place = if both { "both" } else { "inside" };
         let set = [("brim.where", place), ("brim.width", width_text.as_str())];
-        let run = slice(&solid.stl(), "generic-marlin", &set);
+        let run = slice_shipped(&solid.stl(), "generic-marlin", &set);
         let (line, section, middle) = (run.settings.line_width, section(&run, &solid), run.middle());
         let chains = first(&run, Kind::Brim);
         apart(&chains, line);
@@ -138,7 +138,7 @@ fn copies_with_a_brim_have_room_for_it() {
     let part = Solid::cuboid([0.0; 3], [12.0, 8.0, 2.0]);
     let placement = Placement { copies: 5, ..as_it_is() };
     let set = [("brim.where", "outside"), ("brim.width", "8")];
-    let run = slice_placed(&part.stl(), "generic-marlin", &set, &placement);
+    let run = slice_with(&part.stl(), shipped("generic-marlin", &set), &placement);
     let chains = first(&run, Kind::Brim);
     // 20 lines around each, none of which goes around two.
     assert_eq!(chains.len(), 5 * 20);
@@ -155,7 +155,7 @@ fn copies_with_a_brim_have_room_for_it() {
 fn brims_that_meet_grow_together() {
     let tower = Solid::cuboid([0.0; 3], [5.0, 5.0, 60.0]);
     let placement = Placement { copies: 4, ..as_it_is() };
-    let run = slice_placed(&tower.stl(), "generic-marlin", &[], &placement);
+    let run = slice_with(&tower.stl(), shipped("generic-marlin", &[]), &placement);
     let chains = first(&run, Kind::Brim);
     apart(&chains, run.settings.line_width);
     assert!(chains.len() < 4 * 12, "{} lines", chains.len());
@@ -169,7 +169,7 @@ fn a_brim_keeps_off_support_and_off_what_has_none() {
     {
         let mut set = set;
         set.extend([("support.enabled", "true"), ("brim.where", "outside"), ("brim.width", "4")]);
-        let run = slice(&hat.stl(), "generic-marlin", &set);
+        let run = slice_shipped(&hat.stl(), "generic-marlin", &set);
         let brim = first(&run, Kind::Brim);
         let support =
             [Kind::Support, Kind::SupportInterface].map(|kind| first(&run, kind)).concat();
@@ -182,7 +182,7 @@ fn a_brim_keeps_off_support_and_off_what_has_none() {
     // A tower with a brim of its own beside a plate without.
     let both = Solid::cuboid([0.0; 3], [5.0, 5.0, 40.0])
         .and(&Solid::cuboid([7.0, -20.0, 0.0], [60.0, 30.0, 2.0]));
-    let run = slice(&both.stl(), "generic-marlin", &[]);
+    let run = slice_shipped(&both.stl(), "generic-marlin", &[]);
     let (brim, section) = (first(&run, Kind::Brim), section(&run, &both));
     assert!(!brim.is_empty());
     apart(&brim, run.settings.line_width);
@@ -194,7 +194,7 @@ fn a_brim_keeps_off_support_and_off_what_has_none() {
 
 /// The reason for a brim, where nobody has decided.
 fn why(solid: &Solid) -> Option<String> {
-    let run = slice(&solid.stl(), "generic-marlin", &[("floating", "warn")]);
+    let run = slice_shipped(&solid.stl(), "generic-marlin", &[("floating", "warn")]);
     let printed = !first(&run, Kind::Brim).is_empty();
     assert_eq!(run.report.brim.is_some(), printed);
     run.report.brim.map(|brim| brim.why.join(", "))
@@ -278,7 +278,7 @@ fn what_does_not_fit_the_bed_is_refused_or_left_out() {
     std::fs::write(&path, Solid::cuboid([0.0; 3], [5.0, 5.0, 60.0]).stl()).unwrap();
     let corner = Placement { at: Some([4.0, 150.0]), ..as_it_is() };
     let run = |set: &[(&str, &str)]| {
-        crate::common::slice_file(&path, &crate::common::settings("generic-marlin", set), &corner)
+        crate::common::slice_file(&path, &shipped("generic-marlin", set), &corner)
     };
     let refused = |set: &[(&str, &str)]| {
         let error = run(set).unwrap_err();
@@ -302,7 +302,7 @@ fn a_skirt_runs_around_everything_at_its_distance() {
     let two = Solid::cuboid([0.0; 3], [10.0, 10.0, 3.0])
         .and(&Solid::cuboid([20.0, 5.0, 0.0], [30.0, 25.0, 3.0]));
     let set = [NO_BRIM, ("skirt.loops", "2"), ("skirt.distance", "3"), ("skirt.layers", "4")];
-    let run = slice(&two.stl(), "generic-marlin", &set);
+    let run = slice_shipped(&two.stl(), "generic-marlin", &set);
     let line = run.settings.line_width;
     let section = section(&run, &two);
     let all = run.print.chains(Kind::Brim);
@@ -316,7 +316,7 @@ fn a_skirt_runs_around_everything_at_its_distance() {
         assert!(here.is_empty() || (least - 3.0 - line / 2.0).abs() < SLACK, "{least}");
     }
     let long = [NO_BRIM, ("skirt.loops", "1"), ("skirt.min_length", "900")];
-    let run = slice(&two.stl(), "generic-marlin", &long);
+    let run = slice_shipped(&two.stl(), "generic-marlin", &long);
     let lengths: Vec<f64> =
         first(&run, Kind::Brim).iter().map(|chain| chain.iter().map(Move::length).sum()).collect();
     let all: f64 = lengths.iter().sum();
@@ -337,7 +337,7 @@ fn outlines_and_holes_are_moved_by_what_is_asked() {
         .and(&Solid::cuboid([-5.0, -5.0, 0.0], [5.0, 5.0, 3.0]).inside_out());
     let plain = [NO_BRIM];
     let moved = |set: &[(&str, &str)], k: usize| {
-        let run = slice(&frame.stl(), "generic-marlin", &[&plain, set].concat());
+        let run = slice_shipped(&frame.stl(), "generic-marlin", &[&plain, set].concat());
         // Walls lie half a line inside the part.
         [half_width(&run, k, 99.0) + 0.2, half_width(&run, k, 8.0) - 0.2]
     };
@@ -367,7 +367,7 @@ fn what_compensation_and_brim_make_is_found_clean() {
         &[("extrusion.first_layer", "110"), ("brim.where", "outside"), ("support.enabled", "true")],
     ];
     for set in settings {
-        let run = slice(&crate::common::fixture("bracket.stl"), "generic-marlin", set);
+        let run = slice_shipped(&crate::common::fixture("bracket.stl"), "generic-marlin", set);
         let verdict = damage::judge(&run.text, "bracket.stl", &as_it_is());
         let found: Vec<_> = damage::errors(&verdict).collect();
         assert!(found.is_empty(), "{set:?}: {found:?}");
@@ -388,7 +388,7 @@ fn the_first_layer_has_speeds_flow_and_temperatures_of_its_own() {
         ("generic-klipper", "M104 S230", "M140 S70"),
         ("zcube-dual", "M104 S230 T1", "M140 S70"),
     ] {
-        let run = slice(&part.stl(), profile, &temperatures);
+        let run = slice_shipped(&part.stl(), profile, &temperatures);
         let layers: Vec<&str> = run.text.split(";LAYER_CHANGE\n").collect();
         assert!(layers[0].contains(" S240") && layers[0].contains("M140 S85"), "{profile}");
         assert!(!layers[0].contains(" S230") && !layers[0].contains(" S70"), "{profile}");
@@ -405,7 +405,8 @@ fn the_first_layer_has_speeds_flow_and_temperatures_of_its_own() {
         }
     }
     let feeds = |set: &[(&str, &str)], layer: usize| -> Vec<f64> {
-        let run = slice(&part.stl(), "generic-marlin", &[&[("speed.wall", "80")], set].concat());
+        let run =
+            slice_shipped(&part.stl(), "generic-marlin", &[&[("speed.wall", "80")], set].concat());
         let beads = run.print.beads().filter(|step| step.layer == Some(layer));
         let mut feeds: Vec<f64> = beads.map(|step| step.feed / 60.0).collect();
         feeds.sort_by(f64::total_cmp);
@@ -419,7 +420,7 @@ fn the_first_layer_has_speeds_flow_and_temperatures_of_its_own() {
         [40.0, 45.0]
     );
     let filament = |flow: &str, layer: usize| -> f64 {
-        let run = slice(&part.stl(), "generic-marlin", &[("extrusion.first_layer", flow)]);
+        let run = slice_shipped(&part.stl(), "generic-marlin", &[("extrusion.first_layer", flow)]);
         run.print.beads().filter(|step| step.layer == Some(layer)).map(|step| step.e).sum()
     };
     assert!((filament("120", 0) / filament("100", 0) - 1.2).abs() < 1e-3);
@@ -430,7 +431,7 @@ fn the_first_layer_has_speeds_flow_and_temperatures_of_its_own() {
 fn what_is_not_needed_changes_no_move() {
     let stl = crate::common::fixture("bracket.stl");
     let moves = |set: &[(&str, &str)]| {
-        let text = slice(&stl, "generic-marlin", set).text;
+        let text = slice_shipped(&stl, "generic-marlin", set).text;
         text.split("; printer_model").next().unwrap().to_owned()
     };
     let plain = moves(&[NO_BRIM]);
@@ -446,7 +447,7 @@ fn what_is_too_thin_to_be_printed_gets_no_brim() {
     let both = tower.and(&Solid::cuboid([30.0, 0.0, 0.0], [30.3, 5.0, 40.0]));
     for set in [vec![], vec![("brim.where", "outside")]] {
         let set = [&set[..], &[("min_feature", "0.5")]].concat();
-        let run = slice(&both.stl(), "generic-marlin", &set);
+        let run = slice_shipped(&both.stl(), "generic-marlin", &set);
         let middle = run.middle()[0];
         let all = places(&first(&run, Kind::Brim));
         assert!(!all.is_empty() && all.iter().all(|(_, at)| at[0] < middle), "{set:?}");

@@ -156,6 +156,7 @@ fn lines_that_the_hot_end_cannot_follow_are_slowed_down_and_told() {
         ("skin", "speed.skin", 50.0),
         ("infill", "speed.infill", 60.0),
         ("thick infill", "speed.thick_infill", 60.0),
+        ("top skin", "speed.skin", 50.0),
     ];
     assert_eq!(asked, expected);
     let said = held.report.warnings[2].to_string();

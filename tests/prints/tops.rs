@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use crate::common::solid::{rectangle, star};
-use crate::common::{Kind, Move, Run, Section, Solid, slice};
+use crate::common::{Kind, Move, Run, Section, Solid, slice, slice_shipped};
 use proptest::prelude::*;
 
 /// The beads under `;TYPE:` and this name.
@@ -155,7 +155,8 @@ fn loops_shorter_than_a_length_are_slower() {
 
 /// The numbers of layers without sparse infill at the bottom and at the top of a block 6 mm high.
 fn solid_layers(set: &[(&str, &str)]) -> (usize, usize) {
-    let run = slice(&Solid::cuboid([0.0; 3], [16.0, 16.0, 6.0]).stl(), "generic-marlin", set);
+    let run =
+        slice_shipped(&Solid::cuboid([0.0; 3], [16.0, 16.0, 6.0]).stl(), "generic-marlin", set);
     let count = run.print.layers.len();
     let mut sparse = vec![false; count];
     for m in run.print.moves.iter().filter(|m| m.is_bead() && m.kind == Kind::Infill) {
