@@ -156,12 +156,9 @@ impl Maker<'_> {
             let turns = self.out[first..].iter_mut().zip(first as u32..);
             turns.for_each(|(path, turn)| path.shape = Shape::InTurn { turn });
         }
-        for bead in &skin.beads {
-            self.polyline(role, skin.layers, frame, bead, rounding);
-        }
         let gap = if self.params.gaps { Role::Gap } else { role };
-        for sliver in &slivers {
-            self.polyline(gap, skin.layers, frame, sliver, rounding);
+        for bead in skin.beads.iter().chain(&slivers) {
+            self.polyline(gap, skin.layers, frame, bead, rounding);
         }
         for bead in &skin.room_beads {
             self.polyline(Role::Infill, skin.layers, frame, bead, rounding);

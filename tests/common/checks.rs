@@ -20,15 +20,16 @@ pub(crate) fn bed(settings: &Settings) -> [[f64; 2]; 2] {
 /// All checks that need no model.
 pub(crate) fn sound(print: &Print, settings: &Settings, what: &str) {
     assert!(print.beads().next().is_some(), "{what}: nothing is printed");
-    heights_rise(print, what);
+    heights_rise(print, settings.retraction.z_hop, what);
     filament_is_pulled_and_given_back(print, settings, what);
     stays_on_the_bed(print, settings, what);
     walls_close(print, settings, what);
     progress_rises(print, what);
 }
 
-/// Each layer rises by its height, beads lie at their layer's z, and Z never falls within the print.
-pub(crate) fn heights_rise(print: &Print, what: &str) {
+/// Each layer rises by its height, beads lie at their layer's z, and Z never falls within the print, but
+/// from a lift by `hop`, mm.
+pub(crate) fn heights_rise(print: &Print, hop: f64, what: &str) {
     let mut below = 0.0;
     for (k, layer) in print.layers.iter().enumerate() {
         let rise = layer.z - below;
@@ -37,7 +38,8 @@ pub(crate) fn heights_rise(print: &Print, what: &str) {
     }
     let mut highest = 0.0;
     for m in print.moves.iter().filter(|m| m.layer.is_some() && m.kind != Kind::Custom) {
-        assert!(m.to[2] >= highest, "{what}: line {} lowers the nozzle", m.line);
+        let fallen = highest - m.to[2];
+        assert!(fallen <= hop + ROUNDING, "{what}: line {} lowers the nozzle", m.line);
         highest = m.to[2];
         if let Some(k) = m.layer.filter(|_| m.is_bead()) {
             let z = print.layers[k].z;

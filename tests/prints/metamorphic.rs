@@ -149,7 +149,7 @@ fn a_part_turned_under_its_lines_takes_the_same_material() {
 #[test]
 fn two_copies_take_twice_the_material() {
     let part = wide().stl();
-    for profile in ["generic-marlin", "zcube-dual"] {
+    for profile in ["generic-marlin", "generic-klipper"] {
         let one = slice(&part, profile, &[("dual.mode", "pair")]);
         let two = Placement { copies: 2, ..as_it_is() };
         let two = slice_placed(&part, profile, &[("dual.mode", "pair")], &two);

@@ -590,6 +590,10 @@ fn the_end_pulls_no_more_than_the_start_pushed() {
         let pushed: f64 = moves[..first_bead].iter().map(|m| m.e.max(0.0)).sum();
         let pulls: Vec<f64> =
             moves[last_bead + 1..].iter().filter(|m| m.e < 0.0).map(|m| m.e).collect();
+        // A macro primes as it likes, and an Ultimaker 2 retracts by itself.
+        if pushed == 0.0 {
+            continue;
+        }
         let length = run.settings.retraction.length;
         assert!((pulls[0] + length).abs() < 1e-3, "{profile}: pulls {pulls:?} mm at the end");
         let pulled: f64 = pulls[1..].iter().sum();

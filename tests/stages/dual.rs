@@ -4,7 +4,7 @@
 
 use crate::common::solid::circle;
 use crate::common::stack::{Stack, stack, stacks};
-use crate::common::{Kind, Run, Solid, fixture, settings, slice};
+use crate::common::{Kind, Run, Solid, fixture, settings, slice, slice_shipped};
 use proptest::prelude::*;
 use slicer::check::check;
 use slicer::check::finding::Code;
@@ -556,7 +556,8 @@ fn compare_reports_every_mode_and_what_it_saves() {
     assert!((of(pair, "filament_mm") / of(plain, "filament_mm") - 1.0).abs() < 0.02);
     assert!(ways.iter().all(|way| of(way, "time_s") <= of(plain, "time_s")));
     // As slicing itself reports it.
-    let report = slice(&fixture("bracket.stl"), "generic-marlin", &[("dual.mode", "pair")]).report;
+    let set = [("dual.mode", "pair")];
+    let report = slice_shipped(&fixture("bracket.stl"), "generic-marlin", &set).report;
     assert!((report.time.total_s - of(pair, "time_s")).abs() < 1e-9);
 }
 
