@@ -126,7 +126,7 @@ pub(crate) fn list(shelf: &Shelf) -> Result<String> {
     for kind in ProfileKind::ALL {
         let _ = writeln!(text, "{kind}s");
         for found in all.iter().filter(|found| found.kind == Some(kind)) {
-            let _ = write!(text, "  {:<20} {}", found.name, found.description()?);
+            let _ = write!(text, "  {:<23} {}", found.name, found.description()?);
             if found.path.is_some() {
                 let _ = write!(text, " ({})", found.shown);
             }

@@ -132,9 +132,13 @@ pub fn slow_speeds(settings: &Settings) -> Vec<Warning> {
     settings.slow_speeds().into_iter().map(warning).collect()
 }
 
-/// Lines that are slowed down since the hot end cannot melt as fast.
+/// Lines that are slowed down since the hot end cannot melt as fast. Where a material asks for less
+/// than that, it is what it says that it needs.
 fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
     let mut warnings = Vec::new();
+    if settings.max_volumetric_speed() < settings.machine.max_volumetric_speed {
+        return warnings;
+    }
     for (role, lowered) in flows.lowered.iter() {
         for (thick, lowered) in lowered.iter() {
             warnings.extend(lowered.map(|lowered| Warning::FlowLimited {

@@ -164,6 +164,15 @@ fn lines_that_the_hot_end_cannot_follow_are_slowed_down_and_told() {
 }
 
 #[test]
+fn a_material_that_melts_slowly_is_printed_slower_without_a_word() {
+    let run =
+        slice(&fixture("cube_20.stl"), "generic-marlin", &[("filament.max_volumetric_speed", "3")]);
+    assert!(run.report.warnings.is_empty(), "{:?}", run.report.warnings);
+    let flow = &run.report.flow;
+    assert!(flow.limit_mm3_s == 3.0 && flow.largest_mm3_s <= 3.0 && flow.largest_mm3_s > 2.9);
+}
+
+#[test]
 fn a_price_makes_a_cost() {
     let line = |run: &Run| {
         let line = run.text.lines().find_map(|l| l.strip_prefix("; filament cost = "));
