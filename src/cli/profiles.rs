@@ -1,4 +1,11 @@
 //! Flags and environment -> profile: which profiles a run asks for, and where they are looked for.
+//!
+//! - *Wanted* are the profiles that `-p`, `--material` and `--print` name, in this order; later ones win.
+//! - The *shelf* is where names are found: the folders of the environment, then the user's own.
+//! - *Overrides* lie over all profiles: first those of `--set`, then those of flags.
+//!
+//! All commands that take profiles take them by [`ProfileArgs`]. Those that only look for names take
+//! [`ShelfArgs`].
 
 use super::words;
 use anyhow::Result;
@@ -72,8 +79,7 @@ impl ProfileArgs {
     /// # Errors
     /// As [`Self::load`].
     pub(crate) fn load_after(&self, names: &[String]) -> Result<Profile> {
-        let wanted: Vec<Wanted> = names.iter().map(Wanted::any).chain(self.wanted()).collect();
-        Ok(profile::load_from(&self.shelf.shelf(), &wanted, &self.overrides()?)?)
+        self.lay(names.iter().map(Wanted::any).chain(self.wanted()), [])
     }
 
     /// The name as it is loaded by: a bare one that finds no profile but is a file is meant as that.
@@ -87,9 +93,19 @@ impl ProfileArgs {
     /// # Errors
     /// What is wrong with a profile or a value.
     pub(crate) fn load(&self, more: impl IntoIterator<Item = Override>) -> Result<Profile> {
+        self.lay(self.wanted(), more)
+    }
+
+    /// Loads `wanted`, and lays `--set` and then `more` over it.
+    fn lay(
+        &self,
+        wanted: impl IntoIterator<Item = Wanted>,
+        more: impl IntoIterator<Item = Override>,
+    ) -> Result<Profile> {
+        let wanted: Vec<Wanted> = wanted.into_iter().collect();
         let mut overrides = self.overrides()?;
         overrides.extend(more);
-        Ok(profile::load_from(&self.shelf.shelf(), &self.wanted(), &overrides)?)
+        Ok(profile::load_from(&self.shelf.shelf(), &wanted, &overrides)?)
     }
 
     fn wanted(&self) -> Vec<Wanted> {

@@ -107,7 +107,8 @@ impl Primed {
 
 fn primed(settings: &Settings, facts: &PrintFacts) -> Result<Vec<Primed>> {
     let block = &settings.machine.start_gcode;
-    let text = template::render("machine.start_gcode", block, &template::values(settings, facts))
+    let values = template::start_values(settings, facts);
+    let text = template::render("machine.start_gcode", block, &values)
         .map_err(crate::gcode::Error::from)?;
     let (mut source, diameter) = (text.as_bytes(), settings.filament.diameter);
     let read = Print::read_as(&mut source, Firmware::default(), diameter);

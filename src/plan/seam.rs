@@ -17,6 +17,7 @@
 //! 3. Inner walls begin at the place nearest to a mark of their island.
 
 use crate::fill::{Path, PathPoint, Shape};
+use crate::geom::nest::extent;
 use crate::geom::segment::{along, nearest_part, way};
 use crate::geom::{Point, double_area};
 use crate::profile::Seam;
@@ -149,7 +150,7 @@ pub(super) fn cut(wall: &mut Path, gap: Coord) {
 
 /// Where a wall goes on with the line of one of the marks `below`.
 fn followed(wall: &Path, below: &[Point]) -> Option<Place> {
-    let (low, high) = bounds(wall);
+    let (low, high) = extent(wall.points.iter().map(|point| &point.at))?;
     let reach = FOLLOWED as Coord;
     let is_near = |mark: &Point| {
         let beside = mark.x < low.x - reach || mark.x > high.x + reach;
@@ -274,15 +275,6 @@ fn begin_at(wall: &mut Path, Place { from, at, .. }: Place) {
 fn rearmost(wall: &Path) -> usize {
     let key = |&k: &usize| (-i64::from(wall.points[k].at.y), wall.points[k].at.x);
     (0..wall.points.len() - 1).min_by_key(key).unwrap_or_default()
-}
-
-/// The corners of the box around a wall.
-fn bounds(wall: &Path) -> (Point, Point) {
-    let start = wall.start();
-    wall.points.iter().fold((start, start), |(low, high), PathPoint { at, .. }| {
-        let low = Point { x: low.x.min(at.x), y: low.y.min(at.y) };
-        (low, Point { x: high.x.max(at.x), y: high.y.max(at.y) })
-    })
 }
 
 fn is_hole(wall: &Path) -> bool {

@@ -25,16 +25,17 @@ pub(super) const NOT_DUMPED: &[&str] = &["description", "machine.start_gcode", "
 /// [`KEYS`](super::keys::KEYS). What a G-code file holds as comments.
 #[must_use]
 pub fn dump(settings: &Settings) -> Vec<(String, String)> {
-    let mut lines = all(settings);
-    lines.retain(|(key, _)| !NOT_DUMPED.contains(&key.name.as_str()));
-    let lines = lines.into_iter().map(|(key, value)| (key.name.clone(), one_line(&value)));
+    let mut lines = values(settings);
+    lines.retain(|(key, _)| !NOT_DUMPED.contains(&key.as_str()));
     std::iter::once((FORMAT_KEY.to_owned(), SETTINGS_FORMAT.to_string())).chain(lines).collect()
 }
 
 /// Every key that has a value, as dotted key and TOML value on one line.
 #[must_use]
 pub fn values(settings: &Settings) -> Vec<(String, String)> {
-    all(settings).into_iter().map(|(key, value)| (key.name.clone(), one_line(&value))).collect()
+    let root = table_of(settings);
+    let line = |key: &Key| Some((key.name.clone(), one_line(value_in(&root, key)?)));
+    KEYS.iter().filter_map(line).collect()
 }
 
 /// The whole profile as a TOML file that gives the same settings again: every key there is,
@@ -66,12 +67,6 @@ pub fn document(profile: &Profile, explain: bool) -> String {
         text.push('\n');
     }
     text
-}
-
-/// Every key that has a value, in the order of the table of keys.
-fn all(settings: &Settings) -> Vec<(&'static Key, Value)> {
-    let root = table_of(settings);
-    KEYS.iter().filter_map(|key| Some((key, value_in(&root, key)?.clone()))).collect()
 }
 
 fn table_of(settings: &Settings) -> Value {
