@@ -70,7 +70,7 @@ pub mod units;
 pub mod warning;
 
 pub use job::{Job, Model, NAME};
-pub use pipeline::place::{bed, place, spaced};
+pub use pipeline::place::{bed, place, suited};
 pub use pipeline::spool::slice_to;
 
 use error::{Error, Refusal, Result};
@@ -95,12 +95,12 @@ pub fn slice(
     progress: &progress::Progress,
 ) -> Result<report::Report> {
     let bed = bed(&job.settings.machine);
-    let placement = spaced(&job.placement, &job.settings);
+    let placement = suited(&job.placement, &job.settings);
     let placed = place(&job.models, &placement, &bed, progress)?;
     slice_placed(job, &placed, out, progress)
 }
 
-/// As [`slice()`], of the models as [`place`] gave them, [`spaced`] as the settings need it.
+/// As [`slice()`], of the models as [`place`] gave them, [`suited`] to the settings.
 ///
 /// # Errors
 /// As [`slice()`].

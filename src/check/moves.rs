@@ -4,7 +4,7 @@
 //! much filament is pulled back, which layer it is. Each move is checked for:
 //! - plastic pushed out before the nozzle was set and waited for (once a file);
 //! - filament that is still pulled back when a line begins, or pushed out more than was pulled back;
-//! - places outside the machine's volume;
+//! - lines outside the machine's volume, other moves beyond the nozzle's reach;
 //! - speeds in x and y beyond the machine's, and more plastic per second than the hot end melts.
 //!   Speeds in z and of the filament alone are not judged: firmwares cap them, and slicers rely on
 //!   that. A line that rises is as slow as the cap on z makes it.
@@ -161,8 +161,9 @@ impl<'a> Walk<'a> {
         let before = found.len();
         self.retraction(index, step, found);
         self.cold(step, found);
-        if step.is_line() || self.printing.contains(&index) {
-            self.volume(step, found);
+        let printing = self.printing.contains(&index);
+        self.place(step, printing, found);
+        if step.is_line() || printing {
             self.speed(step, found);
         }
         // All of them lie where the move ends.
@@ -226,20 +227,25 @@ impl<'a> Walk<'a> {
         found.add(Finding::of(Code::ColdExtrusion, pushed, "mm", text.to_owned()));
     }
 
-    fn volume(&self, step: &Step, found: &mut Findings) {
+    /// Lines of the print must lie in the print volume. Travels, and all that start and end blocks do,
+    /// must stay where the nozzle may go.
+    fn place(&self, step: &Step, printing: bool, found: &mut Findings) {
         let Some(machine) = self.machine else { return };
+        let lies = printing && step.is_line();
+        let [low, high] = if lies { machine.volume } else { machine.reach };
         let beyond = |axis: usize| {
             let at = f64::from(step.to[axis]);
-            (machine.low[axis] - at).max(at - machine.high[axis])
+            (low[axis] - at).max(at - high[axis])
         };
         let (axis, out) = (0..3)
             .map(|axis| (axis, beyond(axis)))
             .max_by(|a, b| a.1.total_cmp(&b.1))
             .unwrap_or_default();
         if out > ROUNDING {
-            let (low, high) = (machine.low[axis], machine.high[axis]);
+            let (low, high, out) = (low[axis], high[axis], short(out));
             let axis = ["x", "y", "z"][axis];
-            let text = format!("{} mm beyond the machine's {axis} of {low} to {high}", short(out));
+            let whose = if lies { "machine's" } else { "nozzle's" };
+            let text = format!("{out} mm beyond the {whose} {axis} of {low} to {high}");
             found.add(Finding::of(Code::OutsideVolume, out, "mm", text));
         }
     }

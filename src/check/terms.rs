@@ -1,6 +1,6 @@
 //! Settings and a file's own comments -> Terms: what a file is judged by.
 
-use crate::profile::{DialectName, ExtrusionModel, Origin, Settings};
+use crate::profile::{DialectName, ExtrusionModel, Settings};
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};
 use std::f64::consts::PI;
@@ -30,10 +30,10 @@ pub struct Terms {
 pub struct Machine {
     /// Its firmware.
     pub dialect: DialectName,
-    /// Lowest x, y and z that the nozzle reaches, mm.
-    pub low: [f64; 3],
-    /// Highest x, y and z, mm.
-    pub high: [f64; 3],
+    /// The lowest and the highest corner of the print volume, where lines may lie, mm.
+    pub volume: [[f64; 3]; 2],
+    /// The lowest and the highest corner of where the nozzle may go, mm.
+    pub reach: [[f64; 3]; 2],
     /// Highest speeds in x, y, z and of the filament, mm/s.
     pub speed: [f64; 4],
     /// Plastic that it melts, mm³/s.
@@ -116,16 +116,11 @@ fn flow(own: &Settings) -> [f64; 3] {
 impl Machine {
     fn new(settings: &Settings) -> Self {
         let machine = &settings.machine;
-        let size = [machine.bed_width, machine.bed_depth];
-        let low = match machine.origin {
-            Origin::Centre => size.map(|side| -side / 2.0),
-            Origin::FrontLeft => [0.0; 2],
-        };
         let limits = &settings.limits;
         Self {
             dialect: machine.dialect,
-            low: [low[0], low[1], 0.0],
-            high: [low[0] + size[0], low[1] + size[1], machine.bed_height],
+            volume: machine.volume(),
+            reach: machine.nozzle_reach(),
             speed: [limits.speed_x, limits.speed_y, limits.speed_z, limits.speed_e],
             flow: settings.max_volumetric_speed(),
         }

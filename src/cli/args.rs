@@ -337,6 +337,7 @@ impl PlaceArgs {
             gap: GAP_MM,
             unit: unit(&self.unit),
             scale: self.scale,
+            stretch: [1.0; 3],
             rotate: self.rotate,
             sink: self.sink,
             at: self.at,

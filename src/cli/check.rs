@@ -46,10 +46,10 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
         None
     } else {
         let models: Vec<slicer::Model> = args.against.iter().map(slicer::Model::path).collect();
-        // Copies lie as far apart as when the file was made.
+        // Models are as large, and copies lie as far apart, as when the file was made.
         let placement = args.place.placement();
         let made = own.as_ref().or(given.as_ref());
-        let placement = made.map_or(placement.clone(), |p| slicer::spaced(&placement, &p.settings));
+        let placement = made.map_or(placement.clone(), |p| slicer::suited(&placement, &p.settings));
         Some(slicer::place(&models, &placement, &bed, &Progress::default())?)
     };
     let model = placed.as_ref().map(|placed| Model { mesh: &placed.mesh, offset: placed.offset });

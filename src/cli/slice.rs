@@ -153,7 +153,7 @@ fn slice_and_check(
 ) -> Result<Report> {
     let settings = &job.settings;
     let bed = slicer::bed(&settings.machine);
-    let placement = slicer::spaced(&job.placement, settings);
+    let placement = slicer::suited(&job.placement, settings);
     let placed = slicer::place(&job.models, &placement, &bed, progress)?;
     let mut report =
         slicer::slice_placed(job, &placed, sink, progress).map_err(|e| named(e, out))?;

@@ -5,7 +5,7 @@ use crate::geom::Point;
 use crate::job::Model;
 use crate::mesh::{self, Bed, Placement, place::Placed};
 use crate::profile::template::PrintFacts;
-use crate::profile::{Machine, Origin, Settings};
+use crate::profile::{Machine, Settings};
 use crate::progress::Progress;
 use crate::slice::Heights;
 use crate::units::{to_mm, to_units};
@@ -35,25 +35,22 @@ pub fn place(
     Ok(mesh::place::place(models, placement, bed)?)
 }
 
-/// `placement` with room for brims between models, where they are asked for. A brim that is only
-/// printed where it is needed gets none: where two meet they grow together.
+/// `placement` as these settings need it: models larger by what the material shrinks, with room for
+/// brims between them, where they are asked for. A brim that is only printed where it is needed gets
+/// none: where two meet they grow together.
 #[must_use]
-pub fn spaced(placement: &Placement, settings: &Settings) -> Placement {
+pub fn suited(placement: &Placement, settings: &Settings) -> Placement {
     let brims = 2.0 * settings.brim_reach();
     let room = if brims > 0.0 { brims + settings.line_width } else { 0.0 };
-    Placement { gap: placement.gap.max(room), ..placement.clone() }
+    let gap = placement.gap.max(room);
+    Placement { gap, stretch: settings.stretch(), ..placement.clone() }
 }
 
 /// The machine's print volume.
 #[must_use]
 pub fn bed(machine: &Machine) -> Bed {
-    let size = [machine.bed_width, machine.bed_depth];
-    let min = match machine.origin {
-        Origin::Centre => size.map(|side| -side / 2.0),
-        Origin::FrontLeft => [0.0, 0.0],
-    };
-    let max = [min[0] + size[0], min[1] + size[1]];
-    Bed { min, max, height: machine.bed_height }
+    let [low, high] = machine.volume();
+    Bed { min: [low[0], low[1]], max: [high[0], high[1]], height: machine.bed_height }
 }
 
 /// The bed's corners relative to the middle of the layout, grid units.

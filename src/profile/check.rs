@@ -34,6 +34,7 @@ const ENDS_RRF: &[&str] = &["M0", "M1", "M2"];
 pub(super) fn together(settings: &Settings, origins: &BTreeMap<String, ValueOrigin>) -> Result<()> {
     let blame = Blame { origins };
     heights(settings, &blame)?;
+    reach(settings, &blame)?;
     blocks(settings, &blame)
 }
 
@@ -77,6 +78,25 @@ fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
         }
     }
     dual(settings, blame)
+}
+
+fn reach(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
+    let (volume, reach) = (settings.machine.volume(), settings.machine.nozzle_reach());
+    let keys = [
+        ["machine.reach.min_x", "machine.reach.min_y", "machine.reach.min_z"],
+        ["machine.reach.max_x", "machine.reach.max_y", "machine.reach.max_z"],
+    ];
+    for (end, sign) in [(0, -1.0), (1, 1.0)] {
+        for axis in 0..3 {
+            let (reach, volume) = (reach[end][axis], volume[end][axis]);
+            if sign * (reach - volume) < -SLACK_MM {
+                let key = keys[end][axis];
+                let conflict = Conflict::ReachInsideVolume { key, reach, volume };
+                return Err(blame.error(&[key], conflict));
+            }
+        }
+    }
+    Ok(())
 }
 
 fn dual(settings: &Settings, blame: &Blame<'_>) -> Result<()> {

@@ -1,6 +1,6 @@
 //! Settings -> what follows from them together: sizes and counts that no single key holds.
 
-use super::{BrimPlace, DualRatio, ExtrusionModel, Settings};
+use super::{BrimPlace, DualRatio, ExtrusionModel, Machine, Origin, Settings};
 use std::f64::consts::PI;
 
 /// Slack for comparing lengths that were written as decimals, mm.
@@ -8,6 +8,34 @@ const SLACK_MM: f64 = 1e-9;
 
 /// No print is as slow as this on purpose, mm/s: who asks for less has another unit in mind.
 const SLOW_MM_S: f64 = 2.0;
+
+impl Machine {
+    /// The lowest and the highest corner of the print volume, where parts may lie, mm.
+    #[must_use]
+    pub fn volume(&self) -> [[f64; 3]; 2] {
+        let (width, depth, height) = (self.bed_width, self.bed_depth, self.bed_height);
+        match self.origin {
+            Origin::Centre => {
+                let (x, y) = (width / 2.0, depth / 2.0);
+                [[-x, -y, 0.0], [x, y, height]]
+            }
+            Origin::FrontLeft => [[0.0; 3], [width, depth, height]],
+        }
+    }
+
+    /// The lowest and the highest corner of where the nozzle may go, mm.
+    #[must_use]
+    pub fn nozzle_reach(&self) -> [[f64; 3]; 2] {
+        let reach = &self.reach;
+        let low = [reach.min_x, reach.min_y, reach.min_z];
+        let high = [reach.max_x, reach.max_y, reach.max_z];
+        let [from, to] = self.volume();
+        let or = |set: [Option<f64>; 3], volume: [f64; 3]| {
+            [0, 1, 2].map(|axis| set[axis].unwrap_or(volume[axis]))
+        };
+        [or(low, from), or(high, to)]
+    }
+}
 
 impl Settings {
     /// Solid layers at the top, at least; the thickness may ask for more.
@@ -71,6 +99,15 @@ impl Settings {
         speeds.extend(own.into_iter().filter_map(|(key, speed)| Some((key, speed?))));
         speeds.retain(|(_, speed)| *speed < SLOW_MM_S);
         speeds
+    }
+
+    /// Factors on x, y and z by which models are printed larger, since they shrink: what is left of
+    /// 100 % is to be the model's size.
+    #[must_use]
+    pub fn stretch(&self) -> [f64; 3] {
+        let factor = |percent: f64| 100.0 / (100.0 - percent);
+        let (flat, up) = (self.filament.shrinkage, self.filament.shrinkage_z);
+        [factor(flat), factor(flat), factor(up)]
     }
 
     /// The most plastic that the hot end melts of this material, mm³/s.

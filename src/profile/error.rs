@@ -230,6 +230,19 @@ pub enum Conflict {
         /// Least width for each mm of height.
         least: f64,
     },
+    /// A nozzle that does not get to every place of the print volume.
+    #[error(
+        "{key} = {reach} mm lies inside the print volume, which ends at {volume} mm; let the nozzle \
+         reach all of it, or make machine.bed_width, bed_depth or bed_height smaller"
+    )]
+    ReachInsideVolume {
+        /// Which end of the reach.
+        key: &'static str,
+        /// Where it is, mm.
+        reach: f64,
+        /// Where the print volume ends, mm.
+        volume: f64,
+    },
     /// A flag of dual injection without dual injection.
     #[error("has no effect while dual.mode is off; add --dual")]
     DualIsOff {

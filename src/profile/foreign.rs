@@ -118,6 +118,8 @@ const KEYS: &[(&str, &[&str])] = &[
     ("filament.bed_temperature", &["bed_temperature", "hot_plate_temp", "material_bed_temperature"]),
     ("filament.fan", &["max_fan_speed", "fan_max_speed", "fan_speed", "fan_always_on", "cool_fan_speed", "cool_fan_speed_max", "cool_fan_enabled", "cooling"]),
     ("filament.fan_from_layer", &["disable_fan_first_layers", "close_fan_the_first_x_layers"]),
+    ("filament.shrinkage", &["filament_shrinkage_compensation_xy", "filament_shrink", "material_shrinkage_percentage", "material_shrinkage_percentage_xy"]),
+    ("filament.shrinkage_z", &["filament_shrinkage_compensation_z", "material_shrinkage_percentage_z"]),
     ("filament.cost", &["filament_cost", "material_cost"]),
     ("cooling.min_layer_time", &["slowdown_below_layer_time", "slow_down_layer_time", "slow_down_for_layer_cooling", "cool_min_layer_time", "minimum_layer_time"]),
     ("cooling.min_speed", &["min_print_speed", "slow_down_min_speed", "cool_min_speed"]),

@@ -158,18 +158,9 @@ fn build(shown: &str, merged: &Merged) -> Result<Settings> {
         return Err(ProfileError::Missing { profile: shown.to_owned(), key: key.name.clone() });
     }
     let mut root = toml::Table::new();
-    for (key, (value, _)) in merged {
-        match key.split_once('.') {
-            None => {
-                root.insert(key.clone(), value.clone());
-            }
-            Some((table, name)) => {
-                let inner = root.entry(table).or_insert_with(|| Value::Table(toml::Table::new()));
-                if let Value::Table(inner) = inner {
-                    inner.insert(name.to_owned(), value.clone());
-                }
-            }
-        }
+    // In the order of the keys, so that a table of keys that are all unset is there as well.
+    for key in keys::KEYS.iter() {
+        nest(&mut root, &key.name, merged.get(&key.name).map(|(value, _)| value.clone()));
     }
     // Every value has been checked against the table of keys, which a test
     // holds against the type: this can only fail if the two have parted.
@@ -177,6 +168,18 @@ fn build(shown: &str, merged: &Merged) -> Result<Settings> {
         let profile = shown.to_owned();
         ProfileError::Mismatch { profile, source: Box::new(source) }
     })
+}
+
+/// Puts a value, if there is one, in the table that its dotted key names.
+fn nest(table: &mut toml::Table, key: &str, value: Option<Value>) {
+    let Some((name, rest)) = key.split_once('.') else {
+        table.extend(value.map(|value| (key.to_owned(), value)));
+        return;
+    };
+    let inner = table.entry(name).or_insert_with(|| Value::Table(toml::Table::new()));
+    if let Value::Table(inner) = inner {
+        nest(inner, rest, value);
+    }
 }
 
 #[cfg(test)]

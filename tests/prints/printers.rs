@@ -6,6 +6,7 @@ use crate::common::solid::Solid;
 use crate::common::{as_it_is, fixture};
 use rayon::prelude::*;
 use slicer::check::terms::Terms;
+use slicer::check::finding::Code;
 use slicer::check::{Verdict, check};
 use slicer::estimate::{Estimate, Options, estimate};
 use slicer::motion::Limits;
@@ -13,7 +14,7 @@ use slicer::profile::{
     DialectName, Override, ProfileKind, Settings, Shelf, ValueOrigin, Wanted, load_from,
 };
 use slicer::progress::Progress;
-use slicer::reader::{Firmware, OwnFilament, Print};
+use slicer::reader::{Firmware, OwnFilament, Print, Role};
 use slicer::units::MmPerS;
 use slicer::{Job, Model, profile};
 
@@ -204,4 +205,49 @@ fn a_macro_that_does_everything_is_a_start_block() {
         let start = text.find("PRINT_START BED=60 EXTRUDER=210\n").unwrap();
         assert!(text.find(mode).unwrap() > start);
     }
+}
+
+/// What is outside the volume, as the check says it.
+fn outside(text: &str, settings: &Settings) -> Vec<String> {
+    let findings = verdict(text, settings).findings;
+    let outside = findings.into_iter().filter(|found| found.code == Code::OutsideVolume);
+    outside.map(|found| found.text).collect()
+}
+
+#[test]
+fn the_nozzle_may_go_where_no_part_may_lie() {
+    let block = Solid::cuboid([0.0; 3], [6.0, 5.0, 1.0]).stl();
+    let stated = settings(&[Wanted::any("prusa-mk3s")], &[]);
+    let text = slice(&block, &stated);
+    assert!(text.contains("G0 X5 Y-3 "), "the nozzle is no longer primed beside the sheet");
+    assert_eq!(outside(&text, &stated), Vec::<String>::new());
+    let nearer = settings(&[Wanted::any("prusa-mk3s")], &[("machine.reach.min_y", "-1")]);
+    let found = outside(&text, &nearer);
+    assert!(found[0].contains("2 mm beyond the nozzle's y of -1 to 212.5"), "{found:?}");
+    // A line of the print there is another matter.
+    let first = text.find(";TYPE:External perimeter").unwrap();
+    let beside = format!("{};TYPE:Skirt\nG1 Y-2\nG1 X30 E5\n{}", &text[..first], &text[first..]);
+    let found = outside(&beside, &stated);
+    assert!(found[0].contains("2 mm beyond the machine's y of 0 to 210"), "{found:?}");
+}
+
+#[test]
+fn what_shrinks_is_printed_larger_by_that() {
+    let block = Solid::cuboid([0.0; 3], [49.0, 19.6, 9.9]).stl();
+    let set = [("filament.shrinkage", "2"), ("filament.shrinkage_z", "1"), ("brim.where", "off")];
+    let settings = settings(&[Wanted::any("generic-marlin")], &set);
+    let print = read(&slice(&block, &settings), &settings);
+    let walls = print.moves.iter().filter(|step| step.is_line() && step.role == Role::OuterWall);
+    let (mut low, mut high) = ([f32::MAX; 2], [f32::MIN; 2]);
+    for step in walls {
+        for axis in 0..2 {
+            low[axis] = low[axis].min(step.to[axis]);
+            high[axis] = high[axis].max(step.to[axis]);
+        }
+    }
+    // Middles of lines of 0.4 mm.
+    for (axis, size) in [(0, 50.0), (1, 20.0)] {
+        assert!((high[axis] - low[axis] + 0.4 - size).abs() < 0.01, "{low:?} {high:?}");
+    }
+    assert_eq!(print.layers.len(), 50);
 }

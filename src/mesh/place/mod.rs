@@ -167,6 +167,7 @@ mod tests {
         sink: 0.0,
         unit: Unit::Mm,
         scale: 1.0,
+        stretch: [1.0; 3],
         rotate: [0.0; 3],
         at: None,
         gap: GAP_MM,

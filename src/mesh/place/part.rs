@@ -65,9 +65,11 @@ pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Par
     Ok(Part { mesh, adjacency: mended.adjacency, size })
 }
 
-/// The vertices, scaled and turned, mm.
+/// The vertices, scaled, turned and stretched, mm.
 fn points(model: &RawMesh, placement: &Placement) -> Vec<Vector3<f64>> {
     let (turn, factor) = (rotation(placement.rotate), placement.unit.mm() * placement.scale);
+    // Stretched after the turn: by how much plastic shrinks depends on how it is laid.
+    let turn = Matrix3::from_diagonal(&Vector3::from(placement.stretch)) * turn;
     let point = |corner: &[f32; 3]| turn * (Vector3::from(corner.map(f64::from)) * factor);
     model.vertices.par_iter().map(point).collect()
 }

@@ -11,6 +11,8 @@ pub struct Placement {
     pub unit: Unit,
     /// Factor on every length.
     pub scale: f64,
+    /// Factors on x, y and z once it is turned, by which it is printed larger since it shrinks.
+    pub stretch: [f64; 3],
     /// Turns about x, then y, then z, degrees, counter-clockwise seen against the axis.
     pub rotate: [f64; 3],
     /// How much is cut off the bottom of each model, mm.
@@ -33,6 +35,7 @@ impl Default for Placement {
         Self {
             unit: Unit::Mm,
             scale: 1.0,
+            stretch: [1.0; 3],
             rotate: [0.0; 3],
             sink: 0.0,
             at: None,

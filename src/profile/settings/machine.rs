@@ -1,4 +1,4 @@
-//! `[machine]`: the printer.
+//! `[machine]`: the printer, and `[machine.reach]`: where its nozzle may go.
 
 use super::MAX_TEXT;
 use crate::profile::choices::{DialectName, Origin};
@@ -27,6 +27,8 @@ pub struct Machine {
     /// Whether the bed can be heated; if not, filament.bed_temperature is 0 for every material.
     #[schemars(extend("default" = true))]
     pub heated_bed: bool,
+    /// Where the nozzle may go; the print volume is where parts may lie.
+    pub reach: Reach,
     /// Where on the bed x and y are 0.
     #[schemars(extend("default" = "front-left"))]
     pub origin: Origin,
@@ -52,4 +54,29 @@ pub struct Machine {
     pub start_gcode: String,
     /// G-code after the print, with {placeholders}.
     pub end_gcode: String,
+}
+
+/// `[machine.reach]`: where the nozzle may go, in the machine's coordinates. Start and end blocks may use
+/// what lies beside the print volume, and nothing beyond this.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Reach {
+    /// Lowest x that the nozzle may go to; unset means that of the print volume.
+    #[schemars(range(min = -10_000, max = 10_000), extend("unit" = "mm"))]
+    pub min_x: Option<f64>,
+    /// Lowest y that the nozzle may go to; unset means that of the print volume.
+    #[schemars(range(min = -10_000, max = 10_000), extend("unit" = "mm"))]
+    pub min_y: Option<f64>,
+    /// Lowest z that the nozzle may go to; unset means that of the print volume.
+    #[schemars(range(min = -10_000, max = 10_000), extend("unit" = "mm"))]
+    pub min_z: Option<f64>,
+    /// Highest x that the nozzle may go to; unset means that of the print volume.
+    #[schemars(range(min = -10_000, max = 10_000), extend("unit" = "mm"))]
+    pub max_x: Option<f64>,
+    /// Highest y that the nozzle may go to; unset means that of the print volume.
+    #[schemars(range(min = -10_000, max = 10_000), extend("unit" = "mm"))]
+    pub max_y: Option<f64>,
+    /// Highest z that the nozzle may go to; unset means that of the print volume.
+    #[schemars(range(min = -10_000, max = 10_000), extend("unit" = "mm"))]
+    pub max_z: Option<f64>,
 }

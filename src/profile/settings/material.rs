@@ -39,6 +39,12 @@ pub struct Filament {
     /// holds. Unset, the machine's does.
     #[schemars(range(min = 0.1, max = 1_000), extend("unit" = "mm³/s"))]
     pub max_volumetric_speed: Option<f64>,
+    /// How much the material shrinks in x and y as it cools; models are printed larger by that.
+    #[schemars(range(min = 0, max = 20), extend("unit" = "%", "default" = 0))]
+    pub shrinkage: f64,
+    /// How much it shrinks in z; most of that is gone before the next layer is laid.
+    #[schemars(range(min = 0, max = 20), extend("unit" = "%", "default" = 0))]
+    pub shrinkage_z: f64,
     /// Price of the material; 0 means unknown.
     #[schemars(range(min = 0, max = 1_000_000), extend("unit" = "money/kg", "default" = 0))]
     pub cost: f64,

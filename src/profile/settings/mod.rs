@@ -39,7 +39,7 @@ pub use cooling::Cooling;
 pub use dual::Dual;
 pub use extrusion::Extrusion;
 pub use limits::MotionLimits;
-pub use machine::Machine;
+pub use machine::{Machine, Reach};
 pub use material::Filament;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
