@@ -1,4 +1,11 @@
 //! Settings + origins -> verdict: refuses values that are each in range but cannot print together.
+//!
+//! - *Heights* fit the nozzle and the lines; thick lines are no taller than allowed.
+//! - The nozzle's *reach* holds the whole print volume.
+//! - *Blocks* can be filled in, and hold nothing that their dialect takes for something else.
+//!
+//! An error names the origin of one of the values concerned: that of a flag before that of `--set`,
+//! before that of a file. Keys at their defaults are to blame last.
 
 use super::error::{Conflict, ProfileError, Result};
 use super::origin::ValueOrigin;

@@ -120,6 +120,7 @@ fn push(text: &mut String, part: std::fmt::Arguments<'_>) {
 mod tests {
     use super::*;
     use crate::profile::{builtin_names, keys, load};
+    use serde::Deserialize as _;
     use std::collections::BTreeSet;
 
     fn leaves(prefix: &str, value: &Value, found: &mut BTreeSet<String>) {
@@ -133,23 +134,30 @@ mod tests {
         }
     }
 
+    fn set(table: &mut Value, key: &str, value: Value) {
+        let (name, rest) = key.split_once('.').unwrap_or((key, ""));
+        match table {
+            Value::Table(table) if rest.is_empty() => {
+                table.insert(name.to_owned(), value);
+            }
+            _ => set(table.get_mut(name).unwrap(), rest, value),
+        }
+    }
+
     #[test]
     fn the_table_of_keys_and_the_type_agree() {
-        let mut settings = load(["zcube-dual"], &[]).unwrap().settings;
-        settings.top_layers = Some(1);
-        settings.bottom_layers = Some(1);
-        settings.filament.max_volumetric_speed = Some(1.0);
-        let speed = &mut settings.speed;
-        for own in
-            [&mut speed.outer_wall, &mut speed.inner_wall, &mut speed.top_skin, &mut speed.gap]
-        {
-            *own = Some(20.0);
+        let settings = load(["zcube-dual"], &[]).unwrap().settings;
+        let mut root = Value::try_from(&settings).unwrap();
+        // What may stay unset shows in the type's value only once it is set.
+        for key in KEYS.iter().filter(|key| key.optional) {
+            let most = match key.kind {
+                Kind::Number { max, .. } => Value::Float(max),
+                Kind::Count { max, .. } => Value::Integer(i64::from(max)),
+                _ => panic!("{}: give it a value here", key.name),
+            };
+            set(&mut root, &key.name, most);
         }
-        let cooling = &mut settings.cooling;
-        (cooling.min_fan, cooling.overhang_fan) = (Some(1.0), Some(1.0));
-        cooling.interface_fan = Some(1.0);
-        settings.filament.first_layer_temperature = Some(1.0);
-        settings.filament.first_layer_bed_temperature = Some(1.0);
+        let settings = Settings::deserialize(root).unwrap();
         let mut typed = BTreeSet::new();
         leaves("", &Value::try_from(&settings).unwrap(), &mut typed);
         let listed: BTreeSet<_> = keys::names().map(str::to_owned).collect();
