@@ -4,8 +4,9 @@
 #   cargo build --release
 #   tests/bench/times.sh thesis DIR         the thesis's parts, honeycomb beside ours
 #   tests/bench/times.sh peers MODEL.stl... infill combined by all: who prints fastest?
+#   tests/bench/times.sh cooling MODEL.stl... what does a least time of 10 s a layer cost?
 #
-# Both print a Markdown table, with all programs set to the same work (peers.ini,
+# All print a Markdown table, with all programs set to the same work (peers.ini,
 # peers-cura.conf). The start block is left out of the times, heating and homing are
 # not in them. Nothing is kept: every file is sliced anew.
 #
@@ -36,7 +37,9 @@ family=(--layer-height "$height" --first-layer-height "$height")
 [ -n "${CROSSING:-}" ] && family+=(--only-retract-when-crossing-perimeters)
 
 # timed NAME PROGRAM MODEL [ARGUMENT...]: writes $work/NAME: seconds, filament mm, sparse
-# infill's filament mm. No file if the program fails, or if nothing is printed.
+# infill's filament mm, quick layers: those that with the slower one of their neighbours take less
+# than 9 s on average (a pair of --dual shares its time). No file if the program fails, or if
+# nothing is printed.
 timed() {
     local name=$1 program=$2 out=$work/$1.gcode code=0
     shift 2
@@ -48,7 +51,10 @@ timed() {
     else
         "$slicer" estimate -p "$bench/clock.toml" --fixed-limits --json "$out" |
             jq -r 'select(.filament_mm > 0) | [.seconds - .start_seconds, .filament_mm,
-                ([.roles[] | select(.role == "infill") | .filament_mm] | add // 0)] | join(" ")' \
+                ([.roles[] | select(.role == "infill") | .filament_mm] | add // 0),
+                ([.layers[].seconds] | . as $t | [range(length) | select(
+                    ([$t[. + 1], if . > 0 then $t[. - 1] else null end] | map(. // 0) | max)
+                    + $t[.] < 18)] | length)] | join(" ")' \
                 >"$work/$name" || true
     fi
     rm -f "$out"
@@ -193,7 +199,51 @@ peers() {
     ' "$work/rows"
 }
 
+# cooling_arguments PROGRAM: sets `arguments` to what makes it give each layer 10 s.
+cooling_arguments() {
+    case $1 in
+    ours) arguments=(--min-layer-time 10) ;;
+    cura*) arguments=(cool_min_layer_time=10 cool_min_speed=10) ;;
+    *) arguments=(--cooling --slowdown-below-layer-time 10 --min-print-speed 10) ;;
+    esac
+}
+
+cooling() {
+    [ $# -gt 0 ] || die "no models; give at least one STL"
+    local model name program arguments
+    echo "Seconds without and with a least time of 10 s a layer, at no less than 10 mm/s; quick layers: those that with the slower one of their neighbours take less than 9 s on average."
+    echo
+    echo "| model | program | off | on | ratio | quick layers, off | on |"
+    echo "|---|---|--:|--:|--:|--:|--:|"
+    for model; do
+        name=$(basename "$model" .stl)
+        rm -f "$work"/*_{off,on}
+        for program in "${peers[@]}"; do
+            cooling_arguments "$program"
+            timed "${program}_off" "$program" "$model" &
+            timed "${program}_on" "$program" "$model" "${arguments[@]}" &
+            wait
+        done
+        cooling_arguments ours
+        timed plain_off ours "$model"
+        timed plain_on ours "$model" "${arguments[@]}"
+        timed dual_off ours "$model" --dual
+        timed dual_on ours "$model" --dual "${arguments[@]}"
+        for program in plain dual "${peers[@]}"; do
+            awk -v name="$name" -v who="${title[$program]:-$program}" \
+                -v off="$(of "${program}_off" 1)" -v on="$(of "${program}_on" 1)" \
+                -v quick_off="$(of "${program}_off" 4)" -v quick_on="$(of "${program}_on" 4)" '
+                function seconds(value) { return value == "" ? "–" : sprintf("%.0f", value) }
+                BEGIN {
+                    ratio = off > 0 && on > 0 ? sprintf("%.2f", on / off) : "–"
+                    print "| " name " | " who " | " seconds(off) " | " seconds(on) " | " ratio \
+                        " | " quick_off " | " quick_on " |"
+                }'
+        done
+    done
+}
+
 case ${1:-} in
-thesis | peers) "$@" ;;
-*) die "say thesis DIR or peers MODEL.stl..." ;;
+thesis | peers | cooling) "$@" ;;
+*) die "say thesis DIR, peers MODEL.stl... or cooling MODEL.stl..." ;;
 esac
