@@ -131,6 +131,23 @@ fn every_layer_takes_the_least_time_or_is_at_the_least_speed() {
 }
 
 #[test]
+fn a_group_takes_the_least_time_of_all_its_layers_or_is_as_slow_inside_as_it_may_be() {
+    let mut made_up = 0;
+    for Pair { what, cooled, ratio, .. } in PAIRS.iter().filter(|pair| pair.ratio > 1) {
+        let took = seconds(cooled);
+        let inside = feeds(cooled, &[&INSIDE[..], &[Kind::InnerWall]].concat());
+        for group in groups(took.len(), *ratio) {
+            let all: f64 = group.iter().map(|&k| took[k]).sum();
+            let enough = all >= LEAST * group.len() as f64;
+            let fastest = group.iter().map(|&k| inside[k]).fold(0.0, f64::max);
+            assert!(enough || fastest <= SLOWEST, "{what}: {group:?} take {all} s, {fastest}");
+            made_up += usize::from(enough && group.iter().any(|&k| took[k] < LEAST));
+        }
+    }
+    assert!(made_up > 10, "{made_up}");
+}
+
+#[test]
 fn outer_walls_differ_little_within_groups_and_between_groups_that_are_alike() {
     let differ = |a: f64, b: f64| a.max(b) > 1.1 * a.min(b);
     let (mut slowed, mut alike) = (0, 0);

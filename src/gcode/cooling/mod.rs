@@ -12,7 +12,9 @@
 //! 2. `even` gives each group the lowest cap of its layers, and raises and lowers it from group to
 //!    group by small steps only. It holds back the groups that a later one may still slow down.
 //! 3. `slowing` then slows down the rest of each layer, as little as the least time asks for.
-//! 4. `waiting` lets the nozzle wait where that is not enough.
+//! 4. What a layer of a group still misses when all of it is as slow as it may be, the others of the
+//!    group make up for, so that the group has its time.
+//! 5. Or else `waiting` lets the nozzle wait where that is not enough.
 
 mod even;
 mod slowing;
@@ -123,12 +125,35 @@ impl Cooling {
             (moves, slowed)
         };
         let mut layers: Vec<(Moves, Slowed)> = group.layers.into_iter().map(slow).collect();
+        if self.waiting.is_none() && layers.len() > 1 && layers.iter().any(|(_, s)| s.quick) {
+            self.make_up(&mut layers);
+        }
         if self.fan_by_time {
             let seconds = layers.iter().map(|(moves, _)| self.slowing.seconds(moves));
             let mean = seconds.sum::<f64>() / layers.len().max(1) as f64;
             layers.iter_mut().for_each(|(moves, _)| moves.group_seconds = Some(mean));
         }
         layers
+    }
+}
+
+impl Cooling {
+    /// Slows down layers of a group further until all of them together take the least time of each: what
+    /// is under the next group has set by then, whichever of them gave it the time.
+    fn make_up(&self, layers: &mut [(Moves, Slowed)]) {
+        let least = self.slowing.least;
+        let taken: Vec<f64> =
+            layers.iter().map(|(moves, _)| self.slowing.seconds(moves)).collect();
+        let mut missing = taken.iter().map(|seconds| least - seconds).sum::<f64>();
+        for ((moves, slowed), seconds) in layers.iter_mut().zip(taken) {
+            // One that is too quick as it is has nothing left to give.
+            if missing <= 0.0 || seconds < least {
+                continue;
+            }
+            let to = self.slowing.slow_to(moves, seconds + missing);
+            missing -= self.slowing.seconds(moves) - seconds;
+            slowed.then(&to);
+        }
     }
 }
 

@@ -48,6 +48,16 @@ pub(super) struct Slowed {
     pub(super) waits: bool,
 }
 
+impl Slowed {
+    /// Once it was slowed down again, in the way of `next`.
+    pub(super) fn then(&mut self, next: &Self) {
+        self.quick |= next.quick;
+        for (mine, theirs) in self.lowest.iter_mut().zip(&next.lowest) {
+            *mine *= theirs;
+        }
+    }
+}
+
 /// Slows down layers.
 #[derive(Debug, Clone)]
 pub(super) struct Slowing {
@@ -109,23 +119,23 @@ impl Slowing {
         }
         let mut trial = Trial::new(self, layer);
         let mut caps = [NO_CAP, NO_CAP, cap];
-        if need.quick && !trial.is_enough(caps) {
-            for kind in [Slows::First, Slows::Second].map(|kind| kind as usize) {
-                let fastest = trial.fastest[kind];
-                caps[kind] = self.slowest;
-                if fastest > self.slowest && trial.is_enough(caps) {
-                    caps[kind] = highest(self.slowest, fastest, |cap| {
-                        caps[kind] = cap;
-                        trial.is_enough(caps)
-                    });
-                    break;
-                }
-            }
+        if need.quick {
+            caps = trial.inside(caps);
         }
         trial.set(caps);
         let lowest = trial.lowest();
         self.flow(layer);
         Slowed { lowest, ..untouched }
+    }
+
+    /// Slows down what is inside a layer until it takes `seconds`, if it can.
+    pub(super) fn slow_to(&self, layer: &mut Moves, seconds: f64) -> Slowed {
+        let mut trial = Trial { least: seconds, ..Trial::new(self, layer) };
+        let caps = trial.inside([NO_CAP; 3]);
+        trial.set(caps);
+        let lowest = trial.lowest();
+        self.flow(layer);
+        Slowed { quick: true, lowest, waits: false }
     }
 
     /// Whether a layer takes the least time even without speeding up and slowing down.
@@ -156,6 +166,8 @@ struct Trial<'a> {
     asked: Vec<u32>,
     /// The highest of each kind.
     fastest: Caps,
+    /// The time that it has to take, s.
+    least: f64,
 }
 
 impl<'a> Trial<'a> {
@@ -168,7 +180,7 @@ impl<'a> Trial<'a> {
                 fastest[kind] = step.feed.max(fastest[kind]);
             }
         }
-        Self { slowing, layer, asked, fastest }
+        Self { slowing, layer, asked, fastest, least: slowing.least }
     }
 
     /// Caps the feeds. Lines that are slower than any cap may be stay as they are.
@@ -187,8 +199,29 @@ impl<'a> Trial<'a> {
         self.slowing.seconds(self.layer)
     }
 
+    /// `caps` with lower ones on what is inside, if that is not slow enough: infill and skins first, no
+    /// lower than needed.
+    fn inside(&mut self, mut caps: Caps) -> Caps {
+        if self.is_enough(caps) {
+            return caps;
+        }
+        let slowest = self.slowing.slowest;
+        for kind in [Slows::First, Slows::Second].map(|kind| kind as usize) {
+            let fastest = self.fastest[kind];
+            caps[kind] = slowest;
+            if fastest > slowest && self.is_enough(caps) {
+                caps[kind] = highest(slowest, fastest, |cap| {
+                    caps[kind] = cap;
+                    self.is_enough(caps)
+                });
+                break;
+            }
+        }
+        caps
+    }
+
     fn is_enough(&mut self, caps: Caps) -> bool {
-        self.seconds(caps) >= self.slowing.least
+        self.seconds(caps) >= self.least
     }
 
     /// For each kind, the lowest share of its feed that a line is left.
