@@ -1,5 +1,11 @@
 //! Slicer -> toolpaths -> Writer: plans the layers in batches, the next while one is written.
 //!
+//! 1. The window makes the regions of a batch; those of the first layer are made anew if its lines have
+//!    a width of their own.
+//! 2. Each layer is filled with paths, and gets what makes it stick; all layers of a batch at once.
+//! 3. Their paths are put in order, one layer after the other, since where one ends the next begins.
+//! 4. Travels join them, all layers at once, and the writer takes the batch.
+//!
 //! All code that names the numbers of `region`, `fill` and `plan` stands here and in no other file of
 //! the pipeline.
 
@@ -18,7 +24,7 @@ use crate::region::dual::audit::Audit;
 use crate::region::dual::groups::Grouping;
 use crate::region::support::{SupportParams, supports};
 use crate::region::window::{self, Window};
-use crate::region::{Region, RegionParams};
+use crate::region::{Region, RegionParams, foot};
 use crate::report::tally::Tally;
 use crate::slice::{Heights, Slicer};
 use crate::units::to_units;
@@ -37,21 +43,19 @@ pub struct Setup {
     grouping: Grouping,
     fill: FillParams,
     plan: PlanParams,
+    /// The numbers of the first layer, if its lines have a width of their own.
+    first: Option<(RegionParams, FillParams)>,
 }
 
 impl Setup {
     /// The numbers that `settings` mean, for layers at `heights`.
     #[must_use]
     pub fn new(settings: &Settings, heights: &Heights) -> Self {
-        let mut region = RegionParams::new(settings);
-        // No more can be skin than there is; each layer looks at as many neighbours as this.
-        let count = |count: usize, thickness: f64| {
-            count.max(heights.layers_of(to_units(thickness))).min(heights.count())
-        };
-        region.skins.top = count(region.skins.top, settings.top_thickness);
-        region.skins.bottom = count(region.skins.bottom, settings.bottom_thickness);
+        let first = settings.in_first_width();
+        let first = first.map(|wide| (region(&wide, heights), FillParams::new(&wide, heights)));
         Self {
-            region,
+            region: region(settings, heights),
+            first,
             rules: Rules::new(settings),
             support: SupportParams::new(settings),
             grouping: Grouping::new(&settings.dual, settings.dual_ratio()),
@@ -73,9 +77,11 @@ impl Setup {
             .support
             .map(|s| window::Support { patterns: s.patterns(), layers: supports(slicer, &s, bed) });
         let window = Window::new(slicer, &self.region, &self.grouping, supports);
+        let window = Regions { window, first: self.first.as_ref().map(|(region, _)| region) };
         let orderer = Orderer {
             rules: self.rules,
             fill: &self.fill,
+            first: self.first.as_ref().map(|(_, fill)| fill),
             plan: &self.plan,
             head: Head::default(),
             seams: Seams::default(),
@@ -87,9 +93,40 @@ impl Setup {
     }
 }
 
+/// The numbers of the region stage.
+fn region(settings: &Settings, heights: &Heights) -> RegionParams {
+    let mut region = RegionParams::new(settings);
+    // No more can be skin than there is; each layer looks at as many neighbours as this.
+    let count = |count: usize, thickness: f64| {
+        count.max(heights.layers_of(to_units(thickness))).min(heights.count())
+    };
+    region.skins.top = count(region.skins.top, settings.top_thickness);
+    region.skins.bottom = count(region.skins.bottom, settings.bottom_thickness);
+    region
+}
+
+/// Makes the regions of the next batch. The first layer's are those of its own lines.
+struct Regions<'a> {
+    window: Window<'a>,
+    first: Option<&'a RegionParams>,
+}
+
+impl Iterator for Regions<'_> {
+    type Item = Vec<Region>;
+
+    fn next(&mut self) -> Option<Vec<Region>> {
+        let mut regions = self.window.next()?;
+        if let Some(params) = self.first.take() {
+            let first = regions.remove(0);
+            regions.insert(0, foot::widen(first, params));
+        }
+        Some(regions)
+    }
+}
+
 /// Plans the layers, a batch at a time.
 pub struct Planner<'a> {
-    window: Window<'a>,
+    window: Regions<'a>,
     /// The regions of the next batch.
     regions: Option<Vec<Region>>,
     orderer: Orderer<'a>,
@@ -113,7 +150,7 @@ impl Planner<'_> {
     #[must_use]
     pub fn finish(self) -> (Vec<Audit>, Tally, Footing) {
         let Self { mut window, orderer, .. } = self;
-        (window.audits(), orderer.tally, orderer.footing)
+        (window.window.audits(), orderer.tally, orderer.footing)
     }
 }
 
@@ -134,6 +171,8 @@ impl Iterator for Planner<'_> {
 struct Orderer<'a> {
     rules: Rules,
     fill: &'a FillParams,
+    /// Of the first layer, if they are others.
+    first: Option<&'a FillParams>,
     plan: &'a PlanParams,
     /// Where the head is after the layers so far.
     head: Head,
@@ -146,8 +185,9 @@ struct Orderer<'a> {
 impl Orderer<'_> {
     fn toolpaths(&mut self, regions: &[Region]) -> Vec<Toolpath> {
         let (fill, plan, rules) = (self.fill, self.plan, self.rules);
+        let first = self.first.unwrap_or(fill);
         let filled = |region: &Region| {
-            let paths = fill::paths(region, fill);
+            let paths = fill::paths(region, if region.layer.index == 0 { first } else { fill });
             (footprint(region, &paths, rules), paths)
         };
         let mut filled: Vec<(Footprint, Vec<Path>)> = regions.par_iter().map(filled).collect();

@@ -51,8 +51,9 @@ impl<'a> Sticking<'a> {
         heights: &'a Heights,
         bed: (Point, Point),
     ) -> Self {
+        let wide = settings.in_first_width();
         Self {
-            params: AdhesionParams::new(settings),
+            params: AdhesionParams::new(wide.as_ref().unwrap_or(settings)),
             placed,
             heights,
             bed,

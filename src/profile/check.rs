@@ -70,19 +70,25 @@ impl Blame<'_> {
 
 fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
     let nozzle = settings.machine.nozzle_diameter;
-    let width = settings.line_width;
-    for (key, height) in [
-        ("layer_height", settings.layer_height),
-        ("first_layer_height", settings.first_layer_height),
+    let first_width = settings.first_layer_width.unwrap_or(settings.line_width);
+    for (key, height, width) in [
+        ("layer_height", settings.layer_height, settings.line_width),
+        ("first_layer_height", settings.first_layer_height, first_width),
     ] {
         if height > nozzle + SLACK_MM {
             let conflict = Conflict::HigherThanNozzle { key, height, nozzle };
             return Err(blame.error(&[key, "machine.nozzle_diameter"], conflict));
         }
         if width < LEAST_WIDTH * height - SLACK_MM {
-            let conflict = Conflict::NarrowLines { width, key, height, least: LEAST_WIDTH };
-            return Err(blame.error(&["line_width", key], conflict));
+            let own = settings.first_layer_width.filter(|_| key == "first_layer_height");
+            let lines = if own.is_some() { "first_layer_width" } else { "line_width" };
+            let conflict = Conflict::NarrowLines { lines, width, key, height, least: LEAST_WIDTH };
+            return Err(blame.error(&[lines, key], conflict));
         }
+    }
+    if settings.in_first_width().is_some() && !settings.has_bottom_skins() {
+        let keys = ["first_layer_width", "bottom_layers", "bottom_thickness"];
+        return Err(blame.error(&keys, Conflict::NoFirstSkin));
     }
     dual(settings, blame)
 }

@@ -1,4 +1,11 @@
 //! Settings -> what follows from them together: sizes and counts that no single key holds.
+//!
+//! - An unset key that means another one is looked up here, and nowhere else.
+//! - The *volume* is where parts may lie, the *reach* where the nozzle may go.
+//! - The *stretch* is by how much models are printed larger, since the material shrinks.
+//! - The *ratio* is how many layers dual injection prints at once, with `auto` as many as pay.
+//!
+//! All of it depends on the settings alone, never on a model.
 
 use super::{BrimPlace, DualRatio, ExtrusionModel, Machine, Origin, Settings};
 use std::f64::consts::PI;
@@ -50,10 +57,23 @@ impl Settings {
         self.top_skins() > 0 || self.top_thickness > 0.0
     }
 
+    /// Whether bottoms are closed by skin.
+    #[must_use]
+    pub fn has_bottom_skins(&self) -> bool {
+        self.bottom_skins() > 0 || self.bottom_thickness > 0.0
+    }
+
     /// Solid layers at the bottom, at least; the thickness may ask for more.
     #[must_use]
     pub fn bottom_skins(&self) -> u32 {
         self.bottom_layers.unwrap_or(self.skin_layers)
+    }
+
+    /// These settings with the lines of the first layer; `None` if those are as wide as all others.
+    #[must_use]
+    pub fn in_first_width(&self) -> Option<Self> {
+        let wide = self.first_layer_width.filter(|wide| (wide - self.line_width).abs() > SLACK_MM)?;
+        Some(Self { line_width: wide, ..self.clone() })
     }
 
     /// Temperature of the nozzle on the first layer, °C.

@@ -217,10 +217,12 @@ pub enum Conflict {
     },
     /// Lines that would stand instead of lie.
     #[error(
-        "line_width = {width} mm is too little for {key} = {height} mm; use at least {least} \
-         times the height"
+        "{lines} = {width} mm is too little for {key} = {height} mm; use at least {least} times \
+         the height"
     )]
     NarrowLines {
+        /// Which width.
+        lines: &'static str,
         /// The lines' width.
         width: f64,
         /// Which height.
@@ -230,6 +232,12 @@ pub enum Conflict {
         /// Least width for each mm of height.
         least: f64,
     },
+    /// Wide lines for a first layer without a skin.
+    #[error(
+        "first_layer_width widens the skin at the bottom, and there is none; leave it out, or set \
+         bottom_layers = 1"
+    )]
+    NoFirstSkin,
     /// A nozzle that does not get to every place of the print volume.
     #[error(
         "{key} = {reach} mm lies inside the print volume, which ends at {volume} mm; let the nozzle \

@@ -42,7 +42,7 @@ pub fn names() -> impl Iterator<Item = (&'static str, &'static [&'static str])> 
 #[rustfmt::skip]
 const KEYS: &[(&str, &[&str])] = &[
     ("first_layer_height", &["initial_layer_print_height", "initial_layer_height", "layer_height_0"]),
-    ("line_width", &["extrusion_width", "perimeter_extrusion_width", "external_perimeter_extrusion_width", "infill_extrusion_width", "first_layer_extrusion_width", "outer_wall_line_width", "inner_wall_line_width", "sparse_infill_line_width", "wall_line_width", "infill_line_width"]),
+    ("line_width", &["extrusion_width", "perimeter_extrusion_width", "external_perimeter_extrusion_width", "infill_extrusion_width", "outer_wall_line_width", "inner_wall_line_width", "sparse_infill_line_width", "wall_line_width", "infill_line_width"]),
     ("tolerance", &["resolution", "gcode_resolution", "meshfix_maximum_resolution", "meshfix_maximum_deviation"]),
     ("walls", &["perimeters", "wall_loops", "wall_line_count", "wall_count", "wall_thickness", "shells"]),
     ("outer_wall_inset", &["wall_0_inset"]),
@@ -81,6 +81,7 @@ const KEYS: &[(&str, &[&str])] = &[
     ("brim.where", &["brim_type", "adhesion_type", "brim_location", "brim_outside_only"]),
     ("brim.width", &["brim_width", "brim_line_count"]),
     ("brim.gap", &["brim_object_gap", "brim_separation", "brim_gap"]),
+    ("first_layer_width", &["first_layer_extrusion_width", "initial_layer_line_width", "initial_layer_line_width_factor"]),
     ("xy_compensation", &["xy_size_compensation", "xy_contour_compensation", "xy_offset"]),
     ("hole_compensation", &["xy_hole_compensation", "hole_xy_offset"]),
     ("elephant_foot", &["elefant_foot_compensation", "xy_offset_layer_0"]),

@@ -21,6 +21,7 @@ pub mod crossed;
 pub mod divide;
 pub mod dual;
 pub mod first_skin;
+pub mod foot;
 pub mod hidden;
 pub mod landing;
 mod near;
@@ -49,6 +50,7 @@ use crate::pattern::Pattern;
 use crate::slice::Layer;
 use crate::units::Coord;
 use crossed::Crossed;
+use divide::LayerAreas;
 use std::sync::Arc;
 use walls::Wall;
 
@@ -123,6 +125,30 @@ pub struct SkinRows {
 }
 
 impl Skin {
+    /// Skin of a layer of these `areas`, on the rasters `along` its lines and across. Its beads are added
+    /// later.
+    #[must_use]
+    fn on(
+        params: &RegionParams,
+        (along, across): (usize, usize),
+        layers: u32,
+        areas: &LayerAreas,
+        [rows, columns]: first_skin::Both,
+    ) -> Self {
+        let fill = |r: usize| areas.skin(r).fill.clone();
+        Self {
+            layers,
+            raster: params.rasters.skin(along),
+            rows: SkinRows { skin: rows, fill: fill(along) },
+            columns: SkinRows { skin: columns, fill: fill(across) },
+            left_turn: along == 0,
+            beads: Vec::new(),
+            room_beads: Vec::new(),
+            bridges: false,
+            top: false,
+        }
+    }
+
     /// Its rows and columns together.
     #[must_use]
     pub fn crossed(&self) -> Crossed<'_> {

@@ -28,7 +28,7 @@ use super::prepare::{LayerRows, Own, prepare};
 use super::queue::Queue;
 use super::support::{SupportLayer, SupportPatterns};
 use super::walls::{self, Wall};
-use super::{Region, Skin, SkinRows, Sparse, SupportLines, tops};
+use super::{Region, Skin, Sparse, SupportLines, tops};
 use crate::geom::frame::Frame;
 use crate::geom::polyline::Polyline;
 use crate::geom::spans::Rows;
@@ -270,7 +270,7 @@ impl<'a> Window<'a> {
                     skin = landing::land(skin, r, &mut left, floor, &self.params.rasters);
                 }
                 for (part, top) in self.tops(k, (r, other), layers, skin) {
-                    let skin = Self::skin(self.params, (r, other), layers, areas, part);
+                    let skin = Skin::on(self.params, (r, other), layers, areas, part);
                     skins.push(Skin { top, ..skin });
                 }
             }
@@ -357,28 +357,6 @@ impl<'a> Window<'a> {
             params: &self.params.skins,
         };
         inner_skin::share(&[0, 1].map(skins), k)
-    }
-
-    /// Skin on the rasters `along` its lines and across. Its beads are added later.
-    fn skin(
-        params: &RegionParams,
-        (along, across): (usize, usize),
-        layers: u32,
-        areas: &LayerAreas,
-        [rows, columns]: first_skin::Both,
-    ) -> Skin {
-        let fill = |r: usize| areas.skin(r).fill.clone();
-        Skin {
-            layers,
-            raster: params.rasters.skin(along),
-            rows: SkinRows { skin: rows, fill: fill(along) },
-            columns: SkinRows { skin: columns, fill: fill(across) },
-            left_turn: along == 0,
-            beads: Vec::new(),
-            room_beads: Vec::new(),
-            bridges: false,
-            top: false,
-        }
     }
 
     /// Joins `fillings` with what belongs to their layers, and drops what no layer needs any more.

@@ -453,3 +453,41 @@ fn what_is_too_thin_to_be_printed_gets_no_brim() {
         assert!(!all.is_empty() && all.iter().all(|(_, at)| at[0] < middle), "{set:?}");
     }
 }
+
+#[test]
+fn the_first_layers_lines_are_as_wide_as_asked_and_fill_the_same_room() {
+    let solid = ring(14.0, 5.0, 2.0);
+    for more in [[NO_BRIM, ("dual.mode", "off")], [NO_BRIM, ("dual.mode", "pair")]] {
+        let of = |width: &str| {
+            let set = [&more[..], &[("first_layer_width", width)]].concat();
+            slice_shipped(&solid.stl(), "generic-klipper", &set)
+        };
+        let (wide, plain) = (of("0.6"), of("0.4"));
+        let beads = |run: &Run, kind: Kind, layer: usize| -> Vec<Move> {
+            let of = run.print.of(kind).filter(|bead| bead.layer == Some(layer));
+            of.cloned().collect()
+        };
+        let walls = beads(&wide, Kind::OuterWall, 0);
+        assert!(walls.iter().all(|bead| (bead.width - 0.6).abs() < 0.011), "{walls:?}");
+        // The edge lies where it lay: the middle is further inside by half of what the lines are wider.
+        let most = |beads: &[Move]| beads.iter().map(|bead| bead.to[0]).fold(f64::MIN, f64::max);
+        let inwards = most(&beads(&plain, Kind::OuterWall, 0)) - most(&walls);
+        assert!((inwards - 0.1).abs() < 0.01, "{inwards}");
+        let plastic = |run: &Run| -> f64 {
+            run.print.beads().filter(|bead| bead.layer == Some(0)).map(|bead| bead.e).sum()
+        };
+        let share = plastic(&wide) / plastic(&plain);
+        assert!((share - 1.0).abs() < 0.02, "{share}");
+        let lines = |run: &Run| beads(run, Kind::Skin, 0).iter().map(Move::length).sum::<f64>();
+        assert!(lines(&wide) < 0.75 * lines(&plain), "{} {}", lines(&wide), lines(&plain));
+        // The layers above do not know; they only begin where the first one ended.
+        let above = |run: &Run, layer: usize| -> (usize, f64) {
+            let beads = run.print.beads().filter(|bead| bead.layer == Some(layer));
+            beads.fold((0, 0.0), |(count, sum), bead| (count + 1, sum + bead.e))
+        };
+        for layer in 1..wide.print.layers.len() {
+            let ((count, e), (same, as_much)) = (above(&wide, layer), above(&plain, layer));
+            assert!(count == same && (e - as_much).abs() < 1e-3, "{layer}: {count} {same}");
+        }
+    }
+}

@@ -69,6 +69,10 @@ pub struct Settings {
     /// nobody sets it.
     #[schemars(range(min = 0.05, max = 4), extend("unit" = "mm", "default" = 0.4, "follows" = "machine.nozzle_diameter", "times" = 1))]
     pub line_width: f64,
+    /// Width of lines on the first layer, which holds better where they are wide; unset means
+    /// line_width.
+    #[schemars(range(min = 0.05, max = 4), extend("unit" = "mm"))]
+    pub first_layer_width: Option<f64>,
     /// How far a simplified contour may lie from the model's.
     #[schemars(range(min = 0, max = 0.5), extend("unit" = "mm", "default" = 0.01))]
     pub tolerance: f64,
