@@ -313,4 +313,28 @@ mod tests {
         assert!(Role::ALL.into_iter().all(|role| table[role] == role));
         assert!(table.iter().all(|(role, value)| role == *value));
     }
+
+    #[test]
+    fn viewers_know_every_annotation() {
+        // Those that PrusaSlicer writes and reads; others have its list, or a part of it.
+        let known = [
+            "Perimeter",
+            "External perimeter",
+            "Overhang perimeter",
+            "Internal infill",
+            "Solid infill",
+            "Top solid infill",
+            "Ironing",
+            "Bridge infill",
+            "Gap fill",
+            "Skirt/Brim",
+            "Support material",
+            "Support material interface",
+            "Wipe tower",
+        ];
+        for role in Role::ALL {
+            let annotation = role.facts().annotation;
+            assert!(known.contains(&annotation), "{annotation} of {role:?}");
+        }
+    }
 }
