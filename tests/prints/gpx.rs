@@ -1,10 +1,11 @@
-//! Start and end blocks for MakerBot machines -> GPX: it converts them without a word.
+//! Blocks and prints of every printer that goes through GPX, for every material -> GPX: not a word of complaint.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![allow(clippy::print_stdout, reason = "a test that is skipped says so")]
 
+use crate::printers::names;
 use slicer::profile::template::{PrintFacts, render, values};
-use slicer::profile::{DialectName, builtin_names, load};
+use slicer::profile::{DialectName, ProfileKind, load};
 use std::fs;
 use std::process::Command;
 
@@ -38,21 +39,31 @@ fn is_installed() -> bool {
     is
 }
 
+/// The shipped printers whose files go through GPX.
+fn printers() -> Vec<String> {
+    let dialect = |name: &str| load([name], &[]).unwrap().settings.machine.dialect;
+    let mut printers = names(ProfileKind::Printer);
+    printers.retain(|name| dialect(name) == DialectName::Makerbot);
+    assert!(printers.len() >= 4, "{printers:?}");
+    printers
+}
+
 #[test]
 fn blocks_convert_in_silence() {
     if !is_installed() {
         return;
     }
-    for name in builtin_names() {
-        let settings = load([name], &[]).unwrap().settings;
-        if settings.machine.dialect != DialectName::Makerbot {
-            continue;
+    for printer in printers() {
+        for material in names(ProfileKind::Material) {
+            let settings = load([&printer, &material], &[]).unwrap().settings;
+            let values = values(&settings, &PrintFacts { height: 10.0, ..PrintFacts::default() });
+            let block = |key, text: &str| render(key, text, &values).unwrap();
+            let start = block("machine.start_gcode", &settings.machine.start_gcode);
+            let end = block("machine.end_gcode", &settings.machine.end_gcode);
+            let print = "G1 X0 Y0 Z0.2 F5400\nG1 X10 Y0 E0.5 F1620\n";
+            let what = format!("{printer} {material}");
+            assert_silent(&format!("{start}{print}{end}"), machine(&printer), 200, &what);
         }
-        let values = values(&settings, &PrintFacts { height: 10.0, ..PrintFacts::default() });
-        let start = render("machine.start_gcode", &settings.machine.start_gcode, &values).unwrap();
-        let end = render("machine.end_gcode", &settings.machine.end_gcode, &values).unwrap();
-        let print = "G1 X0 Y0 Z0.2 F5400\nG1 X10 Y0 E0.5 F1620\n";
-        assert_silent(&format!("{start}{print}{end}"), machine(name), 200, name);
     }
 }
 
@@ -61,15 +72,15 @@ fn whole_prints_convert_in_silence() {
     if !is_installed() {
         return;
     }
-    for profile in ["zcube-dual", "replicator", "replicator-2", "replicator-2x", "thesis"] {
+    for profile in printers().into_iter().chain(["thesis".to_owned()]) {
         for (name, fan) in [("bracket.stl", "0"), ("overhang.stl", "100")] {
             let set = [("dual.mode", "pair"), ("support.enabled", "true"), ("filament.fan", fan)];
-            let run = crate::common::slice(&crate::common::fixture(name), profile, &set);
+            let run = crate::common::slice(&crate::common::fixture(name), &profile, &set);
             // A move takes 40 bytes or so.
             let moves = run.print.moves.len() as u64;
             assert!(moves > 1000, "{name}");
             let what = format!("{name} {profile}");
-            assert_silent(&run.text, machine(profile), 20 * moves, &what);
+            assert_silent(&run.text, machine(&profile), 20 * moves, &what);
         }
     }
 }

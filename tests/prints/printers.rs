@@ -19,7 +19,7 @@ use slicer::units::MmPerS;
 use slicer::{Job, Model, profile};
 
 /// Names of the shipped profiles of a kind.
-fn names(kind: ProfileKind) -> Vec<String> {
+pub(crate) fn names(kind: ProfileKind) -> Vec<String> {
     let all = Shelf::default().all();
     all.into_iter().filter(|found| found.kind == Some(kind)).map(|found| found.name).collect()
 }
