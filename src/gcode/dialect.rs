@@ -65,8 +65,9 @@ impl Dialect {
             DialectName::Makerbot if on => format!("M126 T{tool}"),
             DialectName::Makerbot => format!("M127 T{tool}"),
             // RepRapFirmware takes what is above 1 as a part of 255, so that S1 of 255 would be full
-            // power. Parts of 1 are its own scale, and are never taken for another.
-            DialectName::Reprapfirmware if on => {
+            // power. Parts of 1 are its own scale, and are never taken for another. Its documentation
+            // says M106 S0 for off, and of M107 that it is not to be used any more.
+            DialectName::Reprapfirmware => {
                 format!("M106 S{}", (percent * 10.0).round() / 1000.0)
             }
             _ if on => format!("M106 S{}", (percent * 2.55).round() as u32),
@@ -130,7 +131,7 @@ mod tests {
         let fan = |percent| Dialect::new(DialectName::Reprapfirmware).fan(percent, 0);
         assert_eq!(
             [100.0, 50.0, 0.4, 0.0].map(fan),
-            ["M106 S1", "M106 S0.5", "M106 S0.004", "M107"]
+            ["M106 S1", "M106 S0.5", "M106 S0.004", "M106 S0"]
         );
     }
 

@@ -92,6 +92,21 @@ fn every_printer_prints_every_material_in_every_way() {
     jobs.par_iter().for_each(|names| passes(&block, *names));
 }
 
+/// RepRapFirmware and the Duet Software Framework read a file from its end: the first height that they
+/// find is the part's, but for moves whose comment begins with an E.
+#[test]
+fn reprapfirmware_does_not_take_the_parking_height_for_the_parts() {
+    let named = |name: &String| settings(&[Wanted::of(ProfileKind::Printer, name.as_str())], &[]);
+    let dialect = DialectName::Reprapfirmware;
+    let all: Vec<Settings> = names(ProfileKind::Printer).iter().map(named).collect();
+    for settings in all.iter().filter(|settings| settings.machine.dialect == dialect) {
+        let raised = settings.machine.end_gcode.lines().filter(|line| line.contains('Z'));
+        let comments: Vec<&str> = raised.map(|line| line.split_once("; ").unwrap().1).collect();
+        assert!(!comments.is_empty(), "{}", settings.machine.name);
+        assert!(comments.iter().all(|comment| comment.starts_with('E')), "{comments:?}");
+    }
+}
+
 #[test]
 fn one_printer_of_each_kind_prints_the_bracket() {
     let bracket = fixture("bracket.stl");
