@@ -79,7 +79,8 @@ fn block(thumbnail: &Thumbnail, text: &mut String) {
 /// Filament and print time, and those settings for which hosts have another name than we do.
 ///
 /// RepRapFirmware and the Duet Software Framework count layers by `num_layers`; OctoPrint makes a volume
-/// of the filament by `filament_diameter`, and has none without it.
+/// of the filament by `filament_diameter`, and has none without it. Prusa's `bgcode`, which makes
+/// binary G-code for its printers, refuses a file without the marks around the settings.
 pub(super) fn tail(layers: usize, sums: &Sums, settings: &Settings) -> String {
     let Material { mm, cm3, grams, cost } = Material::new(sums.usage.filament(), settings);
     let cost = cost.map_or_else(String::new, |cost| format!("; filament cost = {cost:.2}\n"));
@@ -95,10 +96,12 @@ pub(super) fn tail(layers: usize, sums: &Sums, settings: &Settings) -> String {
          ; filament used [g] = {grams:.2}\n{cost}; total filament used [g] = {grams:.2}\n\
          ; total toolchanges = 0\n; total layers count = {layers}\n; num_layers = {layers}\n\
          ; estimated printing time (normal mode) = {time}\n\n\
-         ; printer_model = {}\n; nozzle_diameter = {}\n; filament_diameter = {}\n\
+         ; prusaslicer_config = begin\n; printer_model = {}\n\
+         ; nozzle_diameter = {}\n; filament_diameter = {}\n\
          {kind}; filament_settings_id = \"{}\"\n; single_extruder_multi_material = 0\n\
          ; first_layer_temperature = {first_nozzle}\n; temperature = {nozzle}\n\
-         ; first_layer_bed_temperature = {first_bed}\n; bed_temperature = {bed}\n\n",
+         ; first_layer_bed_temperature = {first_bed}\n; bed_temperature = {bed}\n\
+         ; prusaslicer_config = end\n\n",
         machine.name,
         machine.nozzle_diameter,
         filament.diameter,

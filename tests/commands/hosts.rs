@@ -130,6 +130,11 @@ fn sums_and_settings_stand_in_the_last_mib_in_the_words_of_hosts() {
         assert_eq!(value(text, "filament_settings_id"), Some(quoted.as_str()));
         assert_eq!(value(text, "filament_type"), material(name));
         assert_eq!(value(text, "printer_model"), Some(settings.machine.name.as_str()));
+        // Prusa's `bgcode` wants both marks and nothing but values between them.
+        let (_, after) = text.split_once("\n; prusaslicer_config = begin\n").unwrap();
+        let (between, _) = after.split_once("\n; prusaslicer_config = end\n").unwrap();
+        assert!(between.lines().count() > 8, "{between}");
+        assert!(between.lines().all(|line| line.starts_with("; ") && line.contains(" = ")));
     }
 }
 
