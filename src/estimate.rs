@@ -5,7 +5,7 @@
 //! move's time as soon as it is final, and the time is added where the tag points. So a file of any
 //! length is timed in the memory of a few hundred moves, besides a record for each layer.
 //!
-//! - Limits that the file sets (M201, M203, M204, M205, SET_VELOCITY_LIMIT) hold from there on,
+//! - Limits that the file sets (M201, M203 to M205, M566, SET_VELOCITY_LIMIT) hold from there on,
 //!   unless the caller wants the same limits for several files.
 //! - A layer without a line is no layer: its time counts for the one before, or for the start.
 //! - Heating and homing take a time that is not in the file: they are counted, not timed. The
@@ -294,8 +294,14 @@ fn apply(change: &Change, limits: &mut Limits) {
     set(&mut limits.print_acceleration, change.print);
     set(&mut limits.travel_acceleration, change.travel);
     set(&mut limits.retract_acceleration, change.retract);
+    let is_vector = matches!(limits.junction, Junction::VectorJerk(_));
     match &mut limits.junction {
         Junction::Jerk(jerk) | Junction::VectorJerk(jerk) | Junction::SpeedChange(jerk) => {
+            let mut change = *change;
+            if is_vector {
+                // Where x and y have one jerk, Y is no word.
+                change.jerk[1] = change.jerk[1].or(change.jerk[0]);
+            }
             for (jerk, value) in jerk.iter_mut().zip(change.jerk) {
                 set(jerk, value);
             }

@@ -161,7 +161,7 @@ pub(crate) struct EstimateArgs {
     /// List every layer with its time (JSON always does)
     #[arg(long)]
     pub(crate) layers: bool,
-    /// Leave out what the file itself says of limits (M201, M203, M204, M205, SET_VELOCITY_LIMIT)
+    /// Leave out what the file itself says of limits (M201, M203, M204, M205, M566, SET_VELOCITY_LIMIT)
     #[arg(long)]
     pub(crate) fixed_limits: bool,
     #[command(flatten)]

@@ -45,6 +45,7 @@ const SHOWN_ELSEWHERE: &[&str] = &[
     "M204",
     "M205",
     "M220",
+    "M566",
     "SET_VELOCITY_LIMIT",
 ];
 

@@ -1,14 +1,14 @@
 //! Role: what a path is printed for, with everything specific to each role in one table.
 //!
 //! - A *role* is what a path is for, such as outer wall or sparse infill.
-//! - Its *facts* are all that is particular to it: name, annotation, speed, filament, and where in a
-//!   layer it is printed. To add a role, add a variant, put it into [`Role::ALL`], and give its facts.
+//! - Its *facts* are all that is particular to it: name, annotation, speed, acceleration, filament, and
+//!   where in a layer it is printed. To add a role, add a variant, put it into [`Role::ALL`], and give its facts.
 //! - A *thick* bead is printed for several layers at once; [`Both`] holds a value for thin and thick.
 //! - A [`RoleTable`] holds a value for each role.
 //!
 //! Roles that differ little from another one take its facts and change what differs.
 
-use crate::profile::{Cooling, Extrusion, Speed};
+use crate::profile::{Acceleration, Cooling, Extrusion, Jerk, Speed};
 use std::ops::{Index, IndexMut};
 
 /// What a path is printed for.
@@ -87,6 +87,10 @@ pub struct RoleFacts {
     pub speed_keys: fn(&Speed) -> Both<&'static str>,
     /// Its speed, thin and thick.
     pub speed: fn(&Speed) -> Both<f64>,
+    /// Its acceleration, mm/s²; none where it is the machine's.
+    pub acceleration: fn(&Acceleration) -> Option<f64>,
+    /// Its jerk, mm/s; none where it is the machine's.
+    pub jerk: fn(&Jerk) -> Option<f64>,
     /// When it is slowed down for a layer's least time.
     pub slows: Slows,
     /// Power of the fan on it, %; none where it is as usual.
@@ -123,6 +127,8 @@ impl Role {
                 may_be_thick: false,
                 speed_keys: |speed| own(speed.outer_wall, "speed.outer_wall", "speed.wall"),
                 speed: |speed| Both::same(speed.outer_wall.unwrap_or(speed.wall)),
+                acceleration: |a| a.outer_wall.or(a.wall),
+                jerk: |j| j.outer_wall.or(j.wall),
                 slows: Slows::Last,
                 fan: |_| None,
                 factor: |extrusion| extrusion.wall_factor,
@@ -133,6 +139,8 @@ impl Role {
                 may_be_thick: true,
                 speed_keys: |speed| own(speed.inner_wall, "speed.inner_wall", "speed.wall"),
                 speed: |speed| Both::same(speed.inner_wall.unwrap_or(speed.wall)),
+                acceleration: |a| a.inner_wall.or(a.wall),
+                jerk: |j| j.inner_wall.or(j.wall),
                 slows: Slows::Second,
                 ..Self::OuterWall.facts()
             },
@@ -141,6 +149,8 @@ impl Role {
                 annotation: "Overhang perimeter",
                 speed_keys: |_| Both::same("speed.overhang"),
                 speed: |speed| Both::same(speed.overhang),
+                acceleration: |a| a.overhang.or(a.outer_wall).or(a.wall),
+                jerk: |j| j.overhang.or(j.outer_wall).or(j.wall),
                 fan: |cooling| Some(cooling.overhang_fan.unwrap_or(cooling.bridge_fan)),
                 ..Self::OuterWall.facts()
             },
@@ -151,6 +161,8 @@ impl Role {
                 may_be_thick: false,
                 speed_keys: |_| Both::same("speed.bridge"),
                 speed: |speed| Both::same(speed.bridge),
+                acceleration: |a| a.bridge.or(a.skin),
+                jerk: |j| j.bridge.or(j.skin),
                 slows: Slows::Last,
                 fan: |cooling| Some(cooling.bridge_fan),
                 ..SKIN
@@ -184,6 +196,8 @@ const SKIN: RoleFacts = RoleFacts {
     may_be_thick: true,
     speed_keys: |_| Both::same("speed.skin"),
     speed: |speed| Both::same(speed.skin),
+    acceleration: |a| a.skin,
+    jerk: |j| j.skin,
     slows: Slows::First,
     fan: |_| None,
     factor: |extrusion| extrusion.skin_factor,
@@ -195,6 +209,8 @@ const TOP_SKIN: RoleFacts = RoleFacts {
     may_be_thick: false,
     speed_keys: |speed| own(speed.top_skin, "speed.top_skin", "speed.skin"),
     speed: |speed| Both::same(speed.top_skin.unwrap_or(speed.skin)),
+    acceleration: |a| a.top_skin.or(a.skin),
+    jerk: |j| j.top_skin.or(j.skin),
     ..SKIN
 };
 
@@ -203,6 +219,8 @@ const GAP: RoleFacts = RoleFacts {
     annotation: "Gap fill",
     speed_keys: |speed| own(speed.gap, "speed.gap", "speed.skin"),
     speed: |speed| Both::same(speed.gap.unwrap_or(speed.skin)),
+    acceleration: |a| a.gap.or(a.skin),
+    jerk: |j| j.gap.or(j.skin),
     ..SKIN
 };
 
@@ -213,6 +231,8 @@ const INFILL: RoleFacts = RoleFacts {
     may_be_thick: true,
     speed_keys: |_| Both { thin: "speed.infill", thick: "speed.thick_infill" },
     speed: |speed| Both { thin: speed.infill, thick: speed.thick_infill },
+    acceleration: |a| a.infill,
+    jerk: |j| j.infill,
     slows: Slows::First,
     fan: |_| None,
     factor: |extrusion| extrusion.infill_factor,
@@ -225,6 +245,8 @@ const SUPPORT: RoleFacts = RoleFacts {
     may_be_thick: true,
     speed_keys: |_| Both::same("speed.support"),
     speed: |speed| Both::same(speed.support),
+    acceleration: |a| a.support,
+    jerk: |j| j.support,
     slows: Slows::First,
     fan: |_| None,
     factor: |extrusion| extrusion.support_factor,

@@ -96,6 +96,17 @@ impl Dialect {
         format!("M140 S{celsius}")
     }
 
+    /// The command that sets pressure advance to `seconds`; none where it is not known.
+    #[must_use]
+    pub fn advance(self, seconds: f64, tool: u32) -> Option<String> {
+        match self.name {
+            DialectName::Marlin => Some(format!("M900 K{seconds}")),
+            DialectName::Klipper => Some(format!("SET_PRESSURE_ADVANCE ADVANCE={seconds}")),
+            DialectName::Reprapfirmware => Some(format!("M572 D{tool} S{seconds}")),
+            DialectName::Makerbot | DialectName::Ultigcode => None,
+        }
+    }
+
     /// The line that reports `percent` of the print as done and how many minutes are left.
     /// Its length does not depend on the numbers, so that it can be filled in later.
     #[must_use]

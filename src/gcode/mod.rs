@@ -9,7 +9,7 @@
 //!    since those above have a say.
 //! 3. [`times`] runs the clock over these moves, layer by layer; [`usage`] sums their filament.
 //! 4. [`write`](mod@write) formats the moves in the printer's [`dialect`], with the power of the
-//!    [`fan`].
+//!    [`fan`], and with acceleration and jerk of each kind of move ([`drive`]).
 //! 5. Layers go to the output in order as soon as their times are known, with placeholders for
 //!    progress lines. These have a fixed length and are filled in at the end, when the total time
 //!    is known.
@@ -17,6 +17,7 @@
 
 pub mod cooling;
 pub mod dialect;
+pub mod drive;
 mod error;
 pub mod fan;
 pub mod flow;
@@ -35,6 +36,7 @@ use crate::profile::template::{self, PrintFacts};
 use crate::profile::{Settings, dump};
 use cooling::{Cooled, Cooling};
 use dialect::Dialect;
+use drive::Drives;
 pub use error::{Error, Result};
 use fan::FanParams;
 use hosts::Thumbnail;
@@ -100,7 +102,7 @@ impl<'a> Writer<'a> {
             params: WriteParams::new(settings),
             cooling: Cooling::new(settings, FanParams::new(settings).goes_by_time()),
             before: Before::default(),
-            timer: Timer::new(Limits::new(settings)),
+            timer: Timer::new(Limits::new(settings)).driven(Drives::new(settings)),
             waiting: VecDeque::new(),
             progress: Progress::new(settings.machine.dialect),
             usage: Usage::default(),
@@ -115,7 +117,8 @@ impl<'a> Writer<'a> {
         let e_mode = if settings.machine.relative_e { "M83" } else { "M82" };
         // Its numbers are filled in at the end.
         let head = dialect_head(settings, 0.0, 0.0) + &hosts::head(facts.layers, thumbnails);
-        let start = format!("{head};TYPE:Custom\n{block}{e_mode}\nG92 E0\n");
+        let advance = dialect_advance(settings);
+        let start = format!("{head};TYPE:Custom\n{block}{e_mode}\nG92 E0\n{advance}");
         writer.out.put(start.as_bytes())?;
         Ok(writer)
     }
@@ -148,6 +151,7 @@ impl<'a> Writer<'a> {
             befores.push(self.before);
             self.usage.add(used);
             self.before.e = self.usage.filament();
+            self.before.told = params.told(layer, self.before.told);
         }
         // The clock must see the layers in order. Their texts are independent of each other.
         let ((), texts) = rayon::join(
@@ -178,7 +182,7 @@ impl<'a> Writer<'a> {
         }
         self.timer.finish();
         self.write_ready()?;
-        let mut tail = self.params.finish(&self.moves, self.usage.filament());
+        let mut tail = self.params.finish(&self.moves, self.before);
         tail.extend_from_slice(self.progress.done().as_bytes());
         tail.extend_from_slice(format!(";TYPE:Custom\n{}", self.end).as_bytes());
         let cooled = self.cooling.as_ref().map(|cooling| cooling.cooled().clone());
@@ -205,6 +209,14 @@ impl<'a> Writer<'a> {
         }
         Ok(())
     }
+}
+
+/// The line that sets the material's pressure advance, if it asks for one.
+fn dialect_advance(settings: &Settings) -> String {
+    let dialect = Dialect::new(settings.machine.dialect);
+    let advance = settings.filament.pressure_advance;
+    let line = advance.and_then(|seconds| dialect.advance(seconds, settings.machine.tool));
+    line.map_or_else(String::new, |line| line + "\n")
 }
 
 /// The lines that the dialect needs first of all.

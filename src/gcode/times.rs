@@ -5,13 +5,15 @@
 //! - A *mark* says that a layer or a path begins with the move of a given number.
 //! - The *ledger* matches the clock's times with the marks.
 //!
-//! 1. Each move goes to the clock, tagged with what its time counts for.
+//! 1. Each move goes to the clock, tagged with what its time counts for; before it the limits of its
+//!    drive, where that changes.
 //! 2. A segment too short to be written is skipped. Its filament goes with the next one, as in the
 //!    text.
 //! 3. For each time that the clock returns, the ledger first passes all marks before that move and
 //!    then adds the time.
 //! 4. A layer is ready once the next one begins or the file ends.
 
+use super::drive::Drives;
 use super::moves::{Kind, Move, Moves};
 use crate::fill::{Both, Role, RoleTable};
 use crate::motion::{self, Clock, Limits, Timed};
@@ -87,6 +89,9 @@ enum Begins {
 /// Runs the clock over the moves of a file.
 pub struct Timer {
     clock: Clock<Part>,
+    drives: Option<Drives>,
+    /// The number of the drive in force.
+    driven: Option<usize>,
     ledger: Ledger,
     nozzle: Nozzle,
     /// Number of moves given to the clock.
@@ -98,7 +103,14 @@ impl Timer {
     #[must_use]
     pub fn new(limits: Limits) -> Self {
         let clock = Clock::new(limits);
-        Self { clock, ledger: Ledger::default(), nozzle: Nozzle::default(), given: 0 }
+        let (ledger, nozzle) = (Ledger::default(), Nozzle::default());
+        Self { clock, drives: None, driven: None, ledger, nozzle, given: 0 }
+    }
+
+    /// With acceleration and jerk that go by what is printed.
+    #[must_use]
+    pub fn driven(self, drives: Option<Drives>) -> Self {
+        Self { drives, ..self }
     }
 
     /// Times the next layer.
@@ -109,6 +121,7 @@ impl Timer {
             while paths.next_if(|&&first| first == index).is_some() {
                 self.mark(Begins::Path);
             }
+            self.drive(layer.layer, &step.kind);
             self.step(step);
         }
         paths.for_each(|_| self.mark(Begins::Path));
@@ -136,6 +149,13 @@ impl Timer {
 
     fn mark(&mut self, what: Begins) {
         self.ledger.marks.push_back(Mark { at: self.given, what });
+    }
+
+    /// Changes the clock's limits to those of the drive that a move of this layer asks for.
+    fn drive(&mut self, layer: usize, kind: &Kind) {
+        if let Some(drives) = &self.drives {
+            change(&mut self.clock, drives, drives.of(layer, kind), &mut self.driven);
+        }
     }
 
     fn step(&mut self, step: &Move) {
@@ -258,6 +278,20 @@ impl Ledger {
     }
 }
 
+/// Changes the clock's limits to those of the drive of this number, if it is another one than `driven`.
+fn change<T: Copy>(
+    clock: &mut Clock<T>,
+    drives: &Drives,
+    number: Option<usize>,
+    driven: &mut Option<usize>,
+) {
+    let next = number.filter(|_| number != *driven).and_then(|number| drives.get(number));
+    if let Some(drive) = next {
+        clock.switch(&drive.rates);
+        *driven = number;
+    }
+}
+
 /// How much longer than in the layer its last move is before it, and its first move after it, for
 /// [`between_its_likes`]: long enough for any speed.
 const RUN_UP: f64 = 1e6;
@@ -265,7 +299,7 @@ const RUN_UP: f64 = 1e6;
 /// How long a layer takes between layers that end and begin as it does, s: the corners at its two
 /// ends are about as sharp as in the print, whatever the layers beside it are.
 #[must_use]
-pub fn between_its_likes(layer: &Moves, limits: &Limits) -> f64 {
+pub fn between_its_likes(layer: &Moves, limits: &Limits, drives: Option<&Drives>) -> f64 {
     let below = layer.from.map(|_| layer.z - layer.height);
     let mut nozzle = Nozzle { at: layer.from, z: below, held: 0.0 };
     let mut clock = Clock::new(limits.clone());
@@ -276,14 +310,22 @@ pub fn between_its_likes(layer: &Moves, limits: &Limits) -> f64 {
     let mut all = moves.iter().copied().flatten();
     let first = all.next();
     let last = all.next_back().or(first);
+    let drive = |step: &Move| drives.and_then(|drives| drives.of(layer.layer, &step.kind));
+    let mut driven = None;
+    let mut turn = |clock: &mut Clock<bool>, number| {
+        drives.into_iter().for_each(|drives| change(clock, drives, number, &mut driven));
+    };
+    turn(&mut clock, layer.moves.iter().rev().find_map(drive));
     last.map(far).into_iter().for_each(|before| clock.push(before));
     for (given, next) in layer.moves.iter().zip(moves) {
+        turn(&mut clock, drive(given));
         if let Kind::Wait(ms) = given.kind {
             clock.dwell(f64::from(ms) / 1000.0, true);
         } else if let Some((delta, feed)) = next {
             clock.push(step(delta, feed, true));
         }
     }
+    turn(&mut clock, layer.moves.iter().find_map(drive));
     first.map(far).into_iter().for_each(|after| clock.push(after));
     clock.finish();
     clock.drain().filter(|timed| timed.tag).map(|timed| timed.seconds).sum()

@@ -3,7 +3,7 @@
 //! - *Annotations* are comments that viewers read: `;LAYER_CHANGE`, `;TYPE:`, `;WIDTH:`, `;HEIGHT:`.
 //! - A *cut* is a byte of the text where a progress line may be inserted.
 //! - A word of G-code stays in force until it is written again. So X, Y, Z and F are written only
-//!   where they change.
+//!   where they change, and so are accelerations ([`super::drive`]).
 //!
 //! Rules:
 //! - Each layer starts from its own position and from the filament used before it. No text depends on
@@ -13,6 +13,7 @@
 //! - Annotations come before the first move that they describe.
 
 use super::dialect::Dialect;
+use super::drive::{Drives, Driving, Told};
 use super::fan::{Fan, FanParams};
 use super::moves::{Bead, Kind, Move, MoveParams, Moves};
 use super::number::{push_fixed, thousandths};
@@ -42,6 +43,7 @@ pub struct WriteParams {
     dialect: Dialect,
     relative_e: bool,
     fan: FanParams,
+    drives: Option<Drives>,
     /// What E counts for each mm of filament.
     e_per_mm: f64,
     tool: u32,
@@ -56,6 +58,8 @@ pub struct Before {
     pub e: f64,
     /// The fan, and what it is on the layer.
     pub fan: Fan,
+    /// Accelerations and jerk.
+    pub told: Told,
 }
 
 impl WriteParams {
@@ -68,6 +72,7 @@ impl WriteParams {
             relative_e: settings.machine.relative_e,
             e_per_mm: dialect.e_per_mm(settings.filament_area()),
             fan: FanParams::new(settings),
+            drives: Drives::new(settings),
             tool: settings.machine.tool,
             after_first: after_first(settings),
         }
@@ -79,10 +84,17 @@ impl WriteParams {
         Fan { before: before.usual, usual: self.fan.usual(layer.layer, layer.group_seconds) }
     }
 
+    /// Accelerations and jerk after a layer, when those are `before` it.
+    #[must_use]
+    pub fn told(&self, layer: &Moves, before: Told) -> Told {
+        self.drives.as_ref().map_or(before, |drives| drives.after(layer, before))
+    }
+
     /// The text of one layer.
     #[must_use]
     pub fn layer(&self, layer: &Moves, before: Before) -> LayerText {
-        let mut text = Text::new(self, before.e);
+        let driving = Driving::new(self.drives.as_ref(), layer.layer, before.told);
+        let mut text = Text::new(self, before.e, driving);
         // A move takes about 30 bytes.
         text.out.reserve(30 * layer.moves.len());
         let mut cuts = Vec::with_capacity(1 + layer.paths.len());
@@ -100,15 +112,17 @@ impl WriteParams {
         LayerText { text: text.out, cuts }
     }
 
-    /// The last retraction before the end block; `e` is the filament used so far, mm.
+    /// What comes before the end block: the last retraction, and the machine's own accelerations.
     #[must_use]
-    pub fn finish(&self, moves: &MoveParams, e: f64) -> Vec<u8> {
-        let mut text = Text::new(self, e);
+    pub fn finish(&self, moves: &MoveParams, before: Before) -> Vec<u8> {
+        let mut text = Text::new(self, before.e, Driving::new(None, 0, before.told));
         text.restart_e();
         let (length, feed) = moves.last_pull();
         if length > 0.0 {
             text.pull(-length, feed);
         }
+        let own = self.drives.as_ref().map(|drives| drives.restore(before.told));
+        text.out.extend_from_slice(own.unwrap_or_default().as_bytes());
         text.out
     }
 }
@@ -129,12 +143,13 @@ struct Text<'a> {
     role: Option<Role>,
     /// The fan's power, and what is usual, if this layer is printed with the fan on.
     fan: Option<(f64, f64)>,
+    driving: Driving<'a>,
     width: Coord,
     height: Coord,
 }
 
 impl<'a> Text<'a> {
-    fn new(params: &'a WriteParams, used: f64) -> Self {
+    fn new(params: &'a WriteParams, used: f64, driving: Driving<'a>) -> Self {
         let e = if params.dialect.restarts_e() { 0.0 } else { used };
         Self {
             params,
@@ -146,6 +161,7 @@ impl<'a> Text<'a> {
             feed: 0,
             role: None,
             fan: None,
+            driving,
             width: 0,
             height: 0,
         }
@@ -194,6 +210,9 @@ impl<'a> Text<'a> {
     }
 
     fn step(&mut self, step: &Move) {
+        if let Some(words) = self.driving.words(&step.kind) {
+            self.out.extend_from_slice(words.as_bytes());
+        }
         match step.kind {
             Kind::Travel => {
                 if self.go(step.to, self.z) {

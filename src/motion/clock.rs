@@ -91,6 +91,11 @@ impl<T: Copy> Clock<T> {
         self.rates = Rates::new(limits);
     }
 
+    /// As [`Self::set_limits`], of limits that are ready. The rule for corners is that of before.
+    pub fn switch(&mut self, rates: &Rates) {
+        self.rates.clone_from(rates);
+    }
+
     /// The next move. One whose length is 0 or not finite takes no time.
     pub fn push(&mut self, given: Move<T>) {
         let Some(mut course) = Course::new(&given, &self.rates) else {

@@ -64,9 +64,10 @@ const LEAST: f64 = 1e-3;
 /// Least jerk that is used, mm/s: no jerk at all would divide by 0.
 const LEAST_JERK: f64 = 1e-12;
 
-/// [`Limits`] with what every move needs precomputed.
+/// [`Limits`] with what every move needs precomputed, so that a clock can change from one to another
+/// at no cost.
 #[derive(Debug, Clone)]
-pub(super) struct Rates {
+pub struct Rates {
     pub(super) limits: Limits,
     /// 1 / feed.
     feed_inverse: [f64; 4],
@@ -118,7 +119,9 @@ impl Limits {
 }
 
 impl Rates {
-    pub(super) fn new(limits: Limits) -> Self {
+    /// What `limits` mean for each move.
+    #[must_use]
+    pub fn new(limits: Limits) -> Self {
         let inverse = |values: [f64; 4]| values.map(|value| 1.0 / value.max(LEAST));
         let deviation = match limits.junction {
             Junction::Jerk(_) | Junction::VectorJerk(_) | Junction::SpeedChange(_) => 0.0,

@@ -17,7 +17,7 @@ mod plan;
 mod queue;
 
 pub use clock::{Clock, Timed};
-pub use limits::{Junction, Limits};
+pub use limits::{Junction, Limits, Rates};
 
 use crate::units::MmPerS;
 

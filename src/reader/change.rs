@@ -1,4 +1,4 @@
-//! M201, M203, M204, M205 and Klipper's SET_VELOCITY_LIMIT -> Change: other limits from here on.
+//! M201, M203 to M205, M566 and Klipper's SET_VELOCITY_LIMIT -> Change: other limits from here on.
 
 use super::words::{self, Words};
 
@@ -28,7 +28,7 @@ pub struct Change {
 }
 
 impl Change {
-    /// Reads the words of M201, M203, M204 or M205; `None` for any other number.
+    /// Reads the words of M201, M203, M204, M205 or M566; `None` for any other number.
     pub(super) fn of_code(number: u32, words: Words<'_>) -> Option<Self> {
         let mut change = Self::default();
         // The old form of M204: S is for all moves, T for the filament alone.
@@ -41,12 +41,14 @@ impl Change {
                 (201, _, Some(axis)) => change.acceleration[axis] = Some(value),
                 (203, _, Some(axis)) => change.feed[axis] = Some(value),
                 (205, _, Some(axis)) => change.jerk[axis] = Some(value),
+                // RepRapFirmware's jerk is in mm/min.
+                (566, _, Some(axis)) => change.jerk[axis] = Some(value / 60.0),
                 (205, b'J', _) => change.deviation = Some(value),
                 (204, b'P', _) => change.print = Some(value),
                 (204, b'R', _) => change.retract = Some(value),
                 (204, b'S', _) => old = Some(value),
                 (204, b'T', _) => tool = Some(value),
-                (201 | 203 | 204 | 205, ..) => {}
+                (201 | 203 | 204 | 205 | 566, ..) => {}
                 _ => return None,
             }
         }
@@ -56,7 +58,7 @@ impl Change {
         } else {
             change.travel = tool;
         }
-        matches!(number, 201 | 203 | 204 | 205).then_some(change)
+        matches!(number, 201 | 203 | 204 | 205 | 566).then_some(change)
     }
 
     /// Reads the words of SET_VELOCITY_LIMIT, such as `ACCEL=3000`.
@@ -98,6 +100,7 @@ mod tests {
         let old = of("M204 S500 T1500");
         assert_eq!((old.print, old.retract, old.travel), (Some(500.0), Some(1500.0), Some(500.0)));
         assert_eq!(of("M201 X9000 E10000").acceleration[3], Some(10_000.0));
+        assert_eq!(of("M566 X600 Y300 P1").jerk, [Some(10.0), Some(5.0), None, None]);
         assert_eq!(of("M203 Z12").feed, [None, None, Some(12.0), None]);
         assert_eq!(of("M205 X8 J0.02").deviation, Some(0.02));
         let klipper = Change::of_klipper(b" accel=3000  SQUARE_CORNER_VELOCITY=8 X=");

@@ -154,6 +154,8 @@ impl State {
             }
         } else if let Some(words) = klipper(code, b"SET_VELOCITY_LIMIT") {
             return sink(Event::Change(Change::of_klipper(words)));
+        } else if klipper(code, b"SET_PRESSURE_ADVANCE").is_some() {
+            return;
         }
         sink(Event::Unknown(code.to_vec()));
         self.summary.unknown += 1;
@@ -201,7 +203,7 @@ impl State {
             (b'M', 132) => self.forget(words, None),
             (b'M', 191 | 303) => sink(Event::Wait(Wait::Heating)),
             (b'M', 0 | 1 | 25 | 226 | 400 | 600 | 601) => sink(Event::Wait(Wait::Moves)),
-            (b'M', 201 | 203 | 204 | 205) => {
+            (b'M', 201 | 203 | 204 | 205 | 566) => {
                 if let Some(change) = Change::of_code(code.number, words) {
                     sink(Event::Change(change));
                 }

@@ -11,6 +11,7 @@
 
 use super::times;
 use crate::fill::{RoleTable, Slows};
+use crate::gcode::drive::Drives;
 use crate::gcode::flow::{feed, whole_feed};
 use crate::gcode::moves::{Kind, Moves};
 use crate::motion::Limits;
@@ -62,6 +63,7 @@ impl Slowed {
 #[derive(Debug, Clone)]
 pub(super) struct Slowing {
     limits: Limits,
+    drives: Option<Drives>,
     /// The time that a layer has to take, s.
     pub(super) least: f64,
     /// No line is slowed down below this, mm/min.
@@ -76,6 +78,7 @@ impl Slowing {
         let least = settings.cooling.min_layer_time;
         Self {
             limits: Limits::new(settings),
+            drives: Drives::new(settings),
             least: if least > 0.0 { least + MARGIN } else { 0.0 },
             slowest: whole_feed(feed(settings.cooling.min_speed)),
             kinds: RoleTable::new(|role| role.facts().slows as usize),
@@ -85,7 +88,7 @@ impl Slowing {
 
     /// What a layer takes, s.
     pub(super) fn seconds(&self, layer: &Moves) -> f64 {
-        times::between_its_likes(layer, &self.limits)
+        times::between_its_likes(layer, &self.limits, self.drives.as_ref())
     }
 
     /// What a layer needs.

@@ -45,6 +45,10 @@ pub struct Filament {
     /// How much it shrinks in z; most of that is gone before the next layer is laid.
     #[schemars(range(min = 0, max = 20), extend("unit" = "%", "default" = 0))]
     pub shrinkage_z: f64,
+    /// Pressure (or linear) advance: how far ahead of the flow the filament is pushed. Unset leaves what
+    /// the printer is set to.
+    #[schemars(range(min = 0, max = 2), extend("unit" = "s"))]
+    pub pressure_advance: Option<f64>,
     /// Price of the material; 0 means unknown.
     #[schemars(range(min = 0, max = 1_000_000), extend("unit" = "money/kg", "default" = 0))]
     pub cost: f64,

@@ -22,10 +22,12 @@
 //!   but has that key.
 //! - **choices**: keys that hold a word are enums, in [`super::choices`].
 
+mod acceleration;
 mod adhesion;
 mod cooling;
 mod dual;
 mod extrusion;
+mod jerk;
 mod limits;
 mod machine;
 mod material;
@@ -34,10 +36,12 @@ mod support;
 mod travel;
 
 use super::choices::{Angle, Floating, Pattern, Seam, SeamInner, WallOrder};
+pub use acceleration::Acceleration;
 pub use adhesion::{Brim, Skirt};
 pub use cooling::Cooling;
 pub use dual::Dual;
 pub use extrusion::Extrusion;
+pub use jerk::Jerk;
 pub use limits::MotionLimits;
 pub use machine::{Machine, Reach};
 pub use material::Filament;
@@ -189,6 +193,10 @@ pub struct Settings {
     pub brim: Brim,
     /// How fast the nozzle moves.
     pub speed: Speed,
+    /// How hard it speeds up and slows down.
+    pub acceleration: Acceleration,
+    /// How fast it takes corners.
+    pub jerk: Jerk,
     /// How much filament a line takes.
     pub extrusion: Extrusion,
     /// Which way the nozzle goes without printing.
@@ -201,6 +209,7 @@ pub struct Settings {
     pub cooling: Cooling,
     /// The printer.
     pub machine: Machine,
-    /// What the printer's planner holds itself to. It changes no move, only estimates of time.
+    /// What the printer's planner holds itself to. It changes no move, only estimates of time, and what
+    /// may be asked for by `[acceleration]`.
     pub limits: MotionLimits,
 }
