@@ -1,4 +1,11 @@
 //! Findings -> text: what does not stop a run. Each names the fact, the likely cause and what to do.
+//!
+//! - A finding is a variant with its facts, in the units that their names end in.
+//! - Its text is a line for people: what is found, where, and what to do about it.
+//! - Its code, in the report, is its name with dashes (`SlowSpeed` is `slow-speed`). Scripts look for
+//!   it: it stays once it is there.
+//! - Who finds something makes the variant; `report` gathers them, and the command line prints them.
+//! - What must not be printed at all is no finding but a refusal: see [`crate::error`].
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -101,6 +108,22 @@ pub enum Warning {
         /// What the hot end melts, mm³/s.
         limit_mm3_s: f64,
     },
+    /// Settings that the printer cannot be told.
+    NoEffect {
+        /// Their keys.
+        settings: Vec<String>,
+        /// Why not.
+        why: String,
+    },
+    /// More acceleration than the machine bears.
+    AccelerationHeld {
+        /// The setting.
+        setting: String,
+        /// Its value, mm/s².
+        asked_mm_s2: f64,
+        /// What the file asks for instead, mm/s².
+        given_mm_s2: f64,
+    },
 }
 
 impl fmt::Display for Warning {
@@ -161,6 +184,16 @@ impl fmt::Display for Warning {
                  or machine.max_volumetric_speed if it melts more",
                 short(*asked_mm_s),
                 short(*lowest_mm_s),
+            ),
+            Self::NoEffect { settings, why } => {
+                let have = if settings.len() == 1 { "has" } else { "have" };
+                write!(f, "{} {have} no effect: {why}", settings.join(", "))
+            }
+            Self::AccelerationHeld { setting, asked_mm_s2, given_mm_s2 } => write!(
+                f,
+                "{setting} = {asked_mm_s2} is held to {given_mm_s2} mm/s², the lesser of \
+                 limits.acceleration_x and limits.acceleration_y; raise these if the printer's are \
+                 higher"
             ),
         }
     }

@@ -10,7 +10,7 @@
 
 use slicer::mesh::{MeshReport, faults};
 use slicer::profile::{Profile, dump};
-use slicer::report::{BrimReport, CoolingReport, Report};
+use slicer::report::{BrimReport, CoolingReport, DriveReport, MotionReport, Report};
 use std::time::Duration;
 
 /// For which printer, material and print, and every file that had a say in it.
@@ -146,7 +146,22 @@ pub(crate) fn roles(report: &Report) -> String {
         "layers take {:.1} to {:.1} s, with a spread of {:.2}; the largest flow is {:.1} mm³/s",
         time.shortest_layer_s, time.longest_layer_s, time.layer_spread, flow.largest_mm3_s
     ));
+    lines.extend(report.motion.as_ref().map(driven).unwrap_or_default());
     lines.join("\n") + "\n"
+}
+
+/// The accelerations, jerks and pressure advance that the file sets, a line each.
+fn driven(motion: &MotionReport) -> Vec<String> {
+    let line = |what: &str, unit: &str, value: fn(&DriveReport) -> Option<f64>| {
+        let rows = motion.drives.iter();
+        let parts = rows.filter_map(|row| Some(format!("{} {}", row.of, value(row)?)));
+        let parts: Vec<_> = parts.collect();
+        (!parts.is_empty()).then(|| format!("{what}: {} {unit}", parts.join(", ")))
+    };
+    let acceleration = line("accelerations", "mm/s²", |row| row.acceleration_mm_s2);
+    let jerk = line("jerk", "mm/s", |row| row.jerk_mm_s);
+    let advance = motion.pressure_advance_s.map(|s| format!("pressure advance: {s} s"));
+    [acceleration, jerk, advance].into_iter().flatten().collect()
 }
 
 /// All settings with their origins, one a line.

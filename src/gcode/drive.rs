@@ -166,10 +166,9 @@ impl Drives {
         let old = self.rule == JunctionRule::VectorJerk;
         match self.dialect {
             DialectName::Makerbot => {}
-            DialectName::Klipper => say(
-                "SET_VELOCITY_LIMIT",
-                &[("ACCEL=", news.print), ("SQUARE_CORNER_VELOCITY=", x)],
-            ),
+            DialectName::Klipper => {
+                say("SET_VELOCITY_LIMIT", &[("ACCEL=", news.print), ("SQUARE_CORNER_VELOCITY=", x)])
+            }
             DialectName::Reprapfirmware => {
                 say("M204", &[("P", news.print), ("T", news.travel)]);
                 let per_minute = |jerk: Option<f64>| jerk.map(|jerk| rounded(60.0 * jerk));

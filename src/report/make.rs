@@ -1,6 +1,7 @@
 //! Sums, audits and tally -> Report: fills in the carriers.
 
 use super::cooling::cooling;
+use super::motion::{self, motion};
 use super::tally::Tally;
 use super::{
     ApartReport, BlockReport, DualReport, FilamentReport, FlowReport, LayerTimeReport,
@@ -62,10 +63,12 @@ pub fn report(
             limit_mm3_s: settings.max_volumetric_speed(),
         },
         cooling: cooled.as_ref().and_then(|cooled| cooling(cooled, times, settings)),
+        motion: motion(usage, settings),
         dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits)),
         warnings: (placed.warnings.iter().cloned())
             .chain(tally.warnings())
             .chain(slow_speeds(settings))
+            .chain(motion::warnings(settings))
             .chain(slowed_down(&usage.flows, settings))
             .collect(),
         brim: None,

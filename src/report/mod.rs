@@ -11,6 +11,7 @@
 
 mod cooling;
 pub mod make;
+pub mod motion;
 pub mod tally;
 
 use crate::check::Verdict;
@@ -66,6 +67,9 @@ pub struct Report {
     /// What a least time of a layer changed; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cooling: Option<CoolingReport>,
+    /// Accelerations, jerks and pressure advance that the file sets; absent where it sets none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<MotionReport>,
     /// Dual injection; absent where it is off.
     pub dual: Option<DualReport>,
     /// The brim that was printed although nobody asked for it; absent without one.
@@ -240,6 +244,29 @@ pub struct QuickLayerReport {
     pub z_mm: f64,
     /// Its time, s.
     pub time_s: f64,
+}
+
+/// What the file tells the printer of accelerations.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+pub struct MotionReport {
+    /// The first layer if it has its own, each role that is printed, and travels.
+    pub drives: Vec<DriveReport>,
+    /// Pressure advance, s; absent where it stays as the printer has it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pressure_advance_s: Option<f64>,
+}
+
+/// Acceleration and jerk of one kind of move.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+pub struct DriveReport {
+    /// `first layer`, a role, or `travel`.
+    pub of: String,
+    /// Its acceleration, mm/s²; absent where the file sets none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub acceleration_mm_s2: Option<f64>,
+    /// Its jerk or square corner velocity, mm/s; absent where it is the printer's own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub jerk_mm_s: Option<f64>,
 }
 
 /// What dual injection did. Lengths are those of lines, without the turns between them;

@@ -11,6 +11,7 @@ mod gpx;
 mod library;
 mod metamorphic;
 mod models;
+mod motion;
 mod printers;
 mod seams;
 mod skins;

@@ -1,0 +1,84 @@
+//! Settings + what is printed -> MotionReport: acceleration and jerk of each kind of move, and what of it has no effect.
+
+use super::{DriveReport, MotionReport};
+use crate::fill::Role;
+use crate::gcode::dialect::Dialect;
+use crate::gcode::drive::{self, Asked};
+use crate::gcode::usage::Usage;
+use crate::profile::{Acceleration, DialectName, Jerk, Settings};
+use crate::warning::Warning;
+
+/// What the file tells the machine of accelerations; none if it tells nothing.
+pub(super) fn motion(usage: &Usage, settings: &Settings) -> Option<MotionReport> {
+    let accelerates = drive::tells_accelerations(settings) && asks_acceleration(settings);
+    let corners = drive::tells_corners(settings) && asks_jerk(settings);
+    let dialect = Dialect::new(settings.machine.dialect);
+    let advance = settings.filament.pressure_advance;
+    let advance = advance.filter(|&s| dialect.advance(s, settings.machine.tool).is_some());
+    if !accelerates && !corners && advance.is_none() {
+        return None;
+    }
+    let row = |of: &str, acceleration: Option<f64>, jerk: Option<f64>| DriveReport {
+        of: of.to_owned(),
+        acceleration_mm_s2: acceleration.filter(|_| accelerates),
+        jerk_mm_s: jerk.filter(|_| corners),
+    };
+    let asked = |of, Asked { acceleration, jerk }| row(of, Some(acceleration), jerk);
+    let mut drives = Vec::new();
+    if accelerates || corners {
+        let used = |role: &Role| usage.roles[*role].iter().any(|(_, used)| used.length > 0.0);
+        let first = drive::line(settings, Role::OuterWall, true);
+        let acceleration = settings.acceleration.first_layer.map(|_| first.acceleration);
+        drives.push(row("first layer", acceleration, settings.jerk.first_layer));
+        let roles = Role::ALL.into_iter().filter(used);
+        drives.extend(roles.map(|r| asked(r.facts().name, drive::line(settings, r, false))));
+        drives.push(asked("travel", drive::travel(settings)));
+        drives.retain(|one| one.acceleration_mm_s2.is_some() || one.jerk_mm_s.is_some());
+    }
+    Some(MotionReport { drives, pressure_advance_s: advance })
+}
+
+/// Keys of accelerations, jerks and pressure advance that do not what they say.
+#[must_use]
+pub fn warnings(settings: &Settings) -> Vec<Warning> {
+    let dialect = settings.machine.dialect;
+    let mut accelerations = Vec::new();
+    if asks_acceleration(settings) {
+        accelerations = drive::asked(settings, "acceleration");
+    }
+    let jerks = if asks_jerk(settings) { drive::asked(settings, "jerk") } else { Vec::new() };
+    let none = |keys: Vec<(String, f64)>, why: &str| {
+        let settings: Vec<String> = keys.into_iter().map(|(key, _)| key).collect();
+        (!settings.is_empty()).then(|| Warning::NoEffect { settings, why: why.to_owned() })
+    };
+    let mut advance = Vec::new();
+    if let Some(seconds) = settings.filament.pressure_advance
+        && Dialect::new(dialect).advance(seconds, settings.machine.tool).is_none()
+    {
+        advance.push(("filament.pressure_advance".to_owned(), seconds));
+    }
+    if dialect == DialectName::Makerbot {
+        let all = [accelerations, jerks, advance].concat();
+        let why = "GPX and Sailfish have no command for it; set it on the printer";
+        return none(all, why).into_iter().collect();
+    }
+    let most = drive::most(settings);
+    let high = accelerations.into_iter().filter(|(_, asked)| *asked > most);
+    let held = high.map(|(setting, asked_mm_s2)| Warning::AccelerationHeld {
+        setting,
+        asked_mm_s2,
+        given_mm_s2: most,
+    });
+    let jerks = if drive::tells_corners(settings) { Vec::new() } else { jerks };
+    let why = "the firmware has no command for the rule of corners that limits.junction names";
+    let why_advance = "the Ultimaker 2 has no command for it";
+    held.chain(none(jerks, why)).chain(none(advance, why_advance)).collect()
+}
+
+fn asks_acceleration(settings: &Settings) -> bool {
+    settings.acceleration != Acceleration::default()
+}
+
+fn asks_jerk(settings: &Settings) -> bool {
+    settings.jerk != Jerk::default()
+}
