@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// `[limits]`: what the printer's planner holds itself to. It changes no move, only
-/// estimates of time. `machine.acceleration` is the acceleration of moves that extrude.
+/// estimates of time; and no more is asked for by `[acceleration]` than x and y have here. `machine.acceleration` is the acceleration of moves that extrude.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionLimits {
