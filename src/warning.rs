@@ -123,6 +123,20 @@ pub enum Warning {
         asked_mm_s2: f64,
         /// What the file asks for instead, mm/s².
         given_mm_s2: f64,
+        },
+    /// Arcs are asked for, but not known to the firmware: none were written.
+    ArcsUnknown {
+        /// The printer.
+        machine: String,
+    },
+    /// Lines that are printed noticeably slower than asked for, since they are short.
+    ShortLinesSlowed {
+        /// How many.
+        lines: usize,
+        /// What they take longer by, s.
+        lost_s: f64,
+        /// Moves that the printer can be fed, 1/s.
+        limit_per_s: f64,
     },
 }
 
@@ -194,6 +208,19 @@ impl fmt::Display for Warning {
                 "{setting} = {asked_mm_s2} is held to {given_mm_s2} mm/s², the lesser of \
                  limits.acceleration_x and limits.acceleration_y; raise these if the printer's are \
                  higher"
+            ),
+            Self::ArcsUnknown { machine } => write!(
+                f,
+                "no arcs were written, since {machine} is not known to draw them: set \
+                 machine.arcs = true if its firmware does (Marlin's ARC_SUPPORT, Klipper's \
+                 [gcode_arcs]), or leave out --arcs"
+            ),
+            Self::ShortLinesSlowed { lines, lost_s, limit_per_s } => write!(
+                f,
+                "{} so short that the printer could not be fed fast enough, and slower now, by \
+                 {lost_s:.0} s in all; use a larger tolerance, or a limits.max_segment_rate above \
+                 {limit_per_s} if the printer takes more moves a second",
+                if *lines == 1 { "1 line is".to_owned() } else { format!("{lines} lines are") }
             ),
         }
     }

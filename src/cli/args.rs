@@ -286,6 +286,9 @@ pub(crate) struct SettingArgs {
     /// Print support under overhangs
     #[arg(long)]
     support: bool,
+    /// Write round lines as arcs (G2, G3), if machine.arcs says that the printer knows them
+    #[arg(long)]
+    arcs: bool,
     /// Print layers that would take less time than this more slowly, s; 0 for none
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     min_layer_time: Option<String>,
@@ -370,7 +373,7 @@ impl SettingArgs {
     }
 
     /// Each flag, the key it sets, and the value given.
-    fn all(&self) -> [(&'static str, &'static str, Option<String>); 20] {
+    fn all(&self) -> [(&'static str, &'static str, Option<String>); 21] {
         let switched = |on: bool, value: &str| on.then(|| value.to_owned());
         [
             ("--dual", "dual.mode", switched(self.dual, "pair")),
@@ -389,6 +392,7 @@ impl SettingArgs {
             ("--infill", "infill", self.infill.clone()),
             ("--pattern", "pattern", self.pattern.clone()),
             ("--support", "support.enabled", switched(self.support, "true")),
+            ("--arcs", "arcs", switched(self.arcs, "true")),
             ("--min-layer-time", "cooling.min_layer_time", self.min_layer_time.clone()),
             ("--brim", "brim.width", self.brim.clone()),
             ("--brim", "brim.where", self.brim.as_deref().map(brim)),

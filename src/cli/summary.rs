@@ -147,6 +147,15 @@ pub(crate) fn roles(report: &Report) -> String {
         time.shortest_layer_s, time.longest_layer_s, time.layer_spread, flow.largest_mm3_s
     ));
     lines.extend(report.motion.as_ref().map(driven).unwrap_or_default());
+    if let Some(arcs) = &report.arcs {
+        lines.push(format!("{} arcs stand for {} lines", arcs.count, arcs.lines));
+    }
+    if let Some(short) = &report.segments {
+        lines.push(format!(
+            "for {} moves/s at most, {} short lines were joined and {} slowed down, by {:.1} s in all",
+            short.max_rate_per_s, short.joined, short.slowed, short.lost_s
+        ));
+    }
     lines.join("\n") + "\n"
 }
 

@@ -4,7 +4,8 @@
 //!   that the times are those of what is written.
 //! - *Progress* lines (`M73`) tell the printer which part of the print is done.
 //!
-//! 1. [`moves`] turns a layer into machine moves; [`flow`] lowers feeds to the flow limit.
+//! 1. [`moves`] turns a layer into machine moves; [`flow`] lowers feeds to the flow limit. [`arcs`]
+//!    replaces lines that lie on a circle; [`segments`] joins and slows down lines that are too short.
 //! 2. [`cooling`] lowers those of layers that would take too little time. It holds back some layers,
 //!    since those above have a say.
 //! 3. [`times`] runs the clock over these moves, layer by layer; [`usage`] sums their filament.
@@ -15,6 +16,7 @@
 //!    is known.
 //! 6. [`hosts`] writes the comments that hosts read at the head and the end of the file.
 
+mod arcs;
 pub mod cooling;
 pub mod dialect;
 pub mod drive;
@@ -26,6 +28,7 @@ pub mod moves;
 pub mod number;
 mod output;
 mod progress;
+mod segments;
 pub mod times;
 pub mod usage;
 pub mod write;
@@ -34,6 +37,7 @@ use crate::motion::Limits;
 use crate::plan::Toolpath;
 use crate::profile::template::{self, PrintFacts};
 use crate::profile::{Settings, dump};
+use arcs::Arcs;
 use cooling::{Cooled, Cooling};
 use dialect::Dialect;
 use drive::Drives;
@@ -45,6 +49,7 @@ pub use output::Output;
 use output::Places;
 use progress::Progress;
 use rayon::prelude::*;
+use segments::Segments;
 use std::collections::VecDeque;
 use times::{Timer, Times};
 use usage::Usage;
@@ -67,6 +72,8 @@ pub struct Writer<'a> {
     settings: &'a Settings,
     facts: PrintFacts,
     moves: MoveParams,
+    arcs: Option<Arcs>,
+    segments: Option<Segments>,
     params: WriteParams,
     cooling: Option<Cooling>,
     /// What is in force after the layers so far.
@@ -99,6 +106,8 @@ impl<'a> Writer<'a> {
             settings,
             facts,
             moves: MoveParams::new(settings, offset),
+            arcs: Arcs::new(settings),
+            segments: Segments::new(settings),
             params: WriteParams::new(settings),
             cooling: Cooling::new(settings, FanParams::new(settings).goes_by_time()),
             before: Before::default(),
@@ -131,8 +140,14 @@ impl<'a> Writer<'a> {
         // Few at once: moves and text take more memory than the layers themselves.
         let at_once = rayon::current_num_threads().max(4);
         layers.chunks(at_once).try_for_each(|layers| {
-            let params = &self.moves;
-            let moves: Vec<Moves> = layers.par_iter().map(|layer| params.moves(layer)).collect();
+            let (params, arcs, segments) = (&self.moves, &self.arcs, &self.segments);
+            let made = |layer: &Toolpath| {
+                let mut moves = params.moves(layer);
+                arcs.iter().for_each(|arcs| arcs.replace(&mut moves));
+                segments.iter().for_each(|segments| segments.limit(&mut moves));
+                moves
+            };
+            let moves: Vec<Moves> = layers.par_iter().map(made).collect();
             let ready = match &mut self.cooling {
                 Some(cooling) => cooling.layers(moves),
                 None => moves,

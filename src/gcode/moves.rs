@@ -15,11 +15,13 @@
 //! 4. Where width or height change, compute the feed again, clamped to the flow limit.
 
 use super::flow::{FlowLimit, Flows, Lowered, feed, whole_feed};
+use super::usage::Short;
 use crate::fill::{Both, Path, PathPoint, Role, RoleTable, Shape};
 use crate::geom::Point;
 use crate::plan::{PrintMove, Toolpath};
 use crate::profile::{ExtrusionModel, Settings};
 use crate::units::{Bounded as _, Coord, Thousandths, UNITS_PER_MM, to_mm, to_units};
+use std::ops::Range;
 
 /// A straight move.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,6 +71,19 @@ pub struct Bead {
     pub width: Coord,
 }
 
+/// Moves that are written as one arc: the straight pieces that the printer drives of it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ArcRun {
+    /// Which of the layer's moves.
+    pub pieces: Range<usize>,
+    /// How many lines it stands for.
+    pub lines: usize,
+    /// From where it begins to the middle of its circle, thousandths of a mm.
+    pub to_middle: [Thousandths; 2],
+    /// Whether it turns right.
+    pub clockwise: bool,
+}
+
 /// All machine moves of one layer.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Moves {
@@ -84,6 +99,10 @@ pub struct Moves {
     pub moves: Vec<Move>,
     /// For each path, the index of the first move of its approach.
     pub paths: Vec<usize>,
+    /// The arcs among the moves, in their order.
+    pub arcs: Vec<ArcRun>,
+    /// What was done about lines shorter than the printer can be fed.
+    pub short: Short,
     /// Its plastic flow, and feeds that the flow limit lowered.
     pub flows: Flows,
     /// Mean time of the layers of its group, s, where the fan goes by it.
@@ -239,6 +258,8 @@ impl<'a> Walk<'a> {
             from: at.map(|(_, place)| place),
             moves: Vec::with_capacity(most),
             paths: Vec::with_capacity(layer.moves.len()),
+            arcs: Vec::new(),
+            short: Short::default(),
             flows: Flows::default(),
             group_seconds: None,
         };

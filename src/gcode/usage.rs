@@ -14,6 +14,35 @@ pub struct Used {
     pub filament: f64,
 }
 
+/// The arcs of a layer or of a print.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Arced {
+    /// How many.
+    pub arcs: usize,
+    /// Lines that they stand for.
+    pub lines: usize,
+}
+
+/// What was done about lines shorter than the printer can be fed.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Short {
+    /// Lines that were joined with the next.
+    pub joined: usize,
+    /// Lines that were slowed down.
+    pub slowed: usize,
+    /// What these take longer by at full speed, s.
+    pub lost: f64,
+}
+
+impl Short {
+    /// Adds another layer's.
+    pub fn add(&mut self, other: &Self) {
+        self.joined += other.joined;
+        self.slowed += other.slowed;
+        self.lost += other.lost;
+    }
+}
+
 /// Path, travels and filament of a layer or of a print.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Usage {
@@ -27,13 +56,20 @@ pub struct Usage {
     pub retractions: usize,
     /// Plastic flow, and feeds that the flow limit lowered.
     pub flows: Flows,
+    /// Lines that are written as arcs.
+    pub arced: Arced,
+    /// Lines shorter than the printer can be fed.
+    pub short: Short,
 }
 
 impl Usage {
     /// The usage of one layer.
     #[must_use]
     pub fn of(layer: &Moves) -> Self {
-        let mut usage = Self { flows: layer.flows.clone(), ..Self::default() };
+        let lines = layer.arcs.iter().map(|arc| arc.lines).sum();
+        let arced = Arced { arcs: layer.arcs.len(), lines };
+        let flows = layer.flows.clone();
+        let mut usage = Self { flows, arced, short: layer.short, ..Self::default() };
         let mut on_its_way = false;
         for step in &layer.moves {
             match step.kind {
@@ -75,6 +111,9 @@ impl Usage {
         self.travel_length += other.travel_length;
         self.retractions += other.retractions;
         self.flows.add(&other.flows);
+        self.arced.arcs += other.arced.arcs;
+        self.arced.lines += other.arced.lines;
+        self.short.add(&other.short);
     }
 }
 

@@ -15,12 +15,13 @@
 use super::dialect::Dialect;
 use super::drive::{Drives, Driving, Told};
 use super::fan::{Fan, FanParams};
-use super::moves::{Bead, Kind, Move, MoveParams, Moves};
+use super::moves::{ArcRun, Bead, Kind, Move, MoveParams, Moves};
 use super::number::{push_fixed, thousandths};
 use crate::fill::Role;
 use crate::profile::Settings;
 use crate::units::{Coord, Thousandths, nearest, to_mm};
 use std::io::Write as _;
+use std::ops::Range;
 
 /// The smallest change of width that is annotated: 0.01 mm. A trade-off: a smaller value
 /// makes the file longer, a larger one makes viewers and `check` work with wrong widths.
@@ -103,11 +104,11 @@ impl WriteParams {
         text.begin(layer, before.fan);
         let mut done = 0;
         for &first in &layer.paths {
-            layer.moves[done..first].iter().for_each(|step| text.step(step));
+            text.steps(layer, done..first);
             done = first;
             cuts.push(text.out.len());
         }
-        layer.moves[done..].iter().for_each(|step| text.step(step));
+        text.steps(layer, done..layer.moves.len());
         text.blow(None);
         LayerText { text: text.out, cuts }
     }
@@ -207,6 +208,39 @@ impl<'a> Text<'a> {
             self.line(&words);
             self.fan = Some((wanted, usual));
         }
+    }
+
+    /// Writes moves of a layer, and each arc among them by one line.
+    fn steps(&mut self, layer: &Moves, moves: Range<usize>) {
+        let mut next = moves.start;
+        let first = layer.arcs.partition_point(|arc| arc.pieces.start < next);
+        for arc in layer.arcs[first..].iter().take_while(|arc| arc.pieces.start < moves.end) {
+            layer.moves[next..arc.pieces.start].iter().for_each(|step| self.step(step));
+            self.arc(arc, &layer.moves[arc.pieces.clone()]);
+            next = arc.pieces.end;
+        }
+        layer.moves[next..moves.end].iter().for_each(|step| self.step(step));
+    }
+
+    /// Writes an arc. All its words are there: some firmwares want both of X and Y, I and J.
+    fn arc(&mut self, arc: &ArcRun, pieces: &[Move]) {
+        let Some(&Move { to, z, feed, kind: Kind::Extrude(bead), .. }) = pieces.last() else {
+            return;
+        };
+        self.announce(&bead);
+        self.e += pieces.iter().map(|piece| piece.filament).sum::<f64>();
+        self.at = Some(to);
+        self.out.extend_from_slice(if arc.clockwise { b"G2" } else { b"G3" });
+        let [i, j] = arc.to_middle;
+        for (word, value) in [(b" X", to[0]), (b" Y", to[1]), (b" I", i), (b" J", j)] {
+            self.out.extend_from_slice(word);
+            push_fixed::<3>(&mut self.out, i64::from(value.0));
+        }
+        if self.z != Some(z) {
+            self.push_z(z);
+        }
+        self.push_e();
+        self.end_move(feed);
     }
 
     fn step(&mut self, step: &Move) {

@@ -1,5 +1,6 @@
 //! Points -> contours, spans, rasters: plane geometry on the integer grid.
 
+pub mod arc;
 pub mod cells;
 pub mod decimate;
 pub mod follow;

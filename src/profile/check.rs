@@ -42,6 +42,10 @@ pub(super) fn together(settings: &Settings, origins: &BTreeMap<String, ValueOrig
     let blame = Blame { origins };
     heights(settings, &blame)?;
     reach(settings, &blame)?;
+    if settings.machine.arcs && settings.machine.dialect == DialectName::Makerbot {
+        let keys = ["machine.arcs", "machine.dialect"];
+        return Err(blame.error(&keys, Conflict::ArcsForMakerbot));
+    }
     blocks(settings, &blame)
 }
 

@@ -4,7 +4,6 @@
 //! not know is counted. It shares no code with what slices, plans and writes, so that `check` can
 //! rely on it as an independent witness.
 
-mod arc;
 mod change;
 mod error;
 mod heat;

@@ -16,11 +16,11 @@
 //! A command that changes none of these and waits for nothing is *harmless*; any other that is not
 //! listed here is unknown, which is counted and reported, and no error.
 
-use super::arc::Arc;
 use super::heat;
 use super::marks::{Mark, mark};
 use super::words::{self, Code, Words};
 use super::{Change, Event, Firmware, Motion, OwnFilament, Role, Summary, Wait};
+use crate::geom::arc::Arc;
 use crate::units::{MmPerMin, MmPerS};
 use std::f64::consts::PI;
 

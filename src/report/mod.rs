@@ -70,6 +70,12 @@ pub struct Report {
     /// Accelerations, jerks and pressure advance that the file sets; absent where it sets none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionReport>,
+    /// Lines that are written as arcs; absent without `arcs`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arcs: Option<ArcsReport>,
+    /// Lines shorter than the printer can be fed; absent without `limits.max_segment_rate`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segments: Option<SegmentsReport>,
     /// Dual injection; absent where it is off.
     pub dual: Option<DualReport>,
     /// The brim that was printed although nobody asked for it; absent without one.
@@ -222,6 +228,28 @@ pub struct CoolingReport {
     pub quick_layers: usize,
     /// The first of them, 100 at most.
     pub quick: Vec<QuickLayerReport>,
+}
+
+/// What arcs stand for.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+pub struct ArcsReport {
+    /// How many arcs.
+    pub count: usize,
+    /// Lines that they stand for.
+    pub lines: usize,
+}
+
+/// What `limits.max_segment_rate` changed.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+pub struct SegmentsReport {
+    /// Moves that the printer can be fed, 1/s.
+    pub max_rate_per_s: f64,
+    /// Lines that were joined with the next.
+    pub joined: usize,
+    /// Lines that are slower.
+    pub slowed: usize,
+    /// What they take longer by at full speed, s.
+    pub lost_s: f64,
 }
 
 /// How one kind of lines was slowed down.

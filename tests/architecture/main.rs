@@ -31,8 +31,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("job", &["mesh", "profile"]),
     ("profile", &[]),
     ("motion", &["profile", "units"]),
-    // A witness of its own: it shares nothing with the code that slices, plans or writes.
-    ("reader", &["units"]),
+    // A witness of its own: it shares nothing with the code that slices, plans or writes, but for what
+    // an arc is: see WITNESSES.
+    ("reader", &["units", "geom"]),
     ("estimate", &["reader", "motion"]),
     // Independent witnesses: nothing of slice, region, plan or gcode. Of `geom` they use only what
     // knows no contour, raster or offset: see WITNESSES.
@@ -46,11 +47,11 @@ const MAY_USE: &[(&str, &[&str])] = &[
 /// Modules that judge what the others have made.
 const WITNESSES: &[&str] = &["reader", "estimate", "check", "diff"];
 
-/// What witnesses may use of `geom`: distances to segments, sorting by counting, and booleans of
-/// spans on a line. None knows what is sliced or printed, all are tested on their own by laws, and a
+/// What witnesses may use of `geom`: distances to segments, sorting by counting, booleans of spans on a
+/// line, and the pieces of an arc. None knows what is sliced or printed, all are tested on their own by laws, and a
 /// second version of them would only be another place for the same slip. Contours, offsets and
 /// rasters have a part in what is judged; of these a witness has its own.
-const SHARED_GEOMETRY: &[&str] = &["segment", "cells", "spans"];
+const SHARED_GEOMETRY: &[&str] = &["segment", "cells", "spans", "arc"];
 
 /// Modules that may use all others: the flow itself, and what tells of it.
 const MAY_USE_ALL: &[&str] = &["lib", "pipeline", "report", "compare"];

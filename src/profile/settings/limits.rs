@@ -5,7 +5,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// `[limits]`: what the printer's planner holds itself to. It changes no move, only
-/// estimates of time; and no more is asked for by `[acceleration]` than x and y have here. `machine.acceleration` is the acceleration of moves that extrude.
+/// estimates of time. Two keys hold the file itself to it: `max_segment_rate`, and the accelerations of
+/// x and y, beyond which `[acceleration]` asks for nothing. `machine.acceleration` is the acceleration
+/// of moves that extrude.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MotionLimits {
@@ -69,6 +71,10 @@ pub struct MotionLimits {
     /// Moves that the planner knows of at a time; 0 is the whole file.
     #[schemars(range(min = 0, max = 100_000), extend("unit" = "blocks", "default" = 16))]
     pub look_ahead: u32,
+    /// Moves that the printer can be fed in a second, over look_ahead of them: where lines are so short
+    /// that more would be asked for, they are joined, then slowed down. 0 sets no limit.
+    #[schemars(range(min = 0, max = 100_000), extend("unit" = "moves/s", "default" = 0))]
+    pub max_segment_rate: f64,
     /// No corner need be slower than this.
     #[schemars(range(min = 0, max = 1_000), extend("unit" = "mm/s", "default" = 0.05))]
     pub minimum_speed: f64,

@@ -44,6 +44,17 @@ pub struct Machine {
     /// Whether E counts from the last move instead of from the start.
     #[schemars(extend("default" = false))]
     pub relative_e: bool,
+    /// Whether the firmware knows arcs (G2, G3); Klipper does with `[gcode_arcs]`.
+    #[schemars(extend("default" = false))]
+    pub arcs: bool,
+    /// Length of the straight pieces that the firmware makes of an arc, as Klipper's resolution or
+    /// Marlin's MAX_ARC_SEGMENT_MM: where they would cut off too much, lines stay lines.
+    #[schemars(range(min = 0.01, max = 10), extend("unit" = "mm", "default" = 1))]
+    pub arc_segment: f64,
+    /// How far these pieces leave the arc at most, where the firmware makes them shorter for that;
+    /// unset if only their length counts.
+    #[schemars(range(min = 0.001, max = 1), extend("unit" = "mm"))]
+    pub arc_deviation: Option<f64>,
     /// Plastic that the hot end can melt; lines that need more are printed slower.
     #[schemars(range(min = 0.1, max = 1_000), extend("unit" = "mm³/s"))]
     pub max_volumetric_speed: f64,

@@ -180,6 +180,14 @@ pub struct Settings {
     /// them sharp.
     #[schemars(range(min = 0, max = 10), extend("unit" = "mm", "default" = 0.2))]
     pub corner_radius: f64,
+    /// Whether lines that lie on a circle are written as arcs (G2, G3), where machine.arcs says that the
+    /// firmware knows them: files are smaller, and the printer has less to read.
+    #[schemars(extend("default" = false))]
+    pub arcs: bool,
+    /// How far an arc may lie from the lines that it stands for; the straight pieces that the firmware
+    /// makes of it may lie twice as far from them.
+    #[schemars(range(min = 0.001, max = 0.5), extend("unit" = "mm", "default" = 0.01))]
+    pub arc_tolerance: f64,
 
     /// Dual injection: lines that are printed once for several layers.
     pub dual: Dual,
@@ -209,7 +217,7 @@ pub struct Settings {
     pub cooling: Cooling,
     /// The printer.
     pub machine: Machine,
-    /// What the printer's planner holds itself to. It changes no move, only estimates of time, and what
-    /// may be asked for by `[acceleration]`.
+    /// What the printer's planner holds itself to. It changes estimates of time; only max_segment_rate,
+    /// and what may be asked for by `[acceleration]`, change the file.
     pub limits: MotionLimits,
 }

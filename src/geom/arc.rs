@@ -1,35 +1,41 @@
-//! G2 and G3 -> points on the arc, a millimetre apart; further where the arc is nearly straight.
+//! Arc -> the straight pieces that a printer drives.
+//!
+//! For what reads G2 and G3 and for what writes them, so that both see the same pieces: a file then
+//! takes as long as its slicer said.
 
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::TAU;
 
-/// Length of the straight pieces, mm: Marlin's default. Longer ones would make times and checks
-/// see corners that the printer does not drive.
-const PIECE_MM: f64 = 1.0;
-
-/// How far pieces may leave the arc, mm. From a radius of 10 mm on, pieces of [`PIECE_MM`] leave it by
-/// less, and longer ones do as well: a faulty file with huge radii must not fill the memory.
+/// How far pieces leave the arc, mm. Firmwares differ: current Marlin's pieces (72 a circle, 1 mm at
+/// most) leave it by 0.011 mm at most, RepRapFirmware's by 0.005 mm, Prusa's by 0.02 mm, and those of
+/// Klipper and of older Marlins, 1 mm long whatever the radius, by as much at 10 mm. Longer ones would
+/// make times and checks see corners that the printer does not drive.
 const TOLERANCE_MM: f64 = 0.0125;
 
-/// Most pieces of an arc, whatever its radius.
+/// Most pieces of an arc, whatever its radius: a faulty file must not fill the memory.
 const MOST_PIECES: f64 = 10_000.0;
 
 /// By how much half the chord may be longer than the radius, mm: both are rounded in files.
 const ROUNDING_MM: f64 = 0.01;
 
-/// An arc in the plane, from `from` to `to` around `middle`.
+/// An arc in the plane, mm.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Arc {
-    pub(super) from: [f64; 2],
-    pub(super) to: [f64; 2],
-    pub(super) middle: [f64; 2],
-    pub(super) clockwise: bool,
+pub struct Arc {
+    /// Where it begins.
+    pub from: [f64; 2],
+    /// Where it ends.
+    pub to: [f64; 2],
+    /// The middle of its circle.
+    pub middle: [f64; 2],
+    /// Whether it turns right (G2).
+    pub clockwise: bool,
 }
 
 impl Arc {
     /// The arc of this radius; a negative one is the long way round. Ends as far apart as two radii
     /// make a half circle. `None` if they are the same or further apart.
-    pub(super) fn by_radius(
+    #[must_use]
+    pub fn by_radius(
         from: [f64; 2],
         to: [f64; 2],
         radius: f64,
@@ -49,7 +55,7 @@ impl Arc {
     }
 
     /// The ends of its pieces; the last one is `to`, exactly. Ends that are the same make a full circle.
-    pub(super) fn points(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
+    pub fn points(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
         let arc = *self;
         let middle = Vector2::from(arc.middle);
         let (start, end) = (Vector2::from(arc.from) - middle, Vector2::from(arc.to) - middle);
@@ -63,8 +69,9 @@ impl Arc {
             turn += TAU;
         }
         let radius = start.norm();
-        let piece = PIECE_MM.max((8.0 * TOLERANCE_MM * radius).sqrt());
-        let pieces = (turn.abs() * radius / piece).ceil().clamp(1.0, MOST_PIECES);
+        let piece = (8.0 * TOLERANCE_MM * radius).sqrt();
+        // An arc of no radius has no piece: 0 by 0 is no number, which `max` replaces.
+        let pieces = (turn.abs() * radius / piece).max(1.0).ceil().clamp(1.0, MOST_PIECES);
         let count = pieces as u32;
         (1..=count).map(move |k| {
             if k == count {
