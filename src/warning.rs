@@ -126,7 +126,7 @@ pub enum Warning {
         },
     /// Arcs are asked for, but not known to the firmware: none were written.
     ArcsUnknown {
-        /// The printer.
+        /// Name of the printer.
         machine: String,
     },
     /// Lines that are printed noticeably slower than asked for, since they are short.

@@ -17,7 +17,7 @@
 //!    into them. An arc is longer than its lines by a part of tolerance / (3 · radius) at most: a third
 //!    of a per cent at 1 mm.
 
-use super::moves::{ArcRun, Bead, Kind, Move, Moves};
+use super::moves::{ArcRun, Kind, Move, Moves};
 use crate::geom::arc::Arc;
 use crate::profile::Settings;
 use crate::units::{Thousandths, nearest};
@@ -164,7 +164,8 @@ impl Arcs {
         let clockwise = sides > 0.0;
         let middle = std::array::from_fn(|k| 0.5 * chord[k] + height * across[k]);
         let middle = middle.map(|side: f64| nearest(1000.0 * side) as f64 / 1000.0);
-        let fit = Fit { middle, clockwise, radius: length(middle), beyond: 0.0, bulge, length: 0.0 };
+        let fit =
+            Fit { middle, clockwise, radius: length(middle), beyond: 0.0, bulge, length: 0.0 };
         self.holds(fit, points)
     }
 
@@ -217,19 +218,13 @@ impl Arcs {
 fn alike(moves: &[Move], first: usize, end: usize) -> usize {
     let Kind::Extrude(bead) = moves[first].kind else { return 1 };
     let same = |step: &&Move| {
-        let like = matches!(step.kind, Kind::Extrude(other) if is_like(&other, &bead));
+        let like = matches!(step.kind, Kind::Extrude(other) if other.is_like(&bead));
         like && (step.z, step.feed) == (moves[first].z, moves[first].feed)
     };
     if first == 0 || moves[first - 1].z != moves[first].z {
         return 1;
     }
     moves[first..end].iter().take_while(same).count().max(1)
-}
-
-/// Whether two beads may be parts of one arc.
-fn is_like(a: &Bead, b: &Bead) -> bool {
-    (a.role, a.thick, a.height) == (b.role, b.thick, b.height)
-        && 100 * (a.width - b.width).abs() <= b.width
 }
 
 /// Adds an arc in the place of `lines`.
@@ -274,4 +269,93 @@ fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 fn length(a: [f64; 2]) -> f64 {
     dot(a, a).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fill::Role;
+    use crate::gcode::moves::Bead;
+    use std::f64::consts::TAU;
+
+    const ARCS: Arcs = Arcs { tolerance: 0.01, piece: 0.1, deviation: f64::INFINITY };
+
+    /// A layer with one path through these points, mm.
+    fn layer(points: &[[f64; 2]]) -> Moves {
+        let bead = Bead { role: Role::OuterWall, thick: false, height: 2_000, width: 4_000 };
+        let step = |at: [f64; 2], kind| Move {
+            to: at.map(|mm| Thousandths((1000.0 * mm).round() as i32)),
+            z: 2_000,
+            feed: 1_800,
+            length: 0.5,
+            filament: 0.25,
+            kind,
+        };
+        let mut moves = vec![step(points[0], Kind::Travel)];
+        moves.extend(points[1..].iter().map(|&at| step(at, Kind::Extrude(bead))));
+        Moves { moves, paths: vec![0], ..Moves::default() }
+    }
+
+    /// Points on a circle around 50, 50, from angle `from` to `to`, degrees.
+    fn circle(radius: f64, [from, to]: [f64; 2], count: usize) -> Vec<[f64; 2]> {
+        let angle = |k: usize| TAU / 360.0 * (from + (to - from) * k as f64 / count as f64);
+        let at = |a: f64| [50.0 + radius * a.cos(), 50.0 + radius * a.sin()];
+        (0..=count).map(|k| at(angle(k))).collect()
+    }
+
+    fn arcs(points: &[[f64; 2]]) -> Moves {
+        let mut layer = layer(points);
+        ARCS.replace(&mut layer);
+        layer
+    }
+
+    #[test]
+    fn a_circle_is_three_arcs_at_most_each_around_its_middle() {
+        for (ends, clockwise) in [([30.0, 390.0], false), ([390.0, 30.0], true)] {
+            let made = arcs(&circle(12.0, ends, 180));
+            assert!(made.arcs.len() <= 3, "{:?}", made.arcs);
+            assert_eq!(made.arcs.iter().map(|arc| arc.lines).sum::<usize>(), 180);
+            for arc in &made.arcs {
+                assert_eq!(arc.clockwise, clockwise);
+                let start = made.moves[arc.pieces.start - 1].to;
+                for (at, to_middle) in start.iter().zip(arc.to_middle) {
+                    assert!((at.0 + to_middle.0 - 50_000).abs() <= 10, "{arc:?}");
+                }
+            }
+            let filament: f64 = made.moves.iter().skip(1).map(|step| step.filament).sum();
+            assert!((filament - 45.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn lines_that_lie_further_off_than_the_tolerance_stay() {
+        // 36 corners on 12 mm: each line cuts off 0.046 mm.
+        let made = arcs(&circle(12.0, [0.0, 360.0], 36));
+        assert_eq!((made.arcs.len(), made.moves.len()), (0, 37));
+        // Corners by turns in and out by more than that.
+        let mut rough = circle(12.0, [0.0, 170.0], 100);
+        rough.iter_mut().skip(1).step_by(2).for_each(|at| at[0] += 0.025);
+        assert_eq!(arcs(&rough).arcs, []);
+        // Straight on, in many steps.
+        let straight: Vec<_> = (0..100).map(|k| [0.3 * f64::from(k), 0.1 * f64::from(k)]).collect();
+        assert_eq!(arcs(&straight), layer(&straight));
+    }
+
+    #[test]
+    fn an_arc_ends_where_another_begins_and_at_the_end_of_its_path() {
+        // An S of two halves.
+        let mut points = circle(10.0, [180.0, 0.0], 90);
+        let back = circle(10.0, [180.0, 360.0], 90).into_iter().map(|[x, y]| [x + 20.0, y]);
+        points.extend(back.skip(1));
+        let made = arcs(&points);
+        assert!((2..=4).contains(&made.arcs.len()), "{:?}", made.arcs);
+        assert!(made.arcs[0].clockwise && !made.arcs.last().unwrap().clockwise);
+        // The same half circle as two paths.
+        let mut two = layer(&circle(10.0, [180.0, 0.0], 90));
+        two.paths.push(46);
+        ARCS.replace(&mut two);
+        assert_eq!(two.arcs.len(), 2);
+        assert_eq!(two.paths[1], two.arcs[1].pieces.start);
+        assert_eq!(two.arcs.iter().map(|arc| arc.lines).sum::<usize>(), 90);
+    }
 }

@@ -15,7 +15,6 @@
 //! 4. Where width or height change, compute the feed again, clamped to the flow limit.
 
 use super::flow::{FlowLimit, Flows, Lowered, feed, whole_feed};
-use super::usage::Short;
 use crate::fill::{Both, Path, PathPoint, Role, RoleTable, Shape};
 use crate::geom::Point;
 use crate::plan::{PrintMove, Toolpath};
@@ -69,6 +68,34 @@ pub struct Bead {
     pub height: Coord,
     /// Width, grid units.
     pub width: Coord,
+}
+
+impl Bead {
+    /// Whether both may be parts of one line: all is the same, but for a hundredth of the width.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        (self.role, self.thick, self.height) == (other.role, other.thick, other.height)
+            && 100 * (self.width - other.width).abs() <= other.width
+    }
+}
+
+/// What was done about lines shorter than the printer can be fed.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Short {
+    /// Lines that were joined with the next.
+    pub joined: usize,
+    /// Lines that were slowed down.
+    pub slowed: usize,
+    /// What these take longer by at full speed, s.
+    pub lost: f64,
+}
+
+impl Short {
+    /// Adds another layer's.
+    pub fn add(&mut self, other: &Self) {
+        self.joined += other.joined;
+        self.slowed += other.slowed;
+        self.lost += other.lost;
+    }
 }
 
 /// Moves that are written as one arc: the straight pieces that the printer drives of it.

@@ -18,8 +18,7 @@
 //!
 //! Nothing is joined across the ends of a path, an arc, or a change of what is laid. Filament is kept.
 
-use super::moves::{Bead, Kind, Move, Moves};
-use super::usage::Short;
+use super::moves::{Kind, Move, Moves};
 use crate::profile::Settings;
 use crate::units::to_mm;
 use std::ops::Range;
@@ -134,7 +133,7 @@ impl Segments {
         };
         let start = place(&moves[before]);
         let flat = |other: &Move| other.z == moves[before].z && other.feed == step.feed;
-        let like = |other: &Move| matches!(other.kind, Kind::Extrude(it) if is_like(&it, &bead));
+        let like = |other: &Move| matches!(other.kind, Kind::Extrude(it) if it.is_like(&bead));
         let mut count = 1;
         while first + count < end && !fixed[first + count] && flat(step) {
             let next = &moves[first + count];
@@ -213,12 +212,6 @@ fn stretches(moves: &[Move]) -> Vec<Vec<usize>> {
     }
     all.push(lines);
     all
-}
-
-/// Whether two beads may be parts of one line.
-fn is_like(a: &Bead, b: &Bead) -> bool {
-    (a.role, a.thick, a.height) == (b.role, b.thick, b.height)
-        && 100 * (a.width - b.width).abs() <= b.width
 }
 
 /// Whether the line from `start` to the last of these moves' ends may stand for all of them: it passes by

@@ -1,7 +1,7 @@
 //! Moves -> Usage: sums lengths and filament, and converts filament to volume, weight and price.
 
 use super::flow::Flows;
-use super::moves::{Kind, Moves};
+use super::moves::{Kind, Moves, Short};
 use crate::fill::{Both, RoleTable};
 use crate::profile::Settings;
 
@@ -21,26 +21,6 @@ pub struct Arced {
     pub arcs: usize,
     /// Lines that they stand for.
     pub lines: usize,
-}
-
-/// What was done about lines shorter than the printer can be fed.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Short {
-    /// Lines that were joined with the next.
-    pub joined: usize,
-    /// Lines that were slowed down.
-    pub slowed: usize,
-    /// What these take longer by at full speed, s.
-    pub lost: f64,
-}
-
-impl Short {
-    /// Adds another layer's.
-    pub fn add(&mut self, other: &Self) {
-        self.joined += other.joined;
-        self.slowed += other.slowed;
-        self.lost += other.lost;
-    }
 }
 
 /// Path, travels and filament of a layer or of a print.

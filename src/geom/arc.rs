@@ -35,12 +35,7 @@ impl Arc {
     /// The arc of this radius; a negative one is the long way round. Ends as far apart as two radii
     /// make a half circle. `None` if they are the same or further apart.
     #[must_use]
-    pub fn by_radius(
-        from: [f64; 2],
-        to: [f64; 2],
-        radius: f64,
-        clockwise: bool,
-    ) -> Option<Self> {
+    pub fn by_radius(from: [f64; 2], to: [f64; 2], radius: f64, clockwise: bool) -> Option<Self> {
         let (start, end) = (Vector2::from(from), Vector2::from(to));
         let chord = end - start;
         let square = chord.norm_squared();

@@ -42,10 +42,7 @@ pub(super) fn together(settings: &Settings, origins: &BTreeMap<String, ValueOrig
     let blame = Blame { origins };
     heights(settings, &blame)?;
     reach(settings, &blame)?;
-    if settings.machine.arcs && settings.machine.dialect == DialectName::Makerbot {
-        let keys = ["machine.arcs", "machine.dialect"];
-        return Err(blame.error(&keys, Conflict::ArcsForMakerbot));
-    }
+    arcs(settings, &blame)?;
     blocks(settings, &blame)
 }
 
@@ -138,6 +135,20 @@ fn dual(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
         "machine.nozzle_diameter",
     ];
     Err(blame.error(&keys, Conflict::ThickLinesTooTall { layers: ratio.max(2), height, most }))
+}
+
+fn arcs(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
+    let why = match settings.machine.dialect {
+        DialectName::Makerbot => "GPX drops G2 and G3, and Sailfish knows no arcs",
+        // Ultimaker2Marlin's mc_arc takes angles for their sines, up to 25 times in a row.
+        DialectName::Ultigcode => {
+            "an Ultimaker 2 turns on small arcs by up to 0.2 mm too far, then jumps back"
+        }
+        DialectName::Marlin | DialectName::Klipper | DialectName::Reprapfirmware => return Ok(()),
+    };
+    let keys = ["machine.arcs", "machine.dialect"];
+    let refused = || Err(blame.error(&keys, Conflict::NoArcs { why }));
+    if settings.machine.arcs { refused() } else { Ok(()) }
 }
 
 fn blocks(settings: &Settings, blame: &Blame<'_>) -> Result<()> {

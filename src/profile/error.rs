@@ -286,12 +286,12 @@ pub enum Conflict {
          {{e_mode}}; put {{e_mode}} on a line of its own before that"
     )]
     RelativeEUnsaid,
-    /// Arcs for printers that drop them.
-    #[error(
-        "machine.arcs = true, but GPX drops G2 and G3, and Sailfish has no arcs; set \
-         machine.arcs = false"
-    )]
-    ArcsForMakerbot,
+    /// Arcs for printers that have none, or bad ones.
+    #[error("machine.arcs = true, but {why}; set machine.arcs = false")]
+    NoArcs {
+        /// What would become of them.
+        why: &'static str,
+    },
     /// A character that printers may take for anything, and terminals obey.
     #[error("{block}, line {line} of it: there is a control character ({character:?}); remove it")]
     ControlCharacter {

@@ -11,8 +11,9 @@ use super::{
 use crate::fill::Role;
 use crate::gcode::Sums;
 use crate::gcode::flow::{Flows, speed};
+use crate::gcode::moves::Short;
 use crate::gcode::times::{LayerTime, Times};
-use crate::gcode::usage::{Material, Short, Usage};
+use crate::gcode::usage::{Material, Usage};
 use crate::job::{self, Job};
 use crate::mesh::place::Placed;
 use crate::profile::{DualMode, DualPart, Settings, Sources};
@@ -68,10 +69,9 @@ pub fn report(
         },
         cooling: cooled.as_ref().and_then(|cooled| cooling(cooled, times, settings)),
         motion: motion(usage, settings),
-        arcs: settings.arcs.then(|| ArcsReport {
-            count: usage.arced.arcs,
-            lines: usage.arced.lines,
-        }),
+        arcs: settings
+            .arcs
+            .then(|| ArcsReport { count: usage.arced.arcs, lines: usage.arced.lines }),
         segments: segments(usage, settings),
         dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits)),
         warnings: (placed.warnings.iter().cloned())

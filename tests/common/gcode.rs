@@ -1,6 +1,7 @@
 //! G-code text -> Print: parses every move with its role, from the format's rules and not from the writer.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 /// What `;TYPE:` says a move is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -30,7 +31,7 @@ impl Kind {
     }
 }
 
-/// One `G0` or `G1`.
+/// One `G0` or `G1`, or a piece of a `G2` or `G3`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Move {
     /// Line of the file, from 1.
@@ -111,6 +112,32 @@ struct State {
     width: f64,
 }
 
+/// The ends of pieces of an arc, of a degree at most: much finer than any printer's. An arc that does
+/// not end on its circle is an error.
+fn arc(
+    from: [f64; 3],
+    to: [f64; 3],
+    middle: [f64; 2],
+    clockwise: bool,
+) -> Result<Vec<[f64; 3]>, String> {
+    let polar = |at: [f64; 3]| {
+        let (x, y) = (at[0] - middle[0], at[1] - middle[1]);
+        (x.hypot(y), y.atan2(x))
+    };
+    let ((radius, start), (there, end)) = (polar(from), polar(to));
+    if (radius - there).abs() > 0.002 || from[2] != to[2] {
+        return Err(format!("an arc from radius {radius} to {there}"));
+    }
+    let turn = if clockwise { start - end } else { end - start }.rem_euclid(TAU);
+    let count = turn.to_degrees().ceil().max(1.0) as usize;
+    let sign = if clockwise { -1.0 } else { 1.0 };
+    let place = |k: usize| {
+        let angle = start + sign * turn * k as f64 / count as f64;
+        [middle[0] + radius * angle.cos(), middle[1] + radius * angle.sin(), to[2]]
+    };
+    Ok((1..count).map(place).chain([to]).collect())
+}
+
 impl Print {
     /// Reads `text`. An error names the line that is no G-code.
     pub(crate) fn read(text: &str) -> Result<Self, String> {
@@ -171,7 +198,7 @@ impl Print {
     fn code(&mut self, line: usize, code: &str, state: &mut State) -> Result<(), String> {
         let mut words = code.split_whitespace();
         let Some(command) = words.next() else { return Ok(()) };
-        if !matches!(command, "G0" | "G1" | "G28" | "G92" | "M82" | "M83" | "M73") {
+        if !matches!(command, "G0" | "G1" | "G2" | "G3" | "G28" | "G92" | "M82" | "M83" | "M73") {
             let known = command.starts_with(['G', 'M', 'T', 'S', 'P', 'B', 'E'])
                 || command.chars().all(|c| c.is_ascii_uppercase() || c == '_');
             return if known { Ok(()) } else { Err("no command".to_owned()) };
@@ -213,18 +240,30 @@ impl Print {
                 // Differences of decimals: removes the rounding below the last digit.
                 let e = (e * 1e6).round() / 1e6;
                 state.e += e;
-                self.moves.push(Move {
-                    line,
-                    layer: self.layers.len().checked_sub(1),
-                    kind: state.kind,
-                    from,
-                    to: state.at,
-                    e,
-                    pulled: state.pulled,
-                    feed: state.feed,
-                    height: state.height,
-                    width: state.width,
-                });
+                let ends = match command {
+                    "G0" | "G1" => vec![state.at],
+                    _ => {
+                        let offset = |letter| values.get(letter).copied().ok_or("no middle");
+                        let middle = [from[0] + offset("I")?, from[1] + offset("J")?];
+                        arc(from, state.at, middle, command == "G2")?
+                    }
+                };
+                let mut begins = from;
+                for &to in &ends {
+                    self.moves.push(Move {
+                        line,
+                        layer: self.layers.len().checked_sub(1),
+                        kind: state.kind,
+                        from: begins,
+                        to,
+                        e: e / ends.len() as f64,
+                        pulled: state.pulled,
+                        feed: state.feed,
+                        height: state.height,
+                        width: state.width,
+                    });
+                    begins = to;
+                }
                 if state.kind != Kind::Custom && self.layers.last().is_some() {
                     state.pulled = (state.pulled - e).max(0.0);
                     state.pulled = if state.pulled < 1e-6 { 0.0 } else { state.pulled };

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod arcs;
 mod cooling;
 mod fixtures;
 mod floating;
@@ -14,6 +15,7 @@ mod models;
 mod motion;
 mod printers;
 mod seams;
+mod segments;
 mod skins;
 mod sticking;
 mod support;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use crate::common::{Run, fixture, slice};
+use crate::common::{Run, Solid, fixture, slice};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::warning::Warning;
@@ -192,25 +192,44 @@ fn an_estimate_of_the_file_agrees() {
     for profile in profiles {
         for (model, hop) in [("bracket.stl", "0"), ("overhang.stl", "0.3")] {
             let set = [("dual.mode", "pair"), ("retraction.z_hop", hop)];
-            let run = slice(&fixture(model), profile, &set);
-            // Without the end block, which would count as part of the last layer.
-            let end = run.text.rfind(";TYPE:Custom").unwrap();
-            let options =
-                Options { filament_diameter: run.settings.filament.diameter, ..Options::default() };
-            let limits = Limits::new(&run.settings);
-            let text = &run.text.as_bytes()[..end];
-            let read = estimate(&mut &text[..], "test", &limits, options).unwrap();
-            let time = &run.report.time;
-            // Only the start block knows where the first travel of a print begins.
-            let read_s = read.seconds - read.start_seconds - read.layers[0].seconds;
-            let said_s = time.total_s - time.layers[0].time_s;
-            let what = format!("{model} {profile}: {read_s} s of {said_s} s");
-            assert!((read_s / said_s - 1.0).abs() < 0.005, "{what}");
-            for (read, said) in read.layers.iter().zip(&time.layers) {
-                // Axes that go down to the first layer may be slow.
-                let most = 0.01 * said.time_s + if said.z_mm < 0.3 { 6.0 } else { 0.2 };
-                assert!((read.seconds - said.time_s).abs() < most, "{what}: {read:?} {said:?}");
-            }
+            agrees(&slice(&fixture(model), profile, &set), &format!("{model} {profile}"));
         }
+    }
+}
+
+#[test]
+fn an_estimate_of_a_file_with_arcs_agrees() {
+    // 72 corners lie within the tolerance.
+    let lens = Solid::cylinder(8.0, 2.0, 72);
+    for profile in ["generic-marlin", "generic-klipper", "generic-reprapfirmware"] {
+        for rate in ["0", "40"] {
+            let arcs = [("arcs", "true"), ("machine.arcs", "true"), ("arc_tolerance", "0.02")];
+            let set = [("limits.max_segment_rate", rate), ("limits.look_ahead", "16")];
+            let run = slice(&lens.stl(), profile, &[arcs.as_slice(), &set].concat());
+            assert!(run.report.arcs.as_ref().unwrap().count > 20, "{profile}");
+            agrees(&run, &format!("{profile} {rate}"));
+        }
+    }
+}
+
+/// An estimate of a run's file comes to the time that it says, in all and layer by layer.
+fn agrees(run: &Run, what: &str) {
+    // Without the end block, which would count as part of the last layer.
+    let end = run.text.rfind(";TYPE:Custom").unwrap();
+    let options =
+        Options { filament_diameter: run.settings.filament.diameter, ..Options::default() };
+    let limits = Limits::new(&run.settings);
+    let text = &run.text.as_bytes()[..end];
+    let read = estimate(&mut &text[..], "test", &limits, options).unwrap();
+    let time = &run.report.time;
+    // Only the start block knows where the first travel of a print begins.
+    let read_s = read.seconds - read.start_seconds - read.layers[0].seconds;
+    let said_s = time.total_s - time.layers[0].time_s;
+    let what = format!("{what}: {read_s} s of {said_s} s");
+    assert!((read_s / said_s - 1.0).abs() < 0.005, "{what}");
+    for (read, said) in read.layers.iter().zip(&time.layers) {
+        // Axes that go down to the first layer may be slow.
+        let most = 0.01 * said.time_s + if said.z_mm < 0.3 { 6.0 } else { 0.2 };
+        assert!((read.seconds - said.time_s).abs() < most, "{what}: {read:?} {said:?}");
     }
 }
