@@ -124,6 +124,7 @@ fn files_with_and_without_arcs_print_the_same_and_check_finds_nothing() {
     std::fs::write(&path, tag().stl()).unwrap();
     let sides = [&[][..], &FINE].map(|set| {
         let run = slice(&tag().stl(), "generic-klipper", set);
+        assert_eq!(arcs(&run).is_empty(), set.is_empty());
         let verdict = judge(&run.text, path.to_str().unwrap(), &as_it_is());
         assert_eq!(kinds(&verdict), [], "{set:?}");
         let (bytes, limits) = (run.text.as_bytes(), Limits::new(&run.settings));
@@ -133,7 +134,7 @@ fn files_with_and_without_arcs_print_the_same_and_check_finds_nothing() {
         Side::new(bytes, print, times)
     });
     // An arc off its lines, and the pieces that it is read as off the arc.
-    let tolerances = Tolerances { place: 0.0225, share: 0.002, settings: false };
+    let tolerances = Tolerances { place: 0.018, share: 0.002, settings: false };
     let difference = diff(&sides[0], &sides[1], &tolerances);
     assert_eq!(difference.findings, []);
 }
@@ -161,7 +162,8 @@ fn small_circles_stay_lines_where_the_firmware_would_flatten_them() {
     assert!(outer(&slice(&pin.stl(), "generic-marlin", &FINE)) > 0);
     let duet = [("arcs", "true")];
     assert!(outer(&slice(&pin.stl(), "generic-reprapfirmware", &duet)) > 0);
-    let wheel = Solid::cylinder(20.0, 0.4, 180);
+    // Contours are simplified until lines stand off the circle by all of the tolerance.
+    let wheel = Solid::cylinder(30.0, 0.4, 360);
     assert!(outer(&slice(&wheel.stl(), "generic-marlin", &ON)) > 0);
 }
 

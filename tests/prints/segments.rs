@@ -102,7 +102,7 @@ fn arcs_are_fed_as_their_pieces() {
     let arcs = fed.text.lines().filter(|line| line.starts_with(['G']) && line.contains(" I"));
     assert!(arcs.count() > 8);
     let told = fed.report.segments.as_ref().unwrap();
-    // Pieces of 0.75 mm, 20 a second, are slower than 27 mm/s.
+    // Pieces of 0.48 mm, 20 a second, are slower than 27 mm/s.
     assert!(told.slowed > 100, "{told:?}");
     let outer = fed.print.of(crate::common::Kind::OuterWall).map(|bead| bead.feed);
     assert!(outer.fold(f64::MAX, f64::min) < 20.0 * 0.8 * 60.0);

@@ -184,9 +184,10 @@ pub struct Settings {
     /// firmware knows them: files are smaller, and the printer has less to read.
     #[schemars(extend("default" = false))]
     pub arcs: bool,
-    /// How far an arc may lie from the lines that it stands for; the straight pieces that the firmware
-    /// makes of it may lie twice as far from them.
-    #[schemars(range(min = 0.001, max = 0.5), extend("unit" = "mm", "default" = 0.01))]
+    /// How far an arc may lie from the lines that it stands for: a little more than tolerance, for lines
+    /// on a circle stand off it by that. The straight pieces that the firmware makes of the arc may lie
+    /// twice as far from the lines.
+    #[schemars(range(min = 0.001, max = 0.5), extend("unit" = "mm", "default" = 0.0125))]
     pub arc_tolerance: f64,
 
     /// Dual injection: lines that are printed once for several layers.
