@@ -1,11 +1,12 @@
 //! Findings -> text: what does not stop a run. Each names the fact, the likely cause and what to do.
 //!
-//! - A finding is a variant with its facts, in the units that their names end in.
-//! - Its text is a line for people: what is found, where, and what to do about it.
-//! - Its code, in the report, is its name with dashes (`SlowSpeed` is `slow-speed`). Scripts look for
-//!   it: it stays once it is there.
-//! - Who finds something makes the variant; `report` gathers them, and the command line prints them.
-//! - What must not be printed at all is no finding but a refusal: see [`crate::error`].
+//! - A *finding* is a value with the numbers that tell of it, for the report; its text is made from them.
+//!   Stages return findings; only the program prints them.
+//! - Its *code* in the report is its name, in small letters with dashes. It keeps its meaning.
+//!
+//! To add one: a variant with its numbers, each with its unit in its name, then its text in `fmt`. What
+//! takes more than a few lines there is a function below. The text is one line: what was found, why, and
+//! a setting or a flag that changes it.
 
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -209,21 +210,31 @@ impl fmt::Display for Warning {
                  limits.acceleration_x and limits.acceleration_y; raise these if the printer's are \
                  higher"
             ),
-            Self::ArcsUnknown { machine } => write!(
-                f,
-                "no arcs were written, since {machine} is not known to draw them: set \
-                 machine.arcs = true if its firmware does (Marlin's ARC_SUPPORT, Klipper's \
-                 [gcode_arcs]), or leave out --arcs"
-            ),
-            Self::ShortLinesSlowed { lines, lost_s, limit_per_s } => write!(
-                f,
-                "{} so short that the printer could not be fed fast enough, and slower now, by \
-                 {lost_s:.0} s in all; use a larger tolerance, or a limits.max_segment_rate above \
-                 {limit_per_s} if the printer takes more moves a second",
-                if *lines == 1 { "1 line is".to_owned() } else { format!("{lines} lines are") }
-            ),
+            Self::ArcsUnknown { machine } => f.write_str(&arcs_unknown(machine)),
+            Self::ShortLinesSlowed { lines, lost_s, limit_per_s } => {
+                f.write_str(&short_lines(*lines, *lost_s, *limit_per_s))
+            }
         }
     }
+}
+
+/// That no arcs were written.
+fn arcs_unknown(machine: &str) -> String {
+    format!(
+        "no arcs were written, since {machine} is not known to draw them: set machine.arcs = true if \
+         its firmware does (Marlin's ARC_SUPPORT, Klipper's [gcode_arcs]), or leave out --arcs"
+    )
+}
+
+/// That short lines are slower.
+fn short_lines(lines: usize, lost_s: f64, limit_per_s: f64) -> String {
+    let are = if lines == 1 { "is" } else { "are" };
+    format!(
+        "{} {are} slowed down, by {lost_s:.0} s in all, since shorter ones than the printer can be \
+         fed are among them; use a larger tolerance, or a limits.max_segment_rate above \
+         {limit_per_s} if it takes more moves a second",
+        plural(lines as u64, "line")
+    )
 }
 
 /// That a brim was left out.

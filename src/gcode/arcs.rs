@@ -17,7 +17,8 @@
 //!    into them. An arc is longer than its lines by a part of tolerance / (3 · radius) at most: a third
 //!    of a per cent at 1 mm.
 
-use super::moves::{ArcRun, Kind, Move, Moves};
+use super::moves::{Kind, Move, Moves};
+use super::reshaped::ArcRun;
 use crate::geom::arc::Arc;
 use crate::profile::Settings;
 use crate::units::{Thousandths, nearest};

@@ -28,6 +28,7 @@ pub mod moves;
 pub mod number;
 mod output;
 mod progress;
+pub mod reshaped;
 mod segments;
 pub mod times;
 pub mod usage;

@@ -15,12 +15,12 @@
 //! 4. Where width or height change, compute the feed again, clamped to the flow limit.
 
 use super::flow::{FlowLimit, Flows, Lowered, feed, whole_feed};
+use super::reshaped::{ArcRun, Short};
 use crate::fill::{Both, Path, PathPoint, Role, RoleTable, Shape};
 use crate::geom::Point;
 use crate::plan::{PrintMove, Toolpath};
 use crate::profile::{ExtrusionModel, Settings};
 use crate::units::{Bounded as _, Coord, Thousandths, UNITS_PER_MM, to_mm, to_units};
-use std::ops::Range;
 
 /// A straight move.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,39 +76,6 @@ impl Bead {
         (self.role, self.thick, self.height) == (other.role, other.thick, other.height)
             && 100 * (self.width - other.width).abs() <= other.width
     }
-}
-
-/// What was done about lines shorter than the printer can be fed.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Short {
-    /// Lines that were joined with the next.
-    pub joined: usize,
-    /// Lines that were slowed down.
-    pub slowed: usize,
-    /// What these take longer by at full speed, s.
-    pub lost: f64,
-}
-
-impl Short {
-    /// Adds another layer's.
-    pub fn add(&mut self, other: &Self) {
-        self.joined += other.joined;
-        self.slowed += other.slowed;
-        self.lost += other.lost;
-    }
-}
-
-/// Moves that are written as one arc: the straight pieces that the printer drives of it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ArcRun {
-    /// Which of the layer's moves.
-    pub pieces: Range<usize>,
-    /// How many lines it stands for.
-    pub lines: usize,
-    /// From where it begins to the middle of its circle, thousandths of a mm.
-    pub to_middle: [Thousandths; 2],
-    /// Whether it turns right.
-    pub clockwise: bool,
 }
 
 /// All machine moves of one layer.

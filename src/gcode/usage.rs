@@ -1,7 +1,8 @@
 //! Moves -> Usage: sums lengths and filament, and converts filament to volume, weight and price.
 
 use super::flow::Flows;
-use super::moves::{Kind, Moves, Short};
+use super::moves::{Kind, Moves};
+use super::reshaped::{Arced, Short};
 use crate::fill::{Both, RoleTable};
 use crate::profile::Settings;
 
@@ -12,15 +13,6 @@ pub struct Used {
     pub length: f64,
     /// Filament, mm.
     pub filament: f64,
-}
-
-/// The arcs of a layer or of a print.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Arced {
-    /// How many.
-    pub arcs: usize,
-    /// Lines that they stand for.
-    pub lines: usize,
 }
 
 /// Path, travels and filament of a layer or of a print.

@@ -15,8 +15,9 @@
 use super::dialect::Dialect;
 use super::drive::{Drives, Driving, Told};
 use super::fan::{Fan, FanParams};
-use super::moves::{ArcRun, Bead, Kind, Move, MoveParams, Moves};
+use super::moves::{Bead, Kind, Move, MoveParams, Moves};
 use super::number::{push_fixed, thousandths};
+use super::reshaped::ArcRun;
 use crate::fill::Role;
 use crate::profile::Settings;
 use crate::units::{Coord, Thousandths, nearest, to_mm};

@@ -2,18 +2,17 @@
 
 use super::cooling::cooling;
 use super::motion::{self, motion};
+use super::reshaped;
 use super::tally::Tally;
 use super::{
-    ApartReport, ArcsReport, BlockReport, DualReport, FilamentReport, FlowReport, LayerTimeReport,
-    LayersReport, ProfileReport, Report, RoleReport, SCHEMA, SegmentsReport, TimeReport,
-    TravelReport,
+    ApartReport, BlockReport, DualReport, FilamentReport, FlowReport, LayerTimeReport,
+    LayersReport, ProfileReport, Report, RoleReport, SCHEMA, TimeReport, TravelReport,
 };
 use crate::fill::Role;
 use crate::gcode::Sums;
 use crate::gcode::flow::{Flows, speed};
-use crate::gcode::moves::Short;
 use crate::gcode::times::{LayerTime, Times};
-use crate::gcode::usage::{Material, Usage};
+use crate::gcode::usage::Material;
 use crate::job::{self, Job};
 use crate::mesh::place::Placed;
 use crate::profile::{DualMode, DualPart, Settings, Sources};
@@ -21,9 +20,6 @@ use crate::region::dual::audit::{Apart, Audit};
 use crate::slice::Heights;
 use crate::units::{sum_mm, to_mm, to_units};
 use crate::warning::Warning;
-
-/// Time lost on short lines that is worth a warning, as a part of the print's: less is not seen.
-const MUCH: f64 = 0.01;
 
 /// The report of a run that extruded something.
 #[must_use]
@@ -69,18 +65,15 @@ pub fn report(
         },
         cooling: cooled.as_ref().and_then(|cooled| cooling(cooled, times, settings)),
         motion: motion(usage, settings),
-        arcs: settings
-            .arcs
-            .then(|| ArcsReport { count: usage.arced.arcs, lines: usage.arced.lines }),
-        segments: segments(usage, settings),
+        arcs: reshaped::arcs(usage, settings),
+        segments: reshaped::segments(usage, settings),
         dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits)),
         warnings: (placed.warnings.iter().cloned())
             .chain(tally.warnings())
             .chain(slow_speeds(settings))
             .chain(motion::warnings(settings))
             .chain(slowed_down(&usage.flows, settings))
-            .chain(arcs_unknown(settings))
-            .chain(short_lines(sums, settings))
+            .chain(reshaped::warnings(sums, settings))
             .collect(),
         brim: None,
         check: None,
@@ -165,34 +158,6 @@ fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
         }
     }
     warnings
-}
-
-/// Arcs are asked for, but the firmware does not know them.
-fn arcs_unknown(settings: &Settings) -> Option<Warning> {
-    let machine = &settings.machine;
-    let unknown = settings.arcs && !machine.arcs;
-    unknown.then(|| Warning::ArcsUnknown { machine: machine.name.clone() })
-}
-
-fn segments(usage: &Usage, settings: &Settings) -> Option<SegmentsReport> {
-    let max_rate_per_s = settings.limits.max_segment_rate;
-    let Short { joined, slowed, lost } = usage.short;
-    (max_rate_per_s > 0.0).then_some(SegmentsReport {
-        max_rate_per_s,
-        joined,
-        slowed,
-        lost_s: lost,
-    })
-}
-
-/// Short lines are slowed down so much that the print takes longer by more than [`MUCH`].
-fn short_lines(Sums { usage, times, .. }: &Sums, settings: &Settings) -> Option<Warning> {
-    let Short { slowed, lost, .. } = usage.short;
-    (lost > MUCH * times.total()).then(|| Warning::ShortLinesSlowed {
-        lines: slowed,
-        lost_s: lost,
-        limit_per_s: settings.limits.max_segment_rate,
-    })
 }
 
 fn dual(settings: &Settings, audits: &[Audit]) -> DualReport {

@@ -12,6 +12,7 @@
 mod cooling;
 pub mod make;
 pub mod motion;
+mod reshaped;
 pub mod tally;
 
 use crate::check::Verdict;
