@@ -192,14 +192,10 @@ impl fmt::Display for Warning {
             Self::SlowSpeed { setting, speed_mm_s } => {
                 write!(f, "{setting} = {speed_mm_s} is very slow; speeds are in mm/s")
             }
-            Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => write!(
-                f,
-                "{role}: slowed down from {} to as little as {} mm/s, \
-                 since the hot end melts no more than {limit_mm3_s} mm³/s; set {setting} to that, \
-                 or machine.max_volumetric_speed if it melts more",
-                short(*asked_mm_s),
-                short(*lowest_mm_s),
-            ),
+            Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
+                let speeds = [*asked_mm_s, *lowest_mm_s].map(short);
+                f.write_str(&flow_limited(role, setting, speeds, *limit_mm3_s))
+            }
             Self::NoEffect { settings, why } => {
                 let have = if settings.len() == 1 { "has" } else { "have" };
                 write!(f, "{} {have} no effect: {why}", settings.join(", "))
@@ -216,6 +212,15 @@ impl fmt::Display for Warning {
             }
         }
     }
+}
+
+/// That the hot end cannot melt as fast; speeds asked for and given, mm/s.
+fn flow_limited(role: &str, setting: &str, [asked, lowest]: [f64; 2], limit: f64) -> String {
+    format!(
+        "{role}: slowed down from {asked} to as little as {lowest} mm/s, since the hot end melts no \
+         more than {limit} mm³/s; set {setting} to that, or machine.max_volumetric_speed if it \
+         melts more"
+    )
 }
 
 /// That no arcs were written.
