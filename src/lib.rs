@@ -125,7 +125,7 @@ pub fn slice_placed(
 
     // Layers -> regions -> toolpaths, in batches. The thumbnails stand in the head of the file:
     // they are drawn while the first batches are planned.
-    let setup = Setup::new(&settings, &heights);
+    let setup = Setup::new(&settings, &heights, &placed.bodies);
     let corners = bed_corners(&bed(&settings.machine), placed.offset);
     let footing = Footing::new(&settings, placed.offset);
     let sticking = Sticking::new(&settings, placed, &heights, corners);

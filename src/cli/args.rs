@@ -283,6 +283,9 @@ pub(crate) struct SettingArgs {
     /// Pattern of the sparse infill
     #[arg(long, value_parser = PossibleValuesParser::new(words("pattern")))]
     pattern: Option<String>,
+    /// Iron what is seen from above: `top`, all of it, or `topmost`, the highest layer of each model
+    #[arg(long, value_name = "WHERE", default_missing_value = "top", num_args = 0..=1, require_equals = true, value_parser = PossibleValuesParser::new(words("ironing.where")))]
+    ironing: Option<String>,
     /// Print support under overhangs
     #[arg(long)]
     support: bool,
@@ -391,6 +394,7 @@ impl SettingArgs {
             ("--skin-layers", "bottom_layers", self.skin_layers.clone()),
             ("--infill", "infill", self.infill.clone()),
             ("--pattern", "pattern", self.pattern.clone()),
+            ("--ironing", "ironing.where", self.ironing.clone()),
             ("--support", "support.enabled", switched(self.support, "true")),
             ("--arcs", "arcs", switched(self.arcs, "true")),
             ("--min-layer-time", "cooling.min_layer_time", self.min_layer_time.clone()),

@@ -11,6 +11,7 @@
 
 pub mod adhesion;
 pub mod gap_closing;
+mod ironing;
 mod monotonic;
 mod path;
 mod role;
@@ -29,6 +30,7 @@ use crate::geom::{Contour, Point};
 use crate::pattern::Held;
 use crate::profile::Settings;
 use crate::region::crossed::Crossed;
+use crate::region::ironing::Ironing;
 use crate::region::{Border, Region, Skin, Sparse, walls::Wall};
 use crate::slice::Heights;
 use crate::units::{Coord, nearest, to_units};
@@ -57,6 +59,8 @@ pub struct FillParams {
     monotonic: bool,
     /// Beads along gaps have a role of their own.
     gaps: bool,
+    /// Plastic of ironing: 1 fills the distance of its lines.
+    ironing_flow: f64,
     tool: u8,
 }
 
@@ -75,6 +79,7 @@ impl FillParams {
             skin_rounding: Rounding { radius: radius.min(line_width / SKIN_ROUNDING) },
             bridge_flow: settings.bridge.flow / 100.0,
             monotonic: settings.top_monotonic,
+            ironing_flow: settings.ironing.flow / 100.0,
             gaps: settings.speed.gap.is_some(),
             tool: u8::try_from(settings.machine.tool).unwrap_or(u8::MAX),
         }
@@ -89,6 +94,7 @@ pub fn paths(region: &Region, params: &FillParams) -> Vec<Path> {
     region.walls.iter().zip(hangs).for_each(|(wall, hangs)| maker.wall(wall, hangs));
     region.skins.iter().for_each(|skin| maker.skin(skin));
     region.infill.iter().for_each(|sparse| maker.sparse(Role::Infill, sparse));
+    region.ironing.iter().for_each(|ironing| maker.ironing(ironing));
     let support = &region.support;
     support.outlines.iter().for_each(|outline| maker.outline(outline));
     support.body.iter().for_each(|sparse| maker.sparse(Role::Support, sparse));
@@ -178,6 +184,18 @@ impl Maker<'_> {
         };
         for strand in strands {
             self.polyline(role, *layers, frame, &strand, rounding);
+        }
+    }
+
+    /// Adds the lines that go over tops. Each is as wide as their distance, and low.
+    fn ironing(&mut self, ironing: &Ironing) {
+        let (frame, width) = (ironing.raster.frame, ironing.raster.pitch);
+        let height = nearest(f64::from(self.height(1)) * self.params.ironing_flow) as Coord;
+        let turns = ironing::zigzags(ironing, self.params.line_width);
+        for (points, turn) in turns.into_iter().zip(0..) {
+            let place = |p: Point| PathPoint { at: frame.leave(p), z: 0, width, height, hang: 0 };
+            let points = points.into_iter().map(place).collect();
+            self.push(Role::Ironing, Shape::InTurn { turn }, 1, points);
         }
     }
 

@@ -30,6 +30,8 @@ pub enum Role {
     Gap,
     /// Skin that is seen from above; last in its island, so that the nozzle does not pass over it.
     TopSkin,
+    /// The nozzle goes over such skin once more, with little plastic.
+    Ironing,
     /// Support.
     Support,
     /// Dense support next to the part.
@@ -51,6 +53,8 @@ pub enum Place {
     First,
     /// Not part of the model: after all islands of the layer.
     Helper,
+    /// On what the layer has printed: after everything else of it.
+    Last,
 }
 
 impl Place {
@@ -101,7 +105,7 @@ pub struct RoleFacts {
 
 impl Role {
     /// All roles, in the order of reports and of what lies inside an island.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::OuterWall,
         Self::InnerWall,
         Self::Overhang,
@@ -110,6 +114,7 @@ impl Role {
         Self::Infill,
         Self::Gap,
         Self::TopSkin,
+        Self::Ironing,
         Self::Support,
         Self::SupportInterface,
         Self::Skirt,
@@ -169,6 +174,7 @@ impl Role {
             },
             Self::Infill => INFILL,
             Self::TopSkin => TOP_SKIN,
+            Self::Ironing => IRONING,
             Self::Gap => GAP,
             Self::Support => SUPPORT,
             Self::SupportInterface => SUPPORT_INTERFACE,
@@ -211,6 +217,18 @@ const TOP_SKIN: RoleFacts = RoleFacts {
     speed: |speed| Both::same(speed.top_skin.unwrap_or(speed.skin)),
     acceleration: |a| a.top_skin.or(a.skin),
     jerk: |j| j.top_skin.or(j.skin),
+    ..SKIN
+};
+
+// Its speed shows, as that of walls does.
+const IRONING: RoleFacts = RoleFacts {
+    name: "ironing",
+    annotation: "Ironing",
+    place: Place::Last,
+    may_be_thick: false,
+    speed_keys: |_| Both::same("speed.ironing"),
+    speed: |speed| Both::same(speed.ironing),
+    slows: Slows::Last,
     ..SKIN
 };
 

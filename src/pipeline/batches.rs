@@ -48,13 +48,15 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// The numbers that `settings` mean, for layers at `heights`.
+    /// The numbers that `settings` mean, for layers at `heights` and these `bodies`, of which the
+    /// lowest and the highest corner are given.
     #[must_use]
-    pub fn new(settings: &Settings, heights: &Heights) -> Self {
+    pub fn new(settings: &Settings, heights: &Heights, bodies: &[[Point; 2]]) -> Self {
+        let region = |settings: &Settings| region(settings, heights, bodies);
         let first = settings.in_first_width();
-        let first = first.map(|wide| (region(&wide, heights), FillParams::new(&wide, heights)));
+        let first = first.map(|wide| (region(&wide), FillParams::new(&wide, heights)));
         Self {
-            region: region(settings, heights),
+            region: region(settings),
             first,
             rules: Rules::new(settings),
             support: SupportParams::new(settings),
@@ -94,7 +96,7 @@ impl Setup {
 }
 
 /// The numbers of the region stage.
-fn region(settings: &Settings, heights: &Heights) -> RegionParams {
+fn region(settings: &Settings, heights: &Heights, bodies: &[[Point; 2]]) -> RegionParams {
     let mut region = RegionParams::new(settings);
     // No more can be skin than there is; each layer looks at as many neighbours as this.
     let count = |count: usize, thickness: f64| {
@@ -102,6 +104,9 @@ fn region(settings: &Settings, heights: &Heights) -> RegionParams {
     };
     region.skins.top = count(region.skins.top, settings.top_thickness);
     region.skins.bottom = count(region.skins.bottom, settings.bottom_thickness);
+    if let Some(ironing) = &mut region.ironing {
+        ironing.bodies = bodies.to_vec();
+    }
     region
 }
 

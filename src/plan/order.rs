@@ -7,7 +7,8 @@
 //! 1. Each path goes to the smallest outer contour around its start.
 //! 2. The island nearest to the nozzle is next. Its walls come first, then skin, then infill; the
 //!    next path is always the one with the nearest end. Helpers come after all islands; those that
-//!    make the print stick, such as a brim, before them, in their own order.
+//!    make the print stick, such as a brim, before them, in their own order. What is laid on the
+//!    others comes last, in its turn.
 //! 3. Walls are sorted by depth, from outside or from inside as the settings say. Their seams are at
 //!    the vertex nearest to the nozzle, at the rear, or where `seam` put them.
 //! 4. With seams in a line, the next layer begins near where this one began. So the last paths are
@@ -30,6 +31,8 @@ pub struct Unordered {
     first: Vec<Path>,
     /// Paths printed after all islands, in either direction.
     helpers: Vec<Path>,
+    /// Paths printed on what all others have laid.
+    last: Vec<Path>,
 }
 
 /// The paths inside one outer contour.
@@ -54,7 +57,7 @@ impl Island {
 /// Sorts the paths of a layer, starting from `at`. `seams` are those of the layers before.
 #[must_use]
 pub fn order(paths: Unordered, mut at: Point, seams: &mut Seams, params: &PlanParams) -> Vec<Path> {
-    let Unordered { mut islands, first, helpers } = paths;
+    let Unordered { mut islands, first, helpers, last } = paths;
     let mut out = Vec::new();
     first.into_iter().for_each(|path| out.push(entered(path, &mut at)));
     while let Some(k) = nearest(islands.iter().map(|i| i.distance2(at))) {
@@ -64,6 +67,7 @@ pub fn order(paths: Unordered, mut at: Point, seams: &mut Seams, params: &PlanPa
         order_by_role(inside, Place::Inside, &mut at, &mut out);
     }
     order_by_role(helpers, Place::Helper, &mut at, &mut out);
+    order_by_role(last, Place::Last, &mut at, &mut out);
     if matches!(params.seam, Seam::Rear | Seam::Aligned) {
         lead_back(&mut out);
     }
@@ -95,7 +99,8 @@ impl Unordered {
             paths.extract_if(.., |path| path.role.facts().place == place).collect()
         };
         let (first, helpers) = (take(Place::First), take(Place::Helper));
-        Self { islands: islands(paths, contours), first, helpers }
+        let last = take(Place::Last);
+        Self { islands: islands(paths, contours), first, helpers, last }
     }
 }
 

@@ -80,7 +80,7 @@ pub(super) fn free(path: &Path) -> Option<bool> {
         return None;
     }
     match path.role.facts().place {
-        Place::Walls | Place::First => None,
+        Place::Walls | Place::First | Place::Last => None,
         Place::Inside => Some(false),
         Place::Helper => Some(true),
     }

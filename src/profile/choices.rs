@@ -63,6 +63,18 @@ pub enum BrimPlace {
     Both,
 }
 
+/// See [`Ironing::place`](super::Ironing::place).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum IroningPlace {
+    /// Nowhere.
+    Off,
+    /// All that is seen from above.
+    Top,
+    /// The highest layer of each model alone.
+    Topmost,
+}
+
 /// Pattern of the sparse infill.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -23,6 +23,7 @@ pub mod dual;
 pub mod first_skin;
 pub mod foot;
 pub mod hidden;
+pub mod ironing;
 pub mod landing;
 mod near;
 pub mod overhang;
@@ -51,6 +52,7 @@ use crate::slice::Layer;
 use crate::units::Coord;
 use crossed::Crossed;
 use divide::LayerAreas;
+use ironing::Ironing;
 use std::sync::Arc;
 use walls::Wall;
 
@@ -68,6 +70,8 @@ pub struct Region {
     pub skins: Vec<Skin>,
     /// Its sparse infill.
     pub infill: Vec<Sparse>,
+    /// Where the nozzle goes over it once more.
+    pub ironing: Option<Ironing>,
     /// Its support.
     pub support: SupportLines,
     /// Area that is too thin for a wall and so not printed, mm².

@@ -4,11 +4,18 @@
 //! bead or to the end of a line.
 
 use super::per_raster::Rasters;
+use super::tops;
+use crate::geom::Point;
 use crate::geom::frame::Frame;
 use crate::geom::raster::Raster;
 use crate::pattern::Turns;
-use crate::profile::Settings;
+use crate::profile::{Ironing, IroningPlace, Settings};
 use crate::units::{Coord, UNITS_PER_MM, to_units};
+
+/// Degrees from the lines of a top to those that iron it. Along them the nozzle would follow the
+/// grooves; half-way across it presses each ridge into the groove beside it, and its lines differ from
+/// those of the layer below as well. PrusaSlicer and what descends from it do the same.
+const ACROSS: f64 = 45.0;
 
 /// The numbers of the whole stage.
 #[derive(Debug, Clone)]
@@ -25,6 +32,8 @@ pub struct RegionParams {
     pub bridges: BridgeParams,
     /// Whether skin that is seen from above is told apart.
     pub tops: bool,
+    /// For going over tops once more; `None` if nothing is ironed.
+    pub ironing: Option<IroningParams>,
     /// Whether walls that hang are told apart.
     pub overhangs: bool,
     /// All rasters in use.
@@ -101,6 +110,47 @@ pub struct BridgeParams {
     pub angle: f64,
 }
 
+/// How tops are ironed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IroningParams {
+    /// Its lines on even and on odd layers.
+    pub rasters: [Raster; 2],
+    /// How far its lines keep from the contours of the layer and from those above.
+    pub inset: Coord,
+    /// What is nearer to what stands on the layer is ironed only beside a place that is not.
+    pub narrow: Coord,
+    /// The least length of a line.
+    pub least: Coord,
+    /// Only the highest layer of each body is ironed.
+    pub topmost: bool,
+    /// The lowest and the highest corner of each body.
+    pub bodies: Vec<[Point; 2]>,
+}
+
+impl IroningParams {
+    /// The numbers that `settings` mean, with no body yet; `None` if nothing is ironed.
+    fn new(settings: &Settings) -> Option<Self> {
+        let Ironing { place, spacing, inset, .. } = settings.ironing;
+        if place == IroningPlace::Off || !settings.has_top_skins() {
+            return None;
+        }
+        let line_width = to_units(settings.line_width);
+        let walls = if settings.top_one_wall { settings.walls.min(1) } else { settings.walls };
+        let raster = |turn: f64| Raster {
+            frame: Frame::new(settings.angle.degrees() + ACROSS + turn),
+            pitch: to_units(spacing).max(1),
+        };
+        Some(Self {
+            rasters: [raster(0.0), raster(90.0)],
+            inset: to_units(inset),
+            narrow: tops::NARROW * line_width / 2 + walls as Coord * line_width - line_width,
+            least: line_width / 2,
+            topmost: place == IroningPlace::Topmost,
+            bodies: Vec::new(),
+        })
+    }
+}
+
 impl RegionParams {
     /// Derives the numbers from `settings`.
     #[must_use]
@@ -154,6 +204,7 @@ impl RegionParams {
                 overlap: to_units(overlap * w),
             },
             tops: settings.top_monotonic || settings.speed.top_skin.is_some(),
+            ironing: IroningParams::new(settings),
             overhangs: settings.speed.overhang > 0.0,
             bridges: BridgeParams {
                 anchor: settings.bridge.enabled.then(|| to_units(settings.bridge.anchor)),

@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// Strips narrower than this go to what lies beside them, half as wide ones along walls, in line widths.
 /// A smaller value makes parts that are all turns; a larger one lets more of a gentle slope be printed as
 /// what lies under it.
-const NARROW: Coord = 5;
+pub(super) const NARROW: Coord = 5;
 
 /// Shorter stretches are noise of the contours (50 µm), as in [`classify`](super::classify).
 const LEAST: i64 = 500;

@@ -20,6 +20,7 @@ use super::dual::audit::Audit;
 use super::dual::groups::{Block, Grouping};
 use super::dual::inner_skin::{self, Skins, without_threads};
 use super::first_skin::{self, Turn};
+use super::ironing::{self, Ironing};
 use super::landing::{self, Floor};
 use super::overhang::Hanging;
 use super::params::RegionParams;
@@ -88,6 +89,7 @@ struct Filling {
     support: SupportLines,
     /// How many layers each wall is printed for.
     walls: Vec<u32>,
+    ironing: Option<Ironing>,
 }
 
 impl<'a> Window<'a> {
@@ -196,18 +198,27 @@ impl<'a> Window<'a> {
     fn fill(&self, block: &Block) -> (Vec<Filling>, Vec<Audit>) {
         let layers = block.layers.clone();
         let line_width = self.params.walls.line_width;
+        let ironed: Vec<Option<Ironing>> =
+            layers.clone().into_par_iter().map(|k| self.ironing(k)).collect();
         let (skins, areas): (Vec<_>, Vec<_>) =
             layers.into_par_iter().filter_map(|k| self.skins(k)).unzip();
         let areas: Vec<&LayerAreas> = areas.iter().map(Cow::as_ref).collect();
         let (infill, audit) =
             dual::infill(block, &areas, self.grouping, &self.params.sparse, line_width);
         let (support, support_audit) = self.share_support(block);
-        let lines = infill.into_iter().zip(support).zip(self.share_walls(block));
-        let fillings = skins
-            .into_iter()
-            .zip(lines)
-            .map(|(skins, ((infill, support), walls))| Filling { skins, infill, support, walls });
+        let lines = infill.into_iter().zip(support).zip(self.share_walls(block)).zip(ironed);
+        let fillings =
+            skins.into_iter().zip(lines).map(|(skins, (((infill, support), walls), ironing))| {
+                Filling { skins, infill, support, walls, ironing }
+            });
         (fillings.collect(), audit.into_iter().chain(support_audit).collect())
+    }
+
+    /// What of layer `k` is ironed.
+    fn ironing(&self, k: usize) -> Option<Ironing> {
+        let params = self.params.ironing.as_ref().filter(|_| self.params.skins.top > 0)?;
+        let above = self.own.get(k + 1).map(|above| &*above.layer);
+        ironing::ironing(&self.own.get(k)?.layer, above, params)
     }
 
     /// The number of layers that each wall of each layer of a block is printed for.
@@ -364,7 +375,7 @@ impl<'a> Window<'a> {
         let own = std::iter::from_fn(|| self.own.take().zip(self.beads.take()));
         let regions = fillings.into_iter().zip(own).map(
             |(laid, (own, Laid { beads, room_beads, filling, bridges, hanging }))| {
-                let Filling { mut skins, infill, support, walls: printed } = laid;
+                let Filling { mut skins, infill, support, walls: printed, ironing } = laid;
                 // Wall beads are for this layer alone.
                 let k = own.layer.index;
                 let above = self.rows.get(k + 1).map(|rows| &rows.skin(skin_turn(k).0).cover);
@@ -393,7 +404,7 @@ impl<'a> Window<'a> {
                 let hangs = hangs.into_iter().zip(&printed).filter_map(of).collect();
                 let printed = walls.into_iter().zip(printed).filter(|(_, layers)| *layers > 0);
                 let walls = printed.map(|(wall, layers)| Wall { layers, ..wall }).collect();
-                Region { layer, walls, hangs, skins, infill, support, thin_mm2 }
+                Region { layer, walls, hangs, skins, infill, ironing, support, thin_mm2 }
             },
         );
         let regions: Vec<Region> = regions.collect();

@@ -17,10 +17,11 @@ pub mod placement;
 mod fit;
 pub(super) mod shelves;
 
+use crate::geom::Point;
 use crate::mesh::edges::{self, Adjacency, MAX_TRIANGLES};
 use crate::mesh::faults;
 use crate::mesh::{Bed, Error, Mesh, MeshReport, Placement, Policy, RawMesh, Result};
-use crate::units::{MAX_COORDINATE_MM, sum_mm, to_units};
+use crate::units::{Coord, MAX_COORDINATE_MM, sum_mm, to_units};
 use crate::warning::Warning;
 use fit::{check_placement, offset};
 use part::{Part, part};
@@ -46,6 +47,8 @@ pub struct Placed {
     pub offset: [f64; 2],
     /// Size of the whole layout, mm.
     pub size_mm: [f64; 3],
+    /// The lowest and the highest corner of each body, from the middle of the layout, grid units.
+    pub bodies: Vec<[Point; 2]>,
     /// What a user should know.
     pub warnings: Vec<Warning>,
     /// Whether all surfaces are known to be closed and to face outward. With [`Policy::Warn`]
@@ -82,6 +85,7 @@ pub fn place(models: Vec<RawMesh>, placement: &Placement, bed: &Bed) -> Result<P
     placed.size_mm = [layout.size[0], layout.size[1], height].map(sum_mm);
     placed.offset = offset(placement, bed, [placed.size_mm[0], placed.size_mm[1]])?;
     let copies = placement.copies as usize;
+    placed.bodies = bodies(&parts, &layout, copies);
     join(parts, &layout, copies, &mut placed);
     Ok(placed)
 }
@@ -126,6 +130,16 @@ fn lay_out(parts: &[Part], placement: &Placement, bed: &Bed) -> Result<Layout> {
     let gap_mm = placement.gap.min(MAX_COORDINATE_MM);
     let full = Error::BedFull { models, gap_mm, bed_mm };
     shelves(&boxes, bed, i64::from(to_units(gap_mm))).ok_or(full)
+}
+
+/// Where each body lies.
+fn bodies(parts: &[Part], layout: &Layout, copies: usize) -> Vec<[Point; 2]> {
+    let corner = |[x, y]: [Coord; 2], size: [i64; 3], side: i64| Point {
+        x: x + (side * size[0] / 2) as Coord,
+        y: y + (side * size[1] / 2) as Coord,
+    };
+    let all = layout.middles.iter().enumerate();
+    all.map(|(i, &at)| [-1, 1].map(|side| corner(at, parts[i / copies].size, side))).collect()
 }
 
 /// Puts all copies into one mesh.

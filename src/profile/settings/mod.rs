@@ -27,6 +27,7 @@ mod adhesion;
 mod cooling;
 mod dual;
 mod extrusion;
+mod ironing;
 mod jerk;
 mod limits;
 mod machine;
@@ -41,6 +42,7 @@ pub use adhesion::{Brim, Skirt};
 pub use cooling::Cooling;
 pub use dual::Dual;
 pub use extrusion::Extrusion;
+pub use ironing::Ironing;
 pub use jerk::Jerk;
 pub use limits::MotionLimits;
 pub use machine::{Machine, Reach};
@@ -148,6 +150,10 @@ pub struct Settings {
     /// that light falls alike on all of them.
     #[schemars(extend("default" = true))]
     pub top_monotonic: bool,
+    /// Whether tops that are seen have the outer wall alone, so that skin fills all the rest. What is
+    /// narrower than a few lines, such as the steps of a slope, keeps its walls.
+    #[schemars(extend("default" = false))]
+    pub top_one_wall: bool,
     /// How far a skin reaches sideways into the infill, to hold on.
     #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 1.2))]
     pub skin_reach: f64,
@@ -196,6 +202,8 @@ pub struct Settings {
     pub support: Support,
     /// Skin that spans places where nothing is printed below.
     pub bridge: Bridge,
+    /// The hot nozzle goes over tops a second time.
+    pub ironing: Ironing,
     /// Loops around everything.
     pub skirt: Skirt,
     /// Lines beside the first layer.

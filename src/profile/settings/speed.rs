@@ -39,6 +39,9 @@ pub struct Speed {
     /// Speed of bridges.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 25))]
     pub bridge: f64,
+    /// Speed at which tops are ironed.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 15))]
+    pub ironing: f64,
     /// Speed of sparse infill that is one layer high.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 60))]
     pub infill: f64,
