@@ -75,7 +75,10 @@ pub(super) fn odd(print: &Print, terms: &Terms, found: &mut Findings) {
 /// plastic, whatever the file says.
 pub(super) fn narrow(print: &Print, terms: &Terms, found: &mut Findings) {
     let Some(nozzle) = terms.nozzle else { return };
-    let is_narrow = |step: &Step| step.is_line() && terms.box_width(step) < NARROW * nozzle;
+    // What irons is pressed flat on what is there.
+    let is_narrow = |step: &Step| {
+        step.is_line() && step.role != Role::Ironing && terms.box_width(step) < NARROW * nozzle
+    };
     for (layer, one) in print.layers.iter().enumerate() {
         let steps = print.moves_of(one);
         let runs = steps.chunk_by(|a, b| is_narrow(a) && is_narrow(b) && a.to == b.from);

@@ -6,7 +6,8 @@
 //! In each cell of a layer
 //! - the plastic of walls and skins is compared with the room that they cover: lines that lie on one
 //!   another share the room, and overfill it; thin ones leave it half empty. Of a thick line the
-//!   share counts that lies in the layer;
+//!   share counts that lies in the layer. What irons lies on the others: it counts where it takes
+//!   more than ironing does;
 //! - gaps are compared with that room. They are looked for along rows and along columns, and only
 //!   inside the closed loops of the outer walls, so that air between two parts is none.
 //!
@@ -41,6 +42,9 @@ const MOST_CELLS: f64 = 256.0;
 /// Plastic over room: neighbours of other slicers overlap by a tenth, ends of lines in walls by
 /// another; the model of a bead with round ends leaves 0.79 of the thinnest.
 const BOUNDS: [f64; 2] = [0.7, 1.3];
+
+/// What ironing may take of the room: others take 0.1 to 0.25.
+const IRONING: f64 = 0.35;
 
 /// Room by which plastic is judged, mm²: too little and too much of it.
 const LEAST_ROOM: [f64; 2] = [2.0, 1.2];
@@ -118,6 +122,8 @@ struct Judge<'a> {
 struct Cell {
     room: f64,
     plastic: f64,
+    /// Of ironing.
+    ironed: f64,
     /// Open gaps along rows, and along columns.
     open: [f64; 2],
 }
@@ -130,7 +136,8 @@ impl Judge<'_> {
         let lines: Vec<(&Step, f64)> =
             self.filled.lines(layer).filter(|(step, _)| !is_thread(step, self.terms)).collect();
         let threads = || own.iter().filter(|step| step.is_line() && is_thread(step, self.terms));
-        for &(step, share) in lines.iter().filter(|(step, _)| is_solid(step)) {
+        let counts = |step: &Step| is_solid(step) || step.role == Role::Ironing;
+        for &(step, share) in lines.iter().filter(|(step, _)| counts(step)) {
             let pieces = Samples::of(step, PIECE);
             let plastic = self.terms.plastic(step) * share / step.length();
             let lane = f64::from(step.width) / LANES as f64;
@@ -139,7 +146,8 @@ impl Judge<'_> {
                     let aside = (k as f64 + 0.5 - LANES as f64 / 2.0) * lane;
                     let at = segment::along(piece.at, aside, piece.across);
                     if let Some(cell) = self.cell(at).and_then(|k| cells.get_mut(k)) {
-                        cell.plastic += plastic * piece.length / LANES as f64;
+                        let of = if is_solid(step) { &mut cell.plastic } else { &mut cell.ironed };
+                        *of += plastic * piece.length / LANES as f64;
                     }
                 }
             }
@@ -252,9 +260,10 @@ impl Judge<'_> {
     /// Judges a cell of a layer of this height, mm.
     fn judged(&self, cell: &Cell, height: f64) -> Option<Finding> {
         let room = cell.room * height;
-        let fills = cell.plastic / room;
+        let plastic = cell.plastic + (cell.ironed - IRONING * room).max(0.0);
+        let fills = plastic / room;
         let percent = short(100.0 * fills);
-        let excess = (cell.plastic - room) / height;
+        let excess = (plastic - room) / height;
         if cell.room >= LEAST_ROOM[1] && fills > BOUNDS[1] && excess >= LEAST_EXCESS {
             let text =
                 format!("walls and skins take {percent} % of the plastic that they have room for");

@@ -120,6 +120,11 @@ impl Pile {
         core > 0.0 && (core - middle(step)).abs() < SAME_HEIGHT
     }
 
+    /// Whether a line of this layer covers that place.
+    pub(super) fn is_covered(&self, at: [f64; 2]) -> bool {
+        self.at(&self.owners, at).is_some_and(|owner| owner > self.owners_from)
+    }
+
     /// Notes how far a place of a line lies below the nozzle's way there in a layer before. Flat
     /// layers, which all lie above those before, need no search.
     pub(super) fn find_fall(&mut self, step: &Step, place: &Sample) {

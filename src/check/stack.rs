@@ -12,6 +12,7 @@
 //! - a line whose core runs along another core of its layer is printed twice;
 //! - a line that lies lower than a core of a layer before it falls: it runs into what is printed.
 //!   This is possible only for lines below the highest line so far, so flat files do not pay for it;
+//! - a line that irons may lie on others of its layer, and on nothing else;
 //! - a layer whose walls are less high than it lies above the one below misses a layer between.
 
 use super::anchors::{self, LEAST_RUN, Loose, Piece};
@@ -31,6 +32,9 @@ const LEAST_GAP: f64 = 0.4;
 
 /// A patch with shorter lines in all is no layer that is missing below, but a blob, mm.
 const LEAST_PATCH: f64 = 4.0;
+
+/// Longest stretch that is ironed where the layer has nothing, mm: hair lines between beads are less.
+const LEAST_BARE: f64 = 1.5;
 
 /// Layers that may be missing below lines, by which that differs from a body that begins.
 const MOST_MISSING: f64 = 2.0;
@@ -59,14 +63,19 @@ pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) ->
     for (layer, one) in print.layers.iter().enumerate() {
         gap(print, (layer, part), found);
         pile.begin_layer();
-        let steps =
-            print.moves_of(one).chunk_by(|a, b| a.is_line() && b.is_line() && a.to == b.from);
-        let chains = || steps.clone().filter(|chain| chain[0].is_line());
+        let steps = print.moves_of(one).chunk_by(|a, b| {
+            a.is_line() && b.is_line() && a.to == b.from && is_ironing(a) == is_ironing(b)
+        });
+        let all = || steps.clone().filter(|chain| chain[0].is_line());
+        let chains = || all().filter(|chain| !is_ironing(&chain[0]));
         let lines: Vec<Line> = chains()
             .map(|chain| lay(&mut pile, chain, &mut pieces, (layer, &mut *found)))
             .collect();
         let mut judge = Judge { layer, part, bodies: &mut bodies, found, measured: &mut measured };
         judge.patches(&lines, &mut pile);
+        for chain in all().filter(|chain| is_ironing(&chain[0])) {
+            iron(&mut pile, chain, layer, found);
+        }
         if let Some((fall, step)) = pile.fall.take() {
             let text = format!("{} mm lower than what is printed already", short(fall));
             found.add(Finding::of(Code::FallingZ, fall, "mm", text).at(place(layer, &step)));
@@ -75,6 +84,30 @@ pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) ->
     }
     bodies.report(found);
     measured
+}
+
+/// Whether a line lies on purpose on others of its layer.
+fn is_ironing(step: &Step) -> bool {
+    step.role == Role::Ironing
+}
+
+/// Reports what of a chain that irons lies beside all that the layer has laid.
+fn iron(pile: &mut Pile, chain: &[Step], layer: usize, found: &mut Findings) {
+    let (mut run, mut longest) = (0.0, (0.0, chain[0]));
+    for step in chain {
+        for sample in Samples::of(step, pile.grid.pitch) {
+            pile.find_fall(step, &sample);
+            run = if pile.is_covered(sample.at) { 0.0 } else { run + sample.length };
+            if run > longest.0 {
+                longest = (run, *step);
+            }
+        }
+    }
+    let (length, step) = longest;
+    if length >= LEAST_BARE {
+        let text = format!("{} mm are ironed where the layer has nothing", short(length));
+        found.add(Finding::of(Code::InTheAir, length, "mm", text).at(place(layer, &step)));
+    }
 }
 
 /// How much higher a layer lies than its walls are, above the layer or the bed below, mm. Only walls

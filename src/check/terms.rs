@@ -92,7 +92,7 @@ impl Terms {
     pub(super) fn plastic(&self, step: &Step) -> f64 {
         let flow = match step.role {
             Role::OuterWall | Role::InnerWall => self.flow[0],
-            Role::Skin => self.flow[1],
+            Role::Skin | Role::Ironing => self.flow[1],
             Role::Infill => self.flow[2],
             _ => 1.0,
         };

@@ -12,6 +12,8 @@ pub enum Role {
     InnerWall,
     /// Solid infill.
     Skin,
+    /// The nozzle goes over skin once more, with little plastic.
+    Ironing,
     /// Sparse infill.
     Infill,
     /// Support.
@@ -40,7 +42,7 @@ const NAMES: &[(&str, Role)] = &[
     ("solidinfill", Role::Skin),
     ("topsolidinfill", Role::Skin),
     ("bridgeinfill", Role::Skin),
-    ("ironing", Role::Skin),
+    ("ironing", Role::Ironing),
     ("gapfill", Role::Skin),
     ("gapinfill", Role::Skin),
     ("internalsolidinfill", Role::Skin),
@@ -65,10 +67,11 @@ const NAMES: &[(&str, Role)] = &[
 
 impl Role {
     /// All of them, in the order of reports.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::OuterWall,
         Self::InnerWall,
         Self::Skin,
+        Self::Ironing,
         Self::Infill,
         Self::Support,
         Self::Adhesion,
@@ -84,6 +87,7 @@ impl Role {
             Self::OuterWall => "outer wall",
             Self::InnerWall => "inner wall",
             Self::Skin => "skin",
+            Self::Ironing => "ironing",
             Self::Infill => "infill",
             Self::Support => "support",
             Self::Adhesion => "skirt and brim",
@@ -113,6 +117,7 @@ mod tests {
             ("External perimeter", Role::OuterWall),
             ("WALL-INNER", Role::InnerWall),
             ("Top surface", Role::Skin),
+            ("Ironing", Role::Ironing),
             ("FILL", Role::Infill),
             ("Support material interface", Role::Support),
             ("SKIRT", Role::Adhesion),

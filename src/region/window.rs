@@ -217,6 +217,10 @@ impl<'a> Window<'a> {
     /// What of layer `k` is ironed.
     fn ironing(&self, k: usize) -> Option<Ironing> {
         let params = self.params.ironing.as_ref().filter(|_| self.params.skins.top > 0)?;
+        let cover = |k: usize| self.rows.get(k).map(|rows| &rows.skin(0).cover);
+        // Most layers leave nothing bare.
+        let leaves = |above: &Rows| Some(!cover(k)?.minus(above).is_empty());
+        cover(k + 1).is_none_or(|above| leaves(above).unwrap_or(true)).then_some(())?;
         let above = self.own.get(k + 1).map(|above| &*above.layer);
         ironing::ironing(&self.own.get(k)?.layer, above, params)
     }

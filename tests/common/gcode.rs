@@ -13,6 +13,7 @@ pub(crate) enum Kind {
     /// A stretch of either wall.
     Overhang,
     Skin,
+    Ironing,
     Bridge,
     Infill,
     Support,
@@ -173,6 +174,7 @@ impl Print {
                 "External perimeter" => Kind::OuterWall,
                 "Perimeter" => Kind::InnerWall,
                 "Solid infill" | "Top solid infill" | "Gap fill" => Kind::Skin,
+                "Ironing" => Kind::Ironing,
                 "Bridge infill" => Kind::Bridge,
                 "Internal infill" => Kind::Infill,
                 "Support material" => Kind::Support,
