@@ -16,7 +16,7 @@ use super::hidden::{self, between_walls};
 use super::overhang::{Hanging, overhangs};
 use super::params::RegionParams;
 use super::per_raster::{PerRaster, skin_turn};
-use super::prepare::{LayerRows, Own};
+use super::prepare::{LayerRows, Own, Whole};
 use super::rooms;
 use super::wall_beads::{taken, wall_beads};
 use crate::geom::Contour;
@@ -197,12 +197,20 @@ fn beads<'a>(
     params: &RegionParams,
 ) -> Vec<Polyline> {
     let Some(rows) = layers(own.layer.index) else { return Vec::new() };
-    let room = [0, 1].map(|r| &*rows.skin(r).fill);
     let count = params.walls.count;
     // Without walls the ends of lines form the outside of the part, so all skin stays lines.
     if count == 0 || skins.iter().all(Rows::is_empty) {
         return Vec::new();
     }
+    // Beside the outer wall of a top there are lines alone.
+    let beside_tops;
+    let (room, skins) = match &own.whole {
+        Some(Whole { fill, tops, .. }) => {
+            beside_tops = [0, 1].map(|r| skins[r].and(&fill[r]).minus(&tops[r]));
+            ([0, 1].map(|r| &*fill[r]), &beside_tops)
+        }
+        None => ([0, 1].map(|r| &*rows.skin(r).fill), skins),
+    };
     let (along, across) = skin_turn(own.layer.index);
     let crossed = Crossed {
         skin: &skins[along],
@@ -212,7 +220,13 @@ fn beads<'a>(
         left_turn: along == 0,
     };
     let frame = params.rasters.skin(along).frame;
-    let innermost = own.walls.iter().filter(|w| w.closed && w.depth + 1 == count);
-    let walls = innermost.map(|w| -> Contour { w.path.iter().map(|&p| frame.enter(p)).collect() });
-    wall_beads(&walls.collect::<Vec<_>>(), &crossed, &params.beads)
+    let entered = |path: &Contour| -> Contour { path.iter().map(|&p| frame.enter(p)).collect() };
+    let walls: Vec<Contour> = match &own.whole {
+        Some(whole) => whole.innermost.iter().map(entered).collect(),
+        None => {
+            let innermost = own.walls.iter().filter(|w| w.closed && w.depth + 1 == count);
+            innermost.map(|w| entered(&w.path)).collect()
+        }
+    };
+    wall_beads(&walls, &crossed, &params.beads)
 }

@@ -26,6 +26,7 @@ pub mod hidden;
 pub mod ironing;
 pub mod landing;
 mod near;
+pub mod one_wall;
 pub mod overhang;
 pub mod params;
 pub mod per_raster;

@@ -17,6 +17,10 @@ use crate::units::{Coord, UNITS_PER_MM, to_units};
 /// those of the layer below as well. PrusaSlicer and what descends from it do the same.
 const ACROSS: f64 = 45.0;
 
+/// Narrower tops keep all their walls, in line widths: the outer wall on both sides and turns of skin
+/// between would be all there is. With a smaller value the walls of gentle slopes are gone.
+const WIDE_TOP: Coord = 6;
+
 /// The numbers of the whole stage.
 #[derive(Debug, Clone)]
 pub struct RegionParams {
@@ -32,6 +36,8 @@ pub struct RegionParams {
     pub bridges: BridgeParams,
     /// Whether skin that is seen from above is told apart.
     pub tops: bool,
+    /// For tops with the outer wall alone; `None` if they have all walls.
+    pub one_wall: Option<OneWall>,
     /// For going over tops once more; `None` if nothing is ironed.
     pub ironing: Option<IroningParams>,
     /// Whether walls that hang are told apart.
@@ -108,6 +114,19 @@ pub struct BridgeParams {
     pub pitch: Coord,
     /// Direction of the skin of even layers, degrees.
     pub angle: f64,
+}
+
+/// Where tops have the outer wall alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OneWall {
+    /// Number of walls elsewhere.
+    pub count: u32,
+    /// Distance of the outer wall's centre line from the contour.
+    pub outer: Coord,
+    /// Distance of the ends of skin lines from the contour.
+    pub fill: Coord,
+    /// Narrower tops keep their walls.
+    pub wide: Coord,
 }
 
 /// How tops are ironed.
@@ -204,6 +223,13 @@ impl RegionParams {
                 overlap: to_units(overlap * w),
             },
             tops: settings.top_monotonic || settings.speed.top_skin.is_some(),
+            one_wall: (settings.top_one_wall && settings.walls > 1 && settings.has_top_skins())
+                .then(|| OneWall {
+                    count: settings.walls,
+                    outer: walls.outer_inset,
+                    fill: to_units((outer + 1.0 - overlap) * w),
+                    wide: WIDE_TOP * line_width,
+                }),
             ironing: IroningParams::new(settings),
             overhangs: settings.speed.overhang > 0.0,
             bridges: BridgeParams {

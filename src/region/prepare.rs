@@ -24,6 +24,19 @@ pub struct Own {
     pub core: Option<Vec<Contour>>,
     /// Area that is too thin for any bead, mm².
     pub thin_mm2: f64,
+    /// What it would be without tops that have the outer wall alone; `None` if it has none.
+    pub whole: Option<Whole>,
+}
+
+/// A layer as it would be with all walls everywhere.
+#[derive(Debug)]
+pub struct Whole {
+    /// Its innermost loops.
+    pub innermost: Vec<Contour>,
+    /// Its fill rows on the rasters of skins.
+    pub fill: [Arc<Rows>; 2],
+    /// Its tops on the same.
+    pub tops: [Rows; 2],
 }
 
 /// The rows of a layer on each raster in use.
@@ -54,7 +67,7 @@ pub fn prepare(layer: Layer, params: &RegionParams) -> (Own, LayerRows) {
     let rows = PerRaster::new(&params.rasters, params.rasters.iter(), |raster| {
         scans.on(raster).map_or_else(PreparedRows::default, |scan| rows(raster, scan))
     });
-    (Own { layer: Arc::new(layer), walls, core, thin_mm2 }, rows)
+    (Own { layer: Arc::new(layer), walls, core, thin_mm2, whole: None }, rows)
 }
 
 /// Where lines of skin or infill may run on `raster`: the scanned contours inset by their walls, and

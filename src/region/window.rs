@@ -22,6 +22,7 @@ use super::dual::inner_skin::{self, Skins, without_threads};
 use super::first_skin::{self, Turn};
 use super::ironing::{self, Ironing};
 use super::landing::{self, Floor};
+use super::one_wall::{self, Opened};
 use super::overhang::Hanging;
 use super::params::RegionParams;
 use super::per_raster::skin_turn;
@@ -48,6 +49,8 @@ pub struct Window<'a> {
     support: Option<Support>,
     /// The next batch to be sliced.
     batch: usize,
+    /// The last layer that is prepared, where that above decides about its walls.
+    held: Option<(Own, LayerRows)>,
     /// What belongs to each layer alone.
     own: Queue<Own>,
     /// The layers themselves, as long as one above is not divided.
@@ -107,6 +110,7 @@ impl<'a> Window<'a> {
             grouping,
             support,
             batch: 0,
+            held: None,
             own: Queue::default(),
             layers: Queue::default(),
             examined: Queue::default(),
@@ -139,6 +143,7 @@ impl<'a> Window<'a> {
         self.batch += 1;
         let prepared: Vec<(Own, LayerRows)> =
             layers.into_par_iter().map(|layer| prepare(layer, self.params)).collect();
+        let prepared = if self.params.one_wall.is_some() { self.open(prepared) } else { prepared };
         let (own, rows): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
         self.layers.extend(own.iter().map(|own| own.layer.clone()));
         self.own.extend(own);
@@ -159,6 +164,25 @@ impl<'a> Window<'a> {
         }
         self.layers.forget(until.saturating_sub(1));
         self.examined.forget(until.saturating_sub(1));
+    }
+
+    /// Layers with tops that have the outer wall alone, where they have any. The last one is held back
+    /// until that above is known.
+    fn open(&mut self, prepared: Vec<(Own, LayerRows)>) -> Vec<(Own, LayerRows)> {
+        let mut all: Vec<(Own, LayerRows)> = self.held.take().into_iter().chain(prepared).collect();
+        let ends = self.batch == self.slicer.blocks();
+        let count = if ends { all.len() } else { all.len().saturating_sub(1) };
+        let open = |k: usize| {
+            let (own, rows) = &all[k];
+            one_wall::open(own, rows, all.get(k + 1).map(|(_, rows)| rows), self.params)
+        };
+        let opened: Vec<Option<Opened>> = (0..count).into_par_iter().map(open).collect();
+        self.held = all.drain(count..).next();
+        let apply = |((own, rows), opened): ((Own, LayerRows), Option<Opened>)| match opened {
+            Some(opened) => opened.apply(own, rows, self.params),
+            None => (own, rows),
+        };
+        all.into_par_iter().zip(opened).map(apply).collect()
     }
 
     /// Layer `k`, divided on both rasters of skins and on those of its block's infill. `None` if the
