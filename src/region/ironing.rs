@@ -96,7 +96,8 @@ mod tests {
 
     fn layer(squares: &[[Coord; 3]]) -> Arc<Layer> {
         let square = |&[x, y, side]: &[Coord; 3]| {
-            [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(a, b)| Point { x: x + a * side, y: y + b * side })
+            [(0, 0), (1, 0), (1, 1), (0, 1)]
+                .map(|(a, b)| Point { x: x + a * side, y: y + b * side })
         };
         let contours = squares.iter().map(|s| square(s).to_vec()).collect();
         Arc::new(Layer { index: 4, z: 10_000, height: 2_000, contours })
@@ -105,7 +106,8 @@ mod tests {
     /// Ironed area, mm².
     fn area(below: &[[Coord; 3]], above: Option<&[[Coord; 3]]>, params: &IroningParams) -> f64 {
         let above = above.map(layer);
-        let Some(Ironing { raster, rows }) = ironing(&layer(below), above.as_deref(), params) else {
+        let Some(Ironing { raster, rows }) = ironing(&layer(below), above.as_deref(), params)
+        else {
             return 0.0;
         };
         rows.total() as f64 * f64::from(raster.pitch) / 1e8

@@ -20,9 +20,9 @@ use super::params::{OneWall, RegionParams};
 use super::prepare::{LayerRows, Own, PreparedRows, Whole};
 use super::scan::{Scan, around};
 use super::walls::Wall;
+use crate::geom::Point;
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
-use crate::geom::Point;
 use crate::units::{Coord, nearest};
 use std::sync::Arc;
 

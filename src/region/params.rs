@@ -1,10 +1,18 @@
 //! Settings -> RegionParams: the numbers of the region stage, one small struct for each part of it.
 //!
 //! All lengths are in grid units. Distances from the contour are measured to the centre line of a
-//! bead or to the end of a line.
+//! bead or to the end of a line. Words:
+//!
+//! - An *inset* is how far inside the contour something lies.
+//! - The *overlap* is how far lines reach into the wall beside them. Without walls there is none.
+//! - To *cover* is what a layer does with those below and above it, nearly up to its contour.
+//! - A *top* is what the layer above leaves bare. What only some prints have is `None` in others, and
+//!   costs them nothing.
+//!
+//! Each struct is made from the settings alone. What the heights of the layers or the bodies decide, the
+//! pipeline fills in.
 
 use super::per_raster::Rasters;
-use super::tops;
 use crate::geom::Point;
 use crate::geom::frame::Frame;
 use crate::geom::raster::Raster;
@@ -16,6 +24,11 @@ use crate::units::{Coord, UNITS_PER_MM, to_units};
 /// grooves; half-way across it presses each ridge into the groove beside it, and its lines differ from
 /// those of the layer below as well. PrusaSlicer and what descends from it do the same.
 const ACROSS: f64 = 45.0;
+
+/// Strips of tops narrower than this go to what lies beside them, half as wide ones along walls, in line widths.
+/// A smaller value makes parts that are all turns; a larger one lets more of a gentle slope be printed as
+/// what lies under it.
+pub(super) const NARROW_TOP: Coord = 5;
 
 /// Narrower tops keep all their walls, in line widths: the outer wall on both sides and turns of skin
 /// between would be all there is. With a smaller value the walls of gentle slopes are gone.
@@ -129,6 +142,30 @@ pub struct OneWall {
     pub wide: Coord,
 }
 
+impl OneWall {
+    /// The numbers that `settings` mean; `None` if all tops have all walls.
+    fn new(settings: &Settings) -> Option<Self> {
+        let (w, outer) = (settings.line_width, settings.outer_wall_inset);
+        let asked = settings.top_one_wall && settings.walls > 1 && settings.has_top_skins();
+        asked.then(|| Self {
+            count: settings.walls,
+            outer: to_units(outer * w),
+            fill: to_units((outer + 1.0 - settings.infill_overlap) * w),
+            wide: WIDE_TOP * to_units(w),
+        })
+    }
+}
+
+impl BridgeParams {
+    fn new(settings: &Settings) -> Self {
+        Self {
+            anchor: settings.bridge.enabled.then(|| to_units(settings.bridge.anchor)),
+            pitch: to_units(settings.bridge.spacing * settings.line_width),
+            angle: settings.angle.degrees(),
+        }
+    }
+}
+
 /// How tops are ironed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IroningParams {
@@ -162,7 +199,7 @@ impl IroningParams {
         Some(Self {
             rasters: [raster(0.0), raster(90.0)],
             inset: to_units(inset),
-            narrow: tops::NARROW * line_width / 2 + walls as Coord * line_width - line_width,
+            narrow: NARROW_TOP * line_width / 2 + walls as Coord * line_width - line_width,
             least: line_width / 2,
             topmost: place == IroningPlace::Topmost,
             bodies: Vec::new(),
@@ -223,20 +260,10 @@ impl RegionParams {
                 overlap: to_units(overlap * w),
             },
             tops: settings.top_monotonic || settings.speed.top_skin.is_some(),
-            one_wall: (settings.top_one_wall && settings.walls > 1 && settings.has_top_skins())
-                .then(|| OneWall {
-                    count: settings.walls,
-                    outer: walls.outer_inset,
-                    fill: to_units((outer + 1.0 - overlap) * w),
-                    wide: WIDE_TOP * line_width,
-                }),
+            one_wall: OneWall::new(settings),
             ironing: IroningParams::new(settings),
             overhangs: settings.speed.overhang > 0.0,
-            bridges: BridgeParams {
-                anchor: settings.bridge.enabled.then(|| to_units(settings.bridge.anchor)),
-                pitch: to_units(settings.bridge.spacing * w),
-                angle: settings.angle.degrees(),
-            },
+            bridges: BridgeParams::new(settings),
             rasters: Rasters::new([skin(0.0), skin(90.0)], sparse.rasters()),
             sparse,
         }

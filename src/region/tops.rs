@@ -12,16 +12,12 @@
 
 use super::dual::inner_skin::without_threads;
 use super::first_skin::Both;
+use super::params::NARROW_TOP;
 use super::{Skin, SkinRows};
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::spans::{Rows, Span};
 use crate::units::Coord;
 use std::sync::Arc;
-
-/// Strips narrower than this go to what lies beside them, half as wide ones along walls, in line widths.
-/// A smaller value makes parts that are all turns; a larger one lets more of a gentle slope be printed as
-/// what lies under it.
-pub(super) const NARROW: Coord = 5;
 
 /// Shorter stretches are noise of the contours (50 µm), as in [`classify`](super::classify).
 const LEAST: i64 = 500;
@@ -94,7 +90,7 @@ fn seen(skin: &Rows, cover: Option<&Rows>, width: Coord) -> Rows {
         return skin.clone();
     }
     let bare = skin.minus(&hidden).filter(long);
-    let half = NARROW * width / 2;
+    let half = NARROW_TOP * width / 2;
     // Of a wide place some row or other has a long stretch.
     if bare.filter(|_, span| span.len() >= i64::from(half)).is_empty() {
         return Rows::default();
