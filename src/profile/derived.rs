@@ -73,7 +73,8 @@ impl Settings {
     #[must_use]
     pub fn in_first_width(&self) -> Option<Self> {
         let wide = self.first_layer_width.filter(|wide| (wide - self.line_width).abs() > SLACK_MM)?;
-        Some(Self { line_width: wide, ..self.clone() })
+        // Nothing is known of what stands on it there: its tops keep their walls.
+        Some(Self { line_width: wide, top_one_wall: false, ..self.clone() })
     }
 
     /// Temperature of the nozzle on the first layer, °C.

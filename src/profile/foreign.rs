@@ -99,7 +99,7 @@ const KEYS: &[(&str, &[&str])] = &[
     ("speed.ironing", &["ironing_speed", "speed_ironing"]),
     ("speed.top_skin", &["top_solid_infill_speed", "top_surface_speed", "speed_roofing"]),
     ("speed.gap", &["gap_fill_speed", "gap_infill_speed"]),
-    ("top_one_wall", &["only_one_wall_top", "top_one_perimeter_type", "roofing_wall_line_count", "top_one_wall"]),
+    ("top_one_wall", &["only_one_wall_top", "top_one_perimeter_type", "roofing_wall_line_count"]),
     ("top_monotonic", &["monotonic", "skin_monotonic", "roofing_monotonic"]),
     ("speed.infill", &["infill_speed", "sparse_infill_speed", "speed_infill"]),
     ("speed.support", &["support_material_speed", "support_speed", "speed_support"]),

@@ -100,7 +100,7 @@ mod tests {
                 .map(|(a, b)| Point { x: x + a * side, y: y + b * side })
         };
         let contours = squares.iter().map(|s| square(s).to_vec()).collect();
-        Arc::new(Layer { index: 4, z: 10_000, height: 2_000, contours })
+        Arc::new(Layer { index: 4, z: 10_000, height: 2_000, contours, closed_gap: 0 })
     }
 
     /// Ironed area, mm².
