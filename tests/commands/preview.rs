@@ -95,6 +95,7 @@ fn colour(kind: Kind, thick: bool) -> String {
         Kind::OuterWall | Kind::Overhang => Role::OuterWall,
         Kind::InnerWall => Role::InnerWall,
         Kind::Skin | Kind::Bridge => Role::Skin,
+        Kind::Ironing => Role::Ironing,
         Kind::Infill => Role::Infill,
         Kind::Support | Kind::SupportInterface => Role::Support,
         Kind::Brim => Role::Adhesion,

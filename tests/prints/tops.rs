@@ -272,8 +272,8 @@ proptest! {
         let [run, all] = both(&stairs().stl(), &set);
         let laid = stairs().on_bed(run.middle());
         let lengths = [&run, &all].map(inner_walls);
-        for layer in 0..30 {
-            let [one, all] = [lengths[0][layer], lengths[1][layer]];
+        prop_assert!(lengths.iter().all(|lengths| lengths.len() == 30));
+        for (layer, (&one, &all)) in lengths[0].iter().zip(&lengths[1]).enumerate() {
             match layer {
                 29 => prop_assert_eq!(one, 0.0),
                 9 | 19 => prop_assert!(one < 0.8 * all, "layer {}: {} of {}", layer, one, all),
