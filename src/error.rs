@@ -86,9 +86,11 @@ pub enum Refusal {
     },
     /// The last layer, with the nozzle lifted above it, ends above the machine's height.
     #[error(
-        "the print would end at {top_mm:.2} mm{}, where the machine ends at {height_mm} mm; use \
-         another --layer-height, a smaller --scale{}",
+        "the print would end at {top_mm:.2} mm{}{}, where the machine ends at {height_mm} mm; use \
+         another --layer-height, a smaller --scale{}{}",
+        if *.raft_mm > 0.0 { format!(" on {} mm of raft", .raft_mm) } else { String::new() },
         if *.hop_mm > 0.0 { format!(" with the nozzle lifted by {} mm", .hop_mm) } else { String::new() },
+        if *.raft_mm > 0.0 { ", no --raft" } else { "" },
         if *.hop_mm > 0.0 { " or a smaller retraction.z_hop" } else { "" }
     )]
     TooTall {
@@ -96,6 +98,8 @@ pub enum Refusal {
         top_mm: f64,
         /// How far the nozzle is lifted above the last layer, mm.
         hop_mm: f64,
+        /// How far a raft lifts the part, mm.
+        raft_mm: f64,
         /// Height of the machine, mm.
         height_mm: f64,
     },
@@ -135,12 +139,16 @@ pub enum Refusal {
         /// Place in the machine's coordinates, mm.
         at_mm: [f64; 2],
     },
-    /// Skirt or brim reach beyond the bed.
+    /// Skirt, brim or raft reach beyond the bed.
     #[error(
-        "the {what} would reach {} beyond the bed; use a smaller {what}, {}another place (--at) or a \
+        "the {what} would reach {} beyond the bed; use a smaller {}, another place (--at) or a \
          smaller --scale",
         sides(*.over_mm),
-        if *.what == "brim" { "fewer --copies, " } else { "skirt.distance, " }
+        match *.what {
+            "brim" => "brim, fewer --copies",
+            "raft" => "raft.margin, fewer --copies",
+            _ => "skirt, skirt.distance",
+        }
     )]
     BesideBed {
         /// Which of them.

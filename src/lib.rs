@@ -76,6 +76,7 @@ pub use pipeline::spool::slice_to;
 use error::{Error, Refusal, Result};
 use pipeline::batches::{self, Setup};
 use pipeline::footing::Footing;
+use pipeline::lift::Lift;
 use pipeline::place::{bed_corners, print_facts};
 use pipeline::prime;
 use pipeline::refuse;
@@ -112,7 +113,8 @@ pub fn slice_placed(
 ) -> Result<report::Report> {
     // Mesh -> layers; each block of them is cut when the stages after it ask for it.
     let heights = pipeline::heights(&job.settings, placed)?;
-    progress.set_total(heights.count());
+    let lift = Lift::new(&job.settings);
+    progress.set_total(heights.count() + lift.layers());
     let tolerance = to_units(job.settings.tolerance);
     let (settings, slicer) = rayon::join(
         || pipeline::settle(&job.settings, &placed.mesh),
@@ -135,7 +137,7 @@ pub fn slice_placed(
     // Toolpaths -> text, one batch while the next is planned.
     let pictures = pictures.map_err(Error::Thumbnails)?;
     let stuck = planner.stuck()?;
-    let facts = print_facts(placed, &heights, stuck.extent);
+    let facts = print_facts(placed, &heights, &lift, stuck.extent);
     let first = planned.front().and_then(|batch| batch.first());
     prime::refuse(&settings, &facts, placed.offset, first)?;
     let mut writer = gcode::Writer::new(out, &settings, facts, placed.offset, &pictures)?;
@@ -149,5 +151,6 @@ pub fn slice_placed(
     report.warnings.extend(hangs);
     report.warnings.extend(stuck.warning);
     report.brim = stuck.brim;
+    report.raft = stuck.raft;
     Ok(report)
 }

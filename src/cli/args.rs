@@ -298,6 +298,9 @@ pub(crate) struct SettingArgs {
     /// Print a brim of this width around the parts, mm; 0 prints none
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     brim: Option<String>,
+    /// Print a raft under the parts, in place of a brim
+    #[arg(long)]
+    raft: bool,
     /// Print so many loops around everything
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     skirt: Option<String>,
@@ -400,6 +403,7 @@ impl SettingArgs {
             ("--min-layer-time", "cooling.min_layer_time", self.min_layer_time.clone()),
             ("--brim", "brim.width", self.brim.clone()),
             ("--brim", "brim.where", self.brim.as_deref().map(brim)),
+            ("--raft", "raft.enabled", switched(self.raft, "true")),
             ("--skirt", "skirt.loops", self.skirt.clone()),
             ("--temperature", "filament.temperature", self.temperature.clone()),
         ]

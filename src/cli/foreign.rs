@@ -59,7 +59,8 @@ mod tests {
     fn flags_of_other_slicers_are_answered_by_ours() {
         let command = Arguments::command();
         for (flag, told) in [
-            ("--raft", "a raft is not supported yet; "),
+            ("--raft-layers", "use --raft; "),
+            ("--spiral-vase", "a spiral vase is not supported yet; "),
             ("--fill-density", "use --infill; "),
             ("--fill-density=20", "use --infill; "),
             ("--nozzle-diameter", "use --set machine.nozzle_diameter=VALUE; "),

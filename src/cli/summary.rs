@@ -36,12 +36,15 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
     let [x, y, z] = report.size_mm;
     let layers = &report.layers;
     let filament = &report.filament;
+    let raft = report.raft.as_ref().map_or_else(String::new, |raft| {
+        format!("; {} of them a raft of {:.2} mm", raft.layers, raft.height_mm)
+    });
     let dual = report.dual.as_ref().map_or_else(String::new, |dual| {
         format!("; {} of {} groups of layers with thick infill", dual.thick_blocks, dual.blocks)
     });
     format!(
         "{}\n\
-         {} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm\n\
+         {} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm{raft}\n\
          filament {:.0} mm, {:.2} cm³, {:.1} g{}\n\
          prints in {}, sliced in {:.2} s{dual}\n{}",
         chosen(report),

@@ -40,6 +40,10 @@ pub enum Role {
     Skirt,
     /// Lines beside the first layer, which hold it.
     Brim,
+    /// The lowest layer of a raft.
+    RaftBase,
+    /// The layers of a raft above it.
+    RaftInterface,
 }
 
 /// Where a role has its place in the order of a layer.
@@ -105,7 +109,7 @@ pub struct RoleFacts {
 
 impl Role {
     /// All roles, in the order of reports and of what lies inside an island.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         Self::OuterWall,
         Self::InnerWall,
         Self::Overhang,
@@ -119,6 +123,8 @@ impl Role {
         Self::SupportInterface,
         Self::Skirt,
         Self::Brim,
+        Self::RaftBase,
+        Self::RaftInterface,
     ];
 
     /// What is particular to it.
@@ -186,6 +192,8 @@ impl Role {
                 ..Self::OuterWall.facts()
             },
             Self::Brim => RoleFacts { name: "brim", ..Self::Skirt.facts() },
+            Self::RaftBase => RAFT_BASE,
+            Self::RaftInterface => RAFT_INTERFACE,
         }
     }
 }
@@ -276,6 +284,23 @@ const SUPPORT_INTERFACE: RoleFacts = RoleFacts {
     fan: |cooling| cooling.interface_fan,
     may_be_thick: false,
     ..SUPPORT
+};
+
+// Support of all that is printed: other slicers and viewers call it that, too.
+const RAFT_BASE: RoleFacts = RoleFacts {
+    name: "raft base",
+    speed_keys: |_| Both::same("speed.raft_base"),
+    speed: |speed| Both::same(speed.raft_base),
+    may_be_thick: false,
+    ..SUPPORT
+};
+
+const RAFT_INTERFACE: RoleFacts = RoleFacts {
+    name: "raft interface",
+    annotation: SUPPORT_INTERFACE.annotation,
+    speed_keys: |_| Both::same("speed.raft_interface"),
+    speed: |speed| Both::same(speed.raft_interface),
+    ..RAFT_BASE
 };
 
 /// A value for each role.

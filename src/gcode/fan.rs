@@ -18,6 +18,8 @@ pub(super) struct FanParams {
     from: usize,
     /// First layer with its whole power.
     full: usize,
+    /// The part's first layer on a raft and its power, %, which is that of support next to the part.
+    on_raft: Option<(usize, f64)>,
     /// Roles with a power of their own, %.
     roles: RoleTable<Option<f64>>,
     /// The machine knows on and off only.
@@ -42,6 +44,10 @@ impl FanParams {
             least: least.map(|least| (least, [cooling.max_fan_time, cooling.min_fan_time])),
             from: filament.fan_from_layer.max(1) as usize - 1,
             full: cooling.fan_full_from_layer.max(1) as usize - 1,
+            on_raft: cooling
+                .interface_fan
+                .filter(|_| settings.raft.enabled)
+                .map(|power| (settings.raft_layers(), power)),
             roles: RoleTable::new(|role| (role.facts().fan)(cooling)),
             switches: settings.machine.dialect == DialectName::Makerbot,
         }
@@ -57,6 +63,9 @@ impl FanParams {
     pub(super) fn usual(&self, layer: usize, seconds: Option<f64>) -> Option<f64> {
         if layer < self.from {
             return None;
+        }
+        if let Some((_, power)) = self.on_raft.filter(|(first, _)| *first == layer) {
+            return Some(power);
         }
         let power = match (self.least, seconds) {
             (Some((least, [quick, slow])), Some(seconds)) => {

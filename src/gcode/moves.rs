@@ -103,9 +103,11 @@ pub struct Moves {
     pub group_seconds: Option<f64>,
 }
 
-/// How the first layer differs from others.
+/// How the first layer differs from others, on the bed and of the part on a raft.
 #[derive(Debug, Clone, Copy)]
 struct FirstLayer {
+    /// The part's; 0 without a raft.
+    of_part: usize,
     /// Factor on its feeds.
     slow: f64,
     /// Its highest feed, mm/min.
@@ -152,6 +154,7 @@ impl MoveParams {
                 Both { thin: feed(speed.thin), thick: feed(speed.thick) }
             }),
             first_layer: FirstLayer {
+                of_part: settings.raft_layers(),
                 slow: s.first_layer / 100.0,
                 most: feed(s.first_layer_max),
                 flow: x.first_layer / 100.0,
@@ -191,11 +194,13 @@ impl MoveParams {
 
     /// The feed asked for where a path of a layer hangs by `hang` % of its width, mm/min. From half to the
     /// whole width it falls from the `usual` one to that of overhangs.
-    fn asked(&self, usual: f64, hang: u8, layer: usize) -> f64 {
+    fn asked(&self, role: Role, usual: f64, hang: u8, layer: usize) -> f64 {
         let share = (f64::from(hang) / 50.0 - 1.0).at_least(0.0);
         let asked = usual - share * (usual - self.feeds[Role::Overhang].thin).at_least(0.0);
-        let FirstLayer { slow, most, .. } = self.first_layer;
-        if layer == 0 { (asked * slow).at_most(most) } else { asked }
+        let FirstLayer { of_part, slow, most, .. } = self.first_layer;
+        // The speed of a raft's base is that of a first layer.
+        let slow = if role == Role::RaftBase { 1.0 } else { slow };
+        if layer == 0 || layer == of_part { (asked * slow).at_most(most) } else { asked }
     }
 
     /// The moves of one layer.
@@ -327,7 +332,7 @@ impl<'a> Walk<'a> {
             if (to.width, to.height, to.hang) != (bead.width, bead.height, hang) {
                 (bead.width, bead.height, hang) = (to.width, to.height, to.hang);
                 bead.role = if hang > 0 { Role::Overhang } else { path.role };
-                feed = self.feed(&bead, self.params.asked(usual, hang, self.out.layer));
+                feed = self.feed(&bead, self.params.asked(path.role, usual, hang, self.out.layer));
             }
             let length = length(from, to) / UNITS_PER_MM;
             self.out.moves.push(Move {

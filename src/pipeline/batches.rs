@@ -16,6 +16,7 @@
 
 use super::footing::Footing;
 use super::footprint::{Footprint, Rules, footprint};
+use super::lift::Lift;
 use super::sticking::{Sticking, Stuck};
 use crate::error::{Refusal, Result};
 use crate::fill::{self, FillParams, Path};
@@ -50,6 +51,7 @@ pub struct Setup {
     plan: PlanParams,
     /// The numbers of the first layer, if its lines have a width of their own.
     first: Option<(RegionParams, FillParams)>,
+    lift: Lift,
 }
 
 impl Setup {
@@ -68,6 +70,7 @@ impl Setup {
             grouping: Grouping::new(&settings.dual, settings.dual_ratio()),
             fill: FillParams::new(settings, heights),
             plan: PlanParams::new(settings),
+            lift: Lift::new(settings),
         }
     }
 
@@ -90,6 +93,7 @@ impl Setup {
             fill: &self.fill,
             first: self.first.as_ref().map(|(_, fill)| fill),
             plan: &self.plan,
+            lift: &self.lift,
             head: Head::default(),
             seams: Seams::default(),
             tally: Tally::default(),
@@ -184,6 +188,7 @@ struct Orderer<'a> {
     /// Of the first layer, if they are others.
     first: Option<&'a FillParams>,
     plan: &'a PlanParams,
+    lift: &'a Lift,
     /// Where the head is after the layers so far.
     head: Head,
     seams: Seams,
@@ -220,7 +225,27 @@ impl Orderer<'_> {
             self.footing.layer(footprint, region);
         }
         let toolpaths = ordered.into_par_iter();
-        toolpaths.map(|(r, from, paths)| travel::toolpath(&r.layer, paths, from, plan)).collect()
+        let toolpaths =
+            toolpaths.map(|(r, from, paths)| travel::toolpath(&r.layer, paths, from, plan));
+        self.lifted(toolpaths.collect())
+    }
+
+    /// The toolpaths, lifted by the raft. Before the first of them come those of the raft.
+    fn lifted(&mut self, mut toolpaths: Vec<Toolpath>) -> Vec<Toolpath> {
+        self.lift.raise(&mut toolpaths);
+        let (mut head, mut seams) = (Head::default(), Seams::default());
+        let courses = self.sticking.raft().into_iter().map(|(layer, paths)| {
+            let paths = Unordered::new(paths, &layer.contours);
+            let paths = order::order(paths, head.at.unwrap_or_default(), &mut seams, self.plan);
+            let next = head.after(&layer, &paths);
+            travel::toolpath(&layer, paths, std::mem::replace(&mut head, next), self.plan)
+        });
+        let mut courses: Vec<Toolpath> = courses.collect();
+        if let Some(first) = toolpaths.first_mut().filter(|_| !courses.is_empty()) {
+            first.from = head;
+        }
+        courses.append(&mut toolpaths);
+        courses
     }
 }
 

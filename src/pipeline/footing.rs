@@ -16,6 +16,7 @@
 //! stands further up. So a job is refused after its last layer, before its output is complete.
 
 use super::footprint::{Footprint, Island};
+use super::lift::Lift;
 use crate::error::Hanging;
 use crate::geom::Point;
 use crate::geom::sets::Sets;
@@ -99,6 +100,8 @@ pub struct Footing {
     offset: [f64; 2],
     /// What may keep support away, if it is asked for.
     keepers: Option<Keepers>,
+    /// What lifts the print: places are told as they are in the file.
+    lift: Lift,
 }
 
 impl Footing {
@@ -124,6 +127,7 @@ impl Footing {
             begins: Vec::new(),
             offset,
             keepers: Keepers::new(settings),
+            lift: Lift::new(settings),
         }
     }
 
@@ -250,7 +254,8 @@ impl Footing {
         let bottom = from.checked_sub(1).map_or(0, |k| self.tops[k]);
         let gap_mm = to_mm(self.tops[until] - bottom);
         let kept_away = self.keepers.map(|keepers| keepers.of((until + 1 - from, self.gap), None));
-        let (from_bed, from, until) = (from == 0, from + 1, until + 1);
+        let below = 1 + self.lift.layers();
+        let (from_bed, from, until) = (from == 0, from + below, until + below);
         Some(Hanging::EmptyLayers { from, until, gap_mm, from_bed, kept_away })
     }
 
@@ -264,7 +269,7 @@ impl Footing {
         };
         let first = *self.begins.iter().find(|begin| hangs(begin))?;
         let (layer, z_mm, at_mm) = self.place(first);
-        let below = layer.checked_sub(2).map_or(0, |k| self.tops[k]);
+        let below = first.layer.checked_sub(1).map_or(0, |k| self.tops[k]) + self.lift.by();
         let kept_away = self.kept_away(first);
         Some(Hanging::Body { layer, z_mm, above_bed_mm: to_mm(below), at_mm, kept_away })
     }
@@ -276,6 +281,6 @@ impl Footing {
     /// Layer, counted from 1; top of the layer; x and y in the machine's coordinates, mm.
     fn place(&self, begin: Begin) -> (usize, f64, [f64; 2]) {
         let at = [self.offset[0] + to_mm(begin.at.x), self.offset[1] + to_mm(begin.at.y)];
-        (begin.layer + 1, to_mm(begin.z), at)
+        (begin.layer + 1 + self.lift.layers(), to_mm(begin.z + self.lift.by()), at)
     }
 }

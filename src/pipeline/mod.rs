@@ -1,13 +1,14 @@
 //! Job + placed models -> stages: what the flow in `lib.rs` is put together from.
 //!
 //! Here is all code that names several stages at once: reading and placing ([`place`]), planning
-//! in batches ([`batches`]), what begins in the air ([`footing`]), skirt and brim ([`sticking`]),
-//! the thumbnails ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs that
+//! in batches ([`batches`]), what begins in the air ([`footing`]), skirt, brim and raft
+//! ([`sticking`]), how far a raft lifts all the rest ([`lift`]), the thumbnails ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs that
 //! cannot seek ([`spool`]).
 
 pub mod batches;
 pub mod footing;
 pub mod footprint;
+pub mod lift;
 pub mod place;
 pub mod prime;
 pub mod refuse;
@@ -40,7 +41,7 @@ pub fn compensation(settings: &Settings) -> Compensation {
     Compensation {
         outline: to_units(settings.xy_compensation),
         hole: to_units(settings.hole_compensation),
-        foot: to_units(settings.elephant_foot),
+        foot: to_units(settings.foot_drawn_in()),
     }
 }
 
@@ -54,6 +55,6 @@ pub fn heights(settings: &Settings, placed: &Placed) -> Result<Heights, Refusal>
     if heights.count() == 0 {
         return Err(Refusal::TooLow { height_mm: placed.size_mm[2] });
     }
-    refuse::tall(settings, &heights)?;
+    refuse::tall(settings, &heights, &lift::Lift::new(settings))?;
     Ok(heights)
 }

@@ -1,5 +1,6 @@
 //! Model files -> Placed: reads the models and lays them on the machine's bed.
 
+use super::lift::Lift;
 use crate::error::Result;
 use crate::geom::Point;
 use crate::job::Model;
@@ -36,12 +37,18 @@ pub fn place(
 }
 
 /// `placement` as these settings need it: models larger by what the material shrinks, with room for
-/// brims between them, where they are asked for. A brim that is only printed where it is needed gets
-/// none: where two meet they grow together.
+/// rafts or brims between them, where they are asked for. A brim that is only printed where it is needed
+/// gets none: where two meet they grow together.
 #[must_use]
 pub fn suited(placement: &Placement, settings: &Settings) -> Placement {
-    let brims = 2.0 * settings.brim_reach();
-    let room = if brims > 0.0 { brims + settings.line_width } else { 0.0 };
+    let (brims, rafts) = (2.0 * settings.brim_reach(), 2.0 * settings.raft_reach());
+    let room = if rafts > 0.0 {
+        rafts + settings.raft.base_width
+    } else if brims > 0.0 {
+        brims + settings.line_width
+    } else {
+        0.0
+    };
     let gap = placement.gap.max(room);
     Placement { gap, stretch: settings.stretch(), ..placement.clone() }
 }
@@ -61,11 +68,13 @@ pub fn bed_corners(bed: &Bed, offset: [f64; 2]) -> (Point, Point) {
     (corner(bed.min), corner(bed.max))
 }
 
-/// What the start and end blocks may name. `beside` is the box around skirt and brim, in the layout.
+/// What the start and end blocks may name. `beside` is the box around skirt, brim and raft, in the
+/// layout.
 #[must_use]
 pub fn print_facts(
     placed: &Placed,
     heights: &Heights,
+    lift: &Lift,
     beside: Option<(Point, Point)>,
 ) -> PrintFacts {
     let half = [placed.size_mm[0] / 2.0, placed.size_mm[1] / 2.0];
@@ -74,9 +83,9 @@ pub fn print_facts(
     });
     let at = placed.offset;
     PrintFacts {
-        layers: heights.count(),
+        layers: heights.count() + lift.layers(),
         min: [0, 1].map(|axis| at[axis] + low[axis].min(-half[axis])),
         max: [0, 1].map(|axis| at[axis] + high[axis].max(half[axis])),
-        height: to_mm(heights.top(heights.count() - 1)),
+        height: to_mm(heights.top(heights.count() - 1) + lift.by()),
     }
 }

@@ -15,6 +15,7 @@
 //!
 //! The other way, to write all and to take it back, needs an output that can be taken back.
 
+use super::lift::Lift;
 use crate::error::{MOST_GAP_MM, Refusal, Result};
 use crate::job::Job;
 use crate::mesh::Policy;
@@ -25,21 +26,22 @@ use crate::slice::{Heights, Slicer};
 use crate::units::{Coord, to_mm, to_units};
 
 /// Refuses a print that ends above the machine. The model itself fits, or it would not have been
-/// placed, but its last layer is counted as soon as its middle is inside the model, and the nozzle
-/// is lifted above it to travel.
+/// placed, but its last layer is counted as soon as its middle is inside the model, a raft lifts it,
+/// and the nozzle is lifted above it to travel.
 ///
 /// # Errors
 /// [`Refusal::TooTall`].
-pub fn tall(settings: &Settings, heights: &Heights) -> Result<(), Refusal> {
+pub fn tall(settings: &Settings, heights: &Heights, lift: &Lift) -> Result<(), Refusal> {
     let Some(last) = heights.count().checked_sub(1) else { return Ok(()) };
     let hop = to_units(settings.retraction.z_hop);
-    let top = heights.top(last).saturating_add(hop);
+    let top = heights.top(last).saturating_add(hop).saturating_add(lift.by());
     if top <= to_units(settings.machine.bed_height) {
         return Ok(());
     }
     Err(Refusal::TooTall {
         top_mm: to_mm(top),
         hop_mm: to_mm(hop),
+        raft_mm: to_mm(lift.by()),
         height_mm: settings.machine.bed_height,
     })
 }
@@ -97,12 +99,20 @@ mod tests {
         };
         let layers = |height: Coord, count: usize| Heights::new(std::iter::repeat_n(height, count));
         let limit = to_units(profile(0.0).machine.bed_height);
-        assert_eq!(tall(&profile(0.0), &layers(limit / 100, 100)), Ok(()));
-        let refusal = tall(&profile(0.0), &layers(limit / 100 + 1, 100)).unwrap_err();
+        let tall = |settings: &Settings, heights: &Heights, raft: Coord| {
+            tall(settings, heights, &Lift { heights: vec![raft], gap: 0 })
+        };
+        assert_eq!(tall(&profile(0.0), &layers(limit / 100, 100), 0), Ok(()));
+        let refusal = tall(&profile(0.0), &layers(limit / 100 + 1, 100), 0).unwrap_err();
         assert!(refusal.to_string().contains("--layer-height"), "{refusal}");
-        let refusal = tall(&profile(0.4), &layers(limit / 100, 100)).unwrap_err();
+        let refusal = tall(&profile(0.4), &layers(limit / 100, 100), 0).unwrap_err();
         let text = refusal.to_string();
         for part in ["lifted by 0.4 mm", "retraction.z_hop", "--scale"] {
+            assert!(text.contains(part), "{text}");
+        }
+        let refusal = tall(&profile(0.0), &layers(limit / 100, 100), 9_000).unwrap_err();
+        let text = refusal.to_string();
+        for part in ["0.9 mm of raft", "no --raft"] {
             assert!(text.contains(part), "{text}");
         }
     }

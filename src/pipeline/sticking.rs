@@ -1,8 +1,9 @@
-//! Settings + first layer -> skirt and brim, judged against the bed.
+//! Settings + first layer -> skirt, brim and raft, judged against the bed.
 //!
 //! What was asked for and does not fit the bed is refused, like a part; a brim that nobody asked for
 //! is left out with a warning.
 
+use super::lift::Lift;
 use super::rise::rise;
 use crate::error::Refusal;
 use crate::fill::adhesion::{Adhesion, AdhesionParams, Base};
@@ -11,7 +12,7 @@ use crate::geom::Point;
 use crate::geom::nest::{Nest, extent};
 use crate::mesh::place::Placed;
 use crate::profile::{BrimPlace, Settings};
-use crate::report::BrimReport;
+use crate::report::{BrimReport, RaftReport};
 use crate::slice::{Heights, Layer};
 use crate::units::{Coord, to_mm};
 use crate::warning::Warning;
@@ -26,6 +27,9 @@ pub struct Sticking<'a> {
     /// Nobody asked for the brim.
     is_auto: bool,
     width_mm: f64,
+    lift: Lift,
+    /// The layers of a raft until they are taken, and what is printed on them.
+    raft: Vec<(Layer, Vec<Path>)>,
     /// What is still to be printed, by layer.
     layers: Vec<Vec<Path>>,
     stuck: Result<Stuck, Refusal>,
@@ -38,7 +42,9 @@ pub struct Stuck {
     pub brim: Option<BrimReport>,
     /// One that was left out.
     pub warning: Option<Warning>,
-    /// The box around skirt and brim in the layout, grid units.
+    /// A raft.
+    pub raft: Option<RaftReport>,
+    /// The box around skirt, brim and raft in the layout, grid units.
     pub extent: Option<(Point, Point)>,
 }
 
@@ -59,6 +65,8 @@ impl<'a> Sticking<'a> {
             bed,
             is_auto: settings.brim.place == BrimPlace::Auto,
             width_mm: settings.brim.width,
+            lift: Lift::new(settings),
+            raft: Vec::new(),
             layers: Vec::new(),
             stuck: Ok(Stuck::default()),
         }
@@ -68,11 +76,24 @@ impl<'a> Sticking<'a> {
     /// on.
     pub fn layer(&mut self, layer: &Layer, paths: &[Path]) -> Vec<Path> {
         if let Some(params) = self.params.take_if(|_| layer.index == 0) {
-            let adhesion = self.lay(&params, layer, paths);
+            let mut adhesion = self.lay(&params, layer, paths);
             self.stuck = self.judge(&adhesion);
-            self.layers = adhesion.layers;
+            adhesion.layers.resize(adhesion.layers.len().max(self.lift.layers()), Vec::new());
+            self.layers = adhesion.layers.split_off(self.lift.layers());
+            let layers = Heights::new(self.lift.heights.iter().copied());
+            let course = |(index, paths): (usize, Vec<Path>)| {
+                let (z, height) = (layers.top(index), layers.height(index));
+                let contours = adhesion.plate.clone();
+                (Layer { index, z, height, contours, closed_gap: 0 }, paths)
+            };
+            self.raft = adhesion.layers.into_iter().enumerate().map(course).collect();
         }
         self.layers.get_mut(layer.index).map(std::mem::take).unwrap_or_default()
+    }
+
+    /// The layers of a raft with what is printed on them; once, when the first layer was given.
+    pub fn raft(&mut self) -> Vec<(Layer, Vec<Path>)> {
+        std::mem::take(&mut self.raft)
     }
 
     /// What was done; known once the first layer was given.
@@ -84,9 +105,11 @@ impl<'a> Sticking<'a> {
     }
 
     fn lay(&self, params: &AdhesionParams, layer: &Layer, paths: &[Path]) -> Adhesion {
-        let (mesh, heights) = (&self.placed.mesh, self.heights);
-        let count = params.skirt_layers().clamp(1, heights.count());
-        let top = heights.top(count - 1);
+        let (mesh, heights, below) = (&self.placed.mesh, self.heights, self.lift.layers());
+        let count = params.skirt_layers().clamp(1, below + heights.count());
+        // Of the part's layers.
+        let with_skirt = count.saturating_sub(below);
+        let top = with_skirt.checked_sub(1).map_or(0, |last| heights.top(last));
         let is_beside = |z: Coord| count > 1 && z <= top;
         let above =
             mesh.vertices.iter().filter(|v| is_beside(v[2])).map(|&[x, y, _]| Point { x, y });
@@ -94,7 +117,7 @@ impl<'a> Sticking<'a> {
         let base = Base {
             contours: &layer.contours,
             paths,
-            heights: &(0..count).map(|k| heights.height(k)).collect::<Vec<_>>(),
+            heights: &(0..count).map(|k| self.height(k)).collect::<Vec<_>>(),
             above: &above,
             top: mesh.top(),
             bed: self.bed,
@@ -105,10 +128,18 @@ impl<'a> Sticking<'a> {
         params.lay(&base, |contours| rise(mesh, heights.plane(0), contours, &islands))
     }
 
+    /// How high a skirt is on a layer of the print. It closes the gap above a raft.
+    fn height(&self, layer: usize) -> Coord {
+        let Some(own) = layer.checked_sub(self.lift.layers()) else {
+            return self.lift.heights[layer];
+        };
+        self.heights.height(own) + if own == 0 { self.lift.gap } else { 0 }
+    }
+
     /// Refuses what does not fit the bed, and says what was decided.
     fn judge(&self, adhesion: &Adhesion) -> Result<Stuck, Refusal> {
         let mut stuck = Stuck::default();
-        for role in [Role::Brim, Role::Skirt] {
+        for role in [Role::Brim, Role::RaftBase, Role::RaftInterface, Role::Skirt] {
             let beads = adhesion.layers.iter().flatten().filter(|path| path.role == role);
             let points = beads.flat_map(|path| &path.points).map(|p| (p.at, p.width / 2));
             let corners = |(p, half): (Point, Coord)| {
@@ -124,7 +155,11 @@ impl<'a> Sticking<'a> {
             ];
             // Rounded to the grid, as parts are.
             if over_mm.iter().flatten().any(|over| *over > 0.000_15) {
-                return Err(Refusal::BesideBed { what: role.facts().name, over_mm });
+                let what = match role {
+                    Role::RaftBase | Role::RaftInterface => "raft",
+                    other => other.facts().name,
+                };
+                return Err(Refusal::BesideBed { what, over_mm });
             }
             let all: Vec<Point> = [low, high]
                 .into_iter()
@@ -143,6 +178,12 @@ impl<'a> Sticking<'a> {
                 why: why.iter().map(|why| why.words().to_owned()).collect(),
             });
         }
+        stuck.raft = (!adhesion.plate.is_empty()).then(|| RaftReport {
+            layers: self.lift.layers(),
+            height_mm: to_mm(self.lift.by() - self.lift.gap),
+            gap_mm: to_mm(self.lift.gap),
+            plates: Nest::new(&adhesion.plate).outer().count(),
+        });
         stuck.warning = (adhesion.left_out > 0)
             .then_some(Warning::BrimLeftOut { islands: adhesion.left_out, of: adhesion.islands });
         Ok(stuck)

@@ -71,19 +71,25 @@ impl Blame<'_> {
 
 fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
     let nozzle = settings.machine.nozzle_diameter;
-    let first_width = settings.first_layer_width.unwrap_or(settings.line_width);
-    for (key, height, width) in [
-        ("layer_height", settings.layer_height, settings.line_width),
-        ("first_layer_height", settings.first_layer_height, first_width),
-    ] {
+    let (line, raft) = (("line_width", settings.line_width), &settings.raft);
+    let first = settings.first_layer_width.map_or(line, |width| ("first_layer_width", width));
+    let of_raft = [
+        ("raft.base_height", raft.base_height, ("raft.base_width", raft.base_width)),
+        ("raft.interface_height", raft.interface_height, line),
+    ];
+    let heights = [
+        ("layer_height", settings.layer_height, line),
+        ("first_layer_height", settings.first_layer_height, first),
+    ];
+    let of_raft = of_raft.into_iter().filter(|_| raft.enabled);
+    for (key, height, (lines, width)) in heights.into_iter().chain(of_raft) {
         if height > nozzle + SLACK_MM {
             let conflict = Conflict::HigherThanNozzle { key, height, nozzle };
             return Err(blame.error(&[key, "machine.nozzle_diameter"], conflict));
         }
         if width < LEAST_WIDTH * height - SLACK_MM {
-            let own = settings.first_layer_width.filter(|_| key == "first_layer_height");
-            let lines = if own.is_some() { "first_layer_width" } else { "line_width" };
-            let conflict = Conflict::NarrowLines { lines, width, key, height, least: LEAST_WIDTH };
+            let least = LEAST_WIDTH;
+            let conflict = Conflict::NarrowLines { lines, width, key, height, least };
             return Err(blame.error(&[lines, key], conflict));
         }
     }

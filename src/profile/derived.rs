@@ -69,10 +69,14 @@ impl Settings {
         self.bottom_layers.unwrap_or(self.skin_layers)
     }
 
-    /// These settings with the lines of the first layer; `None` if those are as wide as all others.
+    /// These settings with the lines of the first layer; `None` if they are as wide as all others.
     #[must_use]
     pub fn in_first_width(&self) -> Option<Self> {
-        let wide = self.first_layer_width.filter(|wide| (wide - self.line_width).abs() > SLACK_MM)?;
+        // A raft has widths of its own, and no line of the part lies on the bed.
+        let wide = self.first_layer_width.filter(|_| !self.raft.enabled)?;
+        if (wide - self.line_width).abs() <= SLACK_MM {
+            return None;
+        }
         // Nothing is known of what stands on it there: its tops keep their walls.
         Some(Self { line_width: wide, top_one_wall: false, ..self.clone() })
     }
@@ -89,11 +93,31 @@ impl Settings {
         self.filament.first_layer_bed_temperature.unwrap_or(self.filament.bed_temperature)
     }
 
+    /// Layers of the raft; 0 without one.
+    #[must_use]
+    pub fn raft_layers(&self) -> usize {
+        if self.raft.enabled { 1 + self.raft.interface_layers as usize } else { 0 }
+    }
+
+    /// How far the raft reaches beyond what stands on it, mm; 0 without one. A margin narrower than
+    /// a line of its base would leave thin parts without any.
+    #[must_use]
+    pub fn raft_reach(&self) -> f64 {
+        if self.raft.enabled { self.raft.margin.max(self.raft.base_width) } else { 0.0 }
+    }
+
+    /// How far the part's first layer is drawn in, mm: on a raft nothing presses it wide.
+    #[must_use]
+    pub fn foot_drawn_in(&self) -> f64 {
+        if self.raft.enabled { 0.0 } else { self.elephant_foot }
+    }
+
     /// How far a brim that is asked for reaches beyond its part, mm; 0 where none is printed, or only
     /// where it is needed.
     #[must_use]
     pub fn brim_reach(&self) -> f64 {
         match self.brim.place {
+            _ if self.raft.enabled => 0.0,
             BrimPlace::Outside | BrimPlace::Both => self.brim.gap + self.brim.width,
             BrimPlace::Auto | BrimPlace::Off | BrimPlace::Inside => 0.0,
         }
@@ -118,6 +142,10 @@ impl Settings {
             ("speed.gap", speed.gap),
         ];
         speeds.extend(own.into_iter().filter_map(|(key, speed)| Some((key, speed?))));
+        if self.raft.enabled {
+            speeds.push(("speed.raft_base", speed.raft_base));
+            speeds.push(("speed.raft_interface", speed.raft_interface));
+        }
         speeds.retain(|(_, speed)| *speed < SLOW_MM_S);
         speeds
     }

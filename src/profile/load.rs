@@ -298,7 +298,11 @@ mod tests {
                 "--set: unknown key `retract_lift`; here it is `retraction.z_hop`",
             ),
             ("brim_width", "5", "--set: unknown key `brim_width`; here it is `brim.width`"),
-            ("raft_layers", "5", "--set: unknown key `raft_layers`; a raft is not supported yet"),
+            (
+                "spiral_vase",
+                "1",
+                "--set: unknown key `spiral_vase`; a spiral vase is not supported yet",
+            ),
         ] {
             assert_eq!(refused(&[set(key, value)]), text);
         }

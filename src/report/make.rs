@@ -15,6 +15,7 @@ use crate::gcode::times::{LayerTime, Times};
 use crate::gcode::usage::Material;
 use crate::job::{self, Job};
 use crate::mesh::place::Placed;
+use crate::pipeline::lift::Lift;
 use crate::profile::{DualMode, DualPart, Settings, Sources};
 use crate::region::dual::audit::{Apart, Audit};
 use crate::slice::Heights;
@@ -32,6 +33,7 @@ pub fn report(
     tally: &Tally,
 ) -> Report {
     let settings = &job.settings;
+    let lift = Lift::new(settings);
     let Sums { usage, times, cooled } = sums;
     let Material { mm, cm3, grams, cost } = Material::new(usage.filament(), settings);
     Report {
@@ -44,10 +46,10 @@ pub fn report(
         size_mm: placed.size_mm,
         solid_mm3: tally.solid_mm3(),
         layers: LayersReport {
-            count: heights.count(),
-            first_height_mm: to_mm(heights.height(0)),
+            count: heights.count() + lift.layers(),
+            first_height_mm: to_mm(lift.heights.first().map_or(heights.height(0), |base| *base)),
             height_mm: to_mm(to_units(settings.layer_height)),
-            top_mm: to_mm(heights.top(heights.count() - 1)),
+            top_mm: to_mm(heights.top(heights.count() - 1) + lift.by()),
         },
         roles: roles(sums, settings),
         travel: TravelReport {
@@ -67,7 +69,7 @@ pub fn report(
         motion: motion(usage, settings),
         arcs: reshaped::arcs(usage, settings),
         segments: reshaped::segments(usage, settings),
-        dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits)),
+        dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits, lift.layers())),
         warnings: (placed.warnings.iter().cloned())
             .chain(tally.warnings())
             .chain(slow_speeds(settings))
@@ -76,6 +78,7 @@ pub fn report(
             .chain(reshaped::warnings(sums, settings))
             .collect(),
         brim: None,
+        raft: None,
         check: None,
     }
 }
@@ -160,7 +163,8 @@ fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
     warnings
 }
 
-fn dual(settings: &Settings, audits: &[Audit]) -> DualReport {
+/// `below` layers of a raft come before those of the audits.
+fn dual(settings: &Settings, audits: &[Audit], below: usize) -> DualReport {
     let filled = || audits.iter().filter(|a| a.plain > 0);
     let infill = || filled().filter(|a| a.part == DualPart::Infill);
     let sum = |of: fn(&Audit) -> i64| filled().map(of).sum::<i64>();
@@ -171,15 +175,15 @@ fn dual(settings: &Settings, audits: &[Audit]) -> DualReport {
         thick_length_mm: sum_mm(sum(|a| a.thick)),
         thin_length_mm: sum_mm(sum(|a| a.thin)),
         volume_ratio: ratio(sum(|a| a.material), sum(|a| a.plain)),
-        audit: filled().map(block).collect(),
+        audit: filled().map(|audit| block(audit, below)).collect(),
     }
 }
 
-fn block(audit: &Audit) -> BlockReport {
+fn block(audit: &Audit, below: usize) -> BlockReport {
     let Apart { bounds, skin, short, ends } = audit.kept_apart;
     BlockReport {
         part: audit.part,
-        first_layer: audit.first + 1,
+        first_layer: audit.first + 1 + below,
         layers: audit.layers,
         thick_length_mm: sum_mm(audit.thick),
         thin_length_mm: sum_mm(audit.thin),

@@ -82,6 +82,9 @@ pub struct Report {
     /// The brim that was printed although nobody asked for it; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub brim: Option<BrimReport>,
+    /// The raft; absent without one. What it takes of time and filament stands in `roles`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub raft: Option<RaftReport>,
     /// Findings.
     pub warnings: Vec<Warning>,
     /// The verdict of `--check`; absent without it.
@@ -115,7 +118,20 @@ pub struct BrimReport {
     pub why: Vec<String>,
 }
 
-/// The layers of a print.
+/// A raft.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+pub struct RaftReport {
+    /// Its layers, the lowest of the print's.
+    pub layers: usize,
+    /// From the bed to its top, mm.
+    pub height_mm: f64,
+    /// From its top to the bottom of the part, mm.
+    pub gap_mm: f64,
+    /// Pieces that do not touch.
+    pub plates: usize,
+}
+
+/// The layers of a print, those of a raft included.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct LayersReport {
     /// How many.

@@ -68,7 +68,10 @@ fn wrong_settings_name_the_flag() {
     run(&["--dual", "--layer-height", "0.3"], "make thick lines taller than the 0.4 mm");
     run(&["--set", "wals=2"], "--set: unknown key `wals`; did you mean `walls`?");
     run(&["--set", "perimeters=2"], "--set: unknown key `perimeters`; here it is `walls`");
-    run(&["--raft"], "unexpected argument '--raft' found; a raft is not supported yet");
+    run(
+        &["--spiral-mode"],
+        "unexpected argument '--spiral-mode' found; a spiral vase is not supported",
+    );
     run(&["--brim", "-1"], "--brim: brim.width = -1 is out of range");
     run(&["--brim-width", "5"], "unexpected argument '--brim-width' found; use --brim");
     run(&["--skirts", "2"], "unexpected argument '--skirts' found; use --skirt");

@@ -1,7 +1,8 @@
-//! First layer -> Adhesion: skirt and brim, which are printed before everything else.
+//! First layer -> Adhesion: skirt, and brim or raft, which are printed before everything else.
 //!
 //! 1. [`loose`] tells which islands would come loose without a brim, if nobody has decided.
-//! 2. `brim` lays lines beside the islands that get one.
+//! 2. `brim` lays lines beside the islands that get one. With a raft there is none: [`raft`] lays a
+//!    plate under all that stands on the bed, and the part's layers come above it.
 //! 3. `skirt` lays loops around all of it.
 //!
 //! Where support stands is taken from its paths, whatever its pattern: what lies between its lines
@@ -9,6 +10,7 @@
 
 mod brim;
 pub mod loose;
+pub mod raft;
 mod skirt;
 
 use super::{Path, PathPoint, Place, Role, Shape};
@@ -18,13 +20,16 @@ use crate::profile::{BrimPlace, Settings};
 use crate::units::{Coord, to_units};
 use brim::{BrimParams, Ground};
 use loose::{Loose, Rise};
+use raft::RaftParams;
 use skirt::SkirtParams;
 
 /// What makes a print stick, by layer.
 #[derive(Debug, Clone, Default)]
 pub struct Adhesion {
-    /// For each of the lowest layers what is printed first on it.
+    /// For each of the lowest layers what is printed first on it; those of a raft are the lowest.
     pub layers: Vec<Vec<Path>>,
+    /// The outline of the raft.
+    pub plate: Vec<Contour>,
     /// The islands that would come loose, and why, if nobody has decided.
     pub loose: Vec<(usize, Loose)>,
     /// Outer contours of the first layer.
@@ -33,12 +38,13 @@ pub struct Adhesion {
     pub left_out: usize,
 }
 
-/// The numbers of skirt and brim.
+/// The numbers of skirt, brim and raft.
 #[derive(Debug, Clone)]
 pub struct AdhesionParams {
     brim: Option<BrimParams>,
     /// A brim only where it is needed.
     is_auto: bool,
+    raft: Option<RaftParams>,
     skirt: Option<SkirtParams>,
     line_width: Coord,
     /// Gaps in support up to this belong to it.
@@ -53,7 +59,7 @@ pub struct Base<'a> {
     pub contours: &'a [Contour],
     /// Its paths.
     pub paths: &'a [Path],
-    /// Heights of all layers that may have a skirt.
+    /// Heights of all layers that may have a skirt, those of a raft first.
     pub heights: &'a [Coord],
     /// Points of the part on the layers above that have a skirt.
     pub above: &'a [Point],
@@ -64,13 +70,15 @@ pub struct Base<'a> {
 }
 
 impl AdhesionParams {
-    /// Derives the numbers from `settings`; `None` without skirt and brim.
+    /// Derives the numbers from `settings`; `None` without skirt, brim and raft.
     #[must_use]
     pub fn new(settings: &Settings) -> Option<Self> {
-        let (brim, skirt) = (BrimParams::new(settings), SkirtParams::new(settings));
-        (brim.is_some() || skirt.is_some()).then(|| Self {
+        let (raft, skirt) = (RaftParams::new(settings), SkirtParams::new(settings));
+        let brim = BrimParams::new(settings).filter(|_| raft.is_none());
+        (brim.is_some() || raft.is_some() || skirt.is_some()).then(|| Self {
             brim,
             is_auto: settings.brim.place == BrimPlace::Auto,
+            raft,
             skirt,
             line_width: to_units(settings.line_width),
             support_gap: to_units(settings.support.spacing),
@@ -91,10 +99,18 @@ impl AdhesionParams {
         let nest = Nest::new(base.contours);
         let printed = printed(base);
         let mut adhesion = Adhesion { islands: nest.outer().count(), ..Adhesion::default() };
-        if !printed.contains(&true) {
+        let support = self.support(base.paths);
+        if let Some(raft) = &self.raft {
+            // Holes count with what they are in.
+            let own = |k: usize| nest.parents[k].filter(|_| !nest.is_outer[k]).unwrap_or(k);
+            let held = (0..base.contours.len()).filter(|&k| printed[own(k)]);
+            let held = held.map(|k| &base.contours[k]);
+            let foot: Vec<Contour> = held.chain(&support).cloned().collect();
+            adhesion.plate = raft.plate(&foot);
+        }
+        if !printed.contains(&true) && adhesion.plate.is_empty() {
             return adhesion;
         }
-        let support = self.support(base.paths);
         let mut beads = Vec::new();
         if let Some(params) = &self.brim {
             let mut chosen = printed.clone();
@@ -111,25 +127,24 @@ impl AdhesionParams {
             let ground = Ground { contours: base.contours, nest: &nest, support: &support };
             beads = brim::brim(&ground, &chosen, params);
         }
-        self.paths(base, &beads, &support, &mut adhesion.layers);
+        self.paths(base, &beads, &support, &mut adhesion);
         adhesion
     }
 
-    /// The paths of skirt and brim.
+    /// The paths of skirt, brim and raft.
     fn paths(
         &self,
         base: &Base<'_>,
         brim: &[Bead],
         support: &[Contour],
-        layers: &mut Vec<Vec<Path>>,
+        Adhesion { layers, plate, .. }: &mut Adhesion,
     ) {
-        let Some(&first) = base.heights.first().filter(|_| !base.contours.is_empty()) else {
-            return;
-        };
+        let Some(&first) = base.heights.first() else { return };
         let path = |role: Role, bead: &Bead, height: Coord| bead.path(role, height, self);
         if let Some(params) = &self.skirt {
             let beside = brim.iter().flat_map(|bead| bead.around(self.line_width / 2));
-            let part = base.contours.iter().chain(support).flatten().chain(base.above).copied();
+            let below = base.contours.iter().chain(support).chain(&*plate);
+            let part = below.flatten().chain(base.above).copied();
             let loops = skirt::skirt(part.chain(beside).collect(), params);
             layers.push(loops.iter().map(|bead| path(Role::Skirt, bead, first)).collect());
             let above = skirt::above(&loops, params);
@@ -140,6 +155,11 @@ impl AdhesionParams {
         if !brim.is_empty() {
             layers.resize(layers.len().max(1), Vec::new());
             layers[0].extend(brim.iter().map(|bead| path(Role::Brim, bead, first)));
+        }
+        let courses = self.raft.iter().flat_map(|raft| raft.paths(plate)).enumerate();
+        for (k, course) in courses {
+            layers.resize(layers.len().max(k + 1), Vec::new());
+            layers[k].extend(course);
         }
     }
 

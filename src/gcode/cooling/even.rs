@@ -59,6 +59,8 @@ impl Group {
 pub(super) struct Even {
     /// Layers of a group.
     ratio: usize,
+    /// Layers of a raft, each on its own; groups count from its top.
+    raft: usize,
     /// The lowest cap there is, mm/min.
     slowest: u32,
     /// The feed of outer walls, mm/min: a cap from there on is none.
@@ -81,6 +83,7 @@ impl Even {
         let fastest = whole_feed(feed(wall));
         Self {
             ratio: if dual { settings.dual_ratio().max(1) as usize } else { 1 },
+            raft: settings.raft_layers(),
             slowest: if slows { slowest } else { fastest },
             fastest,
             open: Vec::new(),
@@ -92,7 +95,7 @@ impl Even {
     /// Takes the next layer. Returns the groups whose caps are final, in order.
     pub(super) fn add(&mut self, layer: Layer, slowing: &Slowing) -> Vec<Group> {
         // The first layer is on its own, as in dual injection.
-        let k = layer.moves.layer;
+        let k = layer.moves.layer.saturating_sub(self.raft);
         let ends = k == 0 || (k + 1).is_multiple_of(self.ratio);
         self.open.push(layer);
         if !ends {

@@ -38,7 +38,7 @@ mod travel;
 
 use super::choices::{Angle, Floating, Pattern, Seam, SeamInner, WallOrder};
 pub use acceleration::Acceleration;
-pub use adhesion::{Brim, Skirt};
+pub use adhesion::{Brim, Raft, Skirt};
 pub use cooling::Cooling;
 pub use dual::Dual;
 pub use extrusion::Extrusion;
@@ -208,6 +208,8 @@ pub struct Settings {
     pub skirt: Skirt,
     /// Lines beside the first layer.
     pub brim: Brim,
+    /// A plate under the print.
+    pub raft: Raft,
     /// How fast the nozzle moves.
     pub speed: Speed,
     /// How hard it speeds up and slows down.

@@ -51,6 +51,12 @@ pub struct Speed {
     /// Speed of support.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 50))]
     pub support: f64,
+    /// Speed of a raft's base, on the bed; no first-layer speed lowers it but for the highest.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 15))]
+    pub raft_base: f64,
+    /// Speed of the layers of a raft above its base.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 30))]
+    pub raft_interface: f64,
     /// Speed in x and y of moves that print nothing.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 90))]
     pub travel: f64,
