@@ -5,13 +5,14 @@
 //!
 //! The model is cut at the print's layers. If the walls do not fit where it is expected, it is moved by
 //! the usual distance between the middles of layers and cuts; the better of the two places counts. A
-//! print that fits in neither is one of another model, and its size is compared.
+//! print that fits in neither is one of another model, and its size is compared. A raft lifts it.
 
 use super::Model;
 use super::against::{SOME_WIDTH, is_of_part, share_in};
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Findings, short};
 use super::part::Part;
+use super::raft;
 use super::rows::Lattice;
 use super::stack::gap_below;
 use super::{extent, median};
@@ -72,7 +73,8 @@ pub(super) fn place(
     let layers = print.layers.iter().enumerate();
     let heights: Vec<(f64, f64)> =
         layers.map(|(index, layer)| (layer.z, layer.height - gap_below(print, index))).collect();
-    let mut part = match Part::new(model.mesh, model.offset, &heights) {
+    let lift = if has_roles { raft::lift(print, model.mesh) } else { 0.0 };
+    let mut part = match Part::new(model.mesh, (model.offset, lift), &heights) {
         Ok(part) => part,
         Err(layer) => {
             notes.push(format!(
@@ -114,7 +116,7 @@ pub(super) fn place(
         );
         return None;
     }
-    height(print, model, &part, found);
+    height(print, (model, lift), &part, found);
     Some(part)
 }
 
@@ -188,7 +190,7 @@ fn sizes(larger: [f64; 2], fits: f64, found: &mut Findings) {
 }
 
 /// Whether the print is as high as what of the model can be printed.
-fn height(print: &Print, model: Model<'_>, part: &Part, found: &mut Findings) {
+fn height(print: &Print, (model, lift): (Model<'_>, f64), part: &Part, found: &mut Findings) {
     let Some(last) = print.layers.last() else { return };
     let top = print.top();
     let lacks = part.height() - top;
@@ -206,7 +208,7 @@ fn height(print: &Print, model: Model<'_>, part: &Part, found: &mut Findings) {
     let above = ((lacks / last.height).floor() as usize).min(MOST_ABOVE);
     let layers: Vec<(f64, f64)> =
         (1..=above).map(|k| (top + k as f64 * last.height, last.height)).collect();
-    let Ok(rest) = Part::new(model.mesh, model.offset, &layers) else { return };
+    let Ok(rest) = Part::new(model.mesh, (model.offset, lift), &layers) else { return };
     let Some((low, high)) = rest.extent() else { return };
     let lattice = Lattice::new(ROWS.0, high[1] - low[1], ROWS.1);
     let line = SOME_WIDTH * LEAST_LINE / 2.0;

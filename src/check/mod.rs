@@ -30,6 +30,7 @@ mod moves;
 mod part;
 mod pile;
 mod posts;
+mod raft;
 mod rows;
 mod runs;
 mod samples;

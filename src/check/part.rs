@@ -94,12 +94,16 @@ impl Section {
 }
 
 impl Part {
-    /// Cuts `mesh`, moved by `offset` mm, in the middle of each layer; `layers` are their tops and
-    /// heights, mm.
+    /// Cuts `mesh`, moved by `offset` mm and lifted by `lift`, in the middle of each layer; `layers`
+    /// are their tops and heights, mm.
     ///
     /// # Errors
     /// The layer, from 0, that does not lie above the one before.
-    pub(super) fn new(mesh: &Mesh, offset: [f64; 2], layers: &[(f64, f64)]) -> Result<Self, usize> {
+    pub(super) fn new(
+        mesh: &Mesh,
+        (offset, lift): ([f64; 2], f64),
+        layers: &[(f64, f64)],
+    ) -> Result<Self, usize> {
         let (mut planes, mut of_layer) = (Vec::new(), Vec::with_capacity(layers.len()));
         let mut below = 0.0;
         for (layer, (top, height)) in layers.iter().enumerate() {
@@ -120,7 +124,7 @@ impl Part {
         let vertices: Vec<[f64; 3]> = mesh
             .vertices
             .iter()
-            .map(|&[x, y, z]| [to_mm(x) + offset[0], to_mm(y) + offset[1], to_mm(z)])
+            .map(|&[x, y, z]| [to_mm(x) + offset[0], to_mm(y) + offset[1], to_mm(z) + lift])
             .collect();
         let triangles = mesh.triangles.clone();
         let cut = cut(&vertices, &triangles, &planes);
@@ -340,7 +344,8 @@ mod tests {
     fn a_box_is_cut_into_rectangles_whichever_way_its_faces_look() {
         for turned in [false, true] {
             let layers = [(0.2, 0.2), (0.4, 0.2), (0.6, 0.2)];
-            let part = Part::new(&solid([4.0, 2.0, 0.5], turned), [10.0, 5.0], &layers).unwrap();
+            let part =
+                Part::new(&solid([4.0, 2.0, 0.5], turned), ([10.0, 5.0], 0.0), &layers).unwrap();
             assert_eq!(part.extent(), Some(([10.0, 5.0], [14.0, 7.0])));
             let lattice = Lattice::new(0.1, 2.0, 1e4);
             // The last plane lies on the upper face, which counts as above it: it cuts nothing higher.
@@ -354,12 +359,16 @@ mod tests {
             assert!(part.hangs(1, [9.9, 6.0]) && !part.hangs(1, [10.1, 6.0]));
             assert!(!part.hangs(0, [0.0, 0.0]));
         }
-        assert_eq!(Part::new(&Mesh::default(), [0.0; 2], &[(0.2, 0.2), (0.2, 0.2)]).err(), Some(1));
+        assert_eq!(
+            Part::new(&Mesh::default(), ([0.0; 2], 0.0), &[(0.2, 0.2), (0.2, 0.2)]).err(),
+            Some(1)
+        );
     }
 
     #[test]
     fn a_section_is_opened_by_an_exact_distance() {
-        let part = Part::new(&solid([4.0, 2.0, 0.5], false), [0.0; 2], &[(0.2, 0.2)]).unwrap();
+        let part =
+            Part::new(&solid([4.0, 2.0, 0.5], false), ([0.0; 2], 0.0), &[(0.2, 0.2)]).unwrap();
         let lattice = Lattice::new(0.05, 2.0, 1e4);
         let section = part.section(0, lattice);
         // Round corners are missing.
@@ -373,9 +382,9 @@ mod tests {
     #[test]
     fn a_layer_above_a_gap_hangs_where_nothing_is_just_below() {
         let layers = [(0.2, 0.2), (1.4, 0.2)];
-        let part = Part::new(&solid([4.0, 2.0, 2.0], false), [0.0; 2], &layers).unwrap();
+        let part = Part::new(&solid([4.0, 2.0, 2.0], false), ([0.0; 2], 0.0), &layers).unwrap();
         assert!(!part.hangs(1, [1.0, 1.0]) && !part.is_empty_below(1));
-        let part = Part::new(&solid([4.0, 2.0, 0.5], false), [0.0; 2], &layers).unwrap();
+        let part = Part::new(&solid([4.0, 2.0, 0.5], false), ([0.0; 2], 0.0), &layers).unwrap();
         assert!(part.hangs(1, [1.0, 1.0]) && part.is_empty_below(1) && !part.is_empty_below(0));
     }
 }

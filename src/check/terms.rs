@@ -69,7 +69,7 @@ impl Terms {
             is_own: own.is_some(),
             flow: own.map_or([1.0; 3], flow),
             moved: own.map_or([0.0; 3], |own| {
-                [own.xy_compensation.abs(), own.hole_compensation.abs(), own.elephant_foot]
+                [own.xy_compensation.abs(), own.hole_compensation.abs(), own.foot_drawn_in()]
             }),
             nozzle: own.map(of).or_else(nozzle).or_else(|| settings.map(of)),
             infill: by_file(),
