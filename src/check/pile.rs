@@ -101,9 +101,11 @@ impl Pile {
     pub(super) fn carrier(&self, step: &Step, place: &Sample) -> Option<u32> {
         let needed = lower_side(step, place.z);
         let side = f64::from(step.width) / 2.0;
+        // Support keeps off the part, not off the bed.
+        let on_bed = place.z - own_gap(step) - f64::from(step.height) <= 1e-3;
         let at = |off: f64| {
             let at = [place.at[0] + off * place.across[0], place.at[1] + off * place.across[1]];
-            self.standing(at, needed)
+            self.standing(at, needed).filter(|&owner| owner > 0 || on_bed)
         };
         [0.0, -side / 2.0, side / 2.0, -side, side].into_iter().find_map(at)
     }
@@ -198,9 +200,13 @@ impl Pile {
 /// How high plastic must stand to carry a line at this height of the nozzle, mm. Support stands on the
 /// part with the gap that the part has above it.
 pub(super) fn lower_side(step: &Step, z: f64) -> f64 {
-    let height = f64::from(step.height);
-    let gap = if step.role == Role::Support { SUPPORT_GAP } else { GAP * height.min(0.3) };
-    z - height - gap - 1e-3
+    let gap = if step.role == Role::Support { SUPPORT_GAP } else { own_gap(step) };
+    z - f64::from(step.height) - gap - 1e-3
+}
+
+/// What may be missing under a line, mm.
+fn own_gap(step: &Step) -> f64 {
+    GAP * f64::from(step.height).min(0.3)
 }
 
 /// Height of the nozzle in the middle of a line, mm.

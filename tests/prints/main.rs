@@ -14,6 +14,7 @@ mod metamorphic;
 mod models;
 mod motion;
 mod printers;
+mod raft;
 mod seams;
 mod segments;
 mod skins;

@@ -51,7 +51,7 @@ pub struct Raft {
     #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 3))]
     pub margin: f64,
     /// Gap between raft and part: more makes it easier to remove, and the part's bottom rougher.
-    #[schemars(range(min = 0, max = 2), extend("unit" = "mm", "default" = 0.2))]
+    #[schemars(range(min = 0, max = 0.5), extend("unit" = "mm", "default" = 0.2))]
     pub gap: f64,
     /// Height of its base, the layer on the bed.
     #[schemars(range(min = 0.02, max = 2), extend("unit" = "mm", "default" = 0.3, "follows" = "machine.nozzle_diameter", "times" = 0.75))]
