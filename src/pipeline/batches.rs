@@ -1,10 +1,11 @@
 //! Slicer -> toolpaths -> Writer: plans the layers in batches, the next while one is written.
 //!
-//! 1. The window makes the regions of a batch; those of the first layer are made anew if its lines have
-//!    a width of their own.
-//! 2. Each layer is filled with paths, and gets what makes it stick; all layers of a batch at once.
-//! 3. Their paths are put in order, one layer after the other, since where one ends the next begins.
-//! 4. Travels join them, all layers at once, and the writer takes the batch.
+//! A *batch* is some layers whose regions are ready. Of each batch
+//! 1. the first layer of all is made anew if its lines have a width of their own;
+//! 2. all layers are filled side by side, and the first layer of all gets what makes it stick;
+//! 3. their paths are put in order one after the other, since each begins where the last one ended;
+//! 4. their travels are planned side by side;
+//! 5. a raft lifts them; its own layers come before the first.
 //!
 //! All code that names the numbers of `region`, `fill` and `plan` stands here and in no other file of
 //! the pipeline.
