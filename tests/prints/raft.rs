@@ -58,12 +58,15 @@ fn foot(run: &Run, solid: &Solid) -> Section {
     Section::new(&solid.on_bed(run.middle()), 0.1)
 }
 
+/// Settings of a case.
+type Set<'a> = &'a [(&'a str, &'a str)];
+
 /// The law of the raft: what is printed above it is what is printed without it, moved up.
 #[test]
 fn the_part_prints_above_a_raft_as_it_does_on_the_bed() {
     let dual = ("dual.mode", "pair");
     let support = ("support.enabled", "true");
-    let cases: [(&str, &str, &[(&str, &str)]); 6] = [
+    let cases: [(&str, &str, Set<'_>); 6] = [
         ("bracket.stl", "generic-marlin", &[dual]),
         ("bracket.stl", "zcube-dual", &[dual, ("dual.ratio", "2"), ("seam", "nearest")]),
         ("cavity.stl", "generic-klipper", &[("seam", "aligned"), ("first_layer_height", "0.3")]),
@@ -336,7 +339,7 @@ fn what_does_not_fit_is_refused() {
 
 #[test]
 fn a_print_on_a_raft_is_found_clean_and_a_raft_that_is_missing_is_not() {
-    let sets: [(&str, &[(&str, &str)]); 5] = [
+    let sets: [(&str, Set<'_>); 5] = [
         ("bracket.stl", &[ON, ("dual.mode", "pair")]),
         ("cavity.stl", &[ON, ("elephant_foot", "0.3"), ("skirt.loops", "2")]),
         ("overhang.stl", &[ON, ("support.enabled", "true"), ("dual.mode", "pair")]),
