@@ -379,7 +379,7 @@ impl SettingArgs {
     }
 
     /// Each flag, the key it sets, and the value given.
-    fn all(&self) -> [(&'static str, &'static str, Option<String>); 21] {
+    fn all(&self) -> [(&'static str, &'static str, Option<String>); 23] {
         let switched = |on: bool, value: &str| on.then(|| value.to_owned());
         [
             ("--dual", "dual.mode", switched(self.dual, "pair")),
