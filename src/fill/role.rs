@@ -166,18 +166,7 @@ impl Role {
                 ..Self::OuterWall.facts()
             },
             Self::Skin => SKIN,
-            Self::Bridge => RoleFacts {
-                name: "bridge",
-                annotation: "Bridge infill",
-                may_be_thick: false,
-                speed_keys: |_| Both::same("speed.bridge"),
-                speed: |speed| Both::same(speed.bridge),
-                acceleration: |a| a.bridge.or(a.skin),
-                jerk: |j| j.bridge.or(j.skin),
-                slows: Slows::Last,
-                fan: |cooling| Some(cooling.bridge_fan),
-                ..SKIN
-            },
+            Self::Bridge => BRIDGE,
             Self::Infill => INFILL,
             Self::TopSkin => TOP_SKIN,
             Self::Ironing => IRONING,
@@ -215,6 +204,19 @@ const SKIN: RoleFacts = RoleFacts {
     slows: Slows::First,
     fan: |_| None,
     factor: |extrusion| extrusion.skin_factor,
+};
+
+const BRIDGE: RoleFacts = RoleFacts {
+    name: "bridge",
+    annotation: "Bridge infill",
+    may_be_thick: false,
+    speed_keys: |_| Both::same("speed.bridge"),
+    speed: |speed| Both::same(speed.bridge),
+    acceleration: |a| a.bridge.or(a.skin),
+    jerk: |j| j.bridge.or(j.skin),
+    slows: Slows::Last,
+    fan: |cooling| Some(cooling.bridge_fan),
+    ..SKIN
 };
 
 const TOP_SKIN: RoleFacts = RoleFacts {
