@@ -174,12 +174,7 @@ impl fmt::Display for Warning {
                     carried(kept_away.as_deref())
                 )
             }
-            Self::PartHangs { length_mm, supported } => write!(
-                f,
-                "{length_mm:.0} mm of lines begin in the air, where the part has nothing below; \
-                 {}turn the part with --rotate",
-                if *supported { "" } else { "use --support, or " }
-            ),
+            Self::PartHangs { length_mm, supported } => f.write_str(&hangs(*length_mm, *supported)),
             Self::BrimLeftOut { islands, of } => f.write_str(&left_out(*islands, *of)),
             Self::TrailingBytes { file, count } => {
                 write!(f, "{file}: ignored {} after the last triangle", plural(*count, "byte"))
@@ -196,16 +191,10 @@ impl fmt::Display for Warning {
                 let speeds = [*asked_mm_s, *lowest_mm_s].map(short);
                 f.write_str(&flow_limited(role, setting, speeds, *limit_mm3_s))
             }
-            Self::NoEffect { settings, why } => {
-                let have = if settings.len() == 1 { "has" } else { "have" };
-                write!(f, "{} {have} no effect: {why}", settings.join(", "))
+            Self::NoEffect { settings, why } => f.write_str(&no_effect(settings, why)),
+            Self::AccelerationHeld { setting, asked_mm_s2, given_mm_s2 } => {
+                f.write_str(&held(setting, *asked_mm_s2, *given_mm_s2))
             }
-            Self::AccelerationHeld { setting, asked_mm_s2, given_mm_s2 } => write!(
-                f,
-                "{setting} = {asked_mm_s2} is held to {given_mm_s2} mm/s², the lesser of \
-                 limits.acceleration_x and limits.acceleration_y; raise these if the printer's are \
-                 higher"
-            ),
             Self::ArcsUnknown { machine } => f.write_str(&arcs_unknown(machine)),
             Self::ShortLinesSlowed { lines, lost_s, limit_per_s } => {
                 f.write_str(&short_lines(*lines, *lost_s, *limit_per_s))
@@ -239,6 +228,29 @@ fn short_lines(lines: usize, lost_s: f64, limit_per_s: f64) -> String {
          fed are among them; use a larger tolerance, or a limits.max_segment_rate above \
          {limit_per_s} if it takes more moves a second",
         plural(lines as u64, "line")
+    )
+}
+
+/// That the part has lines in the air.
+fn hangs(length_mm: f64, supported: bool) -> String {
+    format!(
+        "{length_mm:.0} mm of lines begin in the air, where the part has nothing below; {}turn the part \
+         with --rotate",
+        if supported { "" } else { "use --support, or " }
+    )
+}
+
+/// That settings do nothing on this printer.
+fn no_effect(settings: &[String], why: &str) -> String {
+    let have = if settings.len() == 1 { "has" } else { "have" };
+    format!("{} {have} no effect: {why}", settings.join(", "))
+}
+
+/// That less acceleration is asked for than a setting says.
+fn held(setting: &str, asked: f64, given: f64) -> String {
+    format!(
+        "{setting} = {asked} is held to {given} mm/s², the lesser of limits.acceleration_x and \
+         limits.acceleration_y; raise these if the printer's are higher"
     )
 }
 
