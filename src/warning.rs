@@ -124,7 +124,7 @@ pub enum Warning {
         asked_mm_s2: f64,
         /// What the file asks for instead, mm/s².
         given_mm_s2: f64,
-        },
+    },
     /// Arcs are asked for, but not known to the firmware: none were written.
     ArcsUnknown {
         /// Name of the printer.

@@ -173,14 +173,8 @@ impl Role {
             Self::Gap => GAP,
             Self::Support => SUPPORT,
             Self::SupportInterface => SUPPORT_INTERFACE,
-            // As fast as walls: what holds a part on the bed is laid with care.
-            Self::Skirt => RoleFacts {
-                name: "skirt",
-                annotation: "Skirt/Brim",
-                place: Place::First,
-                ..Self::OuterWall.facts()
-            },
-            Self::Brim => RoleFacts { name: "brim", ..Self::Skirt.facts() },
+            Self::Skirt => SKIRT,
+            Self::Brim => RoleFacts { name: "brim", ..SKIRT },
             Self::RaftBase => RAFT_BASE,
             Self::RaftInterface => RAFT_INTERFACE,
         }
@@ -191,6 +185,14 @@ impl Role {
 fn own(speed: Option<f64>, key: &'static str, usual: &'static str) -> Both<&'static str> {
     Both::same(if speed.is_some() { key } else { usual })
 }
+
+// As fast as walls: what holds a part on the bed is laid with care.
+const SKIRT: RoleFacts = RoleFacts {
+    name: "skirt",
+    annotation: "Skirt/Brim",
+    place: Place::First,
+    ..Role::OuterWall.facts()
+};
 
 const SKIN: RoleFacts = RoleFacts {
     name: "skin",

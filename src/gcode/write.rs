@@ -228,6 +228,7 @@ impl<'a> Text<'a> {
         let Some(&Move { to, z, feed, kind: Kind::Extrude(bead), .. }) = pieces.last() else {
             return;
         };
+        self.drive(&Kind::Extrude(bead));
         self.announce(&bead);
         self.e += pieces.iter().map(|piece| piece.filament).sum::<f64>();
         self.at = Some(to);
@@ -245,9 +246,7 @@ impl<'a> Text<'a> {
     }
 
     fn step(&mut self, step: &Move) {
-        if let Some(words) = self.driving.words(&step.kind) {
-            self.out.extend_from_slice(words.as_bytes());
-        }
+        self.drive(&step.kind);
         match step.kind {
             Kind::Travel => {
                 if self.go(step.to, self.z) {
@@ -273,6 +272,13 @@ impl<'a> Text<'a> {
                     self.end_move(step.feed);
                 }
             }
+        }
+    }
+
+    /// Sets the acceleration and the jerk of a move.
+    fn drive(&mut self, kind: &Kind) {
+        if let Some(words) = self.driving.words(kind) {
+            self.out.extend_from_slice(words.as_bytes());
         }
     }
 

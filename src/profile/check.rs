@@ -10,7 +10,7 @@
 use super::error::{Conflict, ProfileError, Result};
 use super::origin::ValueOrigin;
 use super::template::{self, PrintFacts};
-use super::{DialectName, DualMode, Settings};
+use super::{BrimPlace, DialectName, DualMode, Settings};
 use std::collections::BTreeMap;
 
 /// Slack for comparing lengths that were written as decimals, mm.
@@ -43,6 +43,7 @@ pub(super) fn together(settings: &Settings, origins: &BTreeMap<String, ValueOrig
     heights(settings, &blame)?;
     reach(settings, &blame)?;
     arcs(settings, &blame)?;
+    brim(settings, &blame)?;
     blocks(settings, &blame)
 }
 
@@ -115,6 +116,15 @@ fn reach(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
                 return Err(blame.error(&[key], conflict));
             }
         }
+    }
+    Ok(())
+}
+
+/// A brim of a profile gives way to a raft; one that is asked for by its flag is missed.
+fn brim(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
+    let asked = matches!(blame.origins.get("brim.width"), Some(ValueOrigin::Flag(_)));
+    if settings.raft.enabled && asked && settings.brim.place != BrimPlace::Off {
+        return Err(blame.error(&["brim.width"], Conflict::BrimAndRaft));
     }
     Ok(())
 }

@@ -251,6 +251,9 @@ pub enum Conflict {
         /// Where the print volume ends, mm.
         volume: f64,
     },
+    /// A brim is asked for by its flag, and a raft.
+    #[error("has no effect with a raft, which takes the place of a brim; leave one of them out")]
+    BrimAndRaft,
     /// A flag of dual injection without dual injection.
     #[error("has no effect while dual.mode is off; add --dual")]
     DualIsOff {

@@ -1,4 +1,11 @@
 //! Sums, audits and tally -> Report: fills in the carriers.
+//!
+//! What one part of the program knows alone is made in a file of its own: `cooling`, `motion`,
+//! `reshaped` (arcs and short lines), `tally` (what layers add up to).
+//!
+//! - Sums come from the writer: lengths, filament, times.
+//! - Audits come from dual injection, one for each part that is printed thick.
+//! - Lengths are in mm, times in s, layers counted from 1, those of a raft among them.
 
 use super::cooling::cooling;
 use super::motion::{self, motion};

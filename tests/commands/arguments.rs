@@ -73,6 +73,9 @@ fn wrong_settings_name_the_flag() {
         "unexpected argument '--spiral-mode' found; a spiral vase is not supported",
     );
     run(&["--brim", "-1"], "--brim: brim.width = -1 is out of range");
+    run(&["--raft", "--brim", "5"], "--brim: has no effect with a raft");
+    let off = ["part.stl", "-o", "a", "--raft", "--brim", "0"];
+    fails(&folder, &off, 3, "part.stl: holds no triangles");
     run(&["--brim-width", "5"], "unexpected argument '--brim-width' found; use --brim");
     run(&["--skirts", "2"], "unexpected argument '--skirts' found; use --skirt");
     run(&["--perimeters", "2"], "unexpected argument '--perimeters' found; use --walls");

@@ -5,8 +5,8 @@
 use crate::common::solid::Solid;
 use crate::common::{as_it_is, fixture};
 use rayon::prelude::*;
-use slicer::check::terms::Terms;
 use slicer::check::finding::Code;
+use slicer::check::terms::Terms;
 use slicer::check::{Verdict, check};
 use slicer::estimate::{Estimate, Options, estimate};
 use slicer::motion::Limits;

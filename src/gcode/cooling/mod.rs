@@ -142,8 +142,7 @@ impl Cooling {
     /// is under the next group has set by then, whichever of them gave it the time.
     fn make_up(&self, layers: &mut [(Moves, Slowed)]) {
         let least = self.slowing.least;
-        let taken: Vec<f64> =
-            layers.iter().map(|(moves, _)| self.slowing.seconds(moves)).collect();
+        let taken: Vec<f64> = layers.iter().map(|(moves, _)| self.slowing.seconds(moves)).collect();
         let mut missing = taken.iter().map(|seconds| least - seconds).sum::<f64>();
         for ((moves, slowed), seconds) in layers.iter_mut().zip(taken) {
             // One that is too quick as it is has nothing left to give.
