@@ -131,19 +131,7 @@ impl Role {
     #[must_use]
     pub const fn facts(self) -> RoleFacts {
         match self {
-            Self::OuterWall => RoleFacts {
-                name: "outer wall",
-                annotation: "External perimeter",
-                place: Place::Walls,
-                may_be_thick: false,
-                speed_keys: |speed| own(speed.outer_wall, "speed.outer_wall", "speed.wall"),
-                speed: |speed| Both::same(speed.outer_wall.unwrap_or(speed.wall)),
-                acceleration: |a| a.outer_wall.or(a.wall),
-                jerk: |j| j.outer_wall.or(j.wall),
-                slows: Slows::Last,
-                fan: |_| None,
-                factor: |extrusion| extrusion.wall_factor,
-            },
+            Self::OuterWall => OUTER_WALL,
             Self::InnerWall => RoleFacts {
                 name: "inner wall",
                 annotation: "Perimeter",
@@ -153,7 +141,7 @@ impl Role {
                 acceleration: |a| a.inner_wall.or(a.wall),
                 jerk: |j| j.inner_wall.or(j.wall),
                 slows: Slows::Second,
-                ..Self::OuterWall.facts()
+                ..OUTER_WALL
             },
             Self::Overhang => RoleFacts {
                 name: "overhanging wall",
@@ -163,7 +151,7 @@ impl Role {
                 acceleration: |a| a.overhang.or(a.outer_wall).or(a.wall),
                 jerk: |j| j.overhang.or(j.outer_wall).or(j.wall),
                 fan: |cooling| Some(cooling.overhang_fan.unwrap_or(cooling.bridge_fan)),
-                ..Self::OuterWall.facts()
+                ..OUTER_WALL
             },
             Self::Skin => SKIN,
             Self::Bridge => BRIDGE,
@@ -186,13 +174,23 @@ fn own(speed: Option<f64>, key: &'static str, usual: &'static str) -> Both<&'sta
     Both::same(if speed.is_some() { key } else { usual })
 }
 
-// As fast as walls: what holds a part on the bed is laid with care.
-const SKIRT: RoleFacts = RoleFacts {
-    name: "skirt",
-    annotation: "Skirt/Brim",
-    place: Place::First,
-    ..Role::OuterWall.facts()
+const OUTER_WALL: RoleFacts = RoleFacts {
+    name: "outer wall",
+    annotation: "External perimeter",
+    place: Place::Walls,
+    may_be_thick: false,
+    speed_keys: |speed| own(speed.outer_wall, "speed.outer_wall", "speed.wall"),
+    speed: |speed| Both::same(speed.outer_wall.unwrap_or(speed.wall)),
+    acceleration: |a| a.outer_wall.or(a.wall),
+    jerk: |j| j.outer_wall.or(j.wall),
+    slows: Slows::Last,
+    fan: |_| None,
+    factor: |extrusion| extrusion.wall_factor,
 };
+
+// As fast as walls: what holds a part on the bed is laid with care.
+const SKIRT: RoleFacts =
+    RoleFacts { name: "skirt", annotation: "Skirt/Brim", place: Place::First, ..OUTER_WALL };
 
 const SKIN: RoleFacts = RoleFacts {
     name: "skin",
