@@ -128,7 +128,7 @@ impl<'a> Writer<'a> {
         // Its numbers are filled in at the end.
         let head = dialect_head(settings, 0.0, 0.0) + &hosts::head(facts.layers, thumbnails);
         let advance = dialect_advance(settings);
-        let start = format!("{head};TYPE:Custom\n{block}{e_mode}\nG92 E0\n{advance}");
+        let start = format!("{head};TYPE:Custom\n{block}G90\n{e_mode}\nG92 E0\n{advance}");
         writer.out.put(start.as_bytes())?;
         Ok(writer)
     }
