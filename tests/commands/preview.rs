@@ -407,8 +407,10 @@ fn seen(Colour(bytes): Colour, eye: &[[f64; 3]; 3]) -> [f64; 3] {
 #[test]
 fn colours_are_told_apart_by_all_eyes() {
     let roles = &Role::ALL[..7];
-    let colours: Vec<_> =
-        roles.iter().flat_map(|r| [false, true].map(|thick| Colour::of(*r, thick))).collect();
+    let shades = roles.iter().flat_map(|role| [(*role, false), (*role, true)]);
+    // Ironing is never printed for several layers.
+    let shades = shades.filter(|shade| *shade != (Role::Ironing, true));
+    let colours: Vec<_> = shades.map(|(role, thick)| Colour::of(role, thick)).collect();
     for eye in &EYES {
         for (k, a) in colours.iter().enumerate() {
             for b in &colours[..k] {

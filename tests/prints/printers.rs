@@ -190,7 +190,7 @@ fn an_ultimakers_file_says_what_its_printer_asks_for_and_nothing_more() {
     let mut words: Vec<&str> = code.map(|line| line.split_whitespace().next().unwrap()).collect();
     words.sort_unstable();
     words.dedup();
-    assert_eq!(words, ["G1", "G10", "G11", "G92", "M106", "M82"]);
+    assert_eq!(words, ["G1", "G10", "G11", "G90", "G92", "M106", "M82"]);
 }
 
 #[test]
@@ -217,6 +217,8 @@ fn a_macro_that_does_everything_is_a_start_block() {
         let text = slice(&Solid::cuboid([0.0; 3], [6.0, 5.0, 1.0]).stl(), &settings);
         let modes: Vec<&str> = text.lines().filter(|line| ["M82", "M83"].contains(line)).collect();
         assert_eq!(modes, [mode]);
+        // A macro may end with relative coordinates.
+        assert!(text.contains(&format!("\nG90\n{mode}\n")));
         let start = text.find("PRINT_START BED=60 EXTRUDER=210\n").unwrap();
         assert!(text.find(mode).unwrap() > start);
     }
