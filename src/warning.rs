@@ -116,6 +116,15 @@ pub enum Warning {
         /// Why not.
         why: String,
     },
+    /// A jerk that the machine's command has no room for.
+    JerkHeld {
+        /// The setting.
+        setting: String,
+        /// Its value, mm/s.
+        asked_mm_s: f64,
+        /// What the machine gets instead, mm/s.
+        given_mm_s: f64,
+    },
     /// More acceleration than the machine bears.
     AccelerationHeld {
         /// The setting.
@@ -192,6 +201,9 @@ impl fmt::Display for Warning {
                 f.write_str(&flow_limited(role, setting, speeds, *limit_mm3_s))
             }
             Self::NoEffect { settings, why } => f.write_str(&no_effect(settings, why)),
+            Self::JerkHeld { setting, asked_mm_s, given_mm_s } => {
+                f.write_str(&jerk_held(setting, *asked_mm_s, *given_mm_s))
+            }
             Self::AccelerationHeld { setting, asked_mm_s2, given_mm_s2 } => {
                 f.write_str(&held(setting, *asked_mm_s2, *given_mm_s2))
             }
@@ -251,6 +263,14 @@ fn held(setting: &str, asked: f64, given: f64) -> String {
     format!(
         "{setting} = {asked} is held to {given} mm/s², the lesser of limits.acceleration_x and \
          limits.acceleration_y; raise these if the printer's are higher"
+    )
+}
+
+/// That a jerk is another than a setting says.
+fn jerk_held(setting: &str, asked: f64, given: f64) -> String {
+    format!(
+        "{setting} = {asked} is held to {given:.1} mm/s, since Marlin takes a junction deviation (M205 J) \
+         of 0.01 to 0.3 mm; set that, or another acceleration beside it"
     )
 }
 

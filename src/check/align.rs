@@ -15,6 +15,7 @@ use super::part::Part;
 use super::raft;
 use super::rows::Lattice;
 use super::stack::gap_below;
+use super::terms::Terms;
 use super::{extent, median};
 use crate::geom::segment;
 use crate::reader::print::{Layer, Step};
@@ -65,7 +66,7 @@ struct Off {
 /// compared; a finding or note gives the reason.
 pub(super) fn place(
     print: &Print,
-    model: Model<'_>,
+    (model, terms): (Model<'_>, &Terms),
     has_roles: bool,
     (found, notes): (&mut Findings, &mut Vec<String>),
 ) -> Option<Part> {
@@ -73,7 +74,8 @@ pub(super) fn place(
     let layers = print.layers.iter().enumerate();
     let heights: Vec<(f64, f64)> =
         layers.map(|(index, layer)| (layer.z, layer.height - gap_below(print, index))).collect();
-    let lift = if has_roles { raft::lift(print, model.mesh) } else { 0.0 };
+    let seen = || if has_roles { raft::lift(print, model.mesh) } else { 0.0 };
+    let lift = terms.lift.unwrap_or_else(seen);
     let mut part = match Part::new(model.mesh, (model.offset, lift), &heights) {
         Ok(part) => part,
         Err(layer) => {

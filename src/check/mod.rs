@@ -128,7 +128,7 @@ pub fn check(print: &Print, terms: &Terms, model: Option<Model<'_>>) -> Verdict 
     let absurd = is_absurd(print, &mut found);
     let part = model.filter(|_| !absurd).and_then(|model| {
         let say = (&mut found, &mut not_judged);
-        align::place(print, model, has_roles, say)
+        align::place(print, (model, terms), has_roles, say)
     });
     let looked_at = if absurd { &Print::default() } else { print };
     // Side by side, each with findings of its own: how lines lie on each other, and on the part.

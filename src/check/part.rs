@@ -95,7 +95,8 @@ impl Section {
 
 impl Part {
     /// Cuts `mesh`, moved by `offset` mm and lifted by `lift`, in the middle of each layer; `layers`
-    /// are their tops and heights, mm.
+    /// are their tops and heights, mm. What lies lower than it was lifted is no part: it was cut off at
+    /// the bed.
     ///
     /// # Errors
     /// The layer, from 0, that does not lie above the one before.
@@ -127,7 +128,8 @@ impl Part {
             .map(|&[x, y, z]| [to_mm(x) + offset[0], to_mm(y) + offset[1], to_mm(z) + lift])
             .collect();
         let triangles = mesh.triangles.clone();
-        let cut = cut(&vertices, &triangles, &planes);
+        let first = planes.partition_point(|plane| *plane <= lift);
+        let cut = cut(&vertices, &triangles, &planes, first);
         let levels = levels(&vertices, &triangles);
         Ok(Self { vertices, triangles, planes, of_layer, cut, levels })
     }
@@ -282,13 +284,13 @@ fn is_inner([from, to]: Segment, inside: &Rows, lattice: Lattice) -> bool {
     })
 }
 
-/// The triangles that each plane cuts.
-fn cut(vertices: &[[f64; 3]], triangles: &[[u32; 3]], planes: &[f64]) -> Cells<u32> {
+/// The triangles that each plane cuts, from plane `first` on.
+fn cut(vertices: &[[f64; 3]], triangles: &[[u32; 3]], planes: &[f64], first: usize) -> Cells<u32> {
     let reach = |triangle: u32| {
         let z = triangles[triangle as usize].map(|corner| vertices[corner as usize][2]);
         let (low, high) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
         let beyond = |height: f64| planes.partition_point(|plane| *plane <= height);
-        beyond(low)..beyond(high)
+        beyond(low).max(first)..beyond(high).max(first)
     };
     Cells::new(planes.len(), || (0_u32..).take(triangles.len()), reach)
 }

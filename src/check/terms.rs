@@ -21,6 +21,8 @@ pub struct Terms {
     pub nozzle: Option<f64>,
     /// How far the file's own settings move contours: outlines, holes, the first layer; mm.
     pub moved: [f64; 3],
+    /// How far a raft lifts the part by settings of the file's own, mm; 0 without one.
+    pub lift: Option<f64>,
     /// Density of the sparse infill asked for, as a part of 1, if it is known.
     pub infill: Option<f64>,
 }
@@ -72,6 +74,7 @@ impl Terms {
                 [own.xy_compensation.abs(), own.hole_compensation.abs(), own.foot_drawn_in()]
             }),
             nozzle: own.map(of).or_else(nozzle).or_else(|| settings.map(of)),
+            lift: own.map(Settings::raft_lift),
             infill: by_file(),
         }
     }

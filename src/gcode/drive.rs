@@ -229,6 +229,24 @@ struct Maker<'a> {
     corners: bool,
 }
 
+/// The junction deviation that stands for a jerk at this acceleration, as far as Marlin takes it, mm.
+fn deviation(jerk: f64, acceleration: f64) -> f64 {
+    let [least, most] = DEVIATIONS;
+    (DEVIATION_FACTOR * jerk * jerk / acceleration).clamp(least, most)
+}
+
+/// The jerk that the machine really has where this one is asked for, mm/s: no command has room for any.
+#[must_use]
+pub fn held_jerk(settings: &Settings, jerk: f64, acceleration: f64) -> f64 {
+    match settings.limits.junction {
+        JunctionRule::Deviation => {
+            let held = (deviation(jerk, acceleration) * acceleration / DEVIATION_FACTOR).sqrt();
+            (held * 100.0).round() / 100.0
+        }
+        _ => jerk,
+    }
+}
+
 impl<'a> Maker<'a> {
     fn new(settings: &'a Settings) -> Self {
         let (way, corners) = (way(settings), tells_corners(settings));
@@ -276,9 +294,7 @@ impl<'a> Maker<'a> {
         let [x, y] = [limits.jerk_x, limits.jerk_y];
         let corner = match (limits.junction, jerk) {
             (JunctionRule::Deviation, Some(jerk)) => {
-                let [least, most] = DEVIATIONS;
-                let deviation = DEVIATION_FACTOR * jerk * jerk / acceleration;
-                [(deviation.clamp(least, most) * 1e4).round() / 1e4; 2]
+                [(deviation(jerk, acceleration) * 1e4).round() / 1e4; 2]
             }
             (_, Some(jerk)) => [jerk; 2],
             (JunctionRule::Deviation, None) => [limits.junction_deviation; 2],

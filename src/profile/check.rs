@@ -10,7 +10,7 @@
 use super::error::{Conflict, ProfileError, Result};
 use super::origin::ValueOrigin;
 use super::template::{self, PrintFacts};
-use super::{BrimPlace, DialectName, DualMode, Settings};
+use super::{BrimPlace, DialectName, DualMode, IroningPlace, Settings};
 use std::collections::BTreeMap;
 
 /// Slack for comparing lengths that were written as decimals, mm.
@@ -18,6 +18,9 @@ const SLACK_MM: f64 = 1e-9;
 
 /// Lines narrower than this times the layer height do not lie, they stand.
 const LEAST_WIDTH: f64 = 0.8;
+
+/// A nozzle lays no wider lines than so many times its diameter: its flat rim ends there.
+const MOST_WIDTH: f64 = 2.5;
 
 /// Codes that GPX turns into host queries, on which a print from an SD card
 /// stops for ever, or that it does not know and warns of.
@@ -93,6 +96,20 @@ fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
             let conflict = Conflict::NarrowLines { lines, width, key, height, least };
             return Err(blame.error(&[lines, key], conflict));
         }
+    }
+    for (lines, width) in [first, ("raft.base_width", raft.base_width)] {
+        if width > MOST_WIDTH * nozzle + SLACK_MM && lines != "line_width" {
+            let conflict = Conflict::WideLines { lines, width, nozzle, most: MOST_WIDTH };
+            return Err(blame.error(&[lines, "machine.nozzle_diameter"], conflict));
+        }
+    }
+    let height = raft.gap + settings.first_layer_height;
+    if raft.enabled && settings.support.enabled && height > nozzle + SLACK_MM {
+        let keys = ["raft.gap", "first_layer_height", "support.enabled"];
+        return Err(blame.error(&keys, Conflict::TallFirstSupport { height, nozzle }));
+    }
+    if settings.ironing.place != IroningPlace::Off && !settings.has_top_skins() {
+        return Err(blame.error(&["ironing.where", "top_layers"], Conflict::NothingToIron));
     }
     if settings.in_first_width().is_some() && !settings.has_bottom_skins() {
         let keys = ["first_layer_width", "bottom_layers", "bottom_thickness"];

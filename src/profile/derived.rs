@@ -99,6 +99,14 @@ impl Settings {
         if self.raft.enabled { 1 + self.raft.interface_layers as usize } else { 0 }
     }
 
+    /// From the bed to the bottom of the part, mm: the raft and the gap above it; 0 without one.
+    #[must_use]
+    pub fn raft_lift(&self) -> f64 {
+        let raft = &self.raft;
+        let interface = f64::from(raft.interface_layers) * raft.interface_height;
+        if raft.enabled { raft.base_height + interface + raft.gap } else { 0.0 }
+    }
+
     /// How far the raft reaches beyond what stands on it, mm; 0 without one. A margin narrower than
     /// a line of its base would leave thin parts without any.
     #[must_use]

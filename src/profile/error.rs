@@ -232,6 +232,39 @@ pub enum Conflict {
         /// Least width for each mm of height.
         least: f64,
     },
+    /// Lines wider than a nozzle lays them.
+    #[error(
+        "{lines} = {width} mm is more than {most} times machine.nozzle_diameter = {nozzle} mm; no \
+         nozzle lays such lines"
+    )]
+    WideLines {
+        /// Which width.
+        lines: &'static str,
+        /// The lines' width.
+        width: f64,
+        /// The nozzle's diameter.
+        nozzle: f64,
+        /// Greatest width for each mm of nozzle.
+        most: f64,
+    },
+    /// Support that would begin with beads higher than the nozzle is wide.
+    #[error(
+        "support stands on the raft: its first lines would be {height} mm high, raft.gap and \
+         first_layer_height together, more than machine.nozzle_diameter = {nozzle} mm; make one of \
+         the two smaller"
+    )]
+    TallFirstSupport {
+        /// Height of those lines, mm.
+        height: f64,
+        /// The nozzle's diameter.
+        nozzle: f64,
+    },
+    /// Ironing without a top.
+    #[error(
+        "ironing goes over tops, and there are none without a skin at the top; leave it out, or set \
+         top_layers = 1"
+    )]
+    NothingToIron,
     /// Wide lines for a first layer without a skin.
     #[error(
         "first_layer_width widens the skin at the bottom, and there is none; leave it out, or set \

@@ -8,6 +8,9 @@ use crate::gcode::usage::Usage;
 use crate::profile::{Acceleration, DialectName, Jerk, Settings};
 use crate::warning::Warning;
 
+/// Jerks that are held to others by a smaller part than this differ by rounding alone.
+const MUCH: f64 = 0.01;
+
 /// What the file tells the machine of accelerations; none if it tells nothing.
 pub(super) fn motion(usage: &Usage, settings: &Settings) -> Option<MotionReport> {
     let accelerates = drive::tells_accelerations(settings) && asks_acceleration(settings);
@@ -23,7 +26,10 @@ pub(super) fn motion(usage: &Usage, settings: &Settings) -> Option<MotionReport>
         acceleration_mm_s2: acceleration.filter(|_| accelerates),
         jerk_mm_s: jerk.filter(|_| corners),
     };
-    let asked = |of, Asked { acceleration, jerk }| row(of, Some(acceleration), jerk);
+    let asked = |of, Asked { acceleration, jerk }| {
+        let jerk = jerk.map(|jerk| drive::held_jerk(settings, jerk, acceleration));
+        row(of, Some(acceleration), jerk)
+    };
     let mut drives = Vec::new();
     if accelerates || corners {
         let used = |role: &Role| usage.roles[*role].iter().any(|(_, used)| used.length > 0.0);
@@ -69,10 +75,29 @@ pub fn warnings(settings: &Settings) -> Vec<Warning> {
         asked_mm_s2,
         given_mm_s2: most,
     });
-    let jerks = if drive::tells_corners(settings) { Vec::new() } else { jerks };
+    let corners = drive::tells_corners(settings);
+    let held = held.chain(if corners { held_jerks(settings, &jerks) } else { Vec::new() });
+    let jerks = if corners { Vec::new() } else { jerks };
     let why = "the firmware has no command for the rule of corners that limits.junction names";
     let why_advance = "the Ultimaker 2 has no command for it";
     held.chain(none(jerks, why)).chain(none(advance, why_advance)).collect()
+}
+
+/// Those of the keys of jerks that the machine's command has no room for.
+fn held_jerks(settings: &Settings, jerks: &[(String, f64)]) -> Vec<Warning> {
+    let own = drive::asked(settings, "acceleration");
+    let held = jerks.iter().filter_map(|(key, asked)| {
+        let beside = key.replace("jerk.", "acceleration.");
+        let acceleration = own.iter().find(|(key, _)| *key == beside).map(|(_, value)| *value);
+        let acceleration = acceleration.unwrap_or(settings.machine.acceleration);
+        let given = drive::held_jerk(settings, *asked, acceleration);
+        ((given - asked).abs() > MUCH * asked).then(|| Warning::JerkHeld {
+            setting: key.clone(),
+            asked_mm_s: *asked,
+            given_mm_s: given,
+        })
+    });
+    held.collect()
 }
 
 fn asks_acceleration(settings: &Settings) -> bool {

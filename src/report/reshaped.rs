@@ -4,7 +4,7 @@ use super::{ArcsReport, SegmentsReport};
 use crate::gcode::Sums;
 use crate::gcode::reshaped::{Arced, Short};
 use crate::gcode::usage::Usage;
-use crate::profile::Settings;
+use crate::profile::{DialectName, Settings};
 use crate::warning::Warning;
 
 /// Time lost on short lines that is worth a warning, as a part of the print's: less is not seen.
@@ -18,8 +18,17 @@ pub(super) fn warnings(sums: &Sums, settings: &Settings) -> impl Iterator<Item =
 /// Arcs are asked for, but the firmware does not know them.
 fn arcs_unknown(settings: &Settings) -> Option<Warning> {
     let machine = &settings.machine;
-    let unknown = settings.arcs && !machine.arcs;
-    unknown.then(|| Warning::ArcsUnknown { machine: machine.name.clone() })
+    let why = match machine.dialect {
+        DialectName::Makerbot => "GPX knows no arcs",
+        DialectName::Ultigcode => "an Ultimaker 2 draws arcs badly",
+        _ => {
+            let unknown = settings.arcs && !machine.arcs;
+            return unknown.then(|| Warning::ArcsUnknown { machine: machine.name.clone() });
+        }
+    };
+    settings
+        .arcs
+        .then(|| Warning::NoEffect { settings: vec!["arcs".to_owned()], why: why.to_owned() })
 }
 
 /// What arcs stand for.
