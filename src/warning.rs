@@ -162,12 +162,9 @@ impl fmt::Display for Warning {
                 f,
                 "{file}: the mesh is not closed: {what}; check the print or mend the model"
             ),
-            Self::OpenContours { layers, longest_gap_mm } => write!(
-                f,
-                "closed open contours on {} by straight lines of up to {longest_gap_mm:.3} mm; \
-                 check the print or mend the model",
-                plural(*layers as u64, "layer")
-            ),
+            Self::OpenContours { layers, longest_gap_mm } => {
+                f.write_str(&closed(*layers, *longest_gap_mm))
+            }
             Self::ThinPlaces { layers, area_mm2 } => write!(
                 f,
                 "left out {area_mm2:.1} mm² on {} that are too thin for a bead; use a smaller \
@@ -213,6 +210,15 @@ impl fmt::Display for Warning {
             }
         }
     }
+}
+
+/// That contours were closed.
+fn closed(layers: usize, longest_gap_mm: f64) -> String {
+    format!(
+        "closed open contours on {} by straight lines of up to {longest_gap_mm:.3} mm; check the print \
+         or mend the model",
+        plural(layers as u64, "layer")
+    )
 }
 
 /// That the hot end cannot melt as fast; speeds asked for and given, mm/s.

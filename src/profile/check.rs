@@ -77,6 +77,7 @@ fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
     let nozzle = settings.machine.nozzle_diameter;
     let (line, raft) = (("line_width", settings.line_width), &settings.raft);
     let first = settings.first_layer_width.map_or(line, |width| ("first_layer_width", width));
+    let lines_differ = settings.first_layer_width.is_some();
     let of_raft = [
         ("raft.base_height", raft.base_height, ("raft.base_width", raft.base_width)),
         ("raft.interface_height", raft.interface_height, line),
@@ -97,8 +98,9 @@ fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
             return Err(blame.error(&[lines, key], conflict));
         }
     }
-    for (lines, width) in [first, ("raft.base_width", raft.base_width)] {
-        if width > MOST_WIDTH * nozzle + SLACK_MM && lines != "line_width" {
+    let wide = [(first, lines_differ), (("raft.base_width", raft.base_width), raft.enabled)];
+    for ((lines, width), _) in wide.into_iter().filter(|(_, counts)| *counts) {
+        if width > MOST_WIDTH * nozzle + SLACK_MM {
             let conflict = Conflict::WideLines { lines, width, nozzle, most: MOST_WIDTH };
             return Err(blame.error(&[lines, "machine.nozzle_diameter"], conflict));
         }

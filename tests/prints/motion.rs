@@ -241,6 +241,23 @@ fn no_more_is_asked_for_than_the_axes_bear() {
 }
 
 #[test]
+fn a_jerk_beyond_what_marlin_takes_is_said_to_be_held() {
+    let set = [("jerk.wall", "50"), ("jerk.skin", "8"), ("jerk.infill", "0.5")];
+    let deviation = [("limits.junction", "deviation")];
+    let run = slice(&fixture("tile.stl"), "generic-marlin", &[&set[..], &deviation].concat());
+    let held: Vec<String> = run.report.warnings.iter().map(ToString::to_string).collect();
+    assert!(held.len() == 2 && held[0].contains("jerk.wall = 50 is held to 27.4 mm/s"), "{held:?}");
+    assert!(held[1].contains("jerk.infill = 0.5 is held to 5.0 mm/s"), "{held:?}");
+    // 0.3 mm at 1000 mm/s², by 0.4 · jerk² / acceleration.
+    assert!(run.text.contains("\nM205 J0.3\n"));
+    let drives = run.report.motion.unwrap().drives;
+    let wall = drives.iter().find(|row| row.of == "outer wall").unwrap();
+    assert_eq!(wall.jerk_mm_s, Some(27.39));
+    // Another rule of corners takes any.
+    assert!(slice(&fixture("tile.stl"), "generic-klipper", &set).report.warnings.is_empty());
+}
+
+#[test]
 fn what_the_printer_cannot_be_told_has_no_effect_and_a_warning() {
     let keys = all_keys();
     let keys = [lent(&keys), vec![("filament.pressure_advance", "0.05")]].concat();

@@ -320,12 +320,12 @@ fn what_does_not_fit_is_refused() {
     let text = refused(&cube, "generic-marlin", &[&[ON], &primes[..]].concat(), None);
     assert!(text.contains("start block"), "{text}");
     // Heights that no nozzle prints.
+    let over = |(key, value): (&str, &str)| slicer::profile::Override {
+        key: key.to_owned(),
+        value: value.to_owned(),
+        origin: slicer::profile::ValueOrigin::Set,
+    };
     let wrong = |set: (&str, &str)| {
-        let over = |(key, value): (&str, &str)| slicer::profile::Override {
-            key: key.to_owned(),
-            value: value.to_owned(),
-            origin: slicer::profile::ValueOrigin::Set,
-        };
         let load = |set: &[(&str, &str)]| {
             let all: Vec<_> = set.iter().map(|one| over(*one)).collect();
             slicer::profile::load(["generic-marlin"], &all)
@@ -335,6 +335,10 @@ fn what_does_not_fit_is_refused() {
     };
     assert!(wrong(("raft.base_height", "0.5")).contains("machine.nozzle_diameter"));
     assert!(wrong(("raft.base_width", "0.2")).contains("raft.base_width = 0.2 mm is too little"));
+    let support = [over(ON), over(("support.enabled", "true")), over(("raft.gap", "0.3"))];
+    let error = slicer::profile::load(["generic-marlin"], &support).unwrap_err().to_string();
+    assert!(error.contains("would be 0.5 mm high"), "{error}");
+    assert!(wrong(("raft.base_width", "1.2")).contains("2.5 times machine.nozzle_diameter"));
 }
 
 #[test]
@@ -352,6 +356,22 @@ fn a_print_on_a_raft_is_found_clean_and_a_raft_that_is_missing_is_not() {
         assert!(damage::errors(&verdict).next().is_none(), "{set:?}: {}", damage::listed(&verdict));
         let outline = verdict.measures.outline.unwrap();
         assert!(outline > 0.999, "{stl}: {outline}");
+    }
+    // What is cut off at the bed, or too thin to be printed there, is not looked for beside the raft.
+    let sunk = Placement { sink: 5.0, ..as_it_is() };
+    let tipped = Placement { rotate: [45.0, 35.0, 0.0], ..as_it_is() };
+    for (placement, more) in [(sunk, ("dual.mode", "pair")), (tipped, ("support.enabled", "true"))]
+    {
+        let set = [ON, more];
+        let run = slice_with(&fixture("cube_20.stl"), shipped("generic-marlin", &set), &placement);
+        let verdict = damage::judge(&run.text, "cube_20.stl", &placement);
+        assert!(
+            damage::errors(&verdict).next().is_none(),
+            "{more:?}: {}",
+            damage::listed(&verdict)
+        );
+        let outline = verdict.measures.outline.unwrap();
+        assert!(outline > 0.999, "{more:?}: {outline}");
     }
     let good = damage::Good::of("cube_20.stl", "generic-marlin", &[ON]);
     let without = |layers: std::ops::Range<usize>| {
