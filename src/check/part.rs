@@ -107,8 +107,8 @@ impl Part {
     ) -> Result<Self, usize> {
         let (mut planes, mut of_layer) = (Vec::new(), Vec::with_capacity(layers.len()));
         let mut below = 0.0;
+        let plane = |at: f64| (at * PLANE_STEPS).round() / PLANE_STEPS;
         for (layer, (top, height)) in layers.iter().enumerate() {
-            let plane = |at: f64| (at * PLANE_STEPS).round() / PLANE_STEPS;
             let here = plane(top - height / 2.0);
             let last = planes.last().copied().unwrap_or(0.0);
             if layer > 0 && here <= last {
@@ -125,7 +125,8 @@ impl Part {
         let vertices: Vec<[f64; 3]> = mesh
             .vertices
             .iter()
-            .map(|&[x, y, z]| [to_mm(x) + offset[0], to_mm(y) + offset[1], to_mm(z) + lift])
+            // On the grid of the planes: a face must lie on a plane, not beside it by a float's last digit.
+            .map(|&[x, y, z]| [to_mm(x) + offset[0], to_mm(y) + offset[1], plane(to_mm(z) + lift)])
             .collect();
         let triangles = mesh.triangles.clone();
         let first = planes.partition_point(|plane| *plane <= lift);

@@ -238,6 +238,8 @@ const IRONING: RoleFacts = RoleFacts {
     may_be_thick: false,
     speed_keys: |_| Both::same("speed.ironing"),
     speed: |speed| Both::same(speed.ironing),
+    acceleration: |a| a.top_skin.or(a.skin),
+    jerk: |j| j.top_skin.or(j.skin),
     slows: Slows::Last,
     ..SKIN
 };

@@ -7,7 +7,7 @@ use crate::fill::adhesion::raft::RaftParams;
 use crate::fill::{Path, Place};
 use crate::plan::Toolpath;
 use crate::profile::Settings;
-use crate::units::Coord;
+use crate::units::{Coord, to_units};
 
 /// How far a raft lifts the print; not at all without one.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -16,6 +16,9 @@ pub struct Lift {
     pub heights: Vec<Coord>,
     /// Between the raft and the part, grid units.
     pub gap: Coord,
+    /// How much of it support and skirt fill, which stand on the raft, grid units: their first beads are
+    /// higher by that, and never higher than the nozzle is wide.
+    pub filled: Coord,
 }
 
 impl Lift {
@@ -25,6 +28,8 @@ impl Lift {
         RaftParams::new(settings).map_or_else(Self::default, |raft| Self {
             heights: raft.heights().collect(),
             gap: raft.gap(),
+            filled: (to_units(settings.machine.nozzle_diameter - settings.first_layer_height))
+                .clamp(0, raft.gap()),
         })
     }
 
@@ -53,7 +58,7 @@ impl Lift {
             };
             let paths = toolpath.moves.iter_mut().map(|next| &mut next.path);
             for path in paths.filter(|path| stands(path)) {
-                path.points.iter_mut().for_each(|point| point.height += self.gap);
+                path.points.iter_mut().for_each(|point| point.height += self.filled);
             }
             toolpath.layer += self.layers();
             toolpath.z += self.by();

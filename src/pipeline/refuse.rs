@@ -34,16 +34,18 @@ use crate::units::{Coord, to_mm, to_units};
 pub fn tall(settings: &Settings, heights: &Heights, lift: &Lift) -> Result<(), Refusal> {
     let Some(last) = heights.count().checked_sub(1) else { return Ok(()) };
     let hop = to_units(settings.retraction.z_hop);
-    let top = heights.top(last).saturating_add(hop).saturating_add(lift.by());
-    if top <= to_units(settings.machine.bed_height) {
-        return Ok(());
+    let top = heights.top(last).saturating_add(lift.by());
+    let machine = &settings.machine;
+    let [_, [_, _, reach]] = machine.nozzle_reach();
+    // The nozzle may go higher than parts may be.
+    for (hop, height_mm) in [(0, machine.bed_height), (hop, reach)] {
+        let top = top.saturating_add(hop);
+        if top > to_units(height_mm) {
+            let (top_mm, hop_mm, raft_mm) = (to_mm(top), to_mm(hop), to_mm(lift.by()));
+            return Err(Refusal::TooTall { top_mm, hop_mm, raft_mm, height_mm });
+        }
     }
-    Err(Refusal::TooTall {
-        top_mm: to_mm(top),
-        hop_mm: to_mm(hop),
-        raft_mm: to_mm(lift.by()),
-        height_mm: settings.machine.bed_height,
-    })
+    Ok(())
 }
 
 /// Refuses layers whose contours are open too far. Nothing is looked at if the mesh is closed, or
@@ -100,7 +102,7 @@ mod tests {
         let layers = |height: Coord, count: usize| Heights::new(std::iter::repeat_n(height, count));
         let limit = to_units(profile(0.0).machine.bed_height);
         let tall = |settings: &Settings, heights: &Heights, raft: Coord| {
-            tall(settings, heights, &Lift { heights: vec![raft], gap: 0 })
+            tall(settings, heights, &Lift { heights: vec![raft], ..Lift::default() })
         };
         assert_eq!(tall(&profile(0.0), &layers(limit / 100, 100), 0), Ok(()));
         let refusal = tall(&profile(0.0), &layers(limit / 100 + 1, 100), 0).unwrap_err();
@@ -110,6 +112,11 @@ mod tests {
         for part in ["lifted by 0.4 mm", "retraction.z_hop", "--scale"] {
             assert!(text.contains(part), "{text}");
         }
+        // Parts may end at the limit where the nozzle reaches higher.
+        let mut higher = profile(0.4);
+        higher.machine.reach.max_z = Some(higher.machine.bed_height + 0.4);
+        assert_eq!(tall(&higher, &layers(limit / 100, 100), 0), Ok(()));
+        assert!(tall(&higher, &layers(limit / 100 + 1, 100), 0).is_err());
         let refusal = tall(&profile(0.0), &layers(limit / 100, 100), 9_000).unwrap_err();
         let text = refusal.to_string();
         for part in ["0.9 mm of raft", "no --raft"] {

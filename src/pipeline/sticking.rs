@@ -128,12 +128,12 @@ impl<'a> Sticking<'a> {
         params.lay(&base, |contours| rise(mesh, heights.plane(0), contours, &islands))
     }
 
-    /// How high a skirt is on a layer of the print. It closes the gap above a raft.
+    /// How high a skirt is on a layer of the print. It fills the gap above a raft.
     fn height(&self, layer: usize) -> Coord {
         let Some(own) = layer.checked_sub(self.lift.layers()) else {
             return self.lift.heights[layer];
         };
-        self.heights.height(own) + if own == 0 { self.lift.gap } else { 0 }
+        self.heights.height(own) + if own == 0 { self.lift.filled } else { 0 }
     }
 
     /// Refuses what does not fit the bed, and says what was decided.

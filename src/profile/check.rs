@@ -19,6 +19,9 @@ const SLACK_MM: f64 = 1e-9;
 /// Lines narrower than this times the layer height do not lie, they stand.
 const LEAST_WIDTH: f64 = 0.8;
 
+/// Support on a raft may hang so far above it where its beads cannot fill the gap, mm: it still sticks.
+const MOST_OPEN: f64 = 0.1;
+
 /// A nozzle lays no wider lines than so many times its diameter: its flat rim ends there.
 const MOST_WIDTH: f64 = 2.5;
 
@@ -106,7 +109,7 @@ fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
         }
     }
     let height = raft.gap + settings.first_layer_height;
-    if raft.enabled && settings.support.enabled && height > nozzle + SLACK_MM {
+    if raft.enabled && settings.support.enabled && height > nozzle + MOST_OPEN {
         let keys = ["raft.gap", "first_layer_height", "support.enabled"];
         return Err(blame.error(&keys, Conflict::TallFirstSupport { height, nozzle }));
     }

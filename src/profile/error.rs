@@ -247,11 +247,11 @@ pub enum Conflict {
         /// Greatest width for each mm of nozzle.
         most: f64,
     },
-    /// Support that would begin with beads higher than the nozzle is wide.
+    /// Support whose first beads cannot fill the gap above the raft.
     #[error(
-        "support stands on the raft: its first lines would be {height} mm high, raft.gap and \
-         first_layer_height together, more than machine.nozzle_diameter = {nozzle} mm; make one of \
-         the two smaller"
+        "support stands on the raft: its first lines would have to be {height:.2} mm high, raft.gap \
+         and first_layer_height together, for machine.nozzle_diameter = {nozzle} mm; make one of the \
+         two smaller"
     )]
     TallFirstSupport {
         /// Height of those lines, mm.

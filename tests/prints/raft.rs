@@ -335,9 +335,9 @@ fn what_does_not_fit_is_refused() {
     };
     assert!(wrong(("raft.base_height", "0.5")).contains("machine.nozzle_diameter"));
     assert!(wrong(("raft.base_width", "0.2")).contains("raft.base_width = 0.2 mm is too little"));
-    let support = [over(ON), over(("support.enabled", "true")), over(("raft.gap", "0.3"))];
+    let support = [over(ON), over(("support.enabled", "true")), over(("raft.gap", "0.35"))];
     let error = slicer::profile::load(["generic-marlin"], &support).unwrap_err().to_string();
-    assert!(error.contains("would be 0.5 mm high"), "{error}");
+    assert!(error.contains("would have to be 0.55 mm high"), "{error}");
     assert!(wrong(("raft.base_width", "1.2")).contains("2.5 times machine.nozzle_diameter"));
 }
 

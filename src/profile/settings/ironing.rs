@@ -14,13 +14,13 @@ pub struct Ironing {
     #[schemars(extend("default" = "off"))]
     pub place: IroningPlace,
     /// Plastic of its lines, of what a layer of their spacing takes: it fills the grooves.
-    #[schemars(range(min = 1, max = 50), extend("unit" = "%", "default" = 15))]
+    #[schemars(range(min = 5, max = 50), extend("unit" = "%", "default" = 15))]
     pub flow: f64,
     /// Distance between its lines.
-    #[schemars(range(min = 0.02, max = 1), extend("unit" = "mm", "default" = 0.1))]
+    #[schemars(range(min = 0.05, max = 1), extend("unit" = "mm", "default" = 0.1))]
     pub spacing: f64,
     /// How far the middle of the nozzle keeps from the part's outline, and from that of what stands
     /// on the layer; half a line's width where nobody sets it.
-    #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 0.2, "follows" = "line_width", "times" = 0.5))]
+    #[schemars(range(min = 0.05, max = 20), extend("unit" = "mm", "default" = 0.2, "follows" = "line_width", "times" = 0.5))]
     pub inset: f64,
 }
