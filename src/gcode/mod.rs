@@ -4,8 +4,8 @@
 //!   that the times are those of what is written.
 //! - *Progress* lines (`M73`) tell the printer which part of the print is done.
 //!
-//! 1. [`moves`] turns a layer into machine moves; [`flow`] lowers feeds to the flow limit. [`arcs`]
-//!    replaces lines that lie on a circle; [`segments`] joins and slows down lines that are too short.
+//! 1. [`moves`] turns a layer into machine moves; [`flow`] lowers feeds to the flow limit. `arcs`
+//!    replaces lines that lie on a circle; `segments` joins and slows down lines that are too short.
 //! 2. [`cooling`] lowers those of layers that would take too little time. It holds back some layers,
 //!    since those above have a say.
 //! 3. [`times`] runs the clock over these moves, layer by layer; [`usage`] sums their filament.

@@ -9,7 +9,7 @@
 //!
 //! Algorithm:
 //! 1. On both rasters of skins, a top is what the layer above does not cover within reach of a place so
-//!    deep in it that a wide disc has room ([`tops`]). Where walls share the room of a thin place, there is
+//!    deep in it that a wide disc has room (`tops`). Where walls share the room of a thin place, there is
 //!    none: they are no loops side by side.
 //! 2. Each inner wall is followed in short steps. Those that lie in a top on both rasters are cut out.
 //!    Short arcs go with them, and short cuts are none.

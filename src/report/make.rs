@@ -9,12 +9,12 @@
 
 use super::cooling::cooling;
 use super::motion::{self, motion};
-use super::reshaped;
 use super::tally::Tally;
 use super::{
     ApartReport, BlockReport, DualReport, FilamentReport, FlowReport, LayerTimeReport,
     LayersReport, ProfileReport, Report, RoleReport, SCHEMA, TimeReport, TravelReport,
 };
+use super::{reshaped, unused};
 use crate::fill::Role;
 use crate::gcode::Sums;
 use crate::gcode::flow::{Flows, speed};
@@ -81,6 +81,7 @@ pub fn report(
             .chain(tally.warnings())
             .chain(slow_speeds(settings))
             .chain(motion::warnings(settings))
+            .chain(unused::warnings(usage, settings))
             .chain(slowed_down(&usage.flows, settings))
             .chain(reshaped::warnings(sums, settings))
             .collect(),

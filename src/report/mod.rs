@@ -14,6 +14,7 @@ pub mod make;
 pub mod motion;
 mod reshaped;
 pub mod tally;
+mod unused;
 
 use crate::check::Verdict;
 use crate::mesh::MeshReport;

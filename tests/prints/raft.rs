@@ -390,6 +390,19 @@ fn a_print_on_a_raft_is_found_clean_and_a_raft_that_is_missing_is_not() {
 }
 
 #[test]
+fn what_a_raft_makes_void_is_said() {
+    let set =
+        [ON, ("elephant_foot", "0.3"), ("first_layer_width", "0.6"), ("brim.where", "outside")];
+    let said = |set: &[(&str, &str)]| -> Vec<String> {
+        let run = slice_shipped(&fixture("tile.stl"), "generic-marlin", set);
+        run.report.warnings.iter().map(ToString::to_string).collect()
+    };
+    let why = "have no effect: the part stands on a raft, and not on the bed";
+    assert_eq!(said(&set), [format!("brim.where, first_layer_width, elephant_foot {why}")]);
+    assert!(said(&set[1..]).is_empty() && said(&[ON]).is_empty());
+}
+
+#[test]
 fn a_raft_that_is_off_changes_no_move() {
     let moves = |set: &[(&str, &str)]| {
         let text = slice_shipped(&fixture("bracket.stl"), "generic-marlin", set).text;

@@ -11,7 +11,7 @@
 
 use crate::common::damage::{Good, kinds, listed, warned};
 use crate::common::solid::{circle, rectangle, star};
-use crate::common::{Kind, Move, Run, Section, Solid, slice, slice_shipped};
+use crate::common::{Kind, Move, Run, Section, Solid, fixture, slice, slice_shipped};
 use proptest::prelude::*;
 use slicer::check::finding::Code;
 
@@ -404,4 +404,15 @@ fn skins_are_as_thick_as_asked_for_and_have_as_many_layers() {
     ] {
         assert_eq!(solid_layers(&set), layers, "{set:?}");
     }
+}
+
+#[test]
+fn a_print_without_anything_to_iron_says_so() {
+    let said = |inset: &str| -> Vec<String> {
+        let set = [("ironing.where", "top"), ("ironing.inset", inset)];
+        let run = slice(&fixture("tile.stl"), "generic-marlin", &set);
+        run.report.warnings.iter().map(ToString::to_string).collect()
+    };
+    assert!(said("0.2").is_empty());
+    assert_eq!(said("20"), ["ironing.where has no effect: no top is wide enough for its lines"]);
 }

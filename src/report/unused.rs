@@ -1,0 +1,36 @@
+//! Settings + what was printed -> findings: what was asked for and is not in the print, for a reason that is no fault.
+
+use crate::fill::Role;
+use crate::gcode::usage::Usage;
+use crate::profile::{BrimPlace, IroningPlace, Settings};
+use crate::warning::Warning;
+
+/// Keys that changed nothing, each with the reason.
+pub(super) fn warnings(usage: &Usage, settings: &Settings) -> Vec<Warning> {
+    let no_effect = |keys: Vec<&str>, why: &str| {
+        let settings = keys.into_iter().map(str::to_owned).collect();
+        Warning::NoEffect { settings, why: why.to_owned() }
+    };
+    let mut found = Vec::new();
+    let on_raft = on_raft(settings);
+    if !on_raft.is_empty() {
+        found.push(no_effect(on_raft, "the part stands on a raft, and not on the bed"));
+    }
+    let ironed = usage.roles[Role::Ironing].iter().any(|(_, used)| used.length > 0.0);
+    if settings.ironing.place != IroningPlace::Off && !ironed {
+        found.push(no_effect(vec!["ironing.where"], "no top is wide enough for its lines"));
+    }
+    found
+}
+
+/// Keys of the first layer that a raft makes void.
+fn on_raft(settings: &Settings) -> Vec<&'static str> {
+    let brim = !matches!(settings.brim.place, BrimPlace::Auto | BrimPlace::Off);
+    let keys = [
+        ("brim.where", brim),
+        ("first_layer_width", settings.first_layer_width.is_some()),
+        ("elephant_foot", settings.elephant_foot > 0.0),
+    ];
+    let void = keys.into_iter().filter(|(_, is_set)| *is_set && settings.raft.enabled);
+    void.map(|(key, _)| key).collect()
+}
