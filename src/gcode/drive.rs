@@ -84,6 +84,8 @@ pub struct Drives {
     all: Vec<Drive>,
     /// The place of each role's drive, on the first layer and on the others.
     lines: [RoleTable<usize>; 2],
+    /// The part's first layer on a raft; 0 without one.
+    of_part: usize,
     /// The place of that of travels.
     travel: usize,
     own: Told,
@@ -111,14 +113,18 @@ impl Drives {
         let lines =
             [true, false].map(|first| RoleTable::new(|role| place(maker.line(role, first))));
         let (own, rule) = (maker.own(), settings.limits.junction);
-        Some(Self { all, lines, travel, own, dialect: settings.machine.dialect, rule })
+        let (of_part, dialect) = (settings.raft_layers(), settings.machine.dialect);
+        Some(Self { all, lines, of_part, travel, own, dialect, rule })
     }
 
     /// The number of the drive that a move of this layer asks for; none if it leaves what is in force.
     #[must_use]
     pub fn of(&self, layer: usize, kind: &Kind) -> Option<usize> {
         match kind {
-            Kind::Extrude(bead) => Some(self.lines[usize::from(layer > 0)][bead.role]),
+            Kind::Extrude(bead) => {
+                let first = layer == 0 || layer == self.of_part;
+                Some(self.lines[usize::from(!first)][bead.role])
+            }
             Kind::Travel | Kind::Z => Some(self.travel),
             Kind::Retract | Kind::Restore | Kind::Wait(_) => None,
         }

@@ -37,7 +37,9 @@ pub(super) fn motion(usage: &Usage, settings: &Settings) -> Option<MotionReport>
         let acceleration = settings.acceleration.first_layer.map(|_| first.acceleration);
         drives.push(row("first layer", acceleration, settings.jerk.first_layer));
         let roles = Role::ALL.into_iter().filter(used);
-        drives.extend(roles.map(|r| asked(r.facts().name, drive::line(settings, r, false))));
+        // The base of a raft is all first layer.
+        let line = |role: Role| drive::line(settings, role, role == Role::RaftBase);
+        drives.extend(roles.map(|role| asked(role.facts().name, line(role))));
         drives.push(asked("travel", drive::travel(settings)));
         drives.retain(|one| one.acceleration_mm_s2.is_some() || one.jerk_mm_s.is_some());
     }

@@ -131,12 +131,17 @@ fn default(key: &Key) -> String {
 
 /// Our keys beside their names in other slicers.
 fn list_of_names() -> String {
-    let row = |(ours, theirs): (&str, &[&str])| {
-        let theirs: Vec<String> = theirs.iter().map(|name| format!("`{name}`")).collect();
-        format!("| `{ours}` | {} |\n", theirs.join(", "))
+    let row = |(ours, theirs): (&str, foreign::Names)| {
+        let list = |names: &[&str]| -> String {
+            let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+            names.join(", ")
+        };
+        let [prusa, orca, cura] = theirs.map(list);
+        format!("| `{ours}` | {prusa} | {orca} | {cura} |\n")
     };
     let rows: String = foreign::names().map(row).collect();
-    format!("\n| here | there |\n|---|---|\n{rows}\n")
+    let head = "| here | PrusaSlicer, Slic3r | OrcaSlicer, if other | Cura |\n|---|---|---|---|";
+    format!("\n{head}\n{rows}\n")
 }
 
 /// Compares what stands in the list of profiles between two marks with what is `made` for it.

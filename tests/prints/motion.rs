@@ -383,3 +383,25 @@ fn the_prusas_have_their_makers_accelerations() {
         });
     }
 }
+
+#[test]
+fn on_a_raft_its_base_and_the_parts_first_layer_are_first_layers() {
+    let set = [("raft.enabled", "true"), ("acceleration.first_layer", "300"), ("infill", "0")];
+    let run = slice(&fixture("tile.stl"), "generic-marlin", &set);
+    let (mut told, mut layer, mut seen) = (Told::default(), 0, Vec::new());
+    let end = run.text.rfind(";TYPE:Custom").unwrap();
+    let begin = run.text.find(";LAYER_CHANGE").unwrap();
+    for line in run.text[begin..end].lines() {
+        told.read(line);
+        layer += usize::from(line == ";LAYER_CHANGE");
+        if line.starts_with("G1 X") && line.contains(" E") {
+            let acceleration = told.values["M204 P"];
+            seen.resize(layer, acceleration);
+            assert_eq!(seen[layer - 1], acceleration, "layer {layer}");
+        }
+    }
+    assert_eq!(seen[..5], [300.0, 1000.0, 1000.0, 300.0, 1000.0]);
+    let drives = run.report.motion.unwrap().drives;
+    let base = drives.iter().find(|row| row.of == "raft base").unwrap();
+    assert_eq!(base.acceleration_mm_s2, Some(300.0));
+}

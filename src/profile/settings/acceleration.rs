@@ -38,7 +38,7 @@ pub struct Acceleration {
     /// Acceleration of support; unset means machine.acceleration.
     #[schemars(range(min = 1, max = 100_000), extend("unit" = "mm/s²"))]
     pub support: Option<f64>,
-    /// Acceleration of all lines of the first layer; unset means that of each line.
+    /// Acceleration of all lines of the first layer, on a raft also of the part's; unset means that of each line.
     #[schemars(range(min = 1, max = 100_000), extend("unit" = "mm/s²"))]
     pub first_layer: Option<f64>,
     /// Acceleration of moves that print nothing; unset means limits.travel_acceleration.

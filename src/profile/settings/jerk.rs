@@ -39,7 +39,7 @@ pub struct Jerk {
     /// Jerk of support; unset means the machine's.
     #[schemars(range(min = 0.1, max = 1_000), extend("unit" = "mm/s"))]
     pub support: Option<f64>,
-    /// Jerk of all lines of the first layer; unset means that of each line.
+    /// Jerk of all lines of the first layer, on a raft also of the part's; unset means that of each line.
     #[schemars(range(min = 0.1, max = 1_000), extend("unit" = "mm/s"))]
     pub first_layer: Option<f64>,
     /// Jerk of moves that print nothing; unset means the machine's.
