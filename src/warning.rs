@@ -150,6 +150,15 @@ pub enum Warning {
     },
 }
 
+impl Warning {
+    /// That these keys change nothing, and why.
+    #[must_use]
+    pub fn void<'a>(keys: impl IntoIterator<Item = &'a str>, why: &str) -> Self {
+        let settings = keys.into_iter().map(str::to_owned).collect();
+        Self::NoEffect { settings, why: why.to_owned() }
+    }
+}
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -97,7 +97,6 @@ impl Arcs {
 
     /// Adds the lines of a run, which begins where its first move ends.
     fn run(&self, moves: &[Move], layer: &mut Moves) {
-        let mm = |place: [Thousandths; 2]| place.map(|at| f64::from(at.0) / 1000.0);
         let points: Vec<[f64; 2]> = moves.iter().map(|step| mm(step.to)).collect();
         let mut done = 0;
         while done + 1 < moves.len() {
@@ -233,7 +232,6 @@ fn alike(moves: &[Move], first: usize, end: usize) -> usize {
 /// Adds an arc in the place of `lines`.
 fn add(layer: &mut Moves, from: [Thousandths; 2], lines: &[Move], fit: &Fit) {
     let Some(&last) = lines.last() else { return };
-    let mm = |place: [Thousandths; 2]| place.map(|at| f64::from(at.0) / 1000.0);
     let start = mm(from);
     let middle = [0, 1].map(|k| start[k] + fit.middle[k]);
     let arc = Arc { from: start, to: mm(last.to), middle, clockwise: fit.clockwise };
@@ -256,6 +254,10 @@ fn add(layer: &mut Moves, from: [Thousandths; 2], lines: &[Move], fit: &Fit) {
         to_middle: fit.middle.map(place),
         clockwise: fit.clockwise,
     });
+}
+
+fn mm(place: [Thousandths; 2]) -> [f64; 2] {
+    place.map(|at| f64::from(at.0) / 1000.0)
 }
 
 fn way(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

@@ -103,6 +103,16 @@ pub struct Moves {
     pub group_seconds: Option<f64>,
 }
 
+impl Moves {
+    /// Finds the largest flow anew, now that lines are slower; `area` is the filament's cross-section, mm².
+    pub(super) fn slowed(&mut self, area: f64) {
+        let lines = self.moves.iter().filter(|step| step.length > 0.0);
+        let beads = lines.filter(|step| matches!(step.kind, Kind::Extrude(_)));
+        let flow = beads.map(|s| s.filament * area / s.length * f64::from(s.feed) / 60.0);
+        self.flows.largest = flow.fold(0.0, f64::max).min(self.flows.largest);
+    }
+}
+
 /// How the first layer differs from others, on the bed and of the part on a raft.
 #[derive(Debug, Clone, Copy)]
 struct FirstLayer {

@@ -65,10 +65,7 @@ impl Segments {
         self.join(layer, &dense);
         self.slow(layer);
         if layer.short.slowed > 0 {
-            let lines = layer.moves.iter().filter(|step| step.length > 0.0);
-            let beads = lines.filter(|step| matches!(step.kind, Kind::Extrude(_)));
-            let flow = beads.map(|s| s.filament * self.area / s.length * f64::from(s.feed) / 60.0);
-            layer.flows.largest = flow.fold(0.0, f64::max).min(layer.flows.largest);
+            layer.slowed(self.area);
         }
     }
 

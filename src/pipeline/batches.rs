@@ -10,10 +10,8 @@
 //! All code that names the numbers of `region`, `fill` and `plan` stands here and in no other file of
 //! the pipeline.
 //!
-//! - A *batch* is some layers, one on the other, that become regions together.
 //! - The *setup* is what the settings mean for the three stages, and what heights and bodies add to it.
-//! - The *planner* makes regions of a batch while the *orderer* fills and orders those of the one before:
-//!   layer after layer, for each begins where the last one ended.
+//! - The *planner* makes regions of a batch while the *orderer* fills and orders those of the one before.
 
 use super::footing::Footing;
 use super::footprint::{Footprint, Rules, footprint};

@@ -56,8 +56,8 @@ pub fn warnings(settings: &Settings) -> Vec<Warning> {
     }
     let jerks = if asks_jerk(settings) { drive::asked(settings, "jerk") } else { Vec::new() };
     let none = |keys: Vec<(String, f64)>, why: &str| {
-        let settings: Vec<String> = keys.into_iter().map(|(key, _)| key).collect();
-        (!settings.is_empty()).then(|| Warning::NoEffect { settings, why: why.to_owned() })
+        let any = !keys.is_empty();
+        any.then(|| Warning::void(keys.iter().map(|(key, _)| key.as_str()), why))
     };
     let mut advance = Vec::new();
     if let Some(seconds) = settings.filament.pressure_advance

@@ -26,9 +26,7 @@ fn arcs_unknown(settings: &Settings) -> Option<Warning> {
             return unknown.then(|| Warning::ArcsUnknown { machine: machine.name.clone() });
         }
     };
-    settings
-        .arcs
-        .then(|| Warning::NoEffect { settings: vec!["arcs".to_owned()], why: why.to_owned() })
+    settings.arcs.then(|| Warning::void(["arcs"], why))
 }
 
 /// What arcs stand for.

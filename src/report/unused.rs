@@ -7,18 +7,14 @@ use crate::warning::Warning;
 
 /// Keys that changed nothing, each with the reason.
 pub(super) fn warnings(usage: &Usage, settings: &Settings) -> Vec<Warning> {
-    let no_effect = |keys: Vec<&str>, why: &str| {
-        let settings = keys.into_iter().map(str::to_owned).collect();
-        Warning::NoEffect { settings, why: why.to_owned() }
-    };
     let mut found = Vec::new();
     let on_raft = on_raft(settings);
     if !on_raft.is_empty() {
-        found.push(no_effect(on_raft, "the part stands on a raft, and not on the bed"));
+        found.push(Warning::void(on_raft, "the part stands on a raft, and not on the bed"));
     }
     let ironed = usage.roles[Role::Ironing].iter().any(|(_, used)| used.length > 0.0);
     if settings.ironing.place != IroningPlace::Off && !ironed {
-        found.push(no_effect(vec!["ironing.where"], "no top is wide enough for its lines"));
+        found.push(Warning::void(["ironing.where"], "no top is wide enough for its lines"));
     }
     found
 }

@@ -135,9 +135,7 @@ impl Cooling {
         }
         layers
     }
-}
 
-impl Cooling {
     /// Slows down layers of a group further until all of them together take the least time of each: what
     /// is under the next group has set by then, whichever of them gave it the time.
     fn make_up(&self, layers: &mut [(Moves, Slowed)]) {

@@ -125,20 +125,14 @@ impl Slowing {
         if need.quick {
             caps = trial.inside(caps);
         }
-        trial.set(caps);
-        let lowest = trial.lowest();
-        self.flow(layer);
-        Slowed { lowest, ..untouched }
+        Slowed { lowest: trial.settle(caps), ..untouched }
     }
 
     /// Slows down what is inside a layer until it takes `seconds`, if it can.
     pub(super) fn slow_to(&self, layer: &mut Moves, seconds: f64) -> Slowed {
         let mut trial = Trial { least: seconds, ..Trial::new(self, layer) };
         let caps = trial.inside([NO_CAP; 3]);
-        trial.set(caps);
-        let lowest = trial.lowest();
-        self.flow(layer);
-        Slowed { quick: true, lowest, waits: false }
+        Slowed { quick: true, lowest: trial.settle(caps), waits: false }
     }
 
     /// Whether a layer takes the least time even without speeding up and slowing down.
@@ -150,14 +144,6 @@ impl Slowing {
             minutes += step.length / f64::from(step.feed);
             minutes >= enough
         }) || self.least <= 0.0
-    }
-
-    /// The largest flow, now that lines are slower.
-    fn flow(&self, layer: &mut Moves) {
-        let lines = layer.moves.iter().filter(|step| step.length > 0.0);
-        let beads = lines.filter(|step| matches!(step.kind, Kind::Extrude(_)));
-        let flow = beads.map(|s| s.filament * self.area / s.length * f64::from(s.feed) / 60.0);
-        layer.flows.largest = flow.fold(0.0, f64::max).min(layer.flows.largest);
     }
 }
 
@@ -225,6 +211,14 @@ impl<'a> Trial<'a> {
 
     fn is_enough(&mut self, caps: Caps) -> bool {
         self.seconds(caps) >= self.least
+    }
+
+    /// Leaves the layer with these caps. Returns, for each kind, the lowest share of its feed that a
+    /// line is left.
+    fn settle(mut self, caps: Caps) -> [f64; 3] {
+        self.set(caps);
+        self.layer.slowed(self.slowing.area);
+        self.lowest()
     }
 
     /// For each kind, the lowest share of its feed that a line is left.

@@ -6,7 +6,7 @@
 use super::slowing::Slowing;
 use crate::gcode::flow::{feed, whole_feed};
 use crate::gcode::moves::{Kind, Move, Moves};
-use crate::profile::{Origin, Settings};
+use crate::profile::Settings;
 use crate::units::{Coord, Thousandths, to_units};
 
 /// How far from the lines the nozzle waits, mm: no drop that hangs from it reaches them.
@@ -31,12 +31,10 @@ pub(super) struct Waiting {
 impl Waiting {
     pub(super) fn new(settings: &Settings) -> Self {
         let machine = &settings.machine;
-        let side = |size: f64| match machine.origin {
-            Origin::Centre => [-500.0 * size, 500.0 * size],
-            Origin::FrontLeft => [0.0, 1000.0 * size],
-        };
+        let [low, high] = machine.volume();
+        let side = |axis: usize| [low[axis], high[axis]].map(|mm| (1000.0 * mm) as i32);
         Self {
-            bed: [machine.bed_width, machine.bed_depth].map(|size| side(size).map(|at| at as i32)),
+            bed: [0, 1].map(side),
             top: to_units(machine.bed_height),
             retract: settings.retraction.length,
             retract_feed: whole_feed(feed(settings.retraction.speed)),
