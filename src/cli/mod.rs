@@ -27,8 +27,7 @@ use anyhow::Result;
 use args::{Arguments, Command, ProfileCommand, ReportCommand};
 use clap::FromArgMatches as _;
 use clap::error::{ContextKind, ContextValue};
-use slicer::report::make::slow_speeds;
-use slicer::report::motion;
+use slicer::report::{doubtful, motion};
 use slicer::{profile, report};
 use std::ffi::OsString;
 use std::io::Write as _;
@@ -167,8 +166,8 @@ fn profile_command(command: &ProfileCommand) -> Result<String> {
         ProfileCommand::Check { names, profiles } => {
             let names: Vec<String> = names.iter().map(|name| profiles.meant(name)).collect();
             let profile = profiles.load_after(&names)?;
-            let slow = slow_speeds(&profile.settings);
-            for warning in slow.into_iter().chain(motion::warnings(&profile.settings)) {
+            let doubtful = doubtful::warnings(&profile.settings);
+            for warning in doubtful.into_iter().chain(motion::warnings(&profile.settings)) {
                 say(&format!("warning: {warning}\n"));
             }
             format!("{}: good\n", names.join(" + "))

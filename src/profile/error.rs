@@ -307,6 +307,23 @@ pub enum Conflict {
         /// Height of a thick line, at most.
         most: f64,
     },
+    /// A temperature that the printer does not bear, or does not print at.
+    #[error(
+        "{key} = {celsius} °C, but this printer takes {least} to {most} °C; set another, or {limit} if \
+         it takes more or less"
+    )]
+    NotBorne {
+        /// The key of the temperature.
+        key: &'static str,
+        /// The temperature.
+        celsius: f64,
+        /// The key of the limit that it passes.
+        limit: &'static str,
+        /// The coldest that the printer takes, °C.
+        least: f64,
+        /// The hottest that it takes, °C.
+        most: f64,
+    },
     /// A bed temperature that nothing asks the printer for.
     #[error(
         "filament.bed_temperature = {celsius} °C would have no effect: machine.start_gcode does \

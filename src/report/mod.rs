@@ -10,6 +10,7 @@
 //! meaning of a field never changes without a new [`SCHEMA`] number.
 
 mod cooling;
+pub mod doubtful;
 pub mod make;
 pub mod motion;
 mod reshaped;
