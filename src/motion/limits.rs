@@ -9,7 +9,8 @@ pub struct Limits {
     /// Highest speed of each axis, mm/s.
     pub feed: [f64; 4],
     /// Highest acceleration of each axis, mm/s². A move along several axes gets
-    /// what leaves each within its own. With [`Junction::SquareCorner`] x and y have none.
+    /// what leaves each within its own. With [`Junction::SquareCorner`] only z has
+    /// one.
     pub acceleration: [f64; 4],
     /// Acceleration along the path of moves that extrude, mm/s².
     pub print_acceleration: f64,
@@ -145,7 +146,8 @@ impl Rates {
         let is_klipper = matches!(limits.junction, Junction::SquareCorner { .. });
         let mut acceleration_inverse = inverse(limits.acceleration);
         if is_klipper {
-            acceleration_inverse[..2].fill(0.0);
+            let [x, y, _, e] = &mut acceleration_inverse;
+            (*x, *y, *e) = (0.0, 0.0, 0.0);
         }
         Self {
             sprint,
