@@ -14,7 +14,7 @@
 //! Then each line gets its width and height: from comments where the file has them, else the height
 //! of the layer, and the width that its plastic fills at that height.
 
-use super::{Event, Firmware, Heating, Heights, Motion, Role, Summary};
+use super::{Event, Firmware, Heating, Heights, Motion, Reading, Role, Summary};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI};
 use std::io::{self, BufRead};
@@ -171,11 +171,11 @@ impl Print {
     /// As [`Self::read`].
     pub fn read_as(
         source: &mut dyn BufRead,
-        firmware: Firmware,
+        reading: impl Into<Reading>,
         filament_diameter: f64,
     ) -> io::Result<Self> {
         let mut builder = Builder::default();
-        let summary = super::read(source, firmware, &mut |line, event| builder.event(line, event))?;
+        let summary = super::read(source, reading, &mut |line, event| builder.event(line, event))?;
         Ok(builder.print(summary, filament_diameter))
     }
 
