@@ -1,7 +1,7 @@
 //! `slicer check` -> what is wrong with a G-code file, as lines or as JSON.
 
 use super::args::CheckArgs;
-use super::{Outcome, failure, input, output};
+use super::{Outcome, failure, output};
 use anyhow::Result;
 use slicer::check::finding::{Code, Count};
 use slicer::check::terms::Terms;
@@ -9,7 +9,7 @@ use slicer::check::{self, Measures, Model, Verdict};
 use slicer::mesh::Bed;
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
-use slicer::reader::{Cause, Firmware, Print};
+use slicer::reader::{Cause, Print};
 use slicer::warning::plural;
 use std::path::Path;
 
@@ -29,10 +29,10 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
         return Err(failure::usage("--set changes a profile; name one with -p, too"));
     }
     let given = if profiles.any() { Some(profiles.load([])?) } else { None };
-    let (name, mut source) = input::open(&args.file)?;
+    let machine = given.as_ref().map(|profile| &profile.settings);
+    let (name, mut source, reading) = args.reading.open(&args.file, machine)?;
     let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
-    let firmware = given.as_ref().map_or_else(Firmware::default, |p| input::firmware(&p.settings));
-    let print = Print::read_as(&mut source, firmware, diameter)
+    let print = Print::read_as(&mut source, reading, diameter)
         .map_err(|e| Cause::Unreadable(e).of(name))?;
     if print.layers.is_empty() {
         return Err(Cause::NoLine.of(name).into());
