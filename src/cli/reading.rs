@@ -13,7 +13,7 @@ use std::io::{self, BufRead, Cursor, Read as _, Seek as _, SeekFrom};
 #[command(next_help_heading = "Reading")]
 pub(crate) struct ReadingArgs {
     /// Read G-code by this firmware's rules [default: the profile's, else what the file says it is for]
-    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(Firmware::NAMES))]
+    #[arg(hide_short_help = true, long, value_name = "NAME", value_parser = PossibleValuesParser::new(Firmware::NAMES))]
     firmware: Option<String>,
 }
 
