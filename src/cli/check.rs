@@ -9,7 +9,7 @@ use slicer::check::{self, Measures, Model, Verdict};
 use slicer::mesh::Bed;
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
-use slicer::reader::{Cause, Print};
+use slicer::reader::{Cause, Firmware, Print};
 use slicer::warning::plural;
 use std::path::Path;
 
@@ -58,18 +58,25 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let text = if args.json {
         output::json(&verdict, Path::new("-"))?
     } else {
-        let by = judged_by(given.as_ref(), own.as_ref(), &args.against);
+        let firmware = print.summary.firmware;
+        let by = judged_by(given.as_ref(), own.as_ref(), firmware, &args.against);
         let (headline, findings) = (headline(&verdict), findings(&verdict));
         format!("{name}: {headline}, {by}\n{findings}{}", notes(&verdict))
     };
     Ok(Outcome { text, code })
 }
 
-fn judged_by(given: Option<&Profile>, own: Option<&Profile>, models: &[String]) -> String {
+fn judged_by(
+    given: Option<&Profile>,
+    own: Option<&Profile>,
+    firmware: Firmware,
+    models: &[String],
+) -> String {
     let by = match (given, own) {
         (Some(profile), _) => format!("judged by the profile {}", profile.sources),
         (None, Some(_)) => "judged by its own settings".to_owned(),
-        (None, None) => "judged without a profile".to_owned(),
+        (None, None) if firmware == Firmware::Other => "judged without a profile".to_owned(),
+        (None, None) => format!("judged without a profile, read as {} reads it", firmware.name()),
     };
     if models.is_empty() { by } else { format!("{by}, against {}", models.join(", ")) }
 }
