@@ -27,7 +27,9 @@ impl ReadingArgs {
             Some(own) if own.name() == told.name() => own,
             _ => told,
         });
-        Reading { firmware: told.or(own).unwrap_or(says.firmware), ..says }
+        let by_machine = machine.map_or(0.0, |settings| settings.filament.diameter);
+        let volumes = says.volumes.map(|says| if says > 0.0 { says } else { by_machine });
+        Reading { firmware: told.or(own).unwrap_or(says.firmware), volumes }
     }
 
     /// As [`input::open`], with how the file is read.

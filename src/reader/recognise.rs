@@ -20,8 +20,8 @@ use super::words;
 pub struct Reading {
     /// Whose rules.
     pub firmware: Firmware,
-    /// Diameter of the filament by which E is a volume from the first line, mm; `None` where E is a
-    /// length until the file says otherwise.
+    /// Diameter of the filament by which E is a volume from the first line, mm, 0 being any usual one;
+    /// `None` where E is a length until the file says otherwise.
     pub volumes: Option<f64>,
 }
 
@@ -30,9 +30,6 @@ impl From<Firmware> for Reading {
         Self { firmware, volumes: None }
     }
 }
-
-/// Diameter where a file with volumes has none, mm: the most usual one.
-const SOME_DIAMETER: f64 = 1.75;
 
 /// Diameters that a filament may have, mm.
 const DIAMETERS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
@@ -142,7 +139,7 @@ impl Said {
 
     fn volumes(&self) -> Option<f64> {
         let diameter = self.diameter.filter(|one| DIAMETERS.contains(one));
-        self.volumes.then(|| diameter.unwrap_or(SOME_DIAMETER))
+        self.volumes.then(|| diameter.unwrap_or_default())
     }
 }
 

@@ -31,7 +31,7 @@ use std::f64::consts::PI;
 /// Feed before the file names one: Marlin's.
 const FIRST_FEED: MmPerS = MmPerS(25.0);
 
-/// Diameter of the filament where M200 switches volumes on without one, mm: the most usual one.
+/// Diameter of the filament where E is a volume and nobody says by which, mm: the most usual one.
 const SOME_DIAMETER: f64 = 1.75;
 
 /// Millimetres in an inch.
@@ -74,7 +74,8 @@ pub(super) struct State {
 impl State {
     pub(super) fn new(reading: Reading) -> Self {
         let rules = reading.firmware.rules();
-        let diameter = reading.volumes.unwrap_or(SOME_DIAMETER);
+        let told = reading.volumes.filter(|diameter| *diameter > 0.0);
+        let diameter = told.unwrap_or(SOME_DIAMETER);
         Self {
             firmware: reading.firmware,
             rules,

@@ -183,6 +183,8 @@ fn e_is_a_volume_where_the_file_or_m200_says_so() {
     let moved = |event: &Event| if let Event::Move(one) = event { one.filament } else { 0.0 };
     assert!((events.iter().map(moved).sum::<f64>() - 1.0 / area).abs() < 1e-9);
     assert_eq!(Reading::of(b"; use_volumetric_e = 0").volumes, None);
+    let cura = Reading::of(b";FLAVOR:Marlin(Volumetric)\nG1 X1 E1");
+    assert_eq!((cura.firmware, cura.volumes), (Marlin1, Some(0.0)));
 }
 
 #[test]
