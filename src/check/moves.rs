@@ -50,6 +50,13 @@ pub(super) fn check(print: &Print, terms: &Terms, found: &mut Findings, notes: &
         }
         walk.step(index, step, found);
     }
+    if print.summary.coarse_arcs > 0 {
+        let (arcs, line) = (print.summary.coarse_arcs, print.summary.first_coarse_arc);
+        notes.push(format!(
+            "where {arcs} arcs go exactly (the first in line {line}): so short a file may not ask for \
+             that many pieces"
+        ));
+    }
     if let Some(macros) = walk.heated_by_macro {
         notes.push(format!("whether the nozzle is hot: that is left to `{macros}`"));
     }

@@ -2,6 +2,7 @@
 
 use super::preview::PreviewArgs;
 use super::profiles::{ProfileArgs, ShelfArgs};
+use super::reading::ReadingArgs;
 use super::words::{UNITS, brim, factor, numbers, parts, sunk, triangles, unit, words};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
@@ -165,6 +166,8 @@ pub(crate) struct EstimateArgs {
     #[arg(long)]
     pub(crate) fixed_limits: bool,
     #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
+    #[command(flatten)]
     pub(crate) profiles: ProfileArgs,
 }
 
@@ -181,6 +184,8 @@ pub(crate) struct CheckArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
     #[command(flatten)]
     pub(crate) profiles: ProfileArgs,
     #[command(flatten)]

@@ -1,7 +1,7 @@
 //! `slicer check` -> what is wrong with a G-code file, as lines or as JSON.
 
 use super::args::CheckArgs;
-use super::{Outcome, failure, input, output};
+use super::{Outcome, failure, output};
 use anyhow::Result;
 use slicer::check::finding::{Code, Count};
 use slicer::check::terms::Terms;
@@ -29,10 +29,10 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
         return Err(failure::usage("--set changes a profile; name one with -p, too"));
     }
     let given = if profiles.any() { Some(profiles.load([])?) } else { None };
-    let (name, mut source) = input::open(&args.file)?;
+    let machine = given.as_ref().map(|profile| &profile.settings);
+    let (name, mut source, reading) = args.reading.open(&args.file, machine)?;
     let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
-    let firmware = given.as_ref().map_or_else(Firmware::default, |p| input::firmware(&p.settings));
-    let print = Print::read_as(&mut source, firmware, diameter)
+    let print = Print::read_as(&mut source, reading, diameter)
         .map_err(|e| Cause::Unreadable(e).of(name))?;
     if print.layers.is_empty() {
         return Err(Cause::NoLine.of(name).into());
@@ -58,18 +58,25 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let text = if args.json {
         output::json(&verdict, Path::new("-"))?
     } else {
-        let by = judged_by(given.as_ref(), own.as_ref(), &args.against);
+        let firmware = print.summary.firmware;
+        let by = judged_by(given.as_ref(), own.as_ref(), firmware, &args.against);
         let (headline, findings) = (headline(&verdict), findings(&verdict));
         format!("{name}: {headline}, {by}\n{findings}{}", notes(&verdict))
     };
     Ok(Outcome { text, code })
 }
 
-fn judged_by(given: Option<&Profile>, own: Option<&Profile>, models: &[String]) -> String {
+fn judged_by(
+    given: Option<&Profile>,
+    own: Option<&Profile>,
+    firmware: Firmware,
+    models: &[String],
+) -> String {
     let by = match (given, own) {
         (Some(profile), _) => format!("judged by the profile {}", profile.sources),
         (None, Some(_)) => "judged by its own settings".to_owned(),
-        (None, None) => "judged without a profile".to_owned(),
+        (None, None) if firmware == Firmware::Other => "judged without a profile".to_owned(),
+        (None, None) => format!("judged without a profile, read as {} reads it", firmware.name()),
     };
     if models.is_empty() { by } else { format!("{by}, against {}", models.join(", ")) }
 }

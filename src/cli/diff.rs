@@ -3,6 +3,7 @@
 mod text;
 
 use super::profiles::ProfileArgs;
+use super::reading::ReadingArgs;
 use super::{Outcome, failure, input, output};
 use anyhow::Result;
 use clap::Args;
@@ -11,7 +12,7 @@ use slicer::diff::{Difference, Side, Tolerances, diff};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::profile::{self, Profile};
-use slicer::reader::{Cause, Firmware, Print};
+use slicer::reader::{Cause, Firmware, Print, Reading};
 use std::path::Path;
 
 const DIFF_RULES: &str = "\
@@ -60,6 +61,8 @@ pub(crate) struct DiffArgs {
     #[arg(long)]
     pub(crate) all: bool,
     #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
+    #[command(flatten)]
     pub(crate) profiles: ProfileArgs,
 }
 
@@ -80,10 +83,11 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
         return Err(failure::usage(why));
     }
     let (a, b) = (input::read(&args.a)?, input::read(&args.b)?);
-    let (one, other) = rayon::join(|| print(&a), || print(&b));
+    let [by, or] = readings(args, [&a.1, &b.1])?;
+    let (one, other) = rayon::join(|| print(&a, by), || print(&b, or));
     let (one, other) = (one?, other?);
     let (clock, limits) = clock(args, &one, &other)?;
-    let (one, other) = rayon::join(|| side(&a, one, &clock), || side(&b, other, &clock));
+    let (one, other) = rayon::join(|| side(&a, one, &clock, by), || side(&b, other, &clock, or));
     let tolerances =
         Tolerances { place: args.tolerance, share: args.sums / 100.0, settings: args.settings };
     let found = diff(&one?, &other?, &tolerances);
@@ -93,23 +97,40 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
     Ok(Outcome { text, code })
 }
 
-fn print((name, bytes): &(&str, Vec<u8>)) -> Result<Print> {
-    let print = Print::read(&mut bytes.as_slice(), SOME_DIAMETER);
+/// How each file is read. What one does not say, such as a file without comments, the other says for both.
+fn readings(args: &DiffArgs, files: [&[u8]; 2]) -> Result<[Reading; 2]> {
+    let profile = args.profiles.load([])?;
+    let machine = args.profiles.any().then_some(&profile.settings);
+    let says = files.map(Reading::of);
+    let other = |own: usize| match says[own].firmware {
+        Firmware::Other => Reading { firmware: says[1 - own].firmware, ..says[own] },
+        _ => says[own],
+    };
+    Ok([0, 1].map(|file| args.reading.of(machine, other(file))))
+}
+
+fn print((name, bytes): &(&str, Vec<u8>), reading: Reading) -> Result<Print> {
+    let print = Print::read_as(&mut bytes.as_slice(), reading, SOME_DIAMETER);
     let mut print = print.map_err(|error| Cause::Unreadable(error).of(name))?;
     print.values = profile::renewed(&print.values);
     Ok(print)
 }
 
-fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Result<Side> {
+fn side(
+    (name, bytes): &(&str, Vec<u8>),
+    print: Print,
+    clock: &Profile,
+    reading: Reading,
+) -> Result<Side> {
     let settings = &clock.settings;
-    // Whatever the clock's dialect, both files are read alike; but an Ultimaker 2 knows what its own
-    // files leave to it.
-    let firmware = match input::firmware(settings) {
-        own @ Firmware::Ultimaker(_) => own,
-        _ => Firmware::default(),
+    // An Ultimaker 2 knows what its own files leave to it.
+    let firmware = match (reading.firmware, input::firmware(settings)) {
+        (Firmware::Ultimaker(_) | Firmware::Other, own @ Firmware::Ultimaker(_)) => own,
+        (said, _) => said,
     };
     let filament_diameter = settings.filament.diameter;
-    let options = Options { filament_diameter, firmware, ..Options::default() };
+    let volumes = reading.volumes;
+    let options = Options { filament_diameter, firmware, volumes, ..Options::default() };
     let time = estimate(&mut bytes.as_slice(), name, &Limits::new(settings), options)?;
     Ok(Side::new(bytes, print, time))
 }

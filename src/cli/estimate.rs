@@ -1,7 +1,7 @@
 //! `slicer estimate` -> how long a G-code file takes, as a table or as JSON.
 
 use super::args::EstimateArgs;
-use super::{input, output};
+use super::output;
 use anyhow::Result;
 use slicer::estimate::{self, Estimate, LayerTime, NotCounted, Options};
 use slicer::motion::Limits;
@@ -15,12 +15,14 @@ use std::path::Path;
 pub(super) fn run(args: &EstimateArgs) -> Result<String> {
     let profile = args.profiles.load([])?;
     let settings = &profile.settings;
+    let machine = args.profiles.any().then_some(settings);
+    let (name, mut source, reading) = args.reading.open(&args.file, machine)?;
     let options = Options {
         filament_diameter: settings.filament.diameter,
         fixed_limits: args.fixed_limits,
-        firmware: input::firmware(settings),
+        firmware: reading.firmware,
+        volumes: reading.volumes,
     };
-    let (name, mut source) = input::open(&args.file)?;
     let found = estimate::estimate(&mut source, name, &Limits::new(settings), options)?;
     if args.json {
         return output::json(&found, Path::new("-"));
@@ -85,6 +87,9 @@ fn not_counted(not: &NotCounted) -> String {
             (_, "homing") => parts.push(format!("{count} times homing")),
             _ => parts.push(plural(count, name)),
         }
+    }
+    if not.coarse_arcs > 0 {
+        parts.push(format!("{} in full", plural(not.coarse_arcs, "huge arc")));
     }
     if not.unknown_lines > 0 {
         let lines = plural(not.unknown_lines, "unknown line");

@@ -37,9 +37,9 @@ pub(super) fn read(file: &str) -> Result<(&str, Vec<u8>), Error> {
 pub(super) fn firmware(settings: &Settings) -> Firmware {
     match settings.machine.dialect {
         DialectName::Marlin => Firmware::Marlin,
-        DialectName::Klipper | DialectName::Makerbot | DialectName::Reprapfirmware => {
-            Firmware::Other
-        }
+        DialectName::Klipper => Firmware::Klipper,
+        DialectName::Makerbot => Firmware::Sailfish,
+        DialectName::Reprapfirmware => Firmware::RepRap,
         DialectName::Ultigcode => Firmware::Ultimaker(OwnFilament {
             diameter: settings.filament.diameter,
             retraction: settings.retraction.length,

@@ -16,6 +16,7 @@ mod output;
 mod preview;
 mod profiles;
 mod progress;
+mod reading;
 mod slice;
 mod summary;
 mod texts;

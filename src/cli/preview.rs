@@ -12,7 +12,8 @@
 
 use super::output::{self, Sink};
 use super::profiles::ProfileArgs;
-use super::{failure, input, interrupt, model, say, usage, viewer, words};
+use super::reading::ReadingArgs;
+use super::{failure, interrupt, model, say, usage, viewer, words};
 use anyhow::{Context as _, Result};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
@@ -72,6 +73,8 @@ pub(crate) struct PreviewArgs {
     #[arg(long, value_name = "AXIS=MM", value_parser = plane, conflicts_with_all = ["layer", "all", "fit", "below", "travels"], help_heading = "Cut")]
     cut: Option<Plane>,
 
+    #[command(flatten)]
+    reading: ReadingArgs,
     #[command(flatten)]
     profiles: ProfileArgs,
     /// Refuse a model with more triangles
@@ -195,10 +198,10 @@ fn model_itself(args: &PreviewArgs, format: Format) -> Result<()> {
 /// The file's name for messages, and what it prints.
 fn read(args: &PreviewArgs) -> Result<(&str, Print)> {
     let profile = args.profiles.load([])?;
-    let (name, mut source) = input::open(&args.file)?;
     let settings = &profile.settings;
-    let firmware = input::firmware(settings);
-    let print = Print::read_as(&mut source, firmware, settings.filament.diameter)
+    let machine = args.profiles.any().then_some(settings);
+    let (name, mut source, reading) = args.reading.open(&args.file, machine)?;
+    let print = Print::read_as(&mut source, reading, settings.filament.diameter)
         .map_err(|error| Cause::Unreadable(error).of(name))?;
     if layer::frame(&print, &print.layers).is_empty() {
         return Err(Cause::NothingToDraw.of(name).into());
@@ -304,7 +307,10 @@ fn page(args: &PreviewArgs) -> Result<()> {
         )));
     }
     let profile = args.profiles.load([])?;
-    let summary = viewer::write(&args.file, &args.output, &profile.settings)?;
+    let settings = &profile.settings;
+    let machine = args.profiles.any().then_some(settings);
+    let reading = |says| args.reading.of(machine, says);
+    let summary = viewer::write(&args.file, &args.output, settings, &reading)?;
     if !args.quiet {
         say(&summary);
     }

@@ -7,22 +7,30 @@ use slicer::estimate::{self, Options};
 use slicer::motion::Limits;
 use slicer::preview::html;
 use slicer::profile::Settings;
-use slicer::reader::{Cause, Print};
+use slicer::reader::{Cause, Print, Reading};
 use slicer::warning::plural;
 use std::io::Write as _;
 use std::path::Path;
 
-/// Writes the page of `file` to `out`; returns a line on what is in it.
+/// Writes the page of `file` to `out`; returns a line on what is in it. `reading` tells how it is read,
+/// from what it says of itself.
 ///
 /// # Errors
 /// A file that cannot be read or holds no move, an output that cannot be written.
-pub(super) fn write(file: &str, out: &Path, settings: &Settings) -> Result<String> {
+pub(super) fn write(
+    file: &str,
+    out: &Path,
+    settings: &Settings,
+    reading: &dyn Fn(Reading) -> Reading,
+) -> Result<String> {
     let mut sink = Sink::open(out)?;
     let (name, bytes) = input::read(file)?;
     let diameter = settings.filament.diameter;
-    let options = Options { filament_diameter: diameter, ..Options::default() };
+    let reading = reading(Reading::of(&bytes));
+    let (firmware, volumes) = (reading.firmware, reading.volumes);
+    let options = Options { filament_diameter: diameter, firmware, volumes, ..Options::default() };
     let estimate = estimate::estimate(&mut &bytes[..], name, &Limits::new(settings), options)?;
-    let print = Print::read(&mut &bytes[..], diameter)
+    let print = Print::read_as(&mut &bytes[..], reading, diameter)
         .map_err(|error| Cause::Unreadable(error).of(name))?;
     // The file is not needed any more, and may be large.
     drop(bytes);

@@ -14,7 +14,7 @@
 //! Who needs a layer at a time reads a [`Stream`](super::Stream) instead: it gives the same moves.
 
 use super::facts::Gatherer;
-use super::{Event, Facts, Firmware, Heating, Motion, Role};
+use super::{Event, Facts, Firmware, Heating, Motion, Reading, Role};
 use std::f64::consts::FRAC_PI_4;
 use std::io::{self, BufRead};
 use std::ops::{Deref, DerefMut, Range};
@@ -145,11 +145,11 @@ impl Print {
     /// As [`Self::read`].
     pub fn read_as(
         source: &mut dyn BufRead,
-        firmware: Firmware,
+        reading: impl Into<Reading>,
         filament_diameter: f64,
     ) -> io::Result<Self> {
         let (mut gatherer, mut moves) = (Gatherer::default(), Kept::default());
-        let summary = super::read(source, firmware, &mut |line, event| {
+        let summary = super::read(source, reading, &mut |line, event| {
             gatherer.event(line, &event);
             moves.event(line, event);
         })?;

@@ -16,7 +16,7 @@ use super::layers::Layers;
 use super::lines::{self, Place};
 use super::print::{Kept, Layer, Note, Step};
 use super::state::State;
-use super::{Event, Facts, Firmware, Source};
+use super::{Event, Facts, Reading, Source};
 use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::io::{self, BufReader};
@@ -69,9 +69,13 @@ impl Stream {
     ///
     /// # Errors
     /// Only what reading the bytes gives: no content is an error.
-    pub fn open(source: Source, firmware: Firmware, filament_diameter: f64) -> io::Result<Self> {
+    pub fn open(
+        source: Source,
+        reading: impl Into<Reading>,
+        filament_diameter: f64,
+    ) -> io::Result<Self> {
         let (mut gatherer, mut layers) = (Gatherer::default(), Layers::default());
-        let state = State::new(firmware);
+        let state = State::new(reading.into());
         let mut known = Known { place: Place::default(), line: 0, moves: 0, state };
         let mut places = vec![known.clone()];
         let mut next = BLOCK;

@@ -12,5 +12,6 @@ mod hosts;
 mod mesh;
 mod preview;
 mod profiles;
+mod reading;
 mod schema;
 mod viewer;
