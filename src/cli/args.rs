@@ -1,5 +1,6 @@
 //! Words of the command line -> Arguments: every flag, its help, and the settings it stands for.
 
+use super::input::LimitArgs;
 use super::preview::PreviewArgs;
 use super::profiles::{ProfileArgs, ShelfArgs};
 use super::words::{UNITS, brim, factor, numbers, parts, sunk, triangles, unit, words};
@@ -9,6 +10,7 @@ use slicer::mesh::place::GAP_MM;
 use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
 use slicer::mesh::{Placement, Policy};
 use slicer::profile::{Override, ValueOrigin};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -103,6 +105,16 @@ pub(crate) enum Command {
     },
 }
 
+impl Command {
+    /// Whether it takes long enough to want threads.
+    pub(crate) fn computes(&self) -> bool {
+        !matches!(
+            self,
+            Self::Profile(_) | Self::Report(_) | Self::Completions { .. } | Self::Man { .. }
+        )
+    }
+}
+
 /// What to do with profiles.
 #[derive(Debug, Subcommand)]
 pub(crate) enum ProfileCommand {
@@ -123,7 +135,7 @@ pub(crate) enum ProfileCommand {
     Show {
         /// Name or file (repeatable: a later one is laid over the earlier) [default: your default printer]
         #[arg(value_name = "NAME")]
-        names: Vec<String>,
+        names: Vec<OsString>,
         /// Say what each key means, too
         #[arg(short, long)]
         verbose: bool,
@@ -136,7 +148,7 @@ pub(crate) enum ProfileCommand {
     Check {
         /// Name or file (repeatable: a later one is laid over the earlier)
         #[arg(value_name = "FILE", required = true)]
-        names: Vec<String>,
+        names: Vec<OsString>,
         #[command(flatten)]
         profiles: ProfileArgs,
     },
@@ -154,7 +166,7 @@ pub(crate) enum ReportCommand {
 pub(crate) struct EstimateArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "FILE")]
-    pub(crate) file: String,
+    pub(crate) file: OsString,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -165,6 +177,8 @@ pub(crate) struct EstimateArgs {
     #[arg(long)]
     pub(crate) fixed_limits: bool,
     #[command(flatten)]
+    pub(crate) limit: LimitArgs,
+    #[command(flatten)]
     pub(crate) profiles: ProfileArgs,
 }
 
@@ -174,13 +188,15 @@ pub(crate) struct EstimateArgs {
 pub(crate) struct CheckArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "FILE")]
-    pub(crate) file: String,
+    pub(crate) file: OsString,
     /// STL file that it was made from (repeatable); placed as the flags below say, then moved to where the lines are
     #[arg(long, value_name = "PART")]
-    pub(crate) against: Vec<String>,
+    pub(crate) against: Vec<OsString>,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) limit: LimitArgs,
     #[command(flatten)]
     pub(crate) profiles: ProfileArgs,
     #[command(flatten)]
@@ -192,7 +208,7 @@ pub(crate) struct CheckArgs {
 pub(crate) struct CompareArgs {
     /// STL files, binary or ASCII
     #[arg(value_name = "INPUT", required = true)]
-    pub(crate) inputs: Vec<String>,
+    pub(crate) inputs: Vec<OsString>,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -209,7 +225,7 @@ pub(crate) struct CompareArgs {
 pub(crate) struct SliceArgs {
     /// STL files, binary or ASCII; `-` reads standard input
     #[arg(value_name = "INPUT", required = true)]
-    pub(crate) inputs: Vec<String>,
+    pub(crate) inputs: Vec<OsString>,
     /// G-code file to write; `-` writes standard output
     #[arg(short, long, value_name = "OUT", required = true)]
     pub(crate) output: Option<PathBuf>,

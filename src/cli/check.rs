@@ -10,7 +10,9 @@ use slicer::mesh::Bed;
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
 use slicer::reader::{Cause, Firmware, Print};
+use slicer::text;
 use slicer::warning::plural;
+use std::ffi::OsString;
 use std::path::Path;
 
 /// Diameter of the filament where neither file nor profile gives it, mm: the most usual one.
@@ -29,13 +31,13 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
         return Err(failure::usage("--set changes a profile; name one with -p, too"));
     }
     let given = if profiles.any() { Some(profiles.load([])?) } else { None };
-    let (name, mut source) = input::open(&args.file)?;
+    let (name, mut source) = input::open(&args.file, args.limit)?;
     let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
     let firmware = given.as_ref().map_or_else(Firmware::default, |p| input::firmware(&p.settings));
     let print = Print::read_as(&mut source, firmware, diameter)
-        .map_err(|e| Cause::Unreadable(e).of(name))?;
+        .map_err(|e| Cause::Unreadable(e).of(&name))?;
     if print.layers.is_empty() {
-        return Err(Cause::NoLine.of(name).into());
+        return Err(Cause::NoLine.of(&name).into());
     }
     let own = profile::recorded(&print.values)?;
     let judge = given.as_ref().or(own.as_ref());
@@ -65,13 +67,13 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     Ok(Outcome { text, code })
 }
 
-fn judged_by(given: Option<&Profile>, own: Option<&Profile>, models: &[String]) -> String {
+fn judged_by(given: Option<&Profile>, own: Option<&Profile>, models: &[OsString]) -> String {
     let by = match (given, own) {
         (Some(profile), _) => format!("judged by the profile {}", profile.sources),
         (None, Some(_)) => "judged by its own settings".to_owned(),
         (None, None) => "judged without a profile".to_owned(),
     };
-    if models.is_empty() { by } else { format!("{by}, against {}", models.join(", ")) }
+    if models.is_empty() { by } else { format!("{by}, against {}", models.iter().map(text::name).collect::<Vec<_>>().join(", ")) }
 }
 
 /// `clean` or how many findings and warnings, of how much.

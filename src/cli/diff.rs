@@ -12,6 +12,7 @@ use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::profile::{self, Profile};
 use slicer::reader::{Cause, Firmware, Print};
+use std::ffi::OsString;
 use std::path::Path;
 
 const DIFF_RULES: &str = "\
@@ -40,10 +41,10 @@ Exit codes: 0 equal, 1 not equal, 2 wrong arguments, 3 a file cannot be read or 
 pub(crate) struct DiffArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "A")]
-    pub(crate) a: String,
+    pub(crate) a: OsString,
     /// The file that it is compared with; `-` reads standard input
     #[arg(value_name = "B")]
-    pub(crate) b: String,
+    pub(crate) b: OsString,
     /// How far places may lie apart, mm
     #[arg(long, value_name = "MM", default_value = "0.01", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: f64,
@@ -59,6 +60,8 @@ pub(crate) struct DiffArgs {
     /// List all differences, not only the worst (JSON always does)
     #[arg(long)]
     pub(crate) all: bool,
+    #[command(flatten)]
+    pub(crate) limit: input::LimitArgs,
     #[command(flatten)]
     pub(crate) profiles: ProfileArgs,
 }
@@ -79,7 +82,7 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
         let why = "`-` is given twice; standard input holds one file";
         return Err(failure::usage(why));
     }
-    let (a, b) = (input::read(&args.a)?, input::read(&args.b)?);
+    let (a, b) = (input::read(&args.a, args.limit)?, input::read(&args.b, args.limit)?);
     let (one, other) = rayon::join(|| print(&a), || print(&b));
     let (one, other) = (one?, other?);
     let (clock, limits) = clock(args, &one, &other)?;
@@ -93,14 +96,14 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
     Ok(Outcome { text, code })
 }
 
-fn print((name, bytes): &(&str, Vec<u8>)) -> Result<Print> {
+fn print((name, bytes): &(String, Vec<u8>)) -> Result<Print> {
     let print = Print::read(&mut bytes.as_slice(), SOME_DIAMETER);
     let mut print = print.map_err(|error| Cause::Unreadable(error).of(name))?;
     print.values = profile::renewed(&print.values);
     Ok(print)
 }
 
-fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Result<Side> {
+fn side((name, bytes): &(String, Vec<u8>), print: Print, clock: &Profile) -> Result<Side> {
     let settings = &clock.settings;
     // Whatever the clock's dialect, both files are read alike; but an Ultimaker 2 knows what its own
     // files leave to it.

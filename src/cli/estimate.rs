@@ -20,8 +20,8 @@ pub(super) fn run(args: &EstimateArgs) -> Result<String> {
         fixed_limits: args.fixed_limits,
         firmware: input::firmware(settings),
     };
-    let (name, mut source) = input::open(&args.file)?;
-    let found = estimate::estimate(&mut source, name, &Limits::new(settings), options)?;
+    let (name, mut source) = input::open(&args.file, args.limit)?;
+    let found = estimate::estimate(&mut source, &name, &Limits::new(settings), options)?;
     if args.json {
         return output::json(&found, Path::new("-"));
     }

@@ -12,7 +12,6 @@
 
 use super::args::Arguments;
 use super::failure::usage;
-use super::output;
 use super::texts::{DUAL, FINDINGS, MENDING};
 use anyhow::{Context as _, Result};
 use clap::builder::{PossibleValuesParser, Resettable};
@@ -89,7 +88,7 @@ pub(super) fn manual(words: &[String]) -> Result<String> {
     clap_mangen::Man::new(page.clone())
         .source(concat!("slicer ", env!("CARGO_PKG_VERSION")))
         .render(&mut text)
-        .with_context(|| output::writing(Path::new("-")))?;
+        .with_context(|| super::failure::writing(Path::new("-")))?;
     // Lines of tables and examples stay lines.
     Ok(String::from_utf8_lossy(&text).replace(".SH EXTRA\n", ".SH NOTES\n.nf\n"))
 }

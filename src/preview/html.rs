@@ -4,6 +4,7 @@ use super::facts::Facts;
 use super::packed;
 use crate::estimate::Estimate;
 use crate::reader::print::Print;
+use crate::text;
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
 use flate2::Compression;
@@ -81,5 +82,5 @@ fn write_moves(print: &Print, out: &mut dyn Write) -> io::Result<()> {
 
 /// As text of an element or of an attribute in double quotes.
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    text::line(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -9,6 +9,7 @@ mod error;
 mod heat;
 mod height;
 mod layers;
+mod limit;
 mod lines;
 mod marks;
 pub mod print;
@@ -20,6 +21,7 @@ pub use change::Change;
 pub use error::{Cause, Error};
 pub use heat::{Heater, Heating};
 pub(crate) use height::Heights;
+pub use limit::{DEFAULT_MAX_MOVES, Limited, TooLong};
 pub use print::Print;
 pub use role::Role;
 
