@@ -75,12 +75,11 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
         Ok(arguments) => arguments,
         Err(error) => return refused(&error, words.get(1).and_then(|word| word.to_str())),
     };
-    let asked = if arguments.command.is_none() { arguments.slice.threads } else { None };
-    if arguments.command.as_ref().is_none_or(Command::computes) {
-        threads::start(asked);
-    }
     let done = match &arguments.command {
-        None => slice::run(&arguments.slice),
+        None => threads::with(arguments.slice.threads, || slice::run(&arguments.slice)),
+        Some(command) if command.computes() => {
+            threads::with(None, || other(command)).and_then(Outcome::print)
+        }
         Some(command) => other(command).and_then(Outcome::print),
     };
     done.unwrap_or_else(|error| {
