@@ -38,8 +38,11 @@ Exit codes:
     4  an output cannot be written
   101  a fault of the slicer itself
   130  interrupted
+  134  no memory to be had
+  137  killed, as by a system that runs out of memory
 Only the product goes to standard output, everything else to standard error.
-A run that fails leaves no file behind.";
+A run that fails changes no file but its report, which tells of the failure: `error.code` is a word
+for its kind, and `slicer report schema` lists them.";
 
 const CHECK_CODES: &str = "\
 Exit codes: 0 clean or warnings, 1 findings, 2 wrong arguments or profile, 3 a file cannot be read, prints

@@ -1,15 +1,26 @@
 //! Error of a run -> the report of its failure, where the report of its success would have been.
+//!
+//! Whatever ends a run, no report of an earlier one is left that could be taken for its own: one that is
+//! there is replaced as the run begins, since a killed run cannot do it any more.
 
 use super::output::{self, Sink};
 use super::{failure, interrupt, say};
 use anyhow::{Context as _, Result};
 use slicer::report::failure::Failure;
+use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 
+/// Exit code, as shells have it, of a program that the system kills: 128 + SIGKILL.
+const KILLED: u8 = 137;
+
 /// From now on, whatever ends this run is reported at `path`: see [`tell`] for what ends it in the
-/// usual way.
+/// usual way. A report that is there says from now on that the run has not ended.
 pub(super) fn promise(path: &Path) {
+    if fs::metadata(path).is_ok_and(|data| data.is_file()) && !path.starts_with("/dev") {
+        // If it cannot be written, that is told as soon as it is opened for the report itself.
+        let _ = write(path, &Failure::unfinished(KILLED));
+    }
     let path = path.to_owned();
     // The program ends with another message already.
     interrupt::report_by(Box::new(move |failure| drop(write(&path, failure))));

@@ -10,6 +10,7 @@
 use super::words;
 use anyhow::Result;
 use clap::Args;
+use slicer::text;
 use slicer::profile::{self, Found, Override, Profile, ProfileKind, Shelf, Wanted, keys};
 use std::env;
 use std::ffi::{OsStr, OsString};
@@ -149,7 +150,7 @@ pub(crate) fn list(shelf: &Shelf) -> Result<String> {
     for kind in ProfileKind::ALL {
         let _ = writeln!(text, "{kind}s");
         for found in all.iter().filter(|found| found.kind == Some(kind)) {
-            let _ = write!(text, "  {:<23} {}", found.name, found.description()?);
+            let _ = write!(text, "  {:<23} {}", found.name, text::line(&found.description()?));
             if found.path.is_some() {
                 let _ = write!(text, " ({})", found.shown);
             }
@@ -193,10 +194,11 @@ const fn usual(kind: Option<ProfileKind>) -> &'static [&'static str] {
 /// What is wrong with the profile.
 pub(crate) fn new(shelf: &Shelf, name: &str) -> Result<String> {
     let found: Found = shelf.find(name, None, |_| false)?;
+    let shown = text::line(name);
     let profile = profile::load_from(shelf, &[Wanted::any(name)], &[])?;
     let mut text = format!(
-        "# Whatever is not said here is as in {name}. Remove the # before what you change.\n\
-         # `slicer profile show -v {name}` lists all keys with their meaning.\n\
+        "# Whatever is not said here is as in {shown}. Remove the # before what you change.\n\
+         # `slicer profile show -v {shown}` lists all keys with their meaning.\n\
          inherits = {name:?}\n\
          description = {:?}\n",
         format!("{name}, with changes of my own"),

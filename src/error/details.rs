@@ -38,7 +38,8 @@ pub const CODES: &[(&str, u8, &str)] = &[
     ("floats", 3, "the print would begin in the air"),
     ("unwritable", 4, "an output cannot be opened or written"),
     ("fault", 101, "a fault of the slicer itself"),
-    ("interrupted", 130, "the run was interrupted"),
+    ("interrupted", 130, "the run was interrupted by a signal"),
+    ("unfinished", 137, "the run goes on, or was killed"),
 ];
 
 /// What a program may want to know of a failure.

@@ -68,7 +68,8 @@ fn next_place(text: &str) -> Option<(&str, &str, &str)> {
 
 /// As JSON that may stand in a script element: without `<` nothing can end it.
 fn write_facts(facts: &Facts, out: &mut dyn Write) -> io::Result<()> {
-    let json = serde_json::to_string(facts)?.replace('<', "\\u003c");
+    let json = serde_json::to_string(facts)?;
+    let json = text::harmless(&json).replace('<', "\\u003c");
     out.write_all(json.as_bytes())
 }
 

@@ -1,7 +1,7 @@
 //! Error of a run -> Failure: the report of a run that failed, as versioned JSON.
 
 use super::SCHEMA;
-use crate::error::details::{Details, Place};
+use crate::error::details::{CODES, Details, Place};
 use crate::job;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -24,6 +24,7 @@ pub struct Failure {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Cause {
     /// One of [`CODES`](crate::error::details::CODES).
+    #[schemars(extend("enum" = codes()))]
     pub code: &'static str,
     /// One line for people, as on standard error.
     pub message: String,
@@ -35,6 +36,10 @@ pub struct Cause {
     pub place: Option<Place>,
 }
 
+fn codes() -> Vec<&'static str> {
+    CODES.iter().map(|(code, _, _)| *code).collect()
+}
+
 impl Failure {
     /// A run that ended with this exit code and line.
     #[must_use]
@@ -42,6 +47,13 @@ impl Failure {
         let Details { code, file, place } = details;
         let error = Cause { code, message, file, place };
         Self { schema: SCHEMA, slicer: job::NAME.to_owned(), exit_code, error }
+    }
+
+    /// A run that has not ended yet, or was killed.
+    #[must_use]
+    pub fn unfinished(exit_code: u8) -> Self {
+        let message = "the run has not ended: it goes on, or was killed".to_owned();
+        Self::new(exit_code, message, Details::of("unfinished"))
     }
 
     /// A run that was interrupted by a signal.
