@@ -73,7 +73,11 @@ fn judged_by(given: Option<&Profile>, own: Option<&Profile>, models: &[OsString]
         (None, Some(_)) => "judged by its own settings".to_owned(),
         (None, None) => "judged without a profile".to_owned(),
     };
-    if models.is_empty() { by } else { format!("{by}, against {}", models.iter().map(text::name).collect::<Vec<_>>().join(", ")) }
+    if models.is_empty() {
+        by
+    } else {
+        format!("{by}, against {}", models.iter().map(text::name).collect::<Vec<_>>().join(", "))
+    }
 }
 
 /// `clean` or how many findings and warnings, of how much.

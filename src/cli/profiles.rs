@@ -10,8 +10,8 @@
 use super::words;
 use anyhow::Result;
 use clap::Args;
-use slicer::text;
 use slicer::profile::{self, Found, Override, Profile, ProfileKind, Shelf, Wanted, keys};
+use slicer::text;
 use std::env;
 use std::ffi::{OsStr, OsString};
 use std::fmt::Write as _;

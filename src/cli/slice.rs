@@ -74,7 +74,8 @@ fn make(args: &SliceArgs, out: &Path, started: Instant) -> Result<u8> {
     }
     publish(products)?;
     if !is_good {
-        let why = "--check has findings, so that no G-code is written; slice without it to see them";
+        let why =
+            "--check has findings, so that no G-code is written; slice without it to see them";
         say_line("error", why);
         return Ok(FINDINGS);
     }

@@ -6,6 +6,7 @@ use clap::builder::RangedU64ValueParser;
 use slicer::mesh::Unit;
 use slicer::profile::keys::{self, Kind};
 use slicer::profile::{Override, ValueOrigin};
+use slicer::text;
 
 /// The overrides that `--set` gives.
 ///
@@ -14,7 +15,7 @@ use slicer::profile::{Override, ValueOrigin};
 pub(super) fn set_overrides(words: &[String]) -> Result<Vec<Override>> {
     let one = |word: &String| {
         let (key, value) = word.split_once('=').ok_or_else(|| {
-            let word = word.escape_debug();
+            let word = text::line(word);
             usage(format!("--set {word}: there is no `=`; write --set KEY=VALUE"))
         })?;
         Ok(Override {

@@ -34,7 +34,11 @@ pub const CODES: &[(&str, u8, &str)] = &[
     ("broken-mesh", 3, "a mesh that cannot be mended, or has faults with --mesh strict"),
     ("does-not-fit", 3, "the print, or what lies around it, is larger than the machine"),
     ("in-the-way", 3, "the first layer lies where the start block primes the nozzle"),
-    ("nothing-to-print", 3, "a model is empty, flat, or too thin for a line; a G-code file prints nothing"),
+    (
+        "nothing-to-print",
+        3,
+        "a model is empty, flat, or too thin for a line; a G-code file prints nothing",
+    ),
     ("floats", 3, "the print would begin in the air"),
     ("unwritable", 4, "an output cannot be opened or written"),
     ("fault", 101, "a fault of the slicer itself"),

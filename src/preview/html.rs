@@ -83,5 +83,9 @@ fn write_moves(print: &Print, out: &mut dyn Write) -> io::Result<()> {
 
 /// As text of an element or of an attribute in double quotes.
 fn escaped(text: &str) -> String {
-    text::line(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    text::line(text)
+        .replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
 }

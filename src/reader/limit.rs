@@ -20,7 +20,9 @@ pub enum TooLong {
     #[error("it has more than {0} moves; raise --max-moves if it is meant to be that long")]
     Moves(u64),
     /// It has more bytes than that many moves need.
-    #[error("it has more bytes than {0} moves need; raise --max-moves if it is meant to be that long")]
+    #[error(
+        "it has more bytes than {0} moves need; raise --max-moves if it is meant to be that long"
+    )]
     Bytes(u64),
     /// It has a line without an end.
     #[error("a line of it has more than {LONGEST_LINE} bytes; give a G-code file")]

@@ -205,9 +205,7 @@ fn good_files_read_as_by_another_reader() {
 fn broken_models_are_read_or_refused_with_a_reason() {
     let Some(folder) = models() else { return println!("{SKIPPED}") };
     let table = std::fs::read_to_string(folder.join("broken/EXPECT.tsv")).unwrap();
-    let good = placed(
-        read::from_path(folder.join("broken/good_tower.stl"), MOST).unwrap(),
-    );
+    let good = placed(read::from_path(folder.join("broken/good_tower.stl"), MOST).unwrap());
     let good = good.unwrap().reports[0].volume_mm3;
     let mut tested = 0;
     for line in table.lines().skip(1) {
