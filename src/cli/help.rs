@@ -18,6 +18,7 @@ use clap::builder::{PossibleValuesParser, Resettable};
 use clap::{Command, CommandFactory as _};
 use clap_complete::Shell;
 use slicer::profile::{builtin_names, keys};
+use slicer::text;
 use std::path::Path;
 
 /// The flags that `-h` shows, in this order, in words that fit on one line of 80.
@@ -81,7 +82,7 @@ pub(super) fn manual(words: &[String]) -> Result<String> {
         page = page.find_subcommand(word).ok_or_else(|| {
             let names: Vec<_> = page.get_subcommands().map(Command::get_name).collect();
             let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-            usage(format!("man: there is no command {}; there are: {known}", word.escape_debug()))
+            usage(format!("man: there is no command {}; there are: {known}", text::line(word)))
         })?;
     }
     let mut text = Vec::new();

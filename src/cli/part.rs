@@ -33,7 +33,7 @@ pub(super) struct Part {
     name: Option<Name>,
     folder: PathBuf,
     /// Of the file that it replaces.
-    old: Option<Metadata>,
+    old: Option<Box<Metadata>>,
 }
 
 /// A temporary name. The file goes away with it, unless it was renamed.
@@ -89,7 +89,7 @@ impl Part {
     }
 
     fn replacing(file: File, name: Option<Name>, folder: PathBuf, path: &Path) -> Self {
-        let old = fs::metadata(path).ok();
+        let old = fs::metadata(path).ok().map(Box::new);
         if let Some(old) = &old {
             take_over(&file, old);
         }

@@ -37,7 +37,7 @@ enum Written {
     /// The run is done.
     Done(Box<Report>),
     /// The run failed; what was made before is as it was.
-    Failed(Failure),
+    Failed(Box<Failure>),
 }
 
 /// The JSON Schema of a report: that of a run that is done, or of one that failed.
