@@ -58,6 +58,9 @@ fn write_stl(path: &Path, bodies: &str) {
     fs::write(path, format!("solid a\n{bodies}endsolid a\n")).unwrap();
 }
 
+/// Arguments, exit code, and the report's code, file and place.
+type Case<'a> = (&'a [&'a str], i32, &'a str, Option<&'a str>, &'a str);
+
 #[test]
 fn a_failure_is_reported_by_code_file_and_place() {
     let folder = folder();
@@ -73,7 +76,7 @@ fn a_failure_is_reported_by_code_file_and_place() {
     let broken = "solid a\nfacet normal 0 0 0\nouter lop\n";
     fs::write(path("word.stl"), broken).unwrap();
     fs::write(path("mine.toml"), "inherits = \"generic-marlin\"\n\nwalls = 1000\n").unwrap();
-    let cases: &[(&[&str], i32, &str, Option<&str>, &str)] = &[
+    let cases: &[Case] = &[
         (&["nix.stl"], 3, "unreadable", Some("nix.stl"), "null"),
         (&["text.stl"], 3, "not-a-model", Some("text.stl"), "null"),
         (&["cut.stl"], 3, "damaged", Some("cut.stl"), "null"),
