@@ -35,20 +35,25 @@ pub(super) fn run(args: &SliceArgs) -> Result<u8> {
         return Err(failure::usage("no output; give one with -o"));
     };
     no_file_twice(args, out)?;
-    let Some(report) = args.report.as_deref() else { return make(args, out, started) };
+    let Some(report) = args.report.as_deref() else { return make(args, out, started, &mut None) };
+    let mut report_sink = Some(Sink::open(report)?);
     failed::promise(report);
-    make(args, out, started).inspect_err(|error| failed::tell(report, error))
+    let made = make(args, out, started, &mut report_sink);
+    made.inspect_err(|error| failed::tell(report, report_sink, error))
 }
 
-/// Makes G-code and report.
-fn make(args: &SliceArgs, out: &Path, started: Instant) -> Result<u8> {
+/// Makes G-code and report. The sink of the report is left where it was not needed.
+fn make(
+    args: &SliceArgs,
+    out: &Path,
+    started: Instant,
+    report_sink: &mut Option<Sink>,
+) -> Result<u8> {
     let profile = load(args)?;
     if args.verbose {
         say(&summary::settings(&profile));
     }
     let mut sink = Sink::open(out)?;
-    let report_sink = args.report.as_deref().map(|path| Sink::open(path).map(|sink| (path, sink)));
-    let report_sink = report_sink.transpose()?;
 
     let report = work(args, out, profile, &mut sink)?;
     let is_good = report.check.as_ref().is_none_or(|verdict| !verdict.fails());
@@ -69,7 +74,7 @@ fn make(args: &SliceArgs, out: &Path, started: Instant) -> Result<u8> {
     if is_good {
         products.push(sink.whole()?);
     }
-    if let Some((path, sink)) = report_sink {
+    if let Some((path, sink)) = args.report.as_deref().zip(report_sink.take()) {
         products.push(write_report(path, sink, &report)?.whole()?);
     }
     publish(products)?;

@@ -170,6 +170,23 @@ fn g_code_and_report_are_put_in_place_together_or_not_at_all() {
     assert!(report(&folder)["error"].is_null() && fs::read(path("a.gcode")).unwrap() != b"old");
 }
 
+/// A pipe is opened once: its reader leaves when that is closed.
+#[cfg(unix)]
+#[test]
+fn a_failure_is_reported_to_a_pipe() {
+    let folder = folder();
+    let pipe = folder.path().join("pipe");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for words in [&["nix.stl"][..], &["cube.stl", "--set", "wals=1"], &["cube.stl", "-o", "no/a"]] {
+        let reader = pipe.clone();
+        let reader = std::thread::spawn(move || fs::read(reader).unwrap());
+        let words = [&["-q", "-o", "a.gcode", "--report", "pipe"], words].concat();
+        slicer(&folder).args(&words).timeout(std::time::Duration::from_secs(60)).assert().failure();
+        let found: Value = serde_json::from_slice(&reader.join().unwrap()).unwrap();
+        assert!(found["error"]["code"].is_string(), "{words:?}");
+    }
+}
+
 /// Nobody reads the G-code: that is no failure, and the report is there.
 #[cfg(unix)]
 #[test]
