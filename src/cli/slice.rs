@@ -1,4 +1,13 @@
 //! Arguments of slicing -> G-code, report and exit code: the program's main job.
+//!
+//! 1. No two arguments may mean the same file.
+//! 2. The report's sink is opened, and a report that is there says that the run has not ended.
+//! 3. Profiles are loaded, the models are sliced into the sink of the G-code, and with `--check` that is
+//!    read back and judged.
+//! 4. What was found is told, and written to the report.
+//! 5. G-code and report are put in place together.
+//!
+//! From the second step on a failure is reported, where a report is asked for.
 
 use super::args::SliceArgs;
 use super::failure::Output;
