@@ -23,7 +23,7 @@ pub struct Failure {
 /// What went wrong.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Cause {
-    /// One of [`CODES`](crate::error::details::CODES).
+    /// One of [`CODES`].
     #[schemars(extend("enum" = codes()))]
     pub code: &'static str,
     /// One line for people, as on standard error.
