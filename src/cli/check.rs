@@ -10,7 +10,9 @@ use slicer::mesh::Bed;
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
 use slicer::reader::{Cause, Firmware, Print};
+use slicer::text;
 use slicer::warning::plural;
+use std::ffi::OsString;
 use std::path::Path;
 
 /// Diameter of the filament where neither file nor profile gives it, mm: the most usual one.
@@ -30,10 +32,11 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     }
     let given = if profiles.any() { Some(profiles.load([])?) } else { None };
     let machine = given.as_ref().map(|profile| &profile.settings);
-    let (name, mut source, reading) = args.reading.open(&args.file, machine)?;
+    let opened = args.reading.open(&args.file)?;
+    let (name, reading) = (&opened.name, args.reading.of(machine, opened.says));
     let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
-    let print = Print::read_as(&mut source, reading, diameter)
-        .map_err(|e| Cause::Unreadable(e).of(name))?;
+    let print = Print::read_as(&mut opened.source.reader(), reading, diameter)
+        .map_err(|error| opened.unreadable(error))?;
     if print.layers.is_empty() {
         return Err(Cause::NoLine.of(name).into());
     }
@@ -70,7 +73,7 @@ fn judged_by(
     given: Option<&Profile>,
     own: Option<&Profile>,
     firmware: Firmware,
-    models: &[String],
+    models: &[OsString],
 ) -> String {
     let by = match (given, own) {
         (Some(profile), _) => format!("judged by the profile {}", profile.sources),
@@ -78,7 +81,11 @@ fn judged_by(
         (None, None) if firmware == Firmware::Other => "judged without a profile".to_owned(),
         (None, None) => format!("judged without a profile, read as {} reads it", firmware.name()),
     };
-    if models.is_empty() { by } else { format!("{by}, against {}", models.join(", ")) }
+    if models.is_empty() {
+        by
+    } else {
+        format!("{by}, against {}", models.iter().map(text::name).collect::<Vec<_>>().join(", "))
+    }
 }
 
 /// `clean` or how many findings and warnings, of how much.

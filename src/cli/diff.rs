@@ -3,17 +3,17 @@
 mod text;
 
 use super::profiles::ProfileArgs;
-use super::reading::ReadingArgs;
-use super::{Outcome, failure, input, output};
+use super::reading::{Opened, ReadingArgs};
+use super::{Outcome, clock, failure, input};
 use anyhow::Result;
 use clap::Args;
-use serde::Serialize;
-use slicer::diff::{Difference, Side, Tolerances, diff};
+use slicer::diff::{Side, Tolerances, diff};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::profile::{self, Profile};
-use slicer::reader::{Cause, Firmware, Print, Reading};
-use std::path::Path;
+use slicer::reader::{Firmware, Print, Reading};
+use std::ffi::OsString;
+use std::io::Read as _;
 
 const DIFF_RULES: &str = "\
 Equal are files whose plastic and orders to the printer are the same:
@@ -41,10 +41,10 @@ Exit codes: 0 equal, 1 not equal, 2 wrong arguments, 3 a file cannot be read or 
 pub(crate) struct DiffArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "A")]
-    pub(crate) a: String,
+    pub(crate) a: OsString,
     /// The file that it is compared with; `-` reads standard input
     #[arg(value_name = "B")]
-    pub(crate) b: String,
+    pub(crate) b: OsString,
     /// How far places may lie apart, mm
     #[arg(long, value_name = "MM", default_value = "0.01", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: f64,
@@ -82,26 +82,29 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
         let why = "`-` is given twice; standard input holds one file";
         return Err(failure::usage(why));
     }
-    let (a, b) = (input::read(&args.a)?, input::read(&args.b)?);
-    let [by, or] = readings(args, [&a.1, &b.1])?;
+    let (a, b) = (args.reading.open(&args.a)?, args.reading.open(&args.b)?);
+    let [by, or] = readings(args, [a.says, b.says])?;
     let (one, other) = rayon::join(|| print(&a, by), || print(&b, or));
     let (one, other) = (one?, other?);
-    let (clock, limits) = clock(args, &one, &other)?;
+    let files = [(&*one.values, "the settings in A"), (&*other.values, "the settings in B")];
+    let (clock, limits) = clock::of(&args.profiles, &files)?;
     let (one, other) = rayon::join(|| side(&a, one, &clock, by), || side(&b, other, &clock, or));
     let tolerances =
         Tolerances { place: args.tolerance, share: args.sums / 100.0, settings: args.settings };
     let found = diff(&one?, &other?, &tolerances);
     let code = if found.equal { 0 } else { UNEQUAL };
-    let text =
-        if args.json { json(&found, &limits)? } else { text::text(&found, &limits, args.all) };
+    let text = if args.json {
+        clock::json(&found, &limits)?
+    } else {
+        text::text(&found, &limits, args.all)
+    };
     Ok(Outcome { text, code })
 }
 
 /// How each file is read. What one does not say, such as a file without comments, the other says for both.
-fn readings(args: &DiffArgs, files: [&[u8]; 2]) -> Result<[Reading; 2]> {
+fn readings(args: &DiffArgs, says: [Reading; 2]) -> Result<[Reading; 2]> {
     let profile = args.profiles.load([])?;
     let machine = args.profiles.any().then_some(&profile.settings);
-    let says = files.map(Reading::of);
     let other = |own: usize| match says[own].firmware {
         Firmware::Other => Reading { firmware: says[1 - own].firmware, ..says[own] },
         _ => says[own],
@@ -109,19 +112,14 @@ fn readings(args: &DiffArgs, files: [&[u8]; 2]) -> Result<[Reading; 2]> {
     Ok([0, 1].map(|file| args.reading.of(machine, other(file))))
 }
 
-fn print((name, bytes): &(&str, Vec<u8>), reading: Reading) -> Result<Print> {
-    let print = Print::read_as(&mut bytes.as_slice(), reading, SOME_DIAMETER);
-    let mut print = print.map_err(|error| Cause::Unreadable(error).of(name))?;
+fn print(opened: &Opened, reading: Reading) -> Result<Print> {
+    let print = Print::read_as(&mut opened.source.reader(), reading, SOME_DIAMETER);
+    let mut print = print.map_err(|error| opened.unreadable(error))?;
     print.values = profile::renewed(&print.values);
     Ok(print)
 }
 
-fn side(
-    (name, bytes): &(&str, Vec<u8>),
-    print: Print,
-    clock: &Profile,
-    reading: Reading,
-) -> Result<Side> {
+fn side(opened: &Opened, print: Print, clock: &Profile, reading: Reading) -> Result<Side> {
     let settings = &clock.settings;
     // An Ultimaker 2 knows what its own files leave to it.
     let firmware = match (reading.firmware, input::firmware(settings)) {
@@ -131,42 +129,11 @@ fn side(
     let filament_diameter = settings.filament.diameter;
     let volumes = reading.volumes;
     let options = Options { filament_diameter, firmware, volumes, ..Options::default() };
-    let time = estimate(&mut bytes.as_slice(), name, &Limits::new(settings), options)?;
-    Ok(Side::new(bytes, print, time))
-}
-
-/// The profile by whose limits both files are timed, and where it is from.
-fn clock(args: &DiffArgs, a: &Print, b: &Print) -> Result<(Profile, String)> {
-    let overrides = args.profiles.overrides()?;
-    let asked = args.profiles.load([])?;
-    if args.profiles.any() {
-        let origin = format!("profile {}", asked.sources);
-        return Ok((asked, origin));
-    }
-    for (print, file) in [(a, "A"), (b, "B")] {
-        // A file of another version may hold settings that do not exist any more.
-        if !matches!(profile::recorded(&print.values), Ok(Some(_))) {
-            continue;
-        }
-        let mut values = print.values.clone();
-        values.extend(overrides.iter().map(|set| (set.key.clone(), set.value.clone())));
-        if let Some(recorded) = profile::recorded(&values)? {
-            return Ok((recorded, format!("the settings in {file}")));
-        }
-    }
-    let origin = format!("profile {}", asked.sources);
-    Ok((asked, origin))
-}
-
-fn json(found: &Difference, limits: &str) -> Result<String> {
-    #[derive(Serialize)]
-    struct Product<'a> {
-        #[serde(flatten)]
-        difference: &'a Difference,
-        /// Where the limits are from that both files are timed with.
-        limits: &'a str,
-    }
-    output::json(&Product { difference: found, limits }, Path::new("-"))
+    let mut bytes = Vec::new();
+    let read = opened.source.reader().read_to_end(&mut bytes);
+    read.map_err(|error| opened.unreadable(error))?;
+    let time = estimate(&mut &bytes[..], &opened.name, &Limits::new(settings), options)?;
+    Ok(Side::new(&bytes, print, time))
 }
 
 fn tolerance(text: &str) -> std::result::Result<f64, String> {

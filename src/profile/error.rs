@@ -14,13 +14,14 @@ use super::kind::ProfileKind;
 use super::origin::ValueOrigin;
 use super::shipped::DEFAULT;
 use super::{old, suggest};
+use crate::text;
 use std::io;
 
 /// A profile or a setting that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum ProfileError {
     /// No profile has this name.
-    #[error("unknown profile `{}`{}", name.escape_debug(), known_profiles(name, known))]
+    #[error("unknown profile `{}`{}", text::line(name), known_profiles(name, known))]
     UnknownProfile {
         /// The name asked for.
         name: String,
@@ -166,7 +167,7 @@ pub enum ValueError {
         key: &'static Key,
     },
     /// A word that the key does not know.
-    #[error("= `{}` is unknown{}; it must be {}", word.escape_debug(), near(word, words), key.allowed())]
+    #[error("= `{}` is unknown{}; it must be {}", text::line(word), near(word, words), key.allowed())]
     UnknownWord {
         /// The word.
         word: String,
@@ -414,7 +415,7 @@ fn known_profiles(name: &str, known: &[String]) -> String {
     format!(
         "{hint} Known are {}; a file ends in .toml or is given as ./{}",
         known.join(", "),
-        name.escape_debug()
+        text::line(name)
     )
 }
 
@@ -427,7 +428,7 @@ fn unknown_key(key: &str) -> String {
     if let Some(name) = old::renamed(key) {
         return format!("`{key}` is called `{name}` now");
     }
-    let shown = key.escape_debug();
+    let shown = text::line(key);
     match foreign::meaning(key) {
         Some(Foreign::Key(ours)) => return format!("unknown key `{shown}`; here it is `{ours}`"),
         Some(Foreign::NotSupported(what)) => {

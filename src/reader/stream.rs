@@ -19,16 +19,13 @@ use super::state::State;
 use super::{Event, Facts, Reading, Source};
 use rayon::prelude::*;
 use std::collections::VecDeque;
-use std::io::{self, BufReader};
+use std::io;
 
 /// Bytes of a block: read in a millisecond or two, and its moves take half a megabyte.
 const BLOCK: u64 = 1 << 18;
 
 /// Blocks that are read side by side at most, so that memory does not grow with the machine.
 const MOST_BLOCKS: usize = 16;
-
-/// Bytes that the first pass reads at once.
-const BUFFER: usize = 1 << 18;
 
 /// A file that is read layer by layer.
 #[derive(Debug)]
@@ -81,7 +78,7 @@ impl Stream {
         let mut next = BLOCK;
         let end = {
             let mut sink = |line: u64, event: Event| gatherer.event(line, &event);
-            let mut reader = BufReader::with_capacity(BUFFER, source.reader());
+            let mut reader = source.reader();
             let end = lines::each(&mut reader, known.place, &mut |line, place| {
                 known.line += 1;
                 let Known { state, moves, line: number, .. } = &mut known;

@@ -78,7 +78,7 @@ pub fn report(
         segments: reshaped::segments(usage, settings),
         dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits, lift.layers())),
         warnings: (placed.warnings.iter().cloned())
-            .chain(tally.warnings())
+            .chain(tally.warnings(job.placement.copies))
             .chain(doubtful::warnings(settings))
             .chain(motion::warnings(settings))
             .chain(unused::warnings(usage, settings))

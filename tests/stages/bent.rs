@@ -53,7 +53,7 @@ fn judge(text: &str) -> Verdict {
     let path = crate::common::fixtures().join("bracket.stl").to_str().unwrap().to_owned();
     let placement = Placement { scale: 0.2, ..Placement::default() };
     let placed = slicer::place(
-        &[slicer::Model::Path(path)],
+        &[slicer::Model::path(path)],
         &placement,
         &slicer::bed(&settings.machine),
         &Default::default(),
