@@ -14,6 +14,7 @@
 //! Then each line gets its width and height: from comments where the file has them, else the height
 //! of the layer, and the width that its plastic fills at that height.
 
+use super::words;
 use super::{Event, Firmware, Heating, Heights, Motion, Role, Summary};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_4, PI};
@@ -41,6 +42,20 @@ const SOME_HEIGHT: f64 = 0.2;
 /// No line is higher than this, mm: twice what the widest nozzles print. A layer that lies higher
 /// above the one before, or above the bed, hangs.
 const HIGHEST: f64 = 2.0;
+
+/// Words of a command that are kept: more than any has.
+const MOST_WORDS: usize = 16;
+
+/// Commands that stand between the lines of nearly every print, or are for heaters: no note of them
+/// as commands is kept.
+const EVERYDAY_G: &[u32] = &[4, 11, 17, 21, 90, 91];
+const EVERYDAY_M: &[u32] = &[
+    6, 73, 82, 83, 104, 105, 106, 107, 109, 110, 114, 115, 116, 117, 118, 133, 134, 140, 190, 201,
+    203, 204, 205, 400, 486, 566, 572, 900,
+];
+
+/// Lines that a start block draws to prime the nozzle, at most.
+const MOST_PRIMING: usize = 8;
 
 /// A whole G-code file.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -129,6 +144,43 @@ pub enum What {
     },
     /// Code that the reader does not know.
     Unknown(String),
+    /// A command other than a move, but for those that stand everywhere in a print.
+    Command(Order),
+}
+
+/// A command with its words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Order {
+    /// `G`, `M` or `T`, mostly.
+    pub letter: u8,
+    /// What follows the letter, without its fraction.
+    pub number: u32,
+    /// Whether the number has a fraction, as that of `M862.1`.
+    pub has_part: bool,
+    /// The letters that follow, each with its number if it has one.
+    pub words: Vec<(u8, Option<f64>)>,
+}
+
+impl Order {
+    fn new(letter: u8, number: u32, code: &[u8]) -> Self {
+        let read = words::command(code);
+        let (has_part, words) = read.map_or((false, Vec::new()), |(command, words)| {
+            (command.has_part, words.take(MOST_WORDS).collect())
+        });
+        Self { letter, number, has_part, words }
+    }
+
+    /// Whether one of the words has this letter.
+    #[must_use]
+    pub fn has(&self, letter: u8) -> bool {
+        self.words.iter().any(|(one, _)| *one == letter)
+    }
+
+    /// The number of the first word with this letter.
+    #[must_use]
+    pub fn value(&self, letter: u8) -> Option<f64> {
+        self.words.iter().find(|(one, _)| *one == letter)?.1
+    }
 }
 
 impl Step {
@@ -204,6 +256,20 @@ impl Print {
     }
 }
 
+/// Whether no note is kept of a command. G92 is kept where it names an axis, or none at all, and G10
+/// where it is no retraction.
+fn is_everyday(letter: u8, number: u32, code: &[u8]) -> bool {
+    let bare = || code.iter().skip(1).all(|byte| !byte.is_ascii_alphabetic());
+    let names = |axes: &[u8]| code.iter().any(|byte| axes.contains(&byte.to_ascii_uppercase()));
+    match (letter, number) {
+        (b'G', 10) => !names(b"LXYZUVW"),
+        (b'G', 92) => !bare() && !names(b"XYZ"),
+        (b'G', number) => EVERYDAY_G.contains(&number),
+        (b'M', number) => EVERYDAY_M.contains(&number),
+        _ => false,
+    }
+}
+
 /// Collects events.
 #[derive(Default)]
 struct Builder {
@@ -229,8 +295,11 @@ impl Builder {
             Event::Unknown(code) => {
                 note(What::Unknown(String::from_utf8_lossy(&code).into_owned()));
             }
-            Event::Command { letter, number } => {
+            Event::Command { letter, number, code } => {
                 self.print.commands.entry((letter, number)).or_insert(line);
+                if !is_everyday(letter, number, &code) {
+                    note(What::Command(Order::new(letter, number, &code)));
+                }
             }
             Event::Comment(comment) => return self.comment(&comment),
             Event::Dwell(_) | Event::Wait(_) | Event::Change(_) => {}
@@ -304,7 +373,7 @@ impl Builder {
             .map(|(at, _)| *at)
             .collect();
         print.begun = begins.len();
-        let mut below = 0.0;
+        let (mut below, mut lowest) = (0.0, HIGHEST);
         for (k, &first) in begins.iter().enumerate() {
             let end = begins.get(k + 1).copied().unwrap_or(print.moves.len());
             let mut heights = Heights::default();
@@ -319,15 +388,29 @@ impl Builder {
             };
             let height = match (z - below, last) {
                 (rise, _) if rise > SAME_HEIGHT => rise,
-                // At the height of the layer before, or the first layer of another part.
+                // The first layer of another part lies on the bed as well.
+                (rise, _) if rise < -SAME_HEIGHT && 0.0 < z && z <= lowest + SAME_HEIGHT => z,
+                // At the height of the layer before.
                 (_, Some(last)) => last.height,
                 (_, None) => SOME_HEIGHT,
             };
-            below = z;
+            (below, lowest) = (z, lowest.min(z));
             print.layers.push(Layer { moves: first..end, z, height });
+        }
+        if !marked && is_priming(print) {
+            print.layers.remove(0);
+            print.begun -= 1;
         }
         print.start = 0..print.layers.first().map_or(print.moves.len(), |layer| layer.moves.start);
     }
+}
+
+/// Whether the first layer of a file without marks is but the few lines with which a start block
+/// primes the nozzle, higher than the part's first layer.
+fn is_priming(print: &Print) -> bool {
+    let [first, next, ..] = &print.layers[..] else { return false };
+    let lines = print.moves_of(first).iter().filter(|step| step.is_line()).count();
+    next.z < first.z - SAME_HEIGHT && lines <= MOST_PRIMING
 }
 
 impl Step {
