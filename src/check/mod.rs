@@ -14,6 +14,7 @@
 //! Beads are drawn on rows of spans, layer by layer; a thick bead fills the layers below it too.
 
 mod against;
+mod air;
 mod align;
 mod anchors;
 mod beads;

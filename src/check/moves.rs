@@ -13,11 +13,12 @@
 //!   ([`primed`](super::primed)).
 //!
 //! Between the moves are commands: those that change the machine ([`changes`](super::changes)), and those
-//! for heaters ([`warmth`](super::warmth)).
+//! for heaters ([`warmth`](super::warmth)) and the fan ([`air`](super::air)).
 //!
 //! Commands are judged once each, by a list of what the firmware knows. Klipper's macros cannot be
 //! judged, and are listed as such.
 
+use super::air::Air;
 use super::changes::Changes;
 use super::dialect;
 use super::finding::{Code, Finding, Findings, Place, short};
@@ -151,6 +152,7 @@ struct Walk<'a> {
     filament_area: f64,
     changes: Changes,
     warmth: Warmth,
+    air: Air,
     through: Through,
     primed: Primed,
     /// Where the nozzle is.
@@ -181,6 +183,7 @@ impl<'a> Walk<'a> {
             filament_area: terms.filament_area,
             changes: Changes::new(terms),
             warmth: Warmth::new(terms),
+            air: Air::new(terms),
             through: Through::new(terms),
             primed: Primed::default(),
             at: [0.0; 3],
@@ -197,10 +200,10 @@ impl<'a> Walk<'a> {
 
     fn note(&mut self, note: &Note, found: &mut Findings) {
         let layer = self.layer.map(|layer| layer + 1);
+        let place = Place { line: Some(note.line), layer, ..Place::default() };
         self.changes.note(note, (self.at, layer), found);
         match &note.what {
             What::Heating(heating) => {
-                let place = Place { line: Some(note.line), layer, ..Place::default() };
                 self.warmth.set(heating, place, found);
                 self.heat.set(heating);
             }
@@ -210,6 +213,7 @@ impl<'a> Walk<'a> {
                 self.stranger = self.stranger.take().or(word);
             }
             What::Command(order) => {
+                self.air.set(order, place);
                 if let Some(tool) = tool_of(order) {
                     self.warmth.tool(tool);
                 }
@@ -228,6 +232,7 @@ impl<'a> Walk<'a> {
             Some(layer) if is_of_layer => {
                 self.changes.line(found);
                 self.warmth.line(found);
+                self.air.line(step, layer, found);
                 self.primed.line(step, layer);
             }
             None => self.primed.start(step),

@@ -33,6 +33,9 @@ const NEAR: f64 = 0.8;
 /// Distance of the places of a line that are looked at, mm.
 const STEP: f64 = 0.25;
 
+/// Longer lines are on no machine, mm, and are found as such.
+const LONGEST: f64 = 10_000.0;
+
 /// Least length on it that is found, mm.
 const LEAST: f64 = 1.0;
 
@@ -80,6 +83,9 @@ impl Primed {
         let bottom = step.heights()[0] - f64::from(step.height);
         // Nearly all lines are higher.
         if bottom >= self.highest - SLACK || step.role == Role::Adhesion {
+            return;
+        }
+        if step.length() > LONGEST {
             return;
         }
         let half = f64::from(step.width) / 2.0;

@@ -35,7 +35,9 @@ type Tile = Box<[f32]>;
 #[derive(Default)]
 pub(super) struct Standing {
     kept: Vec<Kept>,
-    tiles: BTreeMap<[i32; 2], Tile>,
+    tiles: Vec<Tile>,
+    /// Which tile lies where.
+    map: BTreeMap<[i32; 2], usize>,
     highest: f32,
 }
 
@@ -64,21 +66,25 @@ impl Standing {
         self.draw();
         let cell = |at: f64| (at / CELL).floor() as i32;
         let mut most = 0.0_f32;
+        // Nearly always they lie in one tile.
+        let mut known: Option<([i32; 2], Option<usize>)> = None;
         for row in cell(y - radius)..=cell(y + radius) {
             for column in cell(x - radius)..=cell(x + radius) {
                 let middle = [column, row].map(|k| (f64::from(k) + 0.5) * CELL);
                 let [dx, dy] = [middle[0] - x, middle[1] - y];
-                if dx * dx + dy * dy <= radius * radius {
-                    most = most.max(self.at([column, row]));
+                if dx * dx + dy * dy > radius * radius {
+                    continue;
                 }
+                let (at, index) = place([column, row]);
+                let tile = match known {
+                    Some((last, tile)) if last == at => tile,
+                    _ => self.map.get(&at).copied(),
+                };
+                known = Some((at, tile));
+                most = most.max(tile.map_or(0.0, |tile| self.tiles[tile][index]));
             }
         }
         f64::from(most)
-    }
-
-    fn at(&self, cell: [i32; 2]) -> f32 {
-        let (tile, index) = place(cell);
-        self.tiles.get(&tile).map_or(0.0, |tile| tile[index])
     }
 
     /// Draws what is kept.
@@ -92,22 +98,35 @@ impl Standing {
         let [x, y, to_x, to_y] = [x, y, to_x, to_y].map(f64::from);
         let way = [to_x - x, to_y - y];
         let count = (way[0].abs().max(way[1].abs()) / CELL).ceil().max(1.0) as usize;
-        let mut last = None;
+        let mut known: Option<([i32; 2], usize)> = None;
         for k in 0..=count {
             let part = k as f64 / count as f64;
             let at = [x + part * way[0], y + part * way[1]];
-            let (tile, index) = place(at.map(|at| (at / CELL).floor() as i32));
-            if last == Some((tile, index)) {
-                continue;
-            }
-            last = Some((tile, index));
-            if self.tiles.len() >= MOST_TILES && !self.tiles.contains_key(&tile) {
-                return;
-            }
-            let cells =
-                self.tiles.entry(tile).or_insert_with(|| vec![0.0; SIDE * SIDE].into_boxed_slice());
-            cells[index] = cells[index].max(top);
+            let (at, index) = place(at.map(|at| (at / CELL).floor() as i32));
+            let tile = match known {
+                Some((last, tile)) if last == at => tile,
+                _ => match self.tile(at) {
+                    Some(tile) => tile,
+                    None => return,
+                },
+            };
+            known = Some((at, tile));
+            let cell = &mut self.tiles[tile][index];
+            *cell = cell.max(top);
         }
+    }
+
+    /// The tile there, which begins if there is none; `None` if there are too many.
+    fn tile(&mut self, at: [i32; 2]) -> Option<usize> {
+        if let Some(&tile) = self.map.get(&at) {
+            return Some(tile);
+        }
+        if self.tiles.len() >= MOST_TILES {
+            return None;
+        }
+        self.map.insert(at, self.tiles.len());
+        self.tiles.push(vec![0.0; SIDE * SIDE].into_boxed_slice());
+        Some(self.tiles.len() - 1)
     }
 }
 

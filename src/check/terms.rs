@@ -33,6 +33,9 @@ pub struct Terms {
     pub named: [Vec<f64>; 2],
     /// How many tools the file was made for, if it tells.
     pub tools: Option<u32>,
+    /// The least power of the part cooling fan by settings of the file's own, %, and the last layer, from
+    /// 1, on which it may be less.
+    pub fan: Option<(f64, usize)>,
 }
 
 /// What a machine can do.
@@ -107,6 +110,7 @@ impl Terms {
             nozzle: own.map(of).or_else(nozzle).or_else(|| settings.map(of)),
             lift: own.map(Settings::raft_lift),
             infill: by_file(),
+            fan: own.filter(|own| !own.raft.enabled).map(fan),
             multiplier: own.map_or(1.0, |own| own.extrusion.multiplier),
             material: material(own, print),
             named: named(own, print),
@@ -136,6 +140,15 @@ impl Terms {
         };
         f64::from(step.filament) * self.filament_area / flow
     }
+}
+
+/// See [`Terms::fan`].
+fn fan(own: &Settings) -> (f64, usize) {
+    let (cooling, filament) = (&own.cooling, &own.filament);
+    let others =
+        [cooling.min_fan, Some(cooling.bridge_fan), cooling.overhang_fan, cooling.interface_fan];
+    let least = others.into_iter().flatten().fold(filament.fan, f64::min);
+    (least, filament.fan_from_layer.max(cooling.fan_full_from_layer) as usize)
 }
 
 /// See [`Terms::material`].

@@ -23,8 +23,8 @@ const USUAL_FLAT: f64 = 1.0;
 /// Distance of the places that are looked at, mm.
 const STEP: f64 = 0.25;
 
-/// A longer travel is on no machine, mm, and is found as such.
-const LONGEST: f64 = 20_000.0;
+/// So many places are looked at of one move: of a longer one every so often.
+const MOST_PLACES: f64 = 4000.0;
 
 /// Travels through what stands.
 pub(super) struct Through {
@@ -52,11 +52,9 @@ impl Through {
     }
 
     fn look(&mut self, step: &Step, found: &mut Findings) {
-        if step.length() > LONGEST {
-            return;
-        }
+        let pitch = STEP.max(step.length() / MOST_PLACES);
         let (mut deepest, mut length, mut at) = (0.0, 0.0, [0.0; 2]);
-        for sample in Samples::of(step, STEP) {
+        for sample in Samples::of(step, pitch) {
             // A move that only sinks ends where it is deepest.
             let z = if sample.length > 0.0 { sample.z } else { f64::from(step.to[2]) };
             if z >= self.standing.highest() - DEEP {
