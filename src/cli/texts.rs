@@ -13,7 +13,8 @@ Findings, each with a stable code, a place and a measure:
                        changes of filament, and what a start or end block need not do
   wrong-temperature    the nozzle or the bed is set to what the material does not take, or no machine
   cold-extrusion       filament is pushed before the nozzle is told to be hot and waited for
-  too-fast             faster than [limits] allow in x or y, and in z in files of ours; over 500 mm/s in z
+  too-fast             faster than [limits] allow in x or y; in z in files of this program, or over
+                       500 mm/s
   too-much-flow        5 % more than the hot end melts
   unpaired-retraction  a line with the filament pulled back, or more pushed out than was pulled
   odd-bead             under 0.55 or over 1.6 times the plastic that the role takes for its size

@@ -6,6 +6,7 @@ mod common;
 mod bent;
 mod check;
 mod dual;
+mod harm;
 mod laws;
 mod mend;
 mod motion;
