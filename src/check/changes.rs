@@ -8,7 +8,6 @@
 //! made for; Sailfish has two.
 
 use super::finding::{Code, Finding, Findings, Place, short};
-use super::moves::ROUNDING;
 use super::orders::{self, Blame, Phase, Verdict};
 use super::terms::Terms;
 use crate::profile::DialectName;
@@ -17,7 +16,10 @@ use crate::reader::print::{Note, Order, What};
 /// Tools that a machine has, at most, where nobody says how many.
 const MOST_TOOLS: u32 = 16;
 
-/// A tool of Sailfish's two.
+/// Positions are rounded to this or less, mm.
+const ROUNDING: f64 = 0.01;
+
+/// Tools of Sailfish.
 const SAILFISH_TOOLS: u32 = 2;
 
 /// A command that waits to be judged.

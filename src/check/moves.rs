@@ -214,6 +214,9 @@ impl<'a> Walk<'a> {
             }
             What::Command(order) => {
                 self.air.set(order, place);
+                if matches!((order.letter, order.number), (b'G', 161 | 162) | (b'M', 132)) {
+                    self.through.lose();
+                }
                 if let Some(tool) = tool_of(order) {
                     self.warmth.tool(tool);
                 }

@@ -1,4 +1,12 @@
 //! Settings and a file's own comments -> Terms: what a file is judged by.
+//!
+//! Words used here: the *machine* is that of a profile, or of the file's own settings; *own* settings are
+//! those that this program writes into its files; *keys* are names under which slicers write settings as
+//! comments `key = value`.
+//!
+//! What own settings say counts. Of other slicers' files the comments are read that tell the nozzle, the
+//! infill, the material and its temperatures; a list has an entry for each tool, and the first counts. What
+//! nobody tells is `None`, empty, or a value that accuses no file.
 
 use crate::profile::{DialectName, ExtrusionModel, Settings};
 use crate::reader::print::Step;

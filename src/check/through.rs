@@ -31,17 +31,28 @@ pub(super) struct Through {
     standing: Standing,
     /// Half the width of the nozzle's flat end, mm.
     radius: f64,
+    /// Whether nobody knows how high the nozzle is: it was sent to an end stop.
+    is_lost: bool,
 }
 
 impl Through {
     pub(super) fn new(terms: &Terms) -> Self {
         let flat = terms.nozzle.map_or(USUAL_FLAT, |nozzle| FLAT * nozzle);
-        Self { standing: Standing::default(), radius: flat / 2.0 }
+        Self { standing: Standing::default(), radius: flat / 2.0, is_lost: false }
+    }
+
+    /// The nozzle is sent to where only the printer knows; the reader takes that for 0.
+    pub(super) fn lose(&mut self) {
+        self.is_lost = true;
     }
 
     /// The next move of the file; `is_of_layer` tells lines of layers from those that only prime.
     pub(super) fn step(&mut self, step: &Step, is_of_layer: bool, found: &mut Findings) {
         let is_line = step.is_line();
+        self.is_lost &= step.to[2] == 0.0;
+        if self.is_lost {
+            return;
+        }
         let lowest = step.heights()[0];
         if lowest < self.standing.highest() - DEEP && !(is_line && is_of_layer) && !rises(step) {
             self.look(step, found);
