@@ -210,7 +210,7 @@ fn offset(phase: Phase) -> Blame {
 /// Ultimaker 2, where the bed goes down to it.
 fn home(order: &Order, dialect: Option<DialectName>, phase: Phase) -> Blame {
     let named = |axis: &u8| order.has(*axis);
-    let lowers = (order.has(b'Z') || !b"XYZ".iter().any(|axis| named(axis)))
+    let lowers = (order.has(b'Z') || !b"XYZ".iter().any(named))
         && order.number != 162
         && dialect != Some(DialectName::Ultigcode);
     let (verdicts, why) = if lowers {
