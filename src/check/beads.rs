@@ -43,19 +43,24 @@ pub(super) fn odd(print: &Print, terms: &Terms, found: &mut Findings) {
         })
     };
     for role in Role::ALL {
-        let ratio =
-            |step: &Step| f64::from(step.filament) * terms.filament_area / room(print, step);
+        let plastic = |step: &Step| f64::from(step.filament) * terms.filament_area;
+        let ratio = |step: &Step| plastic(step) / room(print, step);
+        let thick = |step: &Step| plastic(step) / step.length();
         let ratios: Vec<f64> = lines(role).map(|(_, step)| ratio(step)).collect();
         if ratios.len() < LEAST_LINES {
             continue;
         }
         let Some(usual) = median(ratios) else { continue };
+        let Some(usual_thick) = median(lines(role).map(|(_, step)| thick(step)).collect()) else {
+            continue;
+        };
         for (layer, step) in lines(role) {
             let times = ratio(step) / usual;
             let is_odd = if print.has_widths {
                 !(LEAST..=MOST).contains(&times)
             } else {
-                times > MOST_WITHOUT_WIDTH
+                // The first layer on a raft is pressed into less than its height.
+                times > MOST_WITHOUT_WIDTH && thick(step) > MOST * usual_thick
             };
             if is_odd {
                 let text = format!(

@@ -14,11 +14,13 @@
 //! Beads are drawn on rows of spans, layer by layer; a thick bead fills the layers below it too.
 
 mod against;
+mod air;
 mod align;
 mod anchors;
 mod beads;
 mod bodies;
 mod capsule;
+mod changes;
 mod contact;
 mod dialect;
 mod filled;
@@ -27,17 +29,22 @@ pub mod finding;
 mod grid;
 mod heat;
 mod moves;
+mod orders;
 mod part;
 mod pile;
 mod posts;
+mod primed;
 mod raft;
 mod rows;
 mod runs;
 mod samples;
 mod sets;
 mod stack;
+mod standing;
 mod surfaces;
 pub mod terms;
+mod through;
+mod warmth;
 
 use crate::mesh::Mesh;
 use crate::reader::print::Step;

@@ -29,6 +29,9 @@ const MOST_BYTES: usize = 1 << 22;
 /// Different commands that are kept: firmwares know some hundreds.
 const MOST_COMMANDS: usize = 10_000;
 
+/// Lines that a start block draws to prime the nozzle, at most.
+const MOST_PRIMING: usize = 8;
+
 /// Heights that differ by less are the same, mm.
 const SAME_HEIGHT: f64 = 1e-4;
 
@@ -136,8 +139,13 @@ pub(super) struct Gatherer {
     segment: Option<usize>,
     /// Heights of its lines.
     heights: Heights,
+    /// How many lines it has, and how many the first layer has.
+    lines: usize,
+    first_lines: usize,
     /// Height of the layer before, mm.
     below: f64,
+    /// Height of the lowest layer so far, mm.
+    lowest: Option<f64>,
     /// Whether the head has ended.
     past_head: bool,
     /// Bytes of comments that are kept.
@@ -149,7 +157,7 @@ impl Gatherer {
         match event {
             Event::Move(motion) => self.motion(line, motion),
             Event::Layer { marked } => self.begin(*marked),
-            Event::Command { letter, number } => {
+            Event::Command { letter, number, .. } => {
                 let commands = &mut self.facts.commands;
                 if commands.len() < MOST_COMMANDS {
                     commands.entry((*letter, *number)).or_insert(line);
@@ -174,6 +182,7 @@ impl Gatherer {
         if step.is_line() {
             facts.last_line = facts.move_count;
             if self.segment.is_some() {
+                self.lines += 1;
                 self.heights.add([step.from[2], step.to[2]].map(f64::from), step.length());
             }
         }
@@ -191,6 +200,7 @@ impl Gatherer {
             // The first mark: what heights told is part of the start.
             (facts.layers, facts.begun) = (Vec::new(), 0);
             (self.heights, self.below) = (Heights::default(), 0.0);
+            (self.lines, self.lowest) = (0, None);
         }
         let facts = &mut self.facts;
         facts.marked |= marked;
@@ -209,13 +219,20 @@ impl Gatherer {
             }
             return;
         };
+        let lowest = self.lowest.unwrap_or(HIGHEST);
+        let lines = std::mem::take(&mut self.lines);
+        if last.is_none() {
+            self.first_lines = lines;
+        }
         let height = match (z - self.below, last) {
             (rise, _) if rise > SAME_HEIGHT => rise,
-            // At the height of the layer before, or the first layer of another part.
+            // The first layer of another part lies on the bed as well.
+            (rise, _) if rise < -SAME_HEIGHT && 0.0 < z && z <= lowest + SAME_HEIGHT => z,
+            // At the height of the layer before.
             (_, Some(last)) => last.height,
             (_, None) => SOME_HEIGHT,
         };
-        self.below = z;
+        (self.below, self.lowest) = (z, Some(lowest.min(z)));
         facts.layers.push(Layer { moves: first..end, z, height });
     }
 
@@ -239,9 +256,21 @@ impl Gatherer {
         }
     }
 
+    /// Whether the first layer of a file without marks is but the few lines with which a start block
+    /// primes the nozzle, higher than the part's first layer.
+    fn has_priming(&self) -> bool {
+        let [first, next, ..] = &self.facts.layers[..] else { return false };
+        let is_higher = next.z < first.z - SAME_HEIGHT;
+        !self.facts.marked && is_higher && self.first_lines <= MOST_PRIMING
+    }
+
     /// The facts, at the file's end. `diameter`, mm, is that of the filament if the file gives none.
     pub(super) fn facts(mut self, summary: Summary, diameter: f64) -> Facts {
         self.end();
+        if self.has_priming() {
+            self.facts.layers.remove(0);
+            self.facts.begun -= 1;
+        }
         let mut facts = self.facts;
         facts.summary = summary;
         let own = DIAMETER_KEYS.iter().find_map(|key| facts.value(key)?.parse().ok());

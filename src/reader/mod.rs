@@ -72,6 +72,8 @@ pub enum Event {
         letter: u8,
         /// What follows the letter, without its fraction.
         number: u32,
+        /// The whole line of code.
+        code: Vec<u8>,
     },
     /// A comment without a mark, and without its `;`.
     Comment(Vec<u8>),

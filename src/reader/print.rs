@@ -14,6 +14,7 @@
 //! Who needs a layer at a time reads a [`Stream`](super::Stream) instead: it gives the same moves.
 
 use super::facts::Gatherer;
+use super::words;
 use super::{Event, Facts, Firmware, Heating, Motion, Reading, Role};
 use std::f64::consts::FRAC_PI_4;
 use std::io::{self, BufRead};
@@ -22,6 +23,17 @@ use std::ops::{Deref, DerefMut, Range};
 /// Lines of code that the reader does not know and that are kept, of a file: the first show what
 /// it is.
 pub(super) const MOST_UNKNOWN: u64 = 1000;
+
+/// Words of a command that are kept: more than any has.
+const MOST_WORDS: usize = 16;
+
+/// Commands that stand between the lines of nearly every print, or are for heaters: no note of them
+/// as commands is kept.
+const EVERYDAY_G: &[u32] = &[4, 11, 17, 21, 90, 91];
+const EVERYDAY_M: &[u32] = &[
+    6, 73, 82, 83, 104, 105, 109, 110, 114, 115, 116, 117, 118, 133, 134, 140, 190, 201, 203, 204,
+    205, 400, 486, 566, 572, 900,
+];
 
 /// A whole G-code file: its moves, and the facts of it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -103,6 +115,43 @@ pub enum What {
     },
     /// Code that the reader does not know: the first thousand lines of it.
     Unknown(String),
+    /// A command other than a move, but for those that stand everywhere in a print.
+    Command(Order),
+}
+
+/// A command with its words.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Order {
+    /// `G`, `M` or `T`, mostly.
+    pub letter: u8,
+    /// What follows the letter, without its fraction.
+    pub number: u32,
+    /// Whether the number has a fraction, as that of `M862.1`.
+    pub has_part: bool,
+    /// The letters that follow, each with its number if it has one.
+    pub words: Vec<(u8, Option<f64>)>,
+}
+
+impl Order {
+    fn new(letter: u8, number: u32, code: &[u8]) -> Self {
+        let read = words::command(code);
+        let (has_part, words) = read.map_or((false, Vec::new()), |(command, words)| {
+            (command.has_part, words.take(MOST_WORDS).collect())
+        });
+        Self { letter, number, has_part, words }
+    }
+
+    /// Whether one of the words has this letter.
+    #[must_use]
+    pub fn has(&self, letter: u8) -> bool {
+        self.words.iter().any(|(one, _)| *one == letter)
+    }
+
+    /// The number of the first word with this letter.
+    #[must_use]
+    pub fn value(&self, letter: u8) -> Option<f64> {
+        self.words.iter().find(|(one, _)| *one == letter)?.1
+    }
 }
 
 impl Step {
@@ -178,6 +227,20 @@ impl Print {
     }
 }
 
+/// Whether no note is kept of a command. G92 is kept where it names an axis, or none at all, and G10
+/// where it is no retraction.
+fn is_everyday(letter: u8, number: u32, code: &[u8]) -> bool {
+    let bare = || code.iter().skip(1).all(|byte| !byte.is_ascii_alphabetic());
+    let names = |axes: &[u8]| code.iter().any(|byte| axes.contains(&byte.to_ascii_uppercase()));
+    match (letter, number) {
+        (b'G', 10) => !names(b"LXYZUVW"),
+        (b'G', 92) => !bare() && !names(b"XYZ"),
+        (b'G', number) => EVERYDAY_G.contains(&number),
+        (b'M', number) => EVERYDAY_M.contains(&number),
+        _ => false,
+    }
+}
+
 /// What of the events is kept: moves, not measured yet, and notes.
 #[derive(Default)]
 pub(super) struct Kept {
@@ -200,6 +263,9 @@ impl Kept {
                     return;
                 }
                 What::Unknown(String::from_utf8_lossy(&code).into_owned())
+            }
+            Event::Command { letter, number, code } if !is_everyday(letter, number, &code) => {
+                What::Command(Order::new(letter, number, &code))
             }
             _ => return,
         };

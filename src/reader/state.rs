@@ -129,7 +129,7 @@ impl State {
         if let Some((Code { letter, number, .. }, _)) = command
             && !(letter == b'G' && number <= 3)
         {
-            sink(Event::Command { letter, number });
+            sink(Event::Command { letter, number, code: code.to_vec() });
         }
         if let Some(heating) = heat::heating(code) {
             sink(Event::Heating(heating));

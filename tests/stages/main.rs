@@ -7,6 +7,7 @@ mod bent;
 mod check;
 mod dual;
 mod firmware;
+mod harm;
 mod laws;
 mod mend;
 mod motion;
