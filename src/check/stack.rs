@@ -2,9 +2,9 @@
 //!
 //! Words used here: a *chain* is lines one after the other without a break; a *patch* is all lines of a
 //! layer that touch; a place of a line is *carried* if plastic or the bed reaches up to its lower
-//! side there.
+//! side there; a *run* is a stretch of a chain that is carried all along, or nowhere.
 //!
-//! Lines are laid on a [`Pile`] in the file's order, layer by layer:
+//! Each layer is laid on those below it ([`ground`](super::ground)); layers are judged side by side:
 //! - a patch of which no line is carried anywhere is in the air. If the model itself has nothing
 //!   below there, or is not known, a body begins ([`bodies`](super::bodies)). Within other patches a
 //!   stretch that is not carried is a bridge if both its ends are, else an end that hangs; both are
@@ -14,17 +14,28 @@
 //!   This is possible only for lines below the highest line so far, so flat files do not pay for it;
 //! - a line that irons may lie on others of its layer, and on nothing else;
 //! - a layer whose walls are less high than it lies above the one below misses a layer between.
+//!
+//! Bodies are put together in the file's order at the end.
 
 use super::anchors::{self, LEAST_RUN, Loose, Piece};
 use super::beads::place;
 use super::bodies::{Bodies, Start};
+use super::filled::floors;
 use super::finding::{Code, Finding, Findings, Place, short};
+use super::ground::{Carrier, Ground, PITCH, bed_room, below, lower_side, room_below};
+use super::laid::{Bead, Laid, SUPPORT_GAP, Seen, both};
+use super::moves::ROUNDING;
 use super::part::Part;
-use super::pile::{Pile, lower_side};
-use super::runs::{Runs, Twice};
+use super::runs::{Runs, Twice, united};
 use super::samples::{Sample, Samples};
+use super::sets::Sets;
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Layers that are judged side by side: few, so that not many are held, and enough for all threads.
+const BATCH: usize = 32;
 
 /// Part of its walls' height by which a layer may lie too high: variable heights are rounded,
 /// a missing layer is a whole height.
@@ -42,6 +53,23 @@ const MOST_MISSING: f64 = 2.0;
 /// Length behind the nozzle that does not count as laid, mm: a line may turn back within it.
 const BEHIND: f64 = 1.5;
 
+/// A line runs on another where their cores meet, which are this part of their widths: neighbours
+/// overlap by less, turns of a zigzag by more.
+const CORE: f64 = 0.4;
+
+/// Heights of lines that differ by less are the same, mm: positions are rounded to this or less.
+const SAME_HEIGHT: f64 = 0.01;
+
+/// What carries a line may end so far beside it, mm: a tenth of a line, by which widths are rounded
+/// and beads are wider than files say.
+const SLACK: f64 = 0.05;
+
+/// Gaps in what a line lies on that do not count, mm.
+const CLOSED: f64 = 0.03;
+
+/// Lines this near to each other touch, mm: a sixth of a line.
+const BESIDE: f64 = 0.07;
+
 /// What was measured.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Measured {
@@ -57,57 +85,91 @@ pub(super) struct Measured {
 /// no missing layer.
 pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) -> Measured {
     let mut measured = Measured::default();
-    let Some(mut pile) = Pile::over(print) else { return measured };
-    let mut bodies = Bodies::default();
-    let mut pieces = Vec::new();
-    for (layer, one) in print.layers.iter().enumerate() {
-        gap(print, (layer, part), found);
-        pile.begin_layer();
-        let steps = print.moves_of(one).chunk_by(|a, b| {
-            a.is_line() && b.is_line() && a.to == b.from && is_ironing(a) == is_ironing(b)
+    let (mut bodies, mut firsts) = (Bodies::default(), Vec::new());
+    let mut chains = 0;
+    let floors = floors(print);
+    let mut kept: Vec<Option<Laid>> = Vec::new();
+    let mut highest = vec![0.0_f64];
+    let count = print.layers.len();
+    for first in (0..count).step_by(BATCH) {
+        let batch = first..(first + BATCH).min(count);
+        let laid = batch.clone().into_par_iter().map(|layer| {
+            let moves = print.moves_of(&print.layers[layer]);
+            Some(Laid::new(
+                moves,
+                chains_of(moves).filter(|chain| !is_ironing(&moves[chain.start])),
+            ))
         });
-        let all = || steps.clone().filter(|chain| chain[0].is_line());
-        let chains = || all().filter(|chain| !is_ironing(&chain[0]));
-        let lines: Vec<Line> = chains()
-            .map(|chain| lay(&mut pile, chain, &mut pieces, (layer, &mut *found)))
-            .collect();
-        let mut judge = Judge { layer, part, bodies: &mut bodies, found, measured: &mut measured };
-        judge.patches(&lines, &mut pile);
-        for chain in all().filter(|chain| is_ironing(&chain[0])) {
-            iron(&mut pile, chain, layer, found);
+        kept.extend(laid.collect::<Vec<_>>());
+        for layer in batch.clone() {
+            let own = kept[layer].as_ref().map_or(0.0, |laid| laid.highest);
+            highest.push(highest[layer].max(own));
         }
-        if let Some((fall, step)) = pile.fall.take() {
-            let text = format!("{} mm lower than what is printed already", short(fall));
-            found.add(Finding::of(Code::FallingZ, fall, "mm", text).at(place(layer, &step)));
+        let judged = batch.clone().into_par_iter().filter_map(|layer| {
+            let laid = kept[layer].as_ref()?;
+            let lowest = floors[layer] - SUPPORT_GAP - 1e-3;
+            let ground = Ground::below(laid, &kept[..layer], lowest);
+            let moves = print.moves_of(&print.layers[layer]);
+            let mut judge = Judge::new((layer, part), (laid, moves), &ground, highest[layer]);
+            judge.found.extend(gap(print, (layer, part)));
+            Some(judge.layer())
+        });
+        for judged in judged.collect::<Vec<_>>() {
+            firsts.push(chains);
+            chains += judged.of_chain.len() as u32;
+            found.extend(judged.found);
+            measured.longest_bridge = measured.longest_bridge.max(judged.measured.longest_bridge);
+            measured.longest_end = measured.longest_end.max(judged.measured.longest_end);
+            measured.part_hangs += judged.measured.part_hangs;
+            stand(&mut bodies, judged.patches, &judged.of_chain, &firsts);
         }
-        pile.raise(chains());
+        // What nothing will lie on any more.
+        let lowest =
+            floors.get(batch.end).map_or(f64::INFINITY, |floor| floor - SUPPORT_GAP - 1e-3);
+        kept.iter_mut()
+            .filter(|one| one.as_ref().is_some_and(|one| one.top < lowest))
+            .for_each(|one| *one = None);
     }
     bodies.report(found);
     measured
 }
 
+/// Puts the patches of a layer on the bodies below; `firsts` are the first chains of the layers.
+fn stand(bodies: &mut Bodies, patches: Vec<Patch>, of_chain: &[usize], firsts: &[u32]) {
+    let of_patch: Vec<usize> = patches
+        .into_iter()
+        .map(|patch| {
+            let carriers = patch.carriers.iter().map(|carrier| match carrier {
+                Carrier::Bed => 0,
+                Carrier::Chain(layer, chain) => firsts[*layer] + chain + 1,
+            });
+            let body = bodies.add((patch.length, patch.is_part), carriers);
+            if let Some(start) = patch.start {
+                bodies.begin(body, start);
+            }
+            body
+        })
+        .collect();
+    of_chain.iter().for_each(|&patch| bodies.chain(of_patch[patch]));
+}
+
+/// The chains of a layer's moves.
+fn chains_of(moves: &[Step]) -> impl Iterator<Item = Range<usize>> {
+    let mut next = 0;
+    let chains = moves.chunk_by(|a, b| {
+        a.is_line() && b.is_line() && a.to == b.from && is_ironing(a) == is_ironing(b)
+    });
+    let chains = chains.map(move |chain| {
+        let first = next;
+        next += chain.len();
+        first..next
+    });
+    chains.filter(|chain| moves[chain.start].is_line())
+}
+
 /// Whether a line lies on purpose on others of its layer.
 fn is_ironing(step: &Step) -> bool {
     step.role == Role::Ironing
-}
-
-/// Reports what of a chain that irons lies beside all that the layer has laid.
-fn iron(pile: &mut Pile, chain: &[Step], layer: usize, found: &mut Findings) {
-    let (mut run, mut longest) = (0.0, (0.0, chain[0]));
-    for step in chain {
-        for sample in Samples::of(step, pile.grid.pitch) {
-            pile.find_fall(step, &sample);
-            run = if pile.is_covered(sample.at) { 0.0 } else { run + sample.length };
-            if run > longest.0 {
-                longest = (run, *step);
-            }
-        }
-    }
-    let (length, step) = longest;
-    if length >= LEAST_BARE {
-        let text = format!("{} mm are ironed where the layer has nothing", short(length));
-        found.add(Finding::of(Code::InTheAir, length, "mm", text).at(place(layer, &step)));
-    }
 }
 
 /// How much higher a layer lies than its walls are, above the layer or the bed below, mm. Only walls
@@ -129,154 +191,355 @@ fn walls(print: &Print, layer: usize) -> impl Iterator<Item = &Step> {
 
 /// Reports a layer whose walls are less high than it lies above the one below: a layer between is
 /// missing, unless the part has nothing there either.
-fn gap(print: &Print, (layer, part): (usize, Option<&Part>), found: &mut Findings) {
+fn gap(print: &Print, (layer, part): (usize, Option<&Part>)) -> Option<Finding> {
     let missing = gap_below(print, layer);
     // Above the bed the patches are judged. A raft or support below ends lower on purpose.
     let is_above_walls = layer.checked_sub(1).is_some_and(|k| walls(print, k).next().is_some());
     let is_of_part = part.is_some_and(|part| part.is_empty_below(layer));
-    let (Some(first), true) = (walls(print, layer).next(), is_above_walls) else { return };
-    if missing > 0.0 && !is_of_part {
+    let first = walls(print, layer).next().filter(|_| is_above_walls)?;
+    (missing > 0.0 && !is_of_part).then(|| {
         let text = format!("the layer lies {} mm too high above the one before", short(missing));
-        found.add(Finding::of(Code::InTheAir, missing, "mm", text).at(place(layer, first)));
-    }
+        Finding::of(Code::InTheAir, missing, "mm", text).at(place(layer, first))
+    })
 }
 
-/// An unbroken line once it is laid.
+/// A chain once it is laid.
 struct Line {
-    /// Its first piece.
-    first: Step,
     /// mm.
     length: f64,
-    /// The chains that carry it, counted from 1, each once or more; 0 is the bed.
-    carriers: Vec<u32>,
-    /// Stretches that nothing carries, but for bridges: those at its ends.
-    ends: Vec<Vec<Sample>>,
+    /// What carries it, each once.
+    carriers: Vec<Carrier>,
+    /// Longest stretch that nothing carries at one of its ends, and between two that are carried, mm.
+    longest_end: f64,
+    longest_bridge: f64,
     /// Lines without an anchor.
     loose: Vec<(Loose, Step)>,
-    longest_bridge: f64,
 }
 
-/// Lays one unbroken line, of many straight pieces; `pieces` is room for them.
-fn lay(
-    pile: &mut Pile,
-    chain: &[Step],
-    pieces: &mut Vec<Piece>,
-    (layer, found): (usize, &mut Findings),
-) -> Line {
-    let (mut runs, mut twice, mut carriers) = (Runs::default(), Twice::default(), Vec::new());
-    let (mut behind, mut way_behind) = (0, 0.0);
-    let (mut length, mut hangs) = (0.0, 0.0);
-    pieces.clear();
-    for (k, step) in chain.iter().enumerate() {
-        way_behind += step.length();
-        while way_behind - chain[behind].length() > BEHIND {
-            way_behind -= chain[behind].length();
-            pile.lay_core(&chain[behind]);
-            behind += 1;
-        }
-        for sample in Samples::of(step, pile.grid.pitch) {
-            length += sample.length;
-            pile.find_fall(step, &sample);
-            twice.add(pile.is_laid(step, sample.at), sample.length, step);
-            let carrier = pile.carrier(step, &sample);
-            match carrier {
-                Some(one) if carriers.last() != Some(&one) => carriers.push(one),
-                Some(_) => {}
-                None => hangs += sample.length,
-            }
-            runs.add(carrier.is_some(), sample);
-            pieces.push(Piece { sample, carried: carrier.is_some(), step: k });
-        }
-    }
-    chain[behind..].iter().for_each(|step| pile.lay_core(step));
-    runs.end();
-    let loose = if hangs > LEAST_RUN { anchors::loose(pile, chain, pieces) } else { Vec::new() };
-    pile.lay(chain);
-    for (long, step) in twice.ends(length) {
-        let text = format!("{} mm of a line lie on another of the layer", short(long));
-        found.add(Finding::of(Code::PrintedTwice, long, "mm", text).at(place(layer, &step)));
-    }
-    Line {
-        first: chain[0],
-        length,
-        carriers,
-        ends: runs.ends,
-        loose: loose
-            .into_iter()
-            .map(|one| {
-                let step = chain[one.step];
-                (one, step)
-            })
-            .collect(),
-        longest_bridge: runs.longest_bridge,
-    }
+/// All lines of a layer that touch.
+struct Patch {
+    /// mm.
+    length: f64,
+    /// Whether the part stands by it.
+    is_part: bool,
+    carriers: Vec<Carrier>,
+    /// Where a body begins, if it does.
+    start: Option<Start>,
 }
 
-/// Judges what hangs on a layer.
+/// What was found on a layer.
+struct Judged {
+    found: Vec<Finding>,
+    measured: Measured,
+    patches: Vec<Patch>,
+    /// The patch of each chain.
+    of_chain: Vec<usize>,
+}
+
+/// Judges a layer.
 struct Judge<'a> {
     layer: usize,
     part: Option<&'a Part>,
-    bodies: &'a mut Bodies,
-    found: &'a mut Findings,
-    measured: &'a mut Measured,
+    laid: &'a Laid,
+    moves: &'a [Step],
+    ground: &'a Ground<'a>,
+    /// The highest line of the layers before, mm.
+    highest: f64,
+    /// Which chains touch.
+    touching: Sets,
+    /// Beads of this layer, and of those below, that were looked at for a line.
+    seen: Seen,
+    seen_below: Vec<Seen>,
+    found: Vec<Finding>,
+    measured: Measured,
+    /// How deep a line of this layer lies in what the layers before have printed, mm, and the line
+    /// that lies deepest.
+    fall: Option<(f64, Step)>,
 }
 
-impl Judge<'_> {
-    fn patches(&mut self, lines: &[Line], pile: &mut Pile) {
-        let roots: Vec<usize> = (0..lines.len()).map(|line| pile.root(line)).collect();
+/// What of a line is carried, and what of it lies on others of its layer: stretches from 0 to 1.
+#[derive(Default)]
+struct Ways {
+    carried: Vec<[f64; 2]>,
+    /// Carried on the middle, and beside it: by what.
+    middle: Vec<[f64; 2]>,
+    beside: Vec<(Carrier, [f64; 2])>,
+    laid: Vec<[f64; 2]>,
+}
+
+impl<'a> Judge<'a> {
+    fn new(
+        (layer, part): (usize, Option<&'a Part>),
+        (laid, moves): (&'a Laid, &'a [Step]),
+        ground: &'a Ground<'a>,
+        highest: f64,
+    ) -> Self {
+        let mut touching = Sets::default();
+        laid.chains.iter().for_each(|_| _ = touching.add());
+        Self {
+            layer,
+            part,
+            laid,
+            moves,
+            ground,
+            highest,
+            touching,
+            seen: Seen::default(),
+            seen_below: ground.seen(),
+            found: Vec::new(),
+            measured: Measured::default(),
+            fall: None,
+        }
+    }
+
+    fn layer(mut self) -> Judged {
+        let mut ways = Ways::default();
+        let lines: Vec<Line> =
+            (0..self.laid.chains.len()).map(|chain| self.lay(chain, &mut ways)).collect();
+        let (patches, of_chain) = self.patches(&lines);
+        for chain in chains_of(self.moves).filter(|chain| is_ironing(&self.moves[chain.start])) {
+            self.iron(&self.moves[chain]);
+        }
+        if let Some((fall, step)) = self.fall {
+            let text = format!("{} mm lower than what is printed already", short(fall));
+            self.add(Finding::of(Code::FallingZ, fall, "mm", text), &step);
+        }
+        Judged { found: self.found, measured: self.measured, patches, of_chain }
+    }
+
+    fn add(&mut self, finding: Finding, step: &Step) {
+        self.found.push(finding.at(place(self.layer, step)));
+    }
+
+    /// Lays a chain, of many straight lines.
+    fn lay(&mut self, chain: usize, ways: &mut Ways) -> Line {
+        let beads = self.laid.chains[chain].clone();
+        let (mut runs, mut twice, mut carriers) = (Runs::default(), Twice::default(), Vec::new());
+        for index in beads.clone() {
+            let bead = &self.laid.beads[index];
+            let step = &self.moves[bead.step as usize];
+            self.find_fall(bead, step, index);
+            self.carry(bead, step, ways, &mut carriers);
+            self.touch(bead, index, ways);
+            united(&mut ways.carried, 0.0);
+            runs.add(index - beads.start, bead.length, &ways.carried);
+            united(&mut ways.laid, CLOSED / bead.length);
+            twice.step(&ways.laid, bead.length, step);
+        }
+        let length = self.laid.beads[beads.clone()].iter().map(|bead| bead.length).sum();
+        for (long, step) in twice.ends(length) {
+            let text = format!("{} mm of a line lie on another of the layer", short(long));
+            self.add(Finding::of(Code::PrintedTwice, long, "mm", text), &step);
+        }
+        let loose = if runs.hanging() > LEAST_RUN { self.loose(beads, &runs) } else { Vec::new() };
+        let (longest_end, longest_bridge) = runs.longest();
+        Line { length, carriers, longest_end, longest_bridge, loose }
+    }
+
+    /// Finds what carries a line.
+    fn carry(&mut self, bead: &Bead, step: &Step, ways: &mut Ways, carriers: &mut Vec<Carrier>) {
+        ways.carried.clear();
+        ways.middle.clear();
+        ways.beside.clear();
+        ways.laid.clear();
+        let mut add = |carrier| {
+            if !carriers.contains(&carrier) {
+                carriers.push(carrier);
+            }
+        };
+        if let Some(way) = below(bead, bed_room(step)) {
+            ways.carried.push(way);
+            add(Carrier::Bed);
+        }
+        let room = room_below(step);
+        let needed = bead.heights[0].min(bead.heights[1]) - room;
+        let mut last = None;
+        self.ground.near(bead, (needed, SLACK), &mut self.seen_below, &mut |layer, other| {
+            let low = below(bead, other.top() + room);
+            let side = bead.way(other, other.radius + bead.radius + SLACK);
+            let Some(side) = low.zip(side).and_then(|(a, b)| both(a, b)) else { return };
+            ways.carried.push(side);
+            let carrier = Carrier::Chain(layer, other.chain);
+            if last == Some(carrier) {
+                return;
+            }
+            match bead.way(other, other.radius + SLACK).and_then(|way| both(way, side)) {
+                Some(middle) => {
+                    ways.middle.push(middle);
+                    add(carrier);
+                    last = Some(carrier);
+                }
+                None => ways.beside.push((carrier, side)),
+            }
+            if (other.middle() - bead.middle()).abs() < SAME_HEIGHT {
+                ways.laid.extend(bead.way(other, CORE * other.radius));
+            }
+        });
+        // What lies beside the middle carries only where nothing lies below that.
+        if !ways.beside.is_empty() {
+            united(&mut ways.middle, 0.0);
+            for (carrier, [from, to]) in ways.beside.drain(..) {
+                if !ways.middle.iter().any(|middle| middle[0] <= from && to <= middle[1]) {
+                    add(carrier);
+                }
+            }
+        }
+    }
+
+    /// Joins a line's chain to those that it touches, and finds what it lies on of its own layer: of
+    /// what was laid before.
+    fn touch(&mut self, bead: &Bead, index: usize, ways: &mut Ways) {
+        let (touching, chain) = (&mut self.touching, bead.chain as usize);
+        self.laid.near(bead, BESIDE, &mut self.seen, &mut |k, other| {
+            if k >= index {
+                return;
+            }
+            let is_own = other.chain == bead.chain;
+            if !is_own
+                && touching.root(chain) != touching.root(other.chain as usize)
+                && bead.way(other, bead.radius + other.radius + BESIDE).is_some()
+            {
+                touching.join(chain, other.chain as usize);
+            }
+            let is_behind = !is_own || bead.reach - other.reach > BEHIND;
+            if is_behind && (other.middle() - bead.middle()).abs() < SAME_HEIGHT {
+                ways.laid.extend(bead.way(other, CORE * other.radius));
+            }
+        });
+    }
+
+    /// Notes how far a line lies below the nozzle's way there in a layer before; `before` is how many
+    /// beads of its own layer lie there already.
+    fn find_fall(&mut self, bead: &Bead, step: &Step, before: usize) {
+        if bead.heights[0].min(bead.heights[1]) >= self.highest - ROUNDING {
+            return;
+        }
+        let is_free = |at| !self.laid.covers(at, |k, _| k < before);
+        let fall = self.ground.depth(bead, CORE, &mut self.seen_below, is_free);
+        if fall > self.fall.map_or(ROUNDING, |(most, _)| most) {
+            self.fall = Some((fall, *step));
+        }
+    }
+
+    /// Reports what of a chain that irons lies beside all that the layer has laid.
+    fn iron(&mut self, chain: &[Step]) {
+        let (mut run, mut longest) = (0.0, (0.0, chain[0]));
+        for step in chain {
+            let bead = Bead::of(step);
+            self.find_fall(&bead, step, usize::MAX);
+            let mut covered = Vec::new();
+            self.laid.near(&bead, 0.0, &mut self.seen, &mut |_, other| {
+                covered.extend(bead.way(other, other.radius));
+            });
+            united(&mut covered, 0.0);
+            let mut at = 0.0;
+            for [from, to] in covered.into_iter().chain([[1.0, 1.0]]) {
+                run += (from - at) * bead.length;
+                if run > longest.0 {
+                    longest = (run, *step);
+                }
+                run = if to > from { 0.0 } else { run };
+                at = to;
+            }
+        }
+        let (length, step) = longest;
+        if length >= LEAST_BARE {
+            let text = format!("{} mm are ironed where the layer has nothing", short(length));
+            self.add(Finding::of(Code::InTheAir, length, "mm", text), &step);
+        }
+    }
+
+    /// The loose lines of a chain.
+    fn loose(&self, beads: Range<usize>, runs: &Runs) -> Vec<(Loose, Step)> {
+        let first = self.laid.beads[beads.start].step as usize;
+        let chain = &self.moves[first..first + beads.len()];
+        let mut pieces = Vec::new();
+        for run in &runs.all {
+            if run.carried || run.length <= LEAST_RUN {
+                let (step, _) = run.from;
+                let sample = Samples::of(&chain[step], f64::INFINITY).next();
+                pieces.extend(sample.map(|sample| Piece {
+                    sample: Sample { length: run.length, ..sample },
+                    carried: run.carried,
+                    step,
+                }));
+                continue;
+            }
+            for step in run.from.0..=run.to.0 {
+                let from = if step == run.from.0 { run.from.1 } else { 0.0 };
+                let to = if step == run.to.0 { run.to.1 } else { 1.0 };
+                let samples = Samples::of(&chain[step], PITCH).between(from, to);
+                pieces.extend(samples.map(|sample| Piece { sample, carried: false, step }));
+            }
+        }
+        let loose = anchors::loose(self.ground, chain, &pieces);
+        loose.into_iter().map(|one| (chain[one.step], one)).map(|(step, one)| (one, step)).collect()
+    }
+
+    /// Judges the patches of the layer, in the order of their first chains; gives each chain's.
+    fn patches(&mut self, lines: &[Line]) -> (Vec<Patch>, Vec<usize>) {
+        let roots: Vec<usize> = (0..lines.len()).map(|line| self.touching.root(line)).collect();
         // The lines of each patch side by side, in the order of their first lines.
         let mut order: Vec<usize> = (0..lines.len()).collect();
         order.sort_by_key(|&line| roots[line]);
-        let mut of_line = vec![0; lines.len()];
+        let (mut patches, mut of_chain) = (Vec::new(), vec![0; lines.len()]);
         for patch in order.chunk_by(|&a, &b| roots[a] == roots[b]) {
-            let lines: Vec<&Line> = patch.iter().map(|&line| &lines[line]).collect();
-            let body = self.patch(&lines, pile);
-            patch.iter().for_each(|&line| of_line[line] = body);
+            patch.iter().for_each(|&line| of_chain[line] = patches.len());
+            let patch = self.patch(lines, patch);
+            patches.push(patch);
         }
-        of_line.into_iter().for_each(|body| self.bodies.chain(body));
+        (patches, of_chain)
     }
 
-    /// Judges a patch; returns its body.
-    fn patch(&mut self, lines: &[&Line], pile: &Pile) -> usize {
-        let length = lines.iter().map(|line| line.length).sum();
-        let carriers = || lines.iter().flat_map(|line| line.carriers.iter().copied());
-        let is_part = lines.iter().any(|line| !is_beside(line.first.role));
-        let body = self.bodies.add((length, is_part), carriers());
-        for line in lines {
+    fn patch(&mut self, lines: &[Line], chains: &[usize]) -> Patch {
+        let of_patch = || chains.iter().map(|&chain| &lines[chain]);
+        let length = of_patch().map(|line| line.length).sum();
+        let mut carriers = Vec::new();
+        for line in of_patch() {
+            carriers.extend_from_slice(&line.carriers);
             self.measured.longest_bridge = self.measured.longest_bridge.max(line.longest_bridge);
         }
-        if carriers().next().is_none() {
-            self.begins(lines, length, (body, pile));
-            return body;
+        let is_part = chains.iter().any(|&chain| !is_beside(self.first(chain).role));
+        if carriers.is_empty() {
+            let start = self.begins(chains, length);
+            return Patch { length, is_part, carriers, start };
         }
-        for line in lines {
+        for line in of_patch() {
             // Skins may begin and end between two lines of sparse infill.
-            let longest = line.ends.iter().map(|end| length_of(end)).fold(0.0, f64::max);
-            self.measured.longest_end = self.measured.longest_end.max(longest);
+            self.measured.longest_end = self.measured.longest_end.max(line.longest_end);
             for (loose, step) in &line.loose {
                 let what = step.role.name();
                 let text = format!("{} mm of {what} {}", short(loose.length), loose.why);
                 let finding = Finding::warning(Code::Unanchored, loose.length, "mm", text);
                 let at_mm = Some(loose.at.map(short));
-                self.found.add(finding.at(Place { at_mm, ..place(self.layer, step) }));
+                self.found.push(finding.at(Place { at_mm, ..place(self.layer, step) }));
             }
         }
-        body
+        Patch { length, is_part, carriers, start: None }
+    }
+
+    /// The first line of a chain.
+    fn first(&self, chain: usize) -> &'a Step {
+        let first = self.laid.chains[chain].start;
+        &self.moves[self.laid.beads[first].step as usize]
     }
 
     /// A patch hangs: a layer below is missing, unless the part itself hangs there. Where that is
     /// not known, plastic a layer or two lower tells.
-    fn begins(&mut self, lines: &[&Line], length: f64, (body, pile): (usize, &Pile)) {
-        let samples = || lines.iter().flat_map(|line| line.ends.iter().flatten().copied());
-        let step = &lines[0].first;
+    fn begins(&mut self, chains: &[usize], length: f64) -> Option<Start> {
+        let beads =
+            chains.iter().flat_map(|&chain| &self.laid.beads[self.laid.chains[chain].clone()]);
+        let samples = beads.flat_map(|bead| Samples::of(&self.moves[bead.step as usize], PITCH));
+        let all: Vec<Sample> = samples.collect();
+        let step = self.first(chains[0]);
         let hangs = |sample: &Sample| match self.part {
             Some(part) => part.hangs(self.layer, sample.at),
             None => {
                 let low = lower_side(step, sample.z) - MOST_MISSING * f64::from(step.height);
-                low <= 0.0 || pile.standing(sample.at, low).is_none()
+                low <= 0.0 || !self.ground.stands(sample.at, low)
             }
         };
-        let (by_part, own): (Vec<Sample>, Vec<Sample>) = samples().partition(hangs);
+        let (by_part, own): (Vec<Sample>, Vec<Sample>) = all.iter().copied().partition(hangs);
         let middle = |of: &[Sample]| of.get(of.len() / 2).map(|sample| sample.at.map(short));
         let at = |of: &[Sample]| Place { at_mm: middle(of), ..place(self.layer, step) };
         if length >= LEAST_PATCH && self.part.is_some() {
@@ -286,17 +549,15 @@ impl Judge<'_> {
             let what = step.role.name();
             let text = format!("{} mm of {what} have nothing under them", short(length_of(&own)));
             let finding = Finding::of(Code::InTheAir, length_of(&own), "mm", text);
-            self.found.add(finding.at(at(&own)));
-            return;
+            self.found.push(finding.at(at(&own)));
+            return None;
         }
-        let all: Vec<Sample> = samples().collect();
-        let start = Start {
+        Some(Start {
             place: at(&all),
             role: step.role,
             length,
             bottom: step.heights()[0] - f64::from(step.height),
-        };
-        self.bodies.begin(body, start);
+        })
     }
 }
 
