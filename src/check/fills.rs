@@ -138,19 +138,7 @@ impl Judge<'_> {
         let threads = || own.iter().filter(|step| step.is_line() && is_thread(step, self.terms));
         let counts = |step: &Step| is_solid(step) || step.role == Role::Ironing;
         for &(step, share) in lines.iter().filter(|(step, _)| counts(step)) {
-            let pieces = Samples::of(step, PIECE);
-            let plastic = self.terms.plastic(step) * share / step.length();
-            let lane = f64::from(step.width) / LANES as f64;
-            for piece in pieces {
-                for k in 0..LANES {
-                    let aside = (k as f64 + 0.5 - LANES as f64 / 2.0) * lane;
-                    let at = segment::along(piece.at, aside, piece.across);
-                    if let Some(cell) = self.cell(at).and_then(|k| cells.get_mut(k)) {
-                        let of = if is_solid(step) { &mut cell.plastic } else { &mut cell.ironed };
-                        *of += plastic * piece.length / LANES as f64;
-                    }
-                }
-            }
+            self.add_plastic(step, share, &mut cells);
         }
         let solids = || lines.iter().filter(|(step, _)| is_solid(step)).map(|(step, _)| *step);
         let sparse =
@@ -163,9 +151,8 @@ impl Judge<'_> {
             let mut open = gaps(&solid, &self.inside(layer, flipped));
             // Most layers have too few gaps for any place to be open: no more is drawn for them.
             if self.lattice.area(&open) >= LEAST_OPEN {
-                open = open
-                    .minus(&self.drawn(sparse(), flipped))
-                    .minus(&self.drawn(threads(), flipped));
+                let all = sparse().chain(threads());
+                open = open.minus(&self.lattice.draw_on(&open, capsules(all, flipped)));
                 self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
             }
         }
@@ -183,10 +170,32 @@ impl Judge<'_> {
         judged.collect()
     }
 
+    /// Adds the share of a line's plastic to the cells that it lies in.
+    fn add_plastic(&self, step: &Step, share: f64, cells: &mut [Cell]) {
+        let mut add = |cell: Option<usize>, plastic: f64| {
+            if let Some(cell) = cell.and_then(|k| cells.get_mut(k)) {
+                *(if is_solid(step) { &mut cell.plastic } else { &mut cell.ironed }) += plastic;
+            }
+        };
+        let plastic = self.terms.plastic(step) * share;
+        let (low, high) = Capsule::of(step, 1.0).extent();
+        let ends = [self.cell(low), self.cell(high)];
+        if ends[0].is_some() && ends[0] == ends[1] {
+            return add(ends[0], plastic);
+        }
+        let lane = f64::from(step.width) / LANES as f64;
+        for piece in Samples::of(step, PIECE) {
+            for k in 0..LANES {
+                let aside = (k as f64 + 0.5 - LANES as f64 / 2.0) * lane;
+                let at = segment::along(piece.at, aside, piece.across);
+                add(self.cell(at), plastic / step.length() * piece.length / LANES as f64);
+            }
+        }
+    }
+
     /// What lines cover.
     fn drawn<'s>(&self, lines: impl Iterator<Item = &'s Step>, flipped: bool) -> Rows {
-        let capsules = lines.map(|step| Capsule::of(step, 1.0));
-        self.lattice.draw(capsules.map(|one| if flipped { one.flipped() } else { one }))
+        self.lattice.draw(capsules(lines, flipped))
     }
 
     /// The cell of a place.
@@ -281,6 +290,15 @@ impl Judge<'_> {
             Finding::warning(Code::Underfilled, lacks, "mm²", text)
         })
     }
+}
+
+/// Lines from above, with x and y exchanged or not.
+fn capsules<'s>(
+    lines: impl Iterator<Item = &'s Step>,
+    flipped: bool,
+) -> impl Iterator<Item = Capsule> {
+    let capsules = lines.map(|step| Capsule::of(step, 1.0));
+    capsules.map(move |one| if flipped { one.flipped() } else { one })
 }
 
 /// The gaps of each row inside an area.

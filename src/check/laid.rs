@@ -92,16 +92,19 @@ impl Bead {
 
     /// The part of this line that lies within `mm` of the middle of another.
     pub(super) fn way(&self, other: &Self, mm: f64) -> Option<[f64; 2]> {
-        // As the other sees it: along itself, and to its side.
-        let arm = segment::way(other.from, self.from);
+        // As the other sees it: along itself, and to its side. Most lines are off to a side.
+        let [u, v] = segment::way(other.from, self.from);
         let [x, y] = other.along;
-        let turned = |way: [f64; 2]| [x * way[0] + y * way[1], x * way[1] - y * way[0]];
-        let (at, by) = (turned(arm), turned(self.along.map(|part| part * self.length)));
-        let to = [at[0] + by[0], at[1] + by[1]];
+        let [dx, dy] = [self.along[0] * self.length, self.along[1] * self.length];
         let is_off = |from: f64, to: f64, low: f64, high: f64| {
             (from < low && to < low) || (from > high && to > high)
         };
-        if is_off(at[1], to[1], -mm, mm) || is_off(at[0], to[0], -mm, other.length + mm) {
+        let (off, aside) = (x * v - y * u, x * dy - y * dx);
+        if is_off(off, off + aside, -mm, mm) {
+            return None;
+        }
+        let (at, by) = ([x * u + y * v, off], [x * dx + y * dy, aside]);
+        if is_off(at[0], at[0] + by[0], -mm, other.length + mm) {
             return None;
         }
         let beside = within(at[1], by[1], [-mm, mm]).and_then(|beside| {
@@ -317,11 +320,12 @@ impl Field {
     /// The cells within `more` mm of a bead.
     fn reach(self, bead: &Bead, more: f64) -> impl Iterator<Item = usize> {
         let radius = bead.radius + more;
-        let by = bead.along.map(|part| part * bead.length);
         // In cells from the lowest corner.
-        let radius = radius / self.side;
-        let [x, y] = [0, 1].map(|axis| (bead.from[axis] - self.low[axis]) / self.side);
-        let [dx, dy] = by.map(|part| part / self.side);
+        let scale = 1.0 / self.side;
+        let (radius, length) = (radius * scale, bead.length * scale);
+        let x = (bead.from[0] - self.low[0]) * scale;
+        let y = (bead.from[1] - self.low[1]) * scale;
+        let (dx, dy) = (bead.along[0] * length, bead.along[1] * length);
         let span = move |from: f64, to: f64, count: usize| {
             let first = (from - radius).max(0.0) as usize;
             let end = (to + radius + 1.0).max(0.0) as usize;

@@ -68,6 +68,23 @@ impl Lattice {
 
     /// What capsules cover.
     pub(super) fn draw(self, capsules: impl Iterator<Item = Capsule>) -> Rows {
+        self.draw_where(capsules, |_, _| true)
+    }
+
+    /// What capsules cover of an area and beside it: less than all of it, where only that is asked for.
+    pub(super) fn draw_on(self, area: &Rows, capsules: impl Iterator<Item = Capsule>) -> Rows {
+        self.draw_where(capsules, |j, span| {
+            let row = area.row(j);
+            let next = row.partition_point(|one| one.end <= span.start);
+            row.get(next).is_some_and(|one| one.start < span.end)
+        })
+    }
+
+    fn draw_where(
+        self,
+        capsules: impl Iterator<Item = Capsule>,
+        is_asked: impl Fn(i32, Span) -> bool,
+    ) -> Rows {
         let mut drawn: Vec<(Range<i32>, Flanks)> = Vec::with_capacity(capsules.size_hint().0);
         for capsule in capsules {
             let (low, high) = capsule.extent();
@@ -96,7 +113,7 @@ impl Lattice {
             for row in rows {
                 let chord = flanks.chord(self.middle(row));
                 let span = chord.and_then(|(from, to)| Span::new(to_units(from), to_units(to)));
-                if let Some(span) = span {
+                if let Some(span) = span.filter(|span| is_asked(row, *span)) {
                     spans.add(row, span);
                 }
             }

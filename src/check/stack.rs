@@ -342,37 +342,37 @@ impl<'a> Judge<'a> {
         ways.middle.clear();
         ways.beside.clear();
         ways.laid.clear();
-        let mut add = |carrier| {
-            if !carriers.contains(&carrier) {
-                carriers.push(carrier);
-            }
-        };
+        let mut is_whole = false;
         if let Some(way) = below(bead, bed_room(step)) {
+            is_whole = way == [0.0, 1.0];
             ways.carried.push(way);
-            add(Carrier::Bed);
+            add(carriers, Carrier::Bed);
         }
         let room = room_below(step);
         let needed = bead.heights[0].min(bead.heights[1]) - room;
-        let mut last = None;
         self.ground.near(bead, (needed, SLACK), &mut self.seen_below, &mut |layer, other| {
+            if (other.middle() - bead.middle()).abs() < SAME_HEIGHT {
+                ways.laid.extend(bead.way(other, CORE * other.radius));
+            }
+            let carrier = Carrier::Chain(layer, other.chain);
+            let is_known = carriers.contains(&carrier);
+            if is_whole && is_known {
+                return;
+            }
             let low = below(bead, other.top() + room);
             let side = bead.way(other, other.radius + bead.radius + SLACK);
             let Some(side) = low.zip(side).and_then(|(a, b)| both(a, b)) else { return };
+            is_whole |= side == [0.0, 1.0];
             ways.carried.push(side);
-            let carrier = Carrier::Chain(layer, other.chain);
-            if last == Some(carrier) {
+            if is_known {
                 return;
             }
             match bead.way(other, other.radius + SLACK).and_then(|way| both(way, side)) {
                 Some(middle) => {
                     ways.middle.push(middle);
-                    add(carrier);
-                    last = Some(carrier);
+                    carriers.push(carrier);
                 }
                 None => ways.beside.push((carrier, side)),
-            }
-            if (other.middle() - bead.middle()).abs() < SAME_HEIGHT {
-                ways.laid.extend(bead.way(other, CORE * other.radius));
             }
         });
         // What lies beside the middle carries only where nothing lies below that.
@@ -380,7 +380,7 @@ impl<'a> Judge<'a> {
             united(&mut ways.middle, 0.0);
             for (carrier, [from, to]) in ways.beside.drain(..) {
                 if !ways.middle.iter().any(|middle| middle[0] <= from && to <= middle[1]) {
-                    add(carrier);
+                    add(carriers, carrier);
                 }
             }
         }
@@ -563,6 +563,12 @@ impl<'a> Judge<'a> {
 
 fn length_of(samples: &[Sample]) -> f64 {
     samples.iter().map(|sample| sample.length).sum()
+}
+
+fn add(carriers: &mut Vec<Carrier>, carrier: Carrier) {
+    if !carriers.contains(&carrier) {
+        carriers.push(carrier);
+    }
 }
 
 /// Whether lines of this role are printed beside the part, which does not stand by them.
