@@ -15,13 +15,15 @@
 
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Place, short};
-use super::part::{Part, Section};
+use super::part::Section;
 use super::rows::Lattice;
 use super::samples::Samples;
+use super::survey::Survey;
 use super::terms::Terms;
+use super::window::Window;
 use crate::geom::spans::Rows;
+use crate::reader::Role;
 use crate::reader::print::{Layer, Step};
-use crate::reader::{Print, Role};
 
 /// Width of the rim that must be printed, mm: three quarters of a usual line. A wider one would ask
 /// for walls where sparse infill is right.
@@ -82,17 +84,9 @@ pub(super) struct Areas {
 
 /// What judging a layer needs.
 pub(super) struct Judge<'a> {
-    pub(super) print: &'a Print,
-    pub(super) part: &'a Part,
+    pub(super) window: &'a Window<'a>,
+    pub(super) survey: &'a Survey,
     pub(super) lattice: Lattice,
-    /// Usual width of a wall, mm.
-    pub(super) line_width: f64,
-    /// How high each layer's lines are, mm.
-    pub(super) heights: &'a [f64],
-    /// For each layer where it and all above it reach down to, mm.
-    pub(super) floors: &'a [f64],
-    /// For each layer the lines of other layers that lie at its height: places in the moves.
-    pub(super) strays: &'a [Vec<usize>],
     pub(super) terms: &'a Terms,
     /// Whether the file gives roles, so that the part's lines differ from others.
     pub(super) has_roles: bool,
@@ -117,9 +111,10 @@ impl Judge<'_> {
         let (here, own) = (&cut.inside, sparse.or(&solid));
         let reaching = self.reaching_down(index);
         let (printed, closed) = (own.or(&reaching), solid.or(&reaching));
-        let printable = cut.opened(lattice, self.line_width * PRINTABLE / 2.0);
+        let printable = cut.opened(lattice, self.survey.line_width * PRINTABLE / 2.0);
         let along = cut.along(lattice, RIM);
-        let moved = self.terms.moved_at(self.print.layers[index].z - self.heights[index]);
+        let moved =
+            self.terms.moved_at(self.window.facts.layers[index].z - self.survey.heights[index]);
 
         let mut verdict = Verdict::default();
         let rim = here.and(&along).and(&printable);
@@ -153,7 +148,7 @@ impl Judge<'_> {
             });
             verdict.findings.extend(patches);
         }
-        let height = self.heights[index];
+        let height = self.survey.heights[index];
         self.amounts((lines(), height), here, [&solid, &closed], &mut verdict.areas);
         verdict
     }
@@ -161,27 +156,26 @@ impl Judge<'_> {
     /// The part's lines at the height of a layer: its own, and those of other layers that vary in
     /// height so much that they lie here.
     fn lines_at(&self, index: usize) -> impl Iterator<Item = &Step> {
-        let layer = &self.print.layers[index];
-        let own = self.print.moves_of(layer).iter().filter(|step| !is_stray(step, layer));
-        let strays = self.strays[index].iter().map(|&stray| &self.print.moves[stray]);
-        own.chain(strays).filter(|step| is_of_part(step, self.has_roles))
+        let layer = &self.window.facts.layers[index];
+        let own = self.window.moves(index).iter().filter(|step| !is_stray(step, layer));
+        own.chain(&self.survey.strays[index]).filter(|step| is_of_part(step, self.has_roles))
     }
 
     /// What walls and skins of the layers above cover of this one: thick ones, and those that vary
     /// in height.
     fn reaching_down(&self, index: usize) -> Rows {
-        let layer = &self.print.layers[index];
+        let layer = &self.window.facts.layers[index];
         let (top, bottom) = (layer.z - SAME_HEIGHT, layer.z - layer.height + SAME_HEIGHT);
         let mut capsules = Vec::new();
-        for above in index + 1..self.print.layers.len() {
-            if self.floors[above] >= top {
+        for above in index + 1..self.window.end() {
+            if self.survey.floors[above] >= top {
                 break;
             }
             let reaches = |step: &&Step| {
                 let [low, high] = step.heights();
                 step.role != Role::Infill && low - f64::from(step.height) < top && high > bottom
             };
-            let steps = self.print.moves_of(&self.print.layers[above]).iter();
+            let steps = self.window.moves(above).iter();
             let steps = steps.filter(|step| is_of_part(step, self.has_roles)).filter(reaches);
             capsules.extend(steps.map(|step| Capsule::of(step, 1.0)));
         }
@@ -210,7 +204,7 @@ impl Judge<'_> {
         let place = |at: [f64; 2]| Place {
             line: None,
             layer: Some(index + 1),
-            z_mm: Some(short(self.print.layers[index].z)),
+            z_mm: Some(short(self.window.facts.layers[index].z)),
             at_mm: Some(at.map(short)),
         };
         let finding = |area: f64| Finding::of(code, area, "mm²", text(short(area)));
@@ -243,25 +237,9 @@ impl Judge<'_> {
 }
 
 /// Whether a line lies so far from its layer's height that it is judged with another layer.
-fn is_stray(step: &Step, layer: &Layer) -> bool {
+pub(super) fn is_stray(step: &Step, layer: &Layer) -> bool {
     let [low, high] = step.heights();
     (0.5 * (low + high) - layer.z).abs() > layer.height + SAME_HEIGHT
-}
-
-/// For each layer the lines of other layers that lie at its height.
-pub(super) fn strays(print: &Print) -> Vec<Vec<usize>> {
-    let mut strays = vec![Vec::new(); print.layers.len()];
-    for layer in &print.layers {
-        for index in layer.moves.clone() {
-            let step = &print.moves[index];
-            if step.is_line() && is_stray(step, layer) {
-                let [low, high] = step.heights();
-                let at = print.layers.partition_point(|one| one.z < 0.5 * (low + high));
-                strays[at.min(print.layers.len() - 1)].push(index);
-            }
-        }
-    }
-    strays
 }
 
 /// What part of a line lies in an area.

@@ -12,7 +12,6 @@ use super::runs::united;
 use super::terms::Terms;
 use crate::reader::Role;
 use crate::reader::print::Step;
-use rayon::prelude::*;
 
 /// Edges this near touch, mm: an eighth of a line.
 const GAP: f64 = 0.05;
@@ -27,42 +26,56 @@ const ENOUGH: f64 = 200.0;
 const WIDEST: f64 = 0.8;
 
 /// What was measured on a layer.
-#[derive(Clone, Copy, Default)]
-struct Contact<'a> {
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Contact {
     /// Length of the innermost walls, and what of it is touched, mm.
     length: f64,
     touched: f64,
     /// The longest stretch that is not, mm, its wall and its end.
     longest: f64,
-    at: Option<(&'a Step, [f64; 2])>,
+    at: Option<(Step, [f64; 2])>,
 }
 
-/// Judges the whole print: directions of infill change from layer to layer, and so does what they
-/// touch. The place is that of the longest wall without infill on the layer with most of them.
-pub(super) fn check(filled: &Filled<'_>, terms: &Terms, found: &mut Findings) {
-    let print = filled.print;
-    let layers = (0..print.layers.len()).into_par_iter();
-    let judged: Vec<Contact<'_>> = layers.map(|layer| contact(filled, terms, layer)).collect();
-    let sum = |of: fn(&Contact<'_>) -> f64| judged.iter().map(of).sum::<f64>();
-    let (length, touched) = (sum(|one| one.length), sum(|one| one.touched));
-    if length < ENOUGH || touched >= LEAST * length {
-        return;
+/// What was measured on all layers so far.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Contacts {
+    sums: Contact,
+    /// The layer with most of the walls without infill.
+    worst: Option<(usize, Contact)>,
+}
+
+impl Contacts {
+    /// The next layer.
+    pub(super) fn layer(&mut self, layer: usize, contact: Contact) {
+        self.sums.length += contact.length;
+        self.sums.touched += contact.touched;
+        let loose = |one: &Contact| one.length - one.touched;
+        if self.worst.as_ref().is_none_or(|(_, worst)| loose(&contact) >= loose(worst)) {
+            self.worst = Some((layer, contact));
+        }
     }
-    let loose = |layer: usize| judged[layer].length - judged[layer].touched;
-    let Some(worst) = (0..judged.len()).max_by(|&a, &b| loose(a).total_cmp(&loose(b))) else {
-        return;
-    };
-    let percent = short(100.0 * touched / length);
-    let text = format!("the sparse infill touches {percent} % of the innermost walls");
-    let finding = Finding::warning(Code::LooseInfill, percent, "%", text);
-    let place = judged[worst].at.map_or(Place::default(), |(step, at)| Place {
-        at_mm: Some(at.map(short)),
-        ..place(worst, step)
-    });
-    found.add(finding.at(place));
+
+    /// Judges the whole print: directions of infill change from layer to layer, and so does what they
+    /// touch. The place is that of the longest wall without infill on the layer with most of them.
+    pub(super) fn finish(self, found: &mut Findings) {
+        let Contact { length, touched, .. } = self.sums;
+        let Some((layer, worst)) = self.worst else { return };
+        if length < ENOUGH || touched >= LEAST * length {
+            return;
+        }
+        let percent = short(100.0 * touched / length);
+        let text = format!("the sparse infill touches {percent} % of the innermost walls");
+        let finding = Finding::warning(Code::LooseInfill, percent, "%", text);
+        let place = worst.at.map_or(Place::default(), |(step, at)| Place {
+            at_mm: Some(at.map(short)),
+            ..place(layer, &step)
+        });
+        found.add(finding.at(place));
+    }
 }
 
-fn contact<'a>(filled: &Filled<'a>, terms: &Terms, layer: usize) -> Contact<'a> {
+/// Measures a layer.
+pub(super) fn layer(filled: &Filled<'_>, terms: &Terms, layer: usize) -> Contact {
     let wide = |step: &Step| terms.box_width(step).min(WIDEST);
     let sparse = filled.lines(layer).filter(|(step, _)| step.role == Role::Infill);
     let beads = sparse.map(|(step, _)| Bead { radius: wide(step) / 2.0 + GAP, ..Bead::of(step) });
@@ -71,8 +84,7 @@ fn contact<'a>(filled: &Filled<'a>, terms: &Terms, layer: usize) -> Contact<'a> 
     if sparse.beads.is_empty() {
         return contact;
     }
-    let print = filled.print;
-    let steps = || print.moves_of(&print.layers[layer]).iter().filter(|step| step.is_line());
+    let steps = || filled.window.moves(layer).iter().filter(|step| step.is_line());
     let has_inner = steps().any(|step| step.role == Role::InnerWall);
     let innermost = if has_inner { Role::InnerWall } else { Role::OuterWall };
     let (mut seen, mut touched, mut run) = (Seen::default(), Vec::new(), 0.0);
@@ -91,7 +103,7 @@ fn contact<'a>(filled: &Filled<'a>, terms: &Terms, layer: usize) -> Contact<'a> 
             run += (from - at) * wall.length;
             if run > contact.longest {
                 contact.longest = run;
-                contact.at = Some((step, wall.place(from)));
+                contact.at = Some((*step, wall.place(from)));
             }
             contact.touched += (to - from) * wall.length;
             run = if to > from { 0.0 } else { run };

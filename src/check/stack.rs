@@ -20,7 +20,7 @@
 use super::anchors::{self, LEAST_RUN, Loose, Piece};
 use super::beads::place;
 use super::bodies::{Bodies, Start};
-use super::filled::floors;
+use super::filled::Filled;
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::ground::{Carrier, Ground, PITCH, bed_room, below, lower_side, room_below};
 use super::laid::{Bead, Laid, SUPPORT_GAP, Seen, both};
@@ -29,17 +29,15 @@ use super::part::Part;
 use super::runs::{Runs, Twice, united};
 use super::samples::{Sample, Samples};
 use super::sets::Sets;
+use super::survey::Survey;
+use super::window::Window;
+use crate::reader::Role;
 use crate::reader::print::Step;
-use crate::reader::{Print, Role};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Layers that are judged side by side: few, so that not many are held, and enough for all threads.
-const BATCH: usize = 32;
-
-/// Part of its walls' height by which a layer may lie too high: variable heights are rounded,
-/// a missing layer is a whole height.
-const LEAST_GAP: f64 = 0.4;
+/// How far below the lower side of a line something may stand that carries it, mm.
+const MOST_BELOW: f64 = SUPPORT_GAP + 1e-3;
 
 /// A patch with shorter lines in all is no layer that is missing below, but a blob, mm.
 const LEAST_PATCH: f64 = 4.0;
@@ -81,57 +79,86 @@ pub(super) struct Measured {
     pub(super) part_hangs: f64,
 }
 
-/// Lays all lines of the layers down. Where `part` itself has nothing below, a hanging line is
-/// no missing layer.
-pub(super) fn check(print: &Print, part: Option<&Part>, found: &mut Findings) -> Measured {
-    let mut measured = Measured::default();
-    let (mut bodies, mut firsts) = (Bodies::default(), Vec::new());
-    let mut chains = 0;
-    let floors = floors(print);
-    let mut kept: Vec<Option<Laid>> = Vec::new();
-    let mut highest = vec![0.0_f64];
-    let count = print.layers.len();
-    for first in (0..count).step_by(BATCH) {
-        let batch = first..(first + BATCH).min(count);
-        let laid = batch.clone().into_par_iter().map(|layer| {
-            let moves = print.moves_of(&print.layers[layer]);
-            Some(Laid::new(
-                moves,
-                chains_of(moves).filter(|chain| !is_ironing(&moves[chain.start])),
-            ))
-        });
-        kept.extend(laid.collect::<Vec<_>>());
-        for layer in batch.clone() {
-            let own = kept[layer].as_ref().map_or(0.0, |laid| laid.highest);
-            highest.push(highest[layer].max(own));
+/// All layers so far, and what stands of them.
+pub(super) struct Stack<'a> {
+    part: Option<&'a Part>,
+    measured: Measured,
+    bodies: Bodies,
+    /// The first chain of each layer.
+    firsts: Vec<u32>,
+    chains: u32,
+    /// What layers have laid, of those that something may lie on yet.
+    kept: Vec<Option<Laid>>,
+    /// For each layer the highest line before it, mm.
+    highest: Vec<f64>,
+}
+
+impl<'a> Stack<'a> {
+    /// Nothing yet. Where `part` itself has nothing below, a hanging line is no missing layer.
+    pub(super) fn new(part: Option<&'a Part>) -> Self {
+        Self {
+            part,
+            measured: Measured::default(),
+            bodies: Bodies::default(),
+            firsts: Vec::new(),
+            chains: 0,
+            kept: Vec::new(),
+            highest: vec![0.0],
         }
-        let judged = batch.clone().into_par_iter().filter_map(|layer| {
-            let laid = kept[layer].as_ref()?;
-            let lowest = floors[layer] - SUPPORT_GAP - 1e-3;
-            let ground = Ground::below(laid, &kept[..layer], lowest);
-            let moves = print.moves_of(&print.layers[layer]);
-            let mut judge = Judge::new((layer, part), (laid, moves), &ground, highest[layer]);
-            judge.found.extend(gap(print, (layer, part)));
-            Some(judge.layer())
-        });
-        for judged in judged.collect::<Vec<_>>() {
-            firsts.push(chains);
-            chains += judged.of_chain.len() as u32;
-            found.extend(judged.found);
-            measured.longest_bridge = measured.longest_bridge.max(judged.measured.longest_bridge);
-            measured.longest_end = measured.longest_end.max(judged.measured.longest_end);
-            measured.part_hangs += judged.measured.part_hangs;
-            stand(&mut bodies, judged.patches, &judged.of_chain, &firsts);
-        }
-        // What nothing will lie on any more.
-        let lowest =
-            floors.get(batch.end).map_or(f64::INFINITY, |floor| floor - SUPPORT_GAP - 1e-3);
-        kept.iter_mut()
-            .filter(|one| one.as_ref().is_some_and(|one| one.top < lowest))
-            .for_each(|one| *one = None);
     }
-    bodies.report(found);
-    measured
+
+    /// Takes in the lines of the next layers.
+    pub(super) fn lay(&mut self, window: &Window<'_>, batch: Range<usize>) {
+        let laid = batch.clone().into_par_iter().map(|layer| {
+            let moves = window.moves(layer);
+            let chains = chains_of(moves).filter(|chain| !is_ironing(&moves[chain.start]));
+            Some(Laid::new(moves, chains))
+        });
+        self.kept.extend(laid.collect::<Vec<_>>());
+        for layer in batch {
+            let own = self.kept[layer].as_ref().map_or(0.0, |laid| laid.highest);
+            self.highest.push(self.highest[layer].max(own));
+        }
+    }
+
+    /// Judges a layer of those that were taken in.
+    pub(super) fn judged(&self, filled: &Filled<'_>, layer: usize) -> Judged {
+        let moves = filled.window.moves(layer);
+        let nothing = Laid::default();
+        let laid = self.kept[layer].as_ref().unwrap_or(&nothing);
+        let lowest = filled.survey.floors[layer] - MOST_BELOW;
+        let ground = Ground::below(laid, &self.kept[..layer], lowest);
+        let mut judge = Judge::new((layer, self.part), (laid, moves), &ground, self.highest[layer]);
+        judge.found.extend(gap((filled.survey, moves), (layer, self.part)));
+        judge.layer()
+    }
+
+    /// Adds what was found on the next layer.
+    pub(super) fn layer(&mut self, judged: Judged, found: &mut Findings) {
+        self.firsts.push(self.chains);
+        self.chains += judged.of_chain.len() as u32;
+        found.extend(judged.found);
+        let (all, own) = (&mut self.measured, judged.measured);
+        all.longest_bridge = all.longest_bridge.max(own.longest_bridge);
+        all.longest_end = all.longest_end.max(own.longest_end);
+        all.part_hangs += own.part_hangs;
+        stand(&mut self.bodies, judged.patches, &judged.of_chain, &self.firsts);
+    }
+
+    /// Lets go of what nothing will lie on any more: the layers to come reach down to `floor`, mm.
+    pub(super) fn forget(&mut self, floor: f64) {
+        for kept in &mut self.kept {
+            if kept.as_ref().is_some_and(|laid| laid.top < floor - MOST_BELOW) {
+                *kept = None;
+            }
+        }
+    }
+
+    /// Ends the print.
+    pub(super) fn finish(self, found: &mut Findings) -> Measured {
+        self.bodies.report(found);
+        self.measured
+    }
 }
 
 /// Puts the patches of a layer on the bodies below; `firsts` are the first chains of the layers.
@@ -172,35 +199,22 @@ fn is_ironing(step: &Step) -> bool {
     step.role == Role::Ironing
 }
 
-/// How much higher a layer lies than its walls are, above the layer or the bed below, mm. Only walls
-/// are compared, since infill may be as thick as several layers.
-pub(super) fn gap_below(print: &Print, layer: usize) -> f64 {
-    let one = &print.layers[layer];
-    if !print.has_heights {
-        return 0.0;
-    }
-    let height = walls(print, layer).map(|step| f64::from(step.height)).fold(0.0, f64::max);
-    let missing = one.height - height;
-    if height > 0.0 && missing > LEAST_GAP * height { missing } else { 0.0 }
-}
-
-fn walls(print: &Print, layer: usize) -> impl Iterator<Item = &Step> {
-    let steps = print.moves_of(&print.layers[layer]).iter();
-    steps.filter(|step| step.is_line() && step.role == Role::OuterWall)
-}
-
 /// Reports a layer whose walls are less high than it lies above the one below: a layer between is
-/// missing, unless the part has nothing there either.
-fn gap(print: &Print, (layer, part): (usize, Option<&Part>)) -> Option<Finding> {
-    let missing = gap_below(print, layer);
+/// missing, unless the part has nothing there either. Only walls are compared, since infill may be
+/// as thick as several layers.
+fn gap(
+    (survey, moves): (&Survey, &[Step]),
+    (layer, part): (usize, Option<&Part>),
+) -> Option<Finding> {
+    let missing = survey.gaps[layer];
     // Above the bed the patches are judged. A raft or support below ends lower on purpose.
-    let is_above_walls = layer.checked_sub(1).is_some_and(|k| walls(print, k).next().is_some());
-    let is_of_part = part.is_some_and(|part| part.is_empty_below(layer));
-    let first = walls(print, layer).next().filter(|_| is_above_walls)?;
-    (missing > 0.0 && !is_of_part).then(|| {
-        let text = format!("the layer lies {} mm too high above the one before", short(missing));
-        Finding::of(Code::InTheAir, missing, "mm", text).at(place(layer, first))
-    })
+    let is_above_walls = layer.checked_sub(1).is_some_and(|below| survey.has_walls(below));
+    if missing <= 0.0 || !is_above_walls || part.is_some_and(|part| part.is_empty_below(layer)) {
+        return None;
+    }
+    let first = moves.iter().find(|step| step.is_line() && step.role == Role::OuterWall)?;
+    let text = format!("the layer lies {} mm too high above the one before", short(missing));
+    Some(Finding::of(Code::InTheAir, missing, "mm", text).at(place(layer, first)))
 }
 
 /// A chain once it is laid.
@@ -228,7 +242,7 @@ struct Patch {
 }
 
 /// What was found on a layer.
-struct Judged {
+pub(super) struct Judged {
     found: Vec<Finding>,
     measured: Measured,
     patches: Vec<Patch>,
