@@ -153,13 +153,20 @@ impl Judge<'_> {
             if !flipped {
                 self.share(&solid, flipped, |k, area| cells[k].room += area);
             }
-            let mut open = gaps(&solid, &self.inside(layer, flipped));
             // Most layers have too few gaps for any place to be open: no more is drawn for them.
-            if self.field.lattice.area(&open) >= LEAST_OPEN {
-                let all = sparse().chain(threads());
-                open = open.minus(&self.field.lattice.draw_on(&open, capsules(all, flipped)));
-                self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
+            let between = gaps(&solid);
+            if self.field.lattice.area(&between) < LEAST_OPEN {
+                continue;
             }
+            let open = between.and(&self.inside(layer, flipped));
+            let mut areas = vec![0.0; cells.len()];
+            self.share(&open, flipped, |k, area| areas[k] += area);
+            if !areas.iter().zip(&cells).any(|(open, cell)| is_open(*open, cell.room)) {
+                continue;
+            }
+            let all = sparse().chain(threads());
+            let open = open.minus(&self.field.lattice.draw_on(&open, capsules(all, flipped)));
+            self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
         }
         let judged = cells.iter().enumerate().filter_map(|(k, cell)| {
             let finding = self.judged(cell, self.filled.height(layer))?;
@@ -205,7 +212,8 @@ impl Judge<'_> {
 
     /// The cell of a place.
     fn cell(&self, at: [f64; 2]) -> Option<usize> {
-        let [x, y] = [0, 1].map(|axis| (at[axis] - self.field.low[axis]) / self.field.side);
+        let x = (at[0] - self.field.low[0]) / self.field.side;
+        let y = (at[1] - self.field.low[1]) / self.field.side;
         let is_in = x >= 0.0
             && y >= 0.0
             && x < self.field.count[0] as f64
@@ -286,7 +294,7 @@ impl Judge<'_> {
             return Some(Finding::warning(Code::Overfilled, percent, "%", text));
         }
         let open = cell.open[0].max(cell.open[1]);
-        if open >= LEAST_OPEN && open > OPEN * (open + cell.room) {
+        if is_open(open, cell.room) {
             let text = format!("{} mm² between walls or skins are open", short(open));
             return Some(Finding::warning(Code::Underfilled, open, "mm²", text));
         }
@@ -308,8 +316,13 @@ fn capsules<'s>(
     capsules.map(move |one| if flipped { one.flipped() } else { one })
 }
 
-/// The gaps of each row inside an area.
-fn gaps(solid: &Rows, inside: &Rows) -> Rows {
+/// Whether gaps are large, in a cell of which walls and skins cover this, mm².
+fn is_open(gaps: f64, room: f64) -> bool {
+    gaps >= LEAST_OPEN && gaps > OPEN * (gaps + room)
+}
+
+/// The gaps of each row.
+fn gaps(solid: &Rows) -> Rows {
     let most = i64::from(to_units(GAP));
     let mut between = Rows::with_room_of(solid, solid.range().start);
     for (_, row) in solid.iter() {
@@ -318,5 +331,5 @@ fn gaps(solid: &Rows, inside: &Rows) -> Rows {
             spans.extend(gaps.filter(|gap| gap.len() <= most));
         });
     }
-    between.and(inside)
+    between
 }

@@ -15,8 +15,8 @@ use crate::reader::Role;
 use crate::reader::print::Step;
 use std::ops::Range;
 
-/// Side of a cell, mm: a few lines.
-const CELL: f64 = 1.5;
+/// Side of a cell, mm: two lines.
+const CELL: f64 = 1.0;
 
 /// Gap that may be between support and part, mm: it must come off. Two layers of 0.2 mm, and rounding.
 pub(super) const SUPPORT_GAP: f64 = 0.45;
@@ -312,7 +312,8 @@ impl Field {
     }
 
     fn cell(&self, at: [f64; 2]) -> Option<usize> {
-        let [x, y] = [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.side);
+        let x = (at[0] - self.low[0]) / self.side;
+        let y = (at[1] - self.low[1]) / self.side;
         let is_in = x >= 0.0 && y >= 0.0 && x < self.count[0] as f64 && y < self.count[1] as f64;
         is_in.then_some(x as usize + y as usize * self.count[0])
     }

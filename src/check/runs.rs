@@ -5,7 +5,7 @@ use crate::reader::print::Step;
 /// Lines are printed twice over this many mm; or over the share `WHOLE` of a line that is longer
 /// than `LEAST_WHOLE`.
 const LEAST_TWICE: f64 = 10.0;
-const LEAST_WHOLE: f64 = 2.0;
+const LEAST_WHOLE: f64 = 2.5;
 const WHOLE: f64 = 0.8;
 
 /// Makes stretches from 0 to 1 disjoint and sorts them; those nearer to each other, or to an end,

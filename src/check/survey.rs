@@ -68,8 +68,10 @@ pub(super) struct Survey {
 /// Values counted in narrow classes.
 #[derive(Debug, Default)]
 struct Counted {
-    classes: BTreeMap<u32, u64>,
-    last: Option<(u32, u64)>,
+    /// How many there are of each class, and the first of them.
+    classes: BTreeMap<u32, (u64, f64)>,
+    /// The class of the last ones, which are not among those yet.
+    last: Option<(u32, (u64, f64))>,
     count: u64,
 }
 
@@ -109,8 +111,10 @@ impl Survey {
             survey.heights.push(layer.height - gap);
         }
         survey.line_width = widths.median().unwrap_or(SOME_WIDTH);
-        survey.usual =
-            plastic.map(|counted| counted.median().filter(|_| counted.count >= beads::LEAST_LINES));
+        survey.usual = plastic.map(|counted| {
+            let enough = counted.count >= beads::LEAST_LINES;
+            counted.median().filter(|_| enough)
+        });
         Ok(survey)
     }
 
@@ -197,28 +201,30 @@ impl Counted {
         self.count += 1;
         match &mut self.last {
             // Most lines are like the one before.
-            Some((last, count)) if *last == class => *count += 1,
+            Some((last, (count, _))) if *last == class => *count += 1,
             _ => {
-                if let Some((last, count)) = self.last.replace((class, 1)) {
-                    *self.classes.entry(last).or_default() += count;
+                if let Some(last) = self.last.replace((class, (1, value))) {
+                    Self::put(&mut self.classes, last);
                 }
             }
         }
     }
 
-    /// The middle one of all by their order: the middle of its class.
-    fn median(&self) -> Option<f64> {
-        let mut classes = self.classes.clone();
-        if let Some((last, count)) = self.last {
-            *classes.entry(last).or_default() += count;
+    fn put(classes: &mut BTreeMap<u32, (u64, f64)>, (class, more): (u32, (u64, f64))) {
+        classes.entry(class).and_modify(|(count, _)| *count += more.0).or_insert(more);
+    }
+
+    /// One of the class of the middle one of all by their order.
+    fn median(mut self) -> Option<f64> {
+        if let Some(last) = self.last {
+            Self::put(&mut self.classes, last);
         }
         let mut below = 0;
-        let class = classes.into_iter().find(|(_, count)| {
+        let class = self.classes.into_values().find(|(count, _)| {
             below += count;
             below > self.count / 2
         });
-        let middle = |class: u32| (class << Self::OPEN) + (1 << (Self::OPEN - 1));
-        class.map(|(class, _)| f64::from(f32::from_bits(middle(class))))
+        class.map(|(_, value)| value)
     }
 }
 
@@ -228,8 +234,8 @@ mod tests {
 
     #[test]
     fn the_middle_one_is_found_by_counting() {
+        assert_eq!(Counted::default().median(), None);
         let mut counted = Counted::default();
-        assert_eq!(counted.median(), None);
         for k in 1..=99 {
             counted.add(f64::from((k * 37) % 100) / 100.0);
         }
