@@ -15,8 +15,10 @@
 
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Place, short};
+use super::laid::{Bead, Seen};
 use super::part::Section;
 use super::rows::Lattice;
+use super::runs::united;
 use super::samples::Samples;
 use super::survey::Survey;
 use super::terms::Terms;
@@ -55,8 +57,10 @@ const LEAST_WIDE: f64 = 6.0;
 /// Heights that differ by less are the same, mm.
 const SAME_HEIGHT: f64 = 1e-3;
 
-/// Length of the pieces in which lines are sampled, mm: half of a line's width.
-const PIECE: f64 = 0.2;
+/// Length of the pieces in which lines are looked at, mm: half of a line's width; and of those of sparse
+/// infill, of which the density is asked for over many lines.
+pub(super) const PIECE: f64 = 0.2;
+const LONG_PIECE: f64 = 0.5;
 
 /// Findings and measures of one layer.
 #[derive(Debug, Clone, Default)]
@@ -103,11 +107,14 @@ impl Judge<'_> {
     pub(super) fn layer(&self, index: usize, [below, cut, above]: [&Section; 3]) -> Verdict {
         let lattice = self.lattice;
         let lines = || self.lines_at(index);
-        let draw = |is_sparse: bool| {
-            let some = lines().filter(move |step| (step.role == Role::Infill) == is_sparse);
-            lattice.draw(some.map(|step| Capsule::of(step, 1.0)))
-        };
-        let (solid, sparse) = (draw(false), draw(true));
+        let solid = lines().filter(|step| step.role != Role::Infill);
+        let solid = lattice.draw(solid.map(|step| Capsule::of(step, 1.0)));
+        // Inside the part nothing depends on where sparse infill lies.
+        let moved =
+            self.terms.moved_at(self.window.facts.layers[index].z - self.survey.heights[index]);
+        let most = MOST_OUT + moved;
+        let sparse = lines().filter(|step| step.role == Role::Infill);
+        let sparse = lattice.draw(near_outline(cut, lattice, most.max(RIM), sparse).into_iter());
         let (here, own) = (&cut.inside, sparse.or(&solid));
         let reaching = self.reaching_down(index);
         let (printed, closed) = (own.or(&reaching), solid.or(&reaching));
@@ -140,7 +147,6 @@ impl Judge<'_> {
         verdict.findings.extend(patches);
 
         if self.has_roles {
-            let most = MOST_OUT + moved;
             let near = if RIM == most { along } else { cut.along(lattice, most) };
             let out = own.minus(&here.or(&near));
             let patches = self.patches(&out, index, Code::OutsidePart, |area| {
@@ -227,13 +233,48 @@ impl Judge<'_> {
         for step in lines {
             let plastic = self.terms.plastic(step);
             if step.role == Role::Infill {
-                areas.sparse[1] += plastic * share_in(step, lattice, &core);
+                areas.sparse[1] += plastic * share_in(step, lattice, &core, LONG_PIECE);
             } else {
                 // Of a thick line this layer's part: the rest lies in layers below.
                 areas.solid[1] += plastic * (height / f64::from(step.height)).min(1.0);
             }
         }
     }
+}
+
+/// What of lines lies within `mm` of the outline of a cut, or outside it.
+fn near_outline<'s>(
+    cut: &Section,
+    lattice: Lattice,
+    mm: f64,
+    lines: impl Iterator<Item = &'s Step>,
+) -> Vec<Capsule> {
+    let outline = cut.outline();
+    let (mut pieces, mut seen, mut ways) = (Vec::new(), Seen::default(), Vec::new());
+    for step in lines {
+        let line = Bead::of(step);
+        let reach = line.radius + mm + lattice.pitch();
+        ways.clear();
+        outline
+            .near(&line, reach, &mut seen, &mut |_, border| ways.extend(line.way(border, reach)));
+        united(&mut ways, 0.0);
+        // Where it does not come near, it lies inside or outside all along.
+        let (mut at, count) = (0.0, ways.len());
+        for k in 0..=count {
+            let [from, to] = ways.get(k).copied().unwrap_or([1.0, 1.0]);
+            if from > at && !lattice.has(&cut.inside, line.place(0.5 * (at + from))) {
+                ways.push([at, from]);
+            }
+            at = to;
+        }
+        let piece = |&[from, to]: &[f64; 2]| Capsule {
+            from: line.place(from),
+            to: line.place(to),
+            radius: line.radius,
+        };
+        pieces.extend(ways.iter().map(piece));
+    }
+    pieces
 }
 
 /// Whether a line lies so far from its layer's height that it is judged with another layer.
@@ -243,10 +284,11 @@ pub(super) fn is_stray(step: &Step, layer: &Layer) -> bool {
 }
 
 /// What part of a line lies in an area.
-pub(super) fn share_in(step: &Step, lattice: Lattice, area: &Rows) -> f64 {
+/// It is looked at in pieces of about `piece` mm.
+pub(super) fn share_in(step: &Step, lattice: Lattice, area: &Rows, piece: f64) -> f64 {
     if area.is_empty() {
         return 0.0;
     }
-    let inside = Samples::of(step, PIECE).filter(|piece| lattice.has(area, piece.at)).count();
-    inside as f64 / Samples::of(step, PIECE).count() as f64
+    let inside = Samples::of(step, piece).filter(|one| lattice.has(area, one.at)).count();
+    inside as f64 / Samples::of(step, piece).count() as f64
 }

@@ -8,7 +8,7 @@
 //! print that fits in neither is one of another model, and its size is compared. A raft lifts it.
 
 use super::Model;
-use super::against::{SOME_WIDTH, share_in};
+use super::against::{PIECE, SOME_WIDTH, share_in};
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Findings, short};
 use super::median;
@@ -139,7 +139,7 @@ fn fit(survey: &Survey, part: &Part, has_roles: bool) -> f64 {
         };
         for step in walls() {
             let length = step.length();
-            shares[0][0] += length * share_in(step, lattice, &band);
+            shares[0][0] += length * share_in(step, lattice, &band, PIECE);
             shares[0][1] += length;
         }
         let rim = cut.inside.and(&near);

@@ -49,18 +49,29 @@ pub(super) struct Bead {
 impl Bead {
     pub(super) fn of(step: &Step) -> Self {
         let flat = |at: [f32; 3]| [f64::from(at[0]), f64::from(at[1])];
-        let (from, way) = (flat(step.from), segment::way(flat(step.from), flat(step.to)));
-        let length = segment::dot(way, way).sqrt();
         Self {
-            from,
-            along: way.map(|side| side / length.max(f64::MIN_POSITIVE)),
-            length,
             radius: f64::from(step.width) / 2.0,
             heights: [step.from[2], step.to[2]].map(f64::from),
+            is_support: step.role == Role::Support,
+            ..Self::between(flat(step.from), flat(step.to))
+        }
+    }
+
+    /// A line without a width, from above.
+    pub(super) fn between(from: [f64; 2], to: [f64; 2]) -> Self {
+        let way = segment::way(from, to);
+        let length = segment::dot(way, way).sqrt();
+        let scale = 1.0 / length.max(f64::MIN_POSITIVE);
+        Self {
+            from,
+            along: [way[0] * scale, way[1] * scale],
+            length,
+            radius: 0.0,
+            heights: [0.0; 2],
             chain: 0,
             step: 0,
             reach: 0.0,
-            is_support: step.role == Role::Support,
+            is_support: false,
         }
     }
 
