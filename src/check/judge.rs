@@ -18,10 +18,11 @@ use super::contact::{self, Contact, Contacts};
 use super::filled::Filled;
 use super::fills::{self, Field};
 use super::finding::{Code, Finding, Findings};
+use super::lay;
 use super::moves::Moves;
 use super::part::Part;
 use super::posts::{self, Posts};
-use super::stack::{self, Stack};
+use super::stack::Stack;
 use super::surfaces::{Sums, Surfaces};
 use super::survey::Survey;
 use super::terms::Terms;
@@ -155,7 +156,7 @@ struct Judged {
     layer: usize,
     odd: Vec<(Role, Finding)>,
     narrow: Vec<Finding>,
-    stacked: Option<stack::Judged>,
+    stacked: Option<lay::Judged>,
     fills: Vec<Finding>,
     contact: Option<Contact>,
     posts: Option<posts::Drawn>,
@@ -252,7 +253,7 @@ impl<'a> Judge<'a> {
     }
 
     /// Judges the sums over all layers.
-    fn finish(self, found: &mut Found) -> (stack::Measured, Option<Sums>) {
+    fn finish(self, found: &mut Found) -> (lay::Measured, Option<Sums>) {
         self.moves.finish(&mut found.moves, &mut found.of_moves);
         self.contacts.finish(&mut found.contacts);
         if let Some(posts) = self.posts.filter(|_| !self.is_absurd) {

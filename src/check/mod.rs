@@ -28,6 +28,7 @@ mod ground;
 mod heat;
 mod judge;
 mod laid;
+mod lay;
 mod moves;
 mod part;
 mod posts;

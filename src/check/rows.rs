@@ -10,7 +10,7 @@
 
 use super::capsule::{Capsule, Flanks};
 use super::sets::Sets;
-use crate::geom::spans::{Rows, Span, intersect, merge};
+use crate::geom::spans::{Rows, Span, intersect, merge, unite};
 use crate::units::{Coord, UNITS_PER_MM, to_mm, to_units};
 use std::ops::Range;
 
@@ -170,12 +170,12 @@ impl Lattice {
             thin.push_row(|spans| narrowed(row, by, spans));
         }
         let window = |mm: f64| 2 * (mm / self.pitch()).round() as i32 + 1;
-        let low = stacked(&thin, window(half), Rows::and);
+        let low = stacked(&thin, window(half), (intersect, false));
         if low.is_empty() {
             return low;
         }
         let by = to_units(half - less);
-        let high = stacked(&low, window(half - less), Rows::or);
+        let high = stacked(&low, window(half - less), (unite, true));
         let mut out = Rows::with_room_of(&high, high.range().start);
         let mut grown = Vec::new();
         for (_, row) in high.iter() {
@@ -229,24 +229,27 @@ fn narrowed(row: &[Span], by: Coord, out: &mut Vec<Span>) {
     out.extend(row.iter().filter_map(|span| Span::new(span.start + by, span.end - by)));
 }
 
-/// Each row joined with those around it, `window` rows in all, an odd number.
-fn stacked(rows: &Rows, window: i32, join: fn(&Rows, &Rows) -> Rows) -> Rows {
+/// How two rows are joined.
+type Join = fn(&[Span], &[Span], &mut Vec<Span>);
+
+/// Each row joined with those around it, `window` rows in all, an odd number; `beyond` says whether
+/// something is left where some of them are beyond the rows there are.
+fn stacked(rows: &Rows, window: i32, (join, beyond): (Join, bool)) -> Rows {
     let mut out = rows.clone();
     let mut done = 1;
     while done < window {
         // What `done` rows from each row on gave, joined with the same some rows further.
         let step = done.min(window - done);
-        out = join(&out, &shifted(&out, -step));
+        let range = out.range();
+        let start = if beyond { range.start - step } else { range.start };
+        // The last time it is moved to the middle of the window.
+        let moved = if done + step == window { window / 2 } else { 0 };
+        let mut next = Rows::with_room_of(&out, start + moved);
+        for j in start..range.end {
+            next.push_row(|spans| join(out.row(j), out.row(j + step), spans));
+        }
+        out = next;
         done += step;
-    }
-    shifted(&out, window / 2)
-}
-
-/// The same rows, moved.
-fn shifted(rows: &Rows, by: i32) -> Rows {
-    let mut out = Rows::with_room_of(rows, rows.range().start + by);
-    for (_, row) in rows.iter() {
-        out.push_row(|spans| spans.extend_from_slice(row));
     }
     out
 }
