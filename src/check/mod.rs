@@ -17,6 +17,7 @@ mod against;
 mod align;
 mod anchors;
 mod beads;
+mod belongs;
 mod bodies;
 mod capsule;
 mod contact;

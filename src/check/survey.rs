@@ -9,8 +9,8 @@
 //! which the part is laid where it was printed. What is usual is found by counting in narrow classes, a
 //! part in four thousand wide, instead of keeping all values.
 
-use super::against::{SOME_WIDTH, is_of_part, is_stray};
 use super::beads;
+use super::belongs::{SOME_WIDTH, is_of_part, is_stray};
 use super::capsule::Capsule;
 use super::part::extent_of;
 use super::terms::Terms;

@@ -16,6 +16,7 @@ pub mod print;
 mod role;
 mod source;
 mod state;
+mod step;
 pub mod stream;
 mod words;
 
