@@ -10,7 +10,7 @@
 
 use crate::profile::{DialectName, ExtrusionModel, Settings};
 use crate::reader::print::Step;
-use crate::reader::{Print, Role};
+use crate::reader::{Facts, Role};
 use std::f64::consts::PI;
 
 /// What a file is judged by.
@@ -94,7 +94,7 @@ impl Terms {
     /// The machine of `settings`, the settings that the file was made with (`own`, if it is one of
     /// this program's), and else what the file's comments hold.
     #[must_use]
-    pub fn new(settings: Option<&Settings>, own: Option<&Settings>, print: &Print) -> Self {
+    pub fn new(settings: Option<&Settings>, own: Option<&Settings>, print: &Facts) -> Self {
         let diameter = print.filament_diameter;
         let by_file = || {
             let text = DENSITY_KEYS.iter().find_map(|key| print.value(key))?;
@@ -160,7 +160,7 @@ fn fan(own: &Settings) -> (f64, usize) {
 }
 
 /// See [`Terms::material`].
-fn material(own: Option<&Settings>, print: &Print) -> Option<String> {
+fn material(own: Option<&Settings>, print: &Facts) -> Option<String> {
     let by_file = || {
         let text = MATERIAL_KEYS.iter().find_map(|key| print.value(key))?;
         let first = text.split([',', ';']).next()?.trim().trim_matches('"');
@@ -170,7 +170,7 @@ fn material(own: Option<&Settings>, print: &Print) -> Option<String> {
 }
 
 /// See [`Terms::named`].
-fn named(own: Option<&Settings>, print: &Print) -> [Vec<f64>; 2] {
+fn named(own: Option<&Settings>, print: &Facts) -> [Vec<f64>; 2] {
     let Some(own) = own else {
         return [NOZZLE_HEATS, BED_HEATS].map(|keys| {
             let texts = keys.iter().filter_map(|key| print.value(key));

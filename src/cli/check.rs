@@ -1,6 +1,7 @@
 //! `slicer check` -> what is wrong with a G-code file, as lines or as JSON.
 
 use super::args::CheckArgs;
+use super::reading::Opened;
 use super::{Outcome, failure, output};
 use anyhow::Result;
 use slicer::check::finding::{Code, Count};
@@ -9,7 +10,7 @@ use slicer::check::{self, Measures, Model, Verdict};
 use slicer::mesh::Bed;
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
-use slicer::reader::{Cause, Firmware, Print};
+use slicer::reader::{Cause, Firmware, Stream};
 use slicer::text;
 use slicer::warning::plural;
 use std::ffi::OsString;
@@ -32,18 +33,19 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     }
     let given = if profiles.any() { Some(profiles.load([])?) } else { None };
     let machine = given.as_ref().map(|profile| &profile.settings);
-    let opened = args.reading.open(&args.file)?;
-    let (name, reading) = (&opened.name, args.reading.of(machine, opened.says));
+    let Opened { name, source, says, .. } = args.reading.open(&args.file)?;
+    let reading = args.reading.of(machine, says);
     let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
-    let print = Print::read_as(&mut opened.source.reader(), reading, diameter)
-        .map_err(|error| opened.unreadable(error))?;
+    let unreadable = |error| Cause::Unreadable(error).of(&name);
+    let stream = Stream::open(source, reading, diameter).map_err(unreadable)?;
+    let print = stream.facts();
     if print.layers.is_empty() {
-        return Err(Cause::NoLine.of(name).into());
+        return Err(Cause::NoLine.of(&name).into());
     }
     let own = profile::recorded(&print.values)?;
     let judge = given.as_ref().or(own.as_ref());
     let machine = judge.map(|profile| &profile.settings);
-    let terms = Terms::new(machine, own.as_ref().map(|profile| &profile.settings), &print);
+    let terms = Terms::new(machine, own.as_ref().map(|profile| &profile.settings), print);
     let bed = judge.map_or(Bed::ANY, |profile| slicer::bed(&profile.settings.machine));
     let placed = if args.against.is_empty() {
         None
@@ -56,7 +58,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
         Some(slicer::place(&models, &placement, &bed, &Progress::default())?)
     };
     let model = placed.as_ref().map(|placed| Model { mesh: &placed.mesh, offset: placed.offset });
-    let verdict = check::check(&print, &terms, model);
+    let verdict = check::check_stream(&stream, &terms, model).map_err(unreadable)?;
     let code = u8::from(verdict.fails());
     let text = if args.json {
         output::json(&verdict, Path::new("-"))?

@@ -13,7 +13,7 @@
 //!
 //! Nothing here grows with the number of moves or lines; what a file may have many of is bounded.
 
-use super::print::{Layer, Step};
+use super::step::{Layer, Step};
 use super::{Event, Heights, Motion, Role, Summary};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;

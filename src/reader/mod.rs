@@ -24,6 +24,7 @@ mod retraction;
 mod role;
 mod source;
 mod state;
+mod step;
 pub mod stream;
 mod words;
 

@@ -14,8 +14,9 @@
 use super::facts::Gatherer;
 use super::layers::Layers;
 use super::lines::{self, Place};
-use super::print::{Kept, Layer, Note, Step};
+use super::print::Kept;
 use super::state::State;
+use super::step::{Layer, Note, Step};
 use super::{Event, Facts, Reading, Source};
 use rayon::prelude::*;
 use std::collections::VecDeque;
