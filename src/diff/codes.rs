@@ -15,6 +15,7 @@
 use super::sums::Both;
 use crate::reader::print::{Print, What};
 use crate::reader::{Heater, Heating};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -61,7 +62,7 @@ pub(super) struct Code {
 }
 
 /// Commands in a layer of one file but not of the other.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct CodeDifference {
     /// Those of only one file, in its order.
     pub only: Both<Vec<String>>,
@@ -70,7 +71,7 @@ pub struct CodeDifference {
 }
 
 /// A setting in the comments that differs.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Setting {
     /// Its name.
     pub key: String,
@@ -79,7 +80,7 @@ pub struct Setting {
 }
 
 /// Commands that differ in one place of both files.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Orders {
     /// For heaters.
     pub heaters: Option<CodeDifference>,
@@ -195,13 +196,13 @@ fn heater(Heating { heater, celsius, waits }: Heating) -> String {
 }
 
 /// The commands that differ in one place of both files.
-pub(super) fn orders(codes: Both<&Vec<Code>>) -> Orders {
+pub(super) fn orders(codes: Both<&[Code]>) -> Orders {
     Orders { heaters: difference(codes, true), commands: difference(codes, false) }
 }
 
 /// The codes of a layer that differ: for heaters, or all others. The same codes in another order
 /// differ, too: then all are listed.
-fn difference(codes: Both<&Vec<Code>>, heats: bool) -> Option<CodeDifference> {
+fn difference(codes: Both<&[Code]>, heats: bool) -> Option<CodeDifference> {
     let codes = codes.map(|codes| codes.iter().filter(|code| code.heats == heats));
     let codes = codes.map(Iterator::collect::<Vec<&Code>>);
     if codes.a.iter().map(|code| &code.text).eq(codes.b.iter().map(|code| &code.text)) {

@@ -1,17 +1,20 @@
 //! Two G-code files -> Difference: whether they print the same, and where and how much not.
 //!
-//! Bytes may differ where the print does not: lines in another order or direction, divided
-//! otherwise, with other comments. What is compared is the plastic: where lines of each role lie,
-//! how thick they are, how long they take, and which commands the printer gets besides. The files may
-//! be from different slicers.
+//! Bytes may differ where the print does not: lines in another direction, divided otherwise, with
+//! other comments. What is compared is the plastic: where lines of each role lie, how thick they are,
+//! how long they take; where walls begin; where the nozzle goes without a line, since it may hit
+//! something there; and which commands the printer gets besides. The files may be from different
+//! slicers.
 //!
-//! 1. Layers are paired by their heights (`align`).
+//! 1. If the second print moved as a whole, it is looked at where the first one lies (`moved`).
+//!    Layers are paired by their heights (`align`).
 //! 2. In each pair, lines of each role are compared with those of the same role (`apart`): what of
 //!    a line is farther than the tolerance from all lines of the other file is *far*; what lies in
 //!    the same place with another amount of filament per mm is *unlike*.
-//! 3. Commands besides moves are compared in their order (`codes`).
-//! 4. Sums of length, filament and time are compared, by layer and for the file (`sums`).
-//! 5. What differs becomes findings, the worst first (`findings`). Without findings the files are
+//! 3. Travels are compared likewise (`travels`), and the places where walls begin (`seams`).
+//! 4. Commands besides moves are compared in their order (`codes`).
+//! 5. Sums of length, filament and time are compared, by layer and for the file (`sums`).
+//! 6. What differs becomes findings, the worst first (`findings`). Without findings the files are
 //!    equal.
 //!
 //! If one of the files gives no roles, all lines count as one role.
@@ -19,22 +22,36 @@
 mod align;
 mod apart;
 mod codes;
+mod finding;
 mod findings;
 mod grid;
+mod half;
 mod line;
+mod moved;
 mod pair;
+mod place;
+mod seams;
+mod side;
 mod sums;
+mod travels;
+mod way;
 
 pub use codes::{CodeDifference, Orders, Setting};
-pub use findings::{File, Finding, Kind, Quantity};
-pub use pair::{Flow, PairOfLayers, Place, RoleOfPair};
+pub use finding::{File, Finding, Kind, Ordered, Quantity};
+pub use pair::{Flow, PairOfLayers, RoleOfPair};
+pub use place::Place;
+pub use seams::SeamsOfPair;
+pub use side::Side;
 pub use sums::{Both, Extent, Sum};
+pub use travels::TravelsOfPair;
 
-use crate::estimate::Estimate;
-use crate::reader::{Print, Role};
+use crate::reader::Role;
 use align::Pair;
-use codes::Code;
+use half::Half;
+use pair::Rules;
 use rayon::prelude::*;
+use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
 use serde::Serialize;
 use sums::{Measure, ROLES};
 
@@ -58,44 +75,24 @@ pub struct Tolerances {
     /// For sums of length, filament and time, and for the filament of each mm of line, as a
     /// share of the larger one.
     pub share: f64,
+    /// For places where walls begin, mm.
+    pub seams: f64,
+    /// Whether ways without a line, and what is pulled back between lines, have to be the same.
+    pub travels: bool,
     /// Whether settings in the comments have to be the same, too.
     pub settings: bool,
 }
 
-/// A file as it is compared.
-#[derive(Debug)]
-pub struct Side {
-    print: Print,
-    estimate: Estimate,
-    /// What comes before the first line, in each layer, and after the last line.
-    codes: Vec<Vec<Code>>,
-}
-
-impl Side {
-    /// A file of these bytes, read as `print` and timed as `estimate`. Both files are to be
-    /// timed with the same limits.
-    #[must_use]
-    pub fn new(bytes: &[u8], print: Print, estimate: Estimate) -> Self {
-        let codes = codes::by_layer(bytes, &print);
-        Self { print, estimate, codes }
-    }
-
-    /// Whether the file gives roles of lines.
-    fn has_roles(&self) -> bool {
-        let mut moves = self.print.moves.iter();
-        moves.any(|step| !matches!(step.role, Role::Other | Role::Travel | Role::Retraction))
-    }
-
-    /// Time of a role in the whole file, s.
-    fn seconds(&self, role: Role, by_role: bool) -> f64 {
-        let roles = self.estimate.roles.iter();
-        let own = roles.filter(|one| sums::role(one.role, by_role) == role);
-        own.fold(0.0, |sum, one| sum + one.seconds)
+impl Default for Tolerances {
+    /// Decimals of a file are equal, and whatever can be seen is not: a seam of the same print that
+    /// begins elsewhere is some mm away.
+    fn default() -> Self {
+        Self { place: 0.01, share: 0.001, seams: 0.1, travels: true, settings: false }
     }
 }
 
 /// What two files have and have not in common.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Difference {
     /// [`SCHEMA`].
     pub schema: u32,
@@ -105,6 +102,13 @@ pub struct Difference {
     pub tolerance_mm: f64,
     /// For sums, %.
     pub sums_percent: f64,
+    /// For places where walls begin, mm; `None` if they are not compared.
+    pub seams_mm: Option<f64>,
+    /// Whether travels are compared.
+    pub travels: bool,
+    /// How far the second print moved as a whole, in x, y and z, mm; the rest is compared as if it had
+    /// not. `None` if it did not.
+    pub moved_mm: Option<[f64; 3]>,
     /// Number of layers.
     pub layers: Both<usize>,
     /// Time of the whole file, s.
@@ -123,17 +127,21 @@ pub struct Difference {
     pub findings: Vec<Finding>,
     /// Commands that differ after the last line.
     pub end: Orders,
+    /// What the nozzle does after the last line; `None` if it is not compared.
+    pub end_travels: Option<TravelsOfPair>,
     /// What comes before the first layer, and each layer.
     pub pairs: Vec<PairOfLayers>,
 }
 
 /// What moves of one role add up to in either file.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct RoleOfFile {
     /// The role; `other` is all that extrudes if one of the files gives no roles.
+    #[schemars(with = "String")]
     pub role: Role,
-    /// Whether its length and filament have to be the same: those of travels and retractions
-    /// need not, which leave no plastic. What they take is a part of the whole time.
+    /// Whether its length and filament have to be the same in the file: those of travels and
+    /// retractions need not, which are compared place by place. What they take is a part of the whole
+    /// time.
     pub decides: bool,
     /// Number of moves.
     pub moves: Both<u64>,
@@ -145,26 +153,50 @@ pub struct RoleOfFile {
     pub time_s: Sum,
 }
 
+/// The JSON Schema of a [`Difference`].
+#[must_use]
+pub fn schema() -> serde_json::Value {
+    let settings = SchemaSettings::draft2020_12().for_serialize();
+    settings.into_generator().into_root_schema_for::<Difference>().to_value()
+}
+
 /// Compares two files.
 #[must_use]
 pub fn diff(a: &Side, b: &Side, tolerances: &Tolerances) -> Difference {
-    let by_role = a.has_roles() && b.has_roles();
-    let layers = align::align(&a.print.layers, &b.print.layers, tolerances.place);
+    let by_role = a.has_roles && b.has_roles;
+    let place = tolerances.place;
+    let raised = moved::raised(&a.floors, &b.floors, place);
+    let layers = moved::pairs(&a.floors, &b.floors, raised, place);
+    let moved = moved::moved(&a.floors, &b.floors, &layers, raised, place);
+    let rules = Rules { tolerances, by_role, moved };
+    let slack = slack(a, b, &layers, raised);
     // Before the layers comes what both draw before them.
-    let pairs: Vec<Option<Pair>> = [None].into_iter().chain(layers.into_iter().map(Some)).collect();
-    let compared = pairs.par_iter().map(|pair| pair::compare(a, b, *pair, by_role, tolerances));
+    let pairs = [None].into_iter().chain(layers.into_iter().map(Some));
+    let pairs: Vec<(Option<Pair>, f64)> = pairs.zip(slack.iter().copied()).collect();
+    let compared = pairs.par_iter().map(|&(pair, slack)| {
+        let halves = halves(a, b, pair, moved);
+        let codes = halves.as_ref().map(|half| half.number);
+        let codes = Both { a: a.codes(codes.a), b: b.codes(codes.b) };
+        pair::compare(halves.as_ref(), codes, slack, rules)
+    });
     let (pairs, measures): (Vec<PairOfLayers>, Vec<Both<Measure>>) = compared.unzip();
+    let end = Both { a: a.end(), b: b.end() };
+    let last = end.as_ref().map(|half| Measure::new(half.steps, by_role));
     let mut all = Both { a: Measure::default(), b: Measure::default() };
-    for measure in &measures {
+    for measure in measures.iter().chain([&last]) {
         all = Both { a: all.a.and(&measure.a), b: all.b.and(&measure.b) };
     }
     let share = tolerances.share;
+    let last_slack = slack.last().copied().unwrap_or_default();
     let mut difference = Difference {
         schema: SCHEMA,
         equal: false,
-        tolerance_mm: tolerances.place,
+        tolerance_mm: place,
         sums_percent: 100.0 * share,
-        layers: Both { a: a.print.layers.len(), b: b.print.layers.len() },
+        seams_mm: Some(tolerances.seams).filter(|mm| mm.is_finite()),
+        travels: tolerances.travels,
+        moved_mm: moved,
+        layers: Both { a: a.floors.len(), b: b.floors.len() },
         time_s: Sum::new(a.estimate.seconds, b.estimate.seconds, share, LEAST_TIME),
         filament_mm: filament(all.as_ref(), share),
         extent_mm: all.map(|measure| measure.extent),
@@ -175,15 +207,40 @@ pub fn diff(a: &Side, b: &Side, tolerances: &Tolerances) -> Difference {
         },
         settings: codes::settings(&a.print, &b.print),
         findings: Vec::new(),
-        end: match (a.codes.last(), b.codes.last()) {
-            (Some(a), Some(b)) => codes::orders(Both { a, b }),
-            _ => Orders::default(),
-        },
+        end: codes::orders(Both { a: a.last_codes(), b: b.last_codes() }),
+        end_travels: tolerances
+            .travels
+            .then(|| travels::compare(end.as_ref(), tolerances, last_slack, moved)),
         pairs,
     };
     difference.findings = findings::findings(&difference, tolerances);
     difference.equal = difference.findings.is_empty();
     difference
+}
+
+/// The halves of a pair, or what both files draw before the first layer.
+fn halves<'a>(
+    a: &'a Side,
+    b: &'a Side,
+    pair: Option<Pair>,
+    moved: Option<[f64; 3]>,
+) -> Both<Half<'a>> {
+    let Some(pair) = pair else { return Both { a: a.start(), b: b.start() } };
+    let [x, y, _] = moved.unwrap_or_default();
+    Both { a: a.layer(pair.a, [0.0; 2]), b: b.layer(pair.b, [x, y]) }
+}
+
+/// How far layers lie apart in z, mm: for the start and each pair, with the one before it, since the
+/// way from one layer to the next has both heights.
+fn slack(a: &Side, b: &Side, pairs: &[Pair], raised: f64) -> Vec<f64> {
+    let mut before = 0.0;
+    let apart = |pair: &Pair| {
+        let floors = (pair.a.and_then(|k| a.floors.get(k)), pair.b.and_then(|k| b.floors.get(k)));
+        let (Some(one), Some(other)) = floors else { return 0.0 };
+        (other.level.z - raised - one.level.z).abs()
+    };
+    let own = std::iter::once(0.0).chain(pairs.iter().map(apart));
+    own.map(|own: f64| own.max(std::mem::replace(&mut before, own))).collect()
 }
 
 /// Filament that is pushed out, without retractions.
