@@ -1,13 +1,15 @@
 //! `slicer diff` -> whether two G-code files print the same, as a verdict with a table or as JSON.
 
+mod picture;
 mod text;
 
 use super::profiles::ProfileArgs;
-use super::{Outcome, failure, input, output};
+use super::output::Sink;
+use super::{Outcome, failure, input, interrupt, output};
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use slicer::diff::{Difference, Side, Tolerances, diff};
+use slicer::diff::{Difference, Side, Tolerances, diff, view};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::profile::{self, Profile};
@@ -73,7 +75,7 @@ pub(crate) struct DiffArgs {
     /// Settings in the comments have to be the same, too
     #[arg(long)]
     pub(crate) settings: bool,
-    /// Draw the worst layer, .svg or .png, or the worst ones, .html; `-` is not possible
+    /// Draw the worst layer, .svg or .png, or write a page with the worst ones, .html
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
     /// Print JSON
@@ -123,13 +125,23 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
         let why = "`-` is given twice; standard input holds one file";
         return Err(failure::usage(why));
     }
+    let format = args.output.as_deref().map(|out| picture::format(out, [&a, &b])).transpose()?;
+    interrupt::watch();
+    let sink = args.output.as_deref().map(Sink::open).transpose()?;
     let (a, b) = (input::read(&a)?, input::read(&b)?);
     let (one, other) = rayon::join(|| print(&a), || print(&b));
     let (one, other) = (one?, other?);
     let (clock, limits) = clock(args, &one, &other)?;
     let (one, other) = rayon::join(|| side(&a, one, &clock), || side(&b, other, &clock));
-    let found = diff(&one?, &other?, &args.tolerances());
+    let (one, other) = (one?, other?);
+    let found = diff(&one, &other, &args.tolerances());
     let code = if found.equal { 0 } else { UNEQUAL };
+    if let (Some(out), Some(format), Some(sink)) = (args.output.as_deref(), format, sink) {
+        let said = text::text(&found, &limits, args.all);
+        let view = |layer, in_place| Ok(view(&one, &other, layer, &found, in_place));
+        let names = [a.0, b.0];
+        picture::write(sink, format, &found, (names, &said), &view, out)?;
+    }
     let text = match args {
         _ if args.quiet => String::new(),
         _ if args.json => json(&found, &limits)?,

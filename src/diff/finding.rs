@@ -237,6 +237,19 @@ pub enum Kind {
 }
 
 impl Finding {
+    /// Its worst place, if it has one, mm.
+    #[must_use]
+    pub fn at_mm(&self) -> Option<[f64; 3]> {
+        match self {
+            Self::Lines { farthest, .. }
+            | Self::Travels { farthest, .. }
+            | Self::Seams { farthest, .. } => Some(farthest.at_mm),
+            Self::Order { farthest, .. } => farthest.map(|place| place.at_mm),
+            Self::Flow { most_unlike, .. } => Some(most_unlike.at_mm),
+            _ => None,
+        }
+    }
+
     /// The layers where it is to be seen best, the worst first; none where it is in no layer.
     #[must_use]
     pub fn layers(&self) -> Vec<Both<Option<usize>>> {

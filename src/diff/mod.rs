@@ -31,6 +31,7 @@ mod moved;
 mod pair;
 mod place;
 mod seams;
+mod show;
 mod side;
 mod sums;
 mod travels;
@@ -41,6 +42,7 @@ pub use finding::{File, Finding, Kind, Ordered, Quantity};
 pub use pair::{Flow, PairOfLayers, RoleOfPair};
 pub use place::Place;
 pub use seams::SeamsOfPair;
+pub use show::Strand;
 pub use side::Side;
 pub use sums::{Both, Extent, Sum};
 pub use travels::TravelsOfPair;
@@ -50,6 +52,7 @@ use align::Pair;
 use half::Half;
 use pair::Rules;
 use rayon::prelude::*;
+use show::strands;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::Serialize;
@@ -241,6 +244,35 @@ fn slack(a: &Side, b: &Side, pairs: &[Pair], raised: f64) -> Vec<f64> {
     };
     let own = std::iter::once(0.0).chain(pairs.iter().map(apart));
     own.map(|own: f64| own.max(std::mem::replace(&mut before, own))).collect()
+}
+
+/// The strands of a layer for a picture, counted from 1; see [`Strand`]. The first one has what comes
+/// before it, too, and the last what comes after. With `in_place` a print that moved as a whole is
+/// shown where it lies.
+#[must_use]
+pub fn view(
+    a: &Side,
+    b: &Side,
+    layer: Both<Option<usize>>,
+    found: &Difference,
+    in_place: bool,
+) -> Vec<Strand> {
+    let reach = found.tolerance_mm;
+    let share = found.sums_percent / 100.0;
+    let by_role = a.has_roles && b.has_roles;
+    let [x, y, _] = found.moved_mm.filter(|_| !in_place).unwrap_or_default();
+    let own = layer.map(|number| number.and_then(|number| number.checked_sub(1)));
+    let mut halves = vec![Both { a: a.layer(own.a, [0.0; 2]), b: b.layer(own.b, [x, y]) }];
+    if own.a == Some(0) && own.b == Some(0) {
+        halves.insert(0, Both { a: a.start(), b: b.start() });
+    }
+    if layer.a == Some(a.floors.len()) && layer.b == Some(b.floors.len()) {
+        halves.push(Both { a: a.end(), b: b.end() });
+    }
+    let views = halves.iter().map(|halves| {
+        strands(halves.as_ref(), by_role, reach, share, found.travels)
+    });
+    views.flatten().collect()
 }
 
 /// Filament that is pushed out, without retractions.

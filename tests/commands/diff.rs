@@ -43,7 +43,7 @@ fn gcode(model: &Model) -> String {
     text + "M104 S0\n"
 }
 
-fn side(text: &str) -> Side {
+pub(crate) fn side(text: &str) -> Side {
     let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
     let limits = Limits::new(&settings("generic-marlin", &[]));
     let options = Options { filament_diameter: 1.75, ..Options::default() };
@@ -52,7 +52,8 @@ fn side(text: &str) -> Side {
 }
 
 fn compared(a: &str, b: &str) -> Difference {
-    let tolerances = Tolerances { place: 0.01, share: 0.001, settings: false };
+    // Ways and seams have tests of their own, in `ways.rs`.
+    let tolerances = Tolerances { travels: false, seams: f64::INFINITY, ..Tolerances::default() };
     let (a, b) = (side(a), side(b));
     let found = diff(&a, &b, &tolerances);
     // It has no direction: what is told of A is told of B the other way round.

@@ -270,7 +270,7 @@ fn in_layers(layers: &[usize], first: Option<Both<usize>>) -> String {
 }
 
 /// A length in mm without zeros that say nothing.
-fn short(mm: f64) -> String {
+pub(super) fn short(mm: f64) -> String {
     format!("{}", (mm * 1e4).round() / 1e4)
 }
 
