@@ -9,11 +9,12 @@ use super::{Outcome, failure, input, interrupt, output};
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
-use slicer::diff::{Difference, Side, Tolerances, diff, view};
+use slicer::diff::{Difference, Side, Tolerances, diff, views};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::profile::{self, Profile};
-use slicer::reader::{Cause, Firmware, Print};
+use slicer::reader::{Cause, Firmware, Source, Stream};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 const DIFF_RULES: &str = "\
@@ -128,19 +129,19 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
     let format = args.output.as_deref().map(|out| picture::format(out, [&a, &b])).transpose()?;
     interrupt::watch();
     let sink = args.output.as_deref().map(Sink::open).transpose()?;
-    let (a, b) = (input::read(&a)?, input::read(&b)?);
-    let (one, other) = rayon::join(|| print(&a), || print(&b));
+    let (a, b) = (input::again(&a)?, input::again(&b)?);
+    let names = [a.0, b.0];
+    let (one, other) = rayon::join(|| opened(a), || opened(b));
     let (one, other) = (one?, other?);
     let (clock, limits) = clock(args, &one, &other)?;
-    let (one, other) = rayon::join(|| side(&a, one, &clock), || side(&b, other, &clock));
+    let (one, other) = rayon::join(|| side(one, &clock), || side(other, &clock));
     let (one, other) = (one?, other?);
-    let found = diff(&one, &other, &args.tolerances());
+    let found = diff(&one, &other, &args.tolerances())?;
     let code = if found.equal { 0 } else { UNEQUAL };
     if let (Some(out), Some(format), Some(sink)) = (args.output.as_deref(), format, sink) {
         let said = text::text(&found, &limits, args.all);
-        let view = |layer, in_place| Ok(view(&one, &other, layer, &found, in_place));
-        let names = [a.0, b.0];
-        picture::write(sink, format, &found, (names, &said), &view, out)?;
+        let views = |layers: &[_], in_place| Ok(views(&one, &other, layers, &found, in_place)?);
+        picture::write(sink, format, &found, (names, &said), &views, out)?;
     }
     let text = match args {
         _ if args.quiet => String::new(),
@@ -163,14 +164,23 @@ impl DiffArgs {
     }
 }
 
-fn print((name, bytes): &(&str, Vec<u8>)) -> Result<Print> {
-    let print = Print::read(&mut bytes.as_slice(), SOME_DIAMETER);
-    let mut print = print.map_err(|error| Cause::Unreadable(error).of(name))?;
-    print.values = profile::renewed(&print.values);
-    Ok(print)
+/// A file whose facts are known.
+struct Opened<'a> {
+    name: &'a str,
+    stream: Stream,
+    /// Settings in its comments, by today's names.
+    values: Vec<(String, String)>,
 }
 
-fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Result<Side> {
+fn opened((name, source): (&str, Source)) -> Result<Opened<'_>> {
+    let stream = Stream::open(source, Firmware::default(), SOME_DIAMETER)
+        .map_err(|error| Cause::Unreadable(error).of(name))?;
+    let values = profile::renewed(&stream.facts().values);
+    Ok(Opened { name, stream, values })
+}
+
+fn side(opened: Opened<'_>, clock: &Profile) -> Result<Side> {
+    let Opened { name, stream, values } = opened;
     let settings = &clock.settings;
     // Whatever the clock's dialect, both files are read alike; but an Ultimaker 2 knows what its own
     // files leave to it.
@@ -180,24 +190,26 @@ fn side((name, bytes): &(&str, Vec<u8>), print: Print, clock: &Profile) -> Resul
     };
     let filament_diameter = settings.filament.diameter;
     let options = Options { filament_diameter, firmware, ..Options::default() };
-    let time = estimate(&mut bytes.as_slice(), name, &Limits::new(settings), options)?;
-    Ok(Side::new(bytes, print, time))
+    let mut source = BufReader::with_capacity(input::BUFFER, stream.source().reader());
+    let time = estimate(&mut source, name, &Limits::new(settings), options)?;
+    drop(source);
+    Ok(Side::new(name, stream, values, time)?)
 }
 
 /// The profile by whose limits both files are timed, and where it is from.
-fn clock(args: &DiffArgs, a: &Print, b: &Print) -> Result<(Profile, String)> {
+fn clock(args: &DiffArgs, a: &Opened<'_>, b: &Opened<'_>) -> Result<(Profile, String)> {
     let overrides = args.profiles.overrides()?;
     let asked = args.profiles.load([])?;
     if args.profiles.any() {
         let origin = format!("profile {}", asked.sources);
         return Ok((asked, origin));
     }
-    for (print, file) in [(a, "A"), (b, "B")] {
+    for (opened, file) in [(a, "A"), (b, "B")] {
         // A file of another version may hold settings that do not exist any more.
-        if !matches!(profile::recorded(&print.values), Ok(Some(_))) {
+        if !matches!(profile::recorded(&opened.values), Ok(Some(_))) {
             continue;
         }
-        let mut values = print.values.clone();
+        let mut values = opened.values.clone();
         values.extend(overrides.iter().map(|set| (set.key.clone(), set.value.clone())));
         if let Some(recorded) = profile::recorded(&values)? {
             return Ok((recorded, format!("the settings in {file}")));

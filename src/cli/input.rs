@@ -1,7 +1,7 @@
 //! Path -> bytes of a G-code file, from a file or from standard input.
 
 use slicer::profile::{DialectName, Settings};
-use slicer::reader::{Cause, Error, Firmware, OwnFilament};
+use slicer::reader::{Cause, Error, Firmware, OwnFilament, Source};
 use slicer::units::MmPerS;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read as _};
@@ -31,6 +31,20 @@ pub(super) fn read(file: &str) -> Result<(&str, Vec<u8>), Error> {
     let mut bytes = Vec::new();
     source.read_to_end(&mut bytes).map_err(|error| Cause::Unreadable(error).of(name))?;
     Ok((name, bytes))
+}
+
+/// A file that is read more than once, and its name for messages.
+///
+/// # Errors
+/// [`Cause::Unreadable`].
+pub(super) fn again(file: &str) -> Result<(&str, Source), Error> {
+    if file == "-" {
+        let name = "<stdin>";
+        let source = Source::spooled(&mut std::io::stdin().lock());
+        return Ok((name, source.map_err(|error| Cause::Unreadable(error).of(name))?));
+    }
+    let source = File::open(file).and_then(Source::of_file);
+    Ok((file, source.map_err(|error| Cause::Unreadable(error).of(file))?))
 }
 
 /// The firmware by whose rules files for a machine are read.

@@ -15,7 +15,6 @@ use super::line::{Line, Point, seen};
 use super::sums;
 use crate::reader::Role;
 use crate::reader::print::Step;
-use std::ops::Range;
 
 /// One file's part of a pair.
 #[derive(Debug, Clone, Copy, Default)]
@@ -69,20 +68,4 @@ impl Half<'_> {
 /// Whether the nozzle moves without laying a line.
 pub(super) fn is_travel(step: &Step) -> bool {
     !step.is_line() && step.from != step.to
-}
-
-/// Where halves end: after the last line of the start and of each layer. `layers` are their parts of
-/// `steps`, after the start.
-pub(super) fn ends<'a>(
-    steps: &[Step],
-    layers: impl Iterator<Item = &'a Range<usize>>,
-    start: &'a Range<usize>,
-) -> Vec<usize> {
-    let mut before = 0;
-    let end = |range: &Range<usize>| {
-        let last = steps[range.clone()].iter().rposition(Step::is_line);
-        before = last.map_or(before, |last| range.start + last + 1);
-        before
-    };
-    std::iter::once(start).chain(layers).map(end).collect()
 }

@@ -17,6 +17,9 @@
 //! 6. What differs becomes findings, the worst first (`findings`). Without findings the files are
 //!    equal.
 //!
+//! Neither file is held as a whole: layers come one after the other (`side`), and some pairs are
+//! compared side by side (`window`).
+//!
 //! If one of the files gives no roles, all lines count as one role.
 
 mod align;
@@ -36,6 +39,7 @@ mod side;
 mod sums;
 mod travels;
 mod way;
+mod window;
 
 pub use codes::{CodeDifference, Orders, Setting};
 pub use finding::{File, Finding, Kind, Ordered, Quantity};
@@ -47,9 +51,8 @@ pub use side::Side;
 pub use sums::{Both, Extent, Sum};
 pub use travels::TravelsOfPair;
 
-use crate::reader::Role;
+use crate::reader::{Error, Role};
 use align::Pair;
-use half::Half;
 use pair::Rules;
 use rayon::prelude::*;
 use show::strands;
@@ -57,6 +60,7 @@ use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::Serialize;
 use sums::{Measure, ROLES};
+use window::Of;
 
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
 pub const SCHEMA: u32 = 1;
@@ -163,9 +167,11 @@ pub fn schema() -> serde_json::Value {
     settings.into_generator().into_root_schema_for::<Difference>().to_value()
 }
 
-/// Compares two files.
-#[must_use]
-pub fn diff(a: &Side, b: &Side, tolerances: &Tolerances) -> Difference {
+/// Compares two files, some layers at a time.
+///
+/// # Errors
+/// [`Cause::Unreadable`](crate::reader::Cause::Unreadable).
+pub fn diff(a: &Side, b: &Side, tolerances: &Tolerances) -> Result<Difference, Error> {
     let by_role = a.has_roles && b.has_roles;
     let place = tolerances.place;
     let raised = moved::raised(&a.floors, &b.floors, place);
@@ -173,64 +179,75 @@ pub fn diff(a: &Side, b: &Side, tolerances: &Tolerances) -> Difference {
     let moved = moved::moved(&a.floors, &b.floors, &layers, raised, place);
     let rules = Rules { tolerances, by_role, moved };
     let slack = slack(a, b, &layers, raised);
-    // Before the layers comes what both draw before them.
-    let pairs = [None].into_iter().chain(layers.into_iter().map(Some));
-    let pairs: Vec<(Option<Pair>, f64)> = pairs.zip(slack.iter().copied()).collect();
-    let compared = pairs.par_iter().map(|&(pair, slack)| {
-        let halves = halves(a, b, pair, moved);
-        let codes = halves.as_ref().map(|half| half.number);
-        let codes = Both { a: a.codes(codes.a), b: b.codes(codes.b) };
-        pair::compare(halves.as_ref(), codes, slack, rules)
-    });
-    let (pairs, measures): (Vec<PairOfLayers>, Vec<Both<Measure>>) = compared.unzip();
-    let end = Both { a: a.end(), b: b.end() };
-    let last = end.as_ref().map(|half| Measure::new(half.steps, by_role));
-    let mut all = Both { a: Measure::default(), b: Measure::default() };
-    for measure in measures.iter().chain([&last]) {
-        all = Both { a: all.a.and(&measure.a), b: all.b.and(&measure.b) };
-    }
-    let share = tolerances.share;
     let last_slack = slack.last().copied().unwrap_or_default();
+    let [x, y, _] = moved.unwrap_or_default();
+    let mut pairs: Vec<PairOfLayers> = Vec::with_capacity(layers.len() + 1);
+    let mut all = Both { a: Measure::default(), b: Measure::default() };
+    let mut end_travels = None;
+    window::each(a, b, &layers, &mut |first, some| {
+        let compared = some.par_iter().enumerate().map(|(k, window::Moves { pair, moves })| {
+            let halves = match pair {
+                Of::Start => Both { a: a.start(&moves.a), b: b.start(&moves.b) },
+                Of::End => Both { a: a.end(&moves.a), b: b.end(&moves.b) },
+                Of::Layers(pair) => Both {
+                    a: a.layer(pair.a, [0.0; 2], &moves.a),
+                    b: b.layer(pair.b, [x, y], &moves.b),
+                },
+            };
+            let halves = halves.as_ref();
+            if *pair == Of::End {
+                let travels = travels::compare(halves, tolerances, last_slack, moved);
+                return (None, Some(travels), halves.map(|half| Measure::new(half.steps, by_role)));
+            }
+            let slack = slack.get(first + k).copied().unwrap_or_default();
+            let codes = Both { a: a.codes.of(halves.a.number), b: b.codes.of(halves.b.number) };
+            let (found, measures) = pair::compare(halves, codes, slack, rules);
+            (Some(found), None, measures)
+        });
+        for (found, travels, measures) in compared.collect::<Vec<_>>() {
+            pairs.extend(found);
+            end_travels = travels.or(end_travels.take());
+            all = Both { a: all.a.and(&measures.a), b: all.b.and(&measures.b) };
+        }
+    })?;
+    let end_travels = end_travels.filter(|_| tolerances.travels);
+    Ok(whole(Both { a, b }, all, rules, pairs, end_travels))
+}
+
+/// All that is told of two files, of what their layers have told.
+fn whole(
+    sides: Both<&Side>,
+    all: Both<Measure>,
+    rules: Rules<'_>,
+    pairs: Vec<PairOfLayers>,
+    end_travels: Option<TravelsOfPair>,
+) -> Difference {
+    let Rules { tolerances, by_role, moved } = rules;
+    let share = tolerances.share;
+    let seconds = sides.map(|side| side.estimate.seconds);
     let mut difference = Difference {
         schema: SCHEMA,
         equal: false,
-        tolerance_mm: place,
+        tolerance_mm: tolerances.place,
         sums_percent: 100.0 * share,
         seams_mm: Some(tolerances.seams).filter(|mm| mm.is_finite()),
         travels: tolerances.travels,
         moved_mm: moved,
-        layers: Both { a: a.floors.len(), b: b.floors.len() },
-        time_s: Sum::new(a.estimate.seconds, b.estimate.seconds, share, LEAST_TIME),
+        layers: sides.map(|side| side.floors.len()),
+        time_s: Sum::new(seconds.a, seconds.b, share, LEAST_TIME),
         filament_mm: filament(all.as_ref(), share),
         extent_mm: all.map(|measure| measure.extent),
-        roles: roles(a, b, all.as_ref(), by_role, share),
-        firmware_retractions: Both {
-            a: a.print.summary.firmware_retractions,
-            b: b.print.summary.firmware_retractions,
-        },
-        settings: codes::settings(&a.print, &b.print),
+        roles: roles(sides.a, sides.b, all.as_ref(), by_role, share),
+        firmware_retractions: sides.map(Side::firmware_retractions),
+        settings: codes::settings(&sides.a.values, &sides.b.values),
         findings: Vec::new(),
-        end: codes::orders(Both { a: a.last_codes(), b: b.last_codes() }),
-        end_travels: tolerances
-            .travels
-            .then(|| travels::compare(end.as_ref(), tolerances, last_slack, moved)),
+        end: codes::end(sides.map(|side| &side.codes)),
+        end_travels,
         pairs,
     };
     difference.findings = findings::findings(&difference, tolerances);
     difference.equal = difference.findings.is_empty();
     difference
-}
-
-/// The halves of a pair, or what both files draw before the first layer.
-fn halves<'a>(
-    a: &'a Side,
-    b: &'a Side,
-    pair: Option<Pair>,
-    moved: Option<[f64; 3]>,
-) -> Both<Half<'a>> {
-    let Some(pair) = pair else { return Both { a: a.start(), b: b.start() } };
-    let [x, y, _] = moved.unwrap_or_default();
-    Both { a: a.layer(pair.a, [0.0; 2]), b: b.layer(pair.b, [x, y]) }
 }
 
 /// How far layers lie apart in z, mm: for the start and each pair, with the one before it, since the
@@ -246,33 +263,53 @@ fn slack(a: &Side, b: &Side, pairs: &[Pair], raised: f64) -> Vec<f64> {
     own.map(|own: f64| own.max(std::mem::replace(&mut before, own))).collect()
 }
 
-/// The strands of a layer for a picture, counted from 1; see [`Strand`]. The first one has what comes
+/// The strands of layers for pictures, counted from 1; see [`Strand`]. The first one has what comes
 /// before it, too, and the last what comes after. With `in_place` a print that moved as a whole is
 /// shown where it lies.
-#[must_use]
-pub fn view(
+///
+/// # Errors
+/// As [`diff()`].
+pub fn views(
     a: &Side,
     b: &Side,
-    layer: Both<Option<usize>>,
+    layers: &[Both<Option<usize>>],
     found: &Difference,
     in_place: bool,
-) -> Vec<Strand> {
-    let reach = found.tolerance_mm;
-    let share = found.sums_percent / 100.0;
-    let by_role = a.has_roles && b.has_roles;
+) -> Result<Vec<Vec<Strand>>, Error> {
     let [x, y, _] = found.moved_mm.filter(|_| !in_place).unwrap_or_default();
-    let own = layer.map(|number| number.and_then(|number| number.checked_sub(1)));
-    let mut halves = vec![Both { a: a.layer(own.a, [0.0; 2]), b: b.layer(own.b, [x, y]) }];
-    if own.a == Some(0) && own.b == Some(0) {
-        halves.insert(0, Both { a: a.start(), b: b.start() });
-    }
-    if layer.a == Some(a.floors.len()) && layer.b == Some(b.floors.len()) {
-        halves.push(Both { a: a.end(), b: b.end() });
-    }
-    let views = halves.iter().map(|halves| {
-        strands(halves.as_ref(), by_role, reach, share, found.travels)
-    });
-    views.flatten().collect()
+    let wanted = layers.iter().copied();
+    let (kept_a, kept_b) = rayon::join(
+        || window::some(a, wanted.clone().filter_map(|layer| layer.a)),
+        || window::some(b, wanted.clone().filter_map(|layer| layer.b)),
+    );
+    let (kept_a, kept_b) = (kept_a?, kept_b?);
+    let rules = show::Rules {
+        by_role: a.has_roles && b.has_roles,
+        reach: found.tolerance_mm,
+        share: found.sums_percent / 100.0,
+        travels: found.travels,
+    };
+    let last = Both { a: a.floors.len(), b: b.floors.len() };
+    let view = |layer: &Both<Option<usize>>| {
+        let of = |kept: &'_ window::Kept, number: Option<usize>| {
+            number.and_then(|number| kept.get(&number).cloned()).unwrap_or_default()
+        };
+        let both = |a: Option<usize>, b: Option<usize>| (of(&kept_a, a), of(&kept_b, b));
+        let index = layer.map(|number| number.and_then(|number| number.checked_sub(1)));
+        let (own, other) = both(layer.a, layer.b);
+        let own = Both { a: &a.layer(index.a, [0.0; 2], &own), b: &b.layer(index.b, [x, y], &other) };
+        let mut all = strands(own, &rules);
+        if index == (Both { a: Some(0), b: Some(0) }) {
+            let (own, other) = both(Some(0), Some(0));
+            all.extend(strands(Both { a: &a.start(&own), b: &b.start(&other) }, &rules));
+        }
+        if *layer == last.map(Some) {
+            let (own, other) = both(Some(last.a + 1), Some(last.b + 1));
+            all.extend(strands(Both { a: &a.end(&own), b: &b.end(&other) }, &rules));
+        }
+        all
+    };
+    Ok(layers.iter().map(view).collect())
 }
 
 /// Filament that is pushed out, without retractions.

@@ -20,15 +20,21 @@ pub struct Strand {
     pub file: Option<File>,
 }
 
+/// How halves are compared for a picture.
+pub(super) struct Rules {
+    pub(super) by_role: bool,
+    /// For places, mm.
+    pub(super) reach: f64,
+    /// For filament of each mm of line.
+    pub(super) share: f64,
+    /// Whether travels are shown.
+    pub(super) travels: bool,
+}
+
 /// The lines of both halves: first those of the first file as if both had them, over them what only
 /// the first has, and then what only the second has; last travels, only those that differ.
-pub(super) fn strands(
-    halves: Both<&Half<'_>>,
-    by_role: bool,
-    reach: f64,
-    share: f64,
-    travels: bool,
-) -> Vec<Strand> {
+pub(super) fn strands(halves: Both<&Half<'_>>, rules: &Rules) -> Vec<Strand> {
+    let Rules { by_role, reach, share, travels } = *rules;
     let mut common = Vec::new();
     let mut own: [Vec<Strand>; 2] = Default::default();
     let strand = |from: [f64; 3], to: [f64; 3], width, file| Strand {

@@ -18,9 +18,9 @@ fn cube() -> &'static str {
 
 fn compared(a: &str, b: &str, tolerances: &Tolerances) -> Difference {
     let (a, b) = (side(a), side(b));
-    let found = diff(&a, &b, tolerances);
+    let found = diff(&a, &b, tolerances).unwrap();
     // It has no direction.
-    assert_eq!(diff(&b, &a, tolerances).findings.len(), found.findings.len());
+    assert_eq!(diff(&b, &a, tolerances).unwrap().findings.len(), found.findings.len());
     found
 }
 

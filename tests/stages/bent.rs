@@ -19,7 +19,7 @@ use slicer::mesh::Placement;
 use slicer::motion::Limits;
 use slicer::preview::{drawing::Frame, layer};
 use slicer::profile;
-use slicer::reader::Print;
+use slicer::reader::{Firmware, Print, Source, Stream};
 
 const BENT: &str = include_str!("../../fixtures/bent.gcode");
 
@@ -195,9 +195,14 @@ fn times_are_by_the_same_layers() {
 
 #[test]
 fn both_forms_are_compared_layer_by_layer() {
-    let side = |text: &str| Side::new(text.as_bytes(), read(text), times(text));
-    let tolerances = Tolerances { place: 0.01, share: 0.001, settings: false };
-    let found = diff::diff(&side(BENT), &side(&bare()), &tolerances);
+    let side = |text: &str| {
+        let source = Source::of_bytes(text.as_bytes().to_vec());
+        let stream = Stream::open(source, Firmware::default(), 1.75).unwrap();
+        let values = stream.facts().values.clone();
+        Side::new("x", stream, values, times(text)).unwrap()
+    };
+    let tolerances = Tolerances::default();
+    let found = diff::diff(&side(BENT), &side(&bare()), &tolerances).unwrap();
     assert!(found.pairs.iter().all(|pair| pair.layer.a == pair.layer.b), "{:?}", found.findings);
     // The line that primes the nozzle is a part of the first layer where nothing marks that.
     for finding in &found.findings {
@@ -209,7 +214,7 @@ fn both_forms_are_compared_layer_by_layer() {
             "{text}"
         );
     }
-    let same = diff::diff(&side(&bare()), &side(&bare()), &tolerances);
+    let same = diff::diff(&side(&bare()), &side(&bare()), &tolerances).unwrap();
     assert!(same.equal && same.pairs.len() == LAYERS + 1);
 }
 

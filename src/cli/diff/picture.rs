@@ -44,8 +44,8 @@ struct Sight {
     said: Vec<String>,
 }
 
-/// Gives the strands of a layer; `true` shows a moved print where it lies.
-pub(super) type View<'a> = &'a dyn Fn(Both<Option<usize>>, bool) -> Result<Vec<Strand>>;
+/// Gives the strands of layers; `true` shows a moved print where it lies.
+pub(super) type Views<'a> = &'a dyn Fn(&[Both<Option<usize>>], bool) -> Result<Vec<Vec<Strand>>>;
 
 /// The format that the output's ending names.
 ///
@@ -76,7 +76,7 @@ pub(super) fn write(
     format: Format,
     found: &Difference,
     (names, text): ([&str; 2], &str),
-    view: View<'_>,
+    views: Views<'_>,
     out: &Path,
 ) -> Result<()> {
     let mut sights = sights(found);
@@ -90,8 +90,9 @@ pub(super) fn write(
     sights.truncate(if format == Format::Html { MOST } else { 1 });
     let mut bytes = Vec::new();
     let mut pictures = String::new();
-    for sight in &sights {
-        let drawing = draw(sight, found, view(sight.layer, in_place)?);
+    let layers: Vec<Both<Option<usize>>> = sights.iter().map(|sight| sight.layer).collect();
+    for (sight, strands) in sights.iter().zip(views(&layers, in_place)?) {
+        let drawing = draw(sight, found, strands);
         match format {
             Format::Svg => bytes = svg::write(&drawing).into_bytes(),
             Format::Png => bytes = png::write(&drawing).with_context(|| output::writing(out))?,
