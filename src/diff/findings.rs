@@ -122,9 +122,15 @@ fn of_travels(difference: &Difference, found: &mut Vec<Finding>) {
     });
     let none = Both { a: None, b: None };
     let end = difference.end_travels.iter().map(|travels| (None, none, travels));
+    let mut other_before = false;
     for (layer, z, own) in pairs.chain(end) {
         let z = Both { a: z.a.unwrap_or_default(), b: z.b.unwrap_or_default() };
-        let other_lines = own.lines_other_from.filter(|_| own.is_far());
+        let own_order = own.lines_other_from;
+        // Where the layer before ends elsewhere, the way from there is another one.
+        let way_from_there =
+            own.other_from.filter(|_| other_before && own.is_far() && own.has_same_lines);
+        other_before = own_order.is_some();
+        let other_lines = own_order.or(way_from_there);
         let is_as_high = own.is_as_high(z, difference.tolerance_mm);
         if let Some(farthest) = own.farthest.filter(|_| other_lines.is_none() || !is_as_high) {
             let TravelsOfPair { length_mm, far_mm, z_mm, .. } = *own;

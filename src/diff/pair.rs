@@ -148,7 +148,8 @@ fn travels(
 ) -> TravelsOfPair {
     let mut travels = travels::compare(halves, rules.tolerances, slack, rules.moved);
     let same = |role: &RoleOfPair| role.far_mm.a + role.far_mm.b + role.unlike_mm.a == 0.0;
-    if travels.is_far() && roles.iter().all(same) {
+    travels.has_same_lines = roles.iter().all(same);
+    if travels.other_from.is_some() && travels.has_same_lines {
         let lines = halves.map(Half::all_lines);
         let lines = lines.as_ref().map(Vec::as_slice);
         travels.lines_other_from = travels::other_from(lines, rules.tolerances.place);

@@ -46,6 +46,9 @@ pub struct TravelsOfPair {
     /// Whether the farthest place lies before the first layer in both files.
     #[serde(skip)]
     pub(super) is_before_layers: bool,
+    /// Whether the lines of the layer are the same, in any order.
+    #[serde(skip)]
+    pub(super) has_same_lines: bool,
 }
 
 impl TravelsOfPair {
@@ -107,6 +110,7 @@ pub(super) fn compare(
         farthest,
         other_from,
         lines_other_from: None,
+        has_same_lines: true,
         pulled_mm: sum(0),
         pushed_mm: sum(1),
     }

@@ -17,6 +17,10 @@ const SECOND: Colour = Colour([213, 94, 0]);
 /// Width of a travel and of the ring, pixels.
 const TRAVEL: f64 = 2.0;
 
+/// Width and length of a dot where a travel goes up or down, pixels.
+const DOT: f64 = 9.0;
+const DOT_LENGTH: f64 = 0.1;
+
 /// Dashes and gaps of a travel, in its widths.
 const DASH: u8 = 4;
 
@@ -85,7 +89,11 @@ pub fn drawing(
     for strand in strands {
         let Strand { from, to, width, whose } = *strand;
         let colour = whose.colour();
+        // Up and down is a dot, and a dot has some length.
+        let is_upright = width == 0.0 && from == to;
+        let to = if is_upright { [to[0] + DOT_LENGTH * pixel, to[1]] } else { to };
         let (width, kind) = match (width > 0.0, whose) {
+            (false, _) if is_upright => (DOT * pixel, Kind::Bead),
             (false, _) => (TRAVEL * pixel, Kind::Dashed(DASH)),
             (true, Whose::Both) => (width, Kind::PaleBead),
             (true, _) => (width, Kind::Bead),

@@ -225,7 +225,7 @@ fn between_lines(finding: &Finding, tolerance: f64) -> String {
                 format!("; so travels are others, {}", apart(place))
             });
             let what = match of {
-                Ordered::Lines => "lines are the same in another order",
+                Ordered::Lines => "lines are the same in another order or direction",
                 Ordered::Travels => "travels are the same in another order",
             };
             let layers = in_layers(layers, *layer);
