@@ -3,8 +3,8 @@
 mod picture;
 mod text;
 
-use super::profiles::ProfileArgs;
 use super::output::Sink;
+use super::profiles::ProfileArgs;
 use super::{Outcome, failure, input, interrupt, output};
 use anyhow::Result;
 use clap::{Args, ValueEnum};

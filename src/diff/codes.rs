@@ -292,8 +292,9 @@ fn rest<'a>(codes: &[&'a Code], others: &[&Code]) -> Vec<&'a Code> {
 
 /// The settings in the comments that differ, by name. Of several with a name the last holds.
 pub(super) fn settings(a: &[(String, String)], b: &[(String, String)]) -> Vec<Setting> {
-    let all =
-        |values: &[(String, String)]| -> BTreeMap<String, String> { values.iter().cloned().collect() };
+    let all = |values: &[(String, String)]| -> BTreeMap<String, String> {
+        values.iter().cloned().collect()
+    };
     let (a, b) = (all(a), all(b));
     let keys: std::collections::BTreeSet<&String> = a.keys().chain(b.keys()).collect();
     let differs = keys.into_iter().filter(|key| a.get(*key) != b.get(*key));

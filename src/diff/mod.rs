@@ -55,10 +55,10 @@ use crate::reader::{Error, Role};
 use align::Pair;
 use pair::Rules;
 use rayon::prelude::*;
-use show::strands;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::Serialize;
+use show::strands;
 use sums::{Measure, ROLES};
 use window::Of;
 
@@ -297,7 +297,8 @@ pub fn views(
         let both = |a: Option<usize>, b: Option<usize>| (of(&kept_a, a), of(&kept_b, b));
         let index = layer.map(|number| number.and_then(|number| number.checked_sub(1)));
         let (own, other) = both(layer.a, layer.b);
-        let own = Both { a: &a.layer(index.a, [0.0; 2], &own), b: &b.layer(index.b, [x, y], &other) };
+        let own =
+            Both { a: &a.layer(index.a, [0.0; 2], &own), b: &b.layer(index.b, [x, y], &other) };
         let mut all = strands(own, &rules);
         if index == (Both { a: Some(0), b: Some(0) }) {
             let (own, other) = both(Some(0), Some(0));

@@ -86,10 +86,7 @@ pub(super) fn compare(
         let with_begin = |half: &Half<'_>, travels: &[Line]| {
             half.begin().into_iter().chain(travels.iter().copied()).collect::<Vec<Line>>()
         };
-        let all = Both {
-            a: with_begin(halves.a, &travels.a),
-            b: with_begin(halves.b, &travels.b),
-        };
+        let all = Both { a: with_begin(halves.a, &travels.a), b: with_begin(halves.b, &travels.b) };
         found = [
             apart(&travels.a, &all.b, reach, tolerances.share),
             apart(&travels.b, &all.a, reach, tolerances.share),
@@ -99,9 +96,8 @@ pub(super) fn compare(
     let filament = halves.map(|half| amounts(half.steps));
     let sum = |k: usize| Sum::new(filament.a[k], filament.b[k], tolerances.share, LEAST_FILAMENT);
     let farthest = farthest(&one, &other, halves);
-    let is_before = |place: &Place| {
-        place.line.a < halves.a.first_line && place.line.b < halves.b.first_line
-    };
+    let is_before =
+        |place: &Place| place.line.a < halves.a.first_line && place.line.b < halves.b.first_line;
     TravelsOfPair {
         is_before_layers: farthest.as_ref().is_some_and(is_before),
         length_mm: travels.as_ref().map(|travels| length(travels)),

@@ -81,7 +81,8 @@ pub(super) fn each(
 /// # Errors
 /// What reading gives.
 pub(super) fn some(side: &Side, wanted: impl Iterator<Item = usize>) -> Result<Kept, Error> {
-    let mut kept: Kept = wanted.chain([0, side.floors.len() + 1]).map(|k| (k, Vec::new())).collect();
+    let mut kept: Kept =
+        wanted.chain([0, side.floors.len() + 1]).map(|k| (k, Vec::new())).collect();
     for (number, moves) in side.moves().enumerate() {
         let moves = moves.map_err(|error| side.unreadable(error))?;
         if let Some(own) = kept.get_mut(&number) {

@@ -139,7 +139,8 @@ fn frame(strands: &[Strand]) -> Frame {
 
 fn circle(at: [f64; 2], radius: f64, width: f64) -> Stroke {
     let point = |corner: u32| {
-        let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(corner) / f64::from(CORNERS));
+        let (sin, cos) =
+            libm::sincos(std::f64::consts::TAU * f64::from(corner) / f64::from(CORNERS));
         [at[0] + radius * cos, at[1] + radius * sin]
     };
     let look = Look { width, colour: INK, kind: Kind::Bead };

@@ -205,7 +205,10 @@ fn between_lines(finding: &Finding, tolerance: f64) -> String {
     match finding {
         Finding::Travels { layer, length_mm, far_mm, z_mm, farthest } => {
             let heights = |z: Option<[f64; 2]>| {
-                z.map_or_else(|| "none".to_owned(), |[low, high]| format!("z {low:.2} to {high:.2}"))
+                z.map_or_else(
+                    || "none".to_owned(),
+                    |[low, high]| format!("z {low:.2} to {high:.2}"),
+                )
             };
             format!(
                 "{}: travels {}; {:.1} of {:.1} mm in A ({}) and {:.1} of {:.1} in B ({}) farther \
