@@ -1,4 +1,14 @@
-//! `slicer diff` -> whether two G-code files print the same, as a verdict with a table or as JSON.
+//! `slicer diff` -> whether two G-code files print the same, as a verdict with a table, as JSON or as a picture.
+//!
+//! Words used here: the *clock* is the profile by whose limits both files are timed; an *opened* file
+//! is one whose facts are known, and a [`Side`] one that can be compared.
+//!
+//! 1. Both files are read for their facts. Standard input is kept in a temporary file, since it is
+//!    read more than once.
+//! 2. The clock is found: a profile that is asked for, or the settings in one of the files.
+//! 3. Both are timed and compared. The verdict is the exit code.
+//! 4. A picture, or a page with several, is written and put in its place; then the verdict is
+//!    printed, unless it is to be quiet.
 
 mod picture;
 mod text;

@@ -142,7 +142,7 @@ fn of_travels(difference: &Difference, found: &mut Vec<Finding>) {
         } else if let Some(line) = own.other_from.filter(|_| !own.is_far()) {
             order(&mut travels, Ordered::Travels, layer, line, None);
         }
-        if !own.is_far() && !(own.pulled_mm.equal && own.pushed_mm.equal) {
+        if !(own.is_far() || own.pulled_mm.equal && own.pushed_mm.equal) {
             retracted(&mut retractions, layer, own);
         }
     }
