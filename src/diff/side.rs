@@ -17,11 +17,15 @@ use super::sums::{self, Measure};
 use crate::estimate::Estimate;
 use crate::reader::print::Step;
 use crate::reader::stream::Section;
-use crate::reader::{Cause, Error, Role, Stream};
+use crate::reader::{Cause, Error, Firmware, Role, Source, Stream};
 use std::io::{self, BufReader};
 
 /// Commands for heaters that are kept: more than any slicer writes.
 const MOST_HEATS: usize = 50_000;
+
+/// Diameter that widths are worked out with where a file gives none, mm: the most usual one. What is
+/// compared is the filament itself.
+const SOME_DIAMETER: f64 = 1.75;
 
 /// Bytes that are read at once.
 const BUFFER: usize = 1 << 18;
@@ -68,6 +72,19 @@ impl Side {
         let first_line = places.before.first().map_or(u32::MAX, |before| before + 1);
         let name = name.to_owned();
         Ok(Self { name, stream, values, estimate, floors, has_roles, codes, first_line })
+    }
+
+    /// A file in memory, as [`Self::new`] has it with the settings as they stand there.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_bytes(bytes: &[u8], estimate: Estimate) -> Result<Self, Error> {
+        let name = "a file in memory";
+        let source = Source::of_bytes(bytes.to_vec());
+        let stream = Stream::open(source, Firmware::default(), SOME_DIAMETER)
+            .map_err(|error| Cause::Unreadable(error).of(name))?;
+        let values = stream.facts().values.clone();
+        Self::new(name, stream, values, estimate)
     }
 
     /// Retractions whose length only the printer knows.

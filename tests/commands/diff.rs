@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use slicer::diff::{Both, Difference, File, Finding, Quantity, Side, Tolerances, diff};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
-use slicer::reader::{Firmware, Role, Source, Stream};
+use slicer::reader::Role;
 use std::fmt::Write as _;
 
 /// A line of a small print: role's comment, start, end, filament.
@@ -44,13 +44,10 @@ fn gcode(model: &Model) -> String {
 }
 
 pub(crate) fn side(text: &str) -> Side {
-    let source = Source::of_bytes(text.as_bytes().to_vec());
-    let stream = Stream::open(source, Firmware::default(), 1.75).unwrap();
     let limits = Limits::new(&settings("generic-marlin", &[]));
     let options = Options { filament_diameter: 1.75, ..Options::default() };
     let time = estimate(&mut text.as_bytes(), "x", &limits, options).unwrap();
-    let values = stream.facts().values.clone();
-    Side::new("x", stream, values, time).unwrap()
+    Side::of_bytes(text.as_bytes(), time).unwrap()
 }
 
 fn compared(a: &str, b: &str) -> Difference {

@@ -19,7 +19,7 @@ use slicer::mesh::Placement;
 use slicer::motion::Limits;
 use slicer::preview::{drawing::Frame, layer};
 use slicer::profile;
-use slicer::reader::{Firmware, Print, Source, Stream};
+use slicer::reader::Print;
 
 const BENT: &str = include_str!("../../fixtures/bent.gcode");
 
@@ -195,12 +195,7 @@ fn times_are_by_the_same_layers() {
 
 #[test]
 fn both_forms_are_compared_layer_by_layer() {
-    let side = |text: &str| {
-        let source = Source::of_bytes(text.as_bytes().to_vec());
-        let stream = Stream::open(source, Firmware::default(), 1.75).unwrap();
-        let values = stream.facts().values.clone();
-        Side::new("x", stream, values, times(text)).unwrap()
-    };
+    let side = |text: &str| Side::of_bytes(text.as_bytes(), times(text)).unwrap();
     let tolerances = Tolerances::default();
     let found = diff::diff(&side(BENT), &side(&bare()), &tolerances).unwrap();
     assert!(found.pairs.iter().all(|pair| pair.layer.a == pair.layer.b), "{:?}", found.findings);
