@@ -205,6 +205,7 @@ fn both_forms_are_compared_layer_by_layer() {
         assert!(
             text.contains("commands")
                 || text.contains(r#""a":1"#)
+                || text.contains(r#""layer":{"a":0,"b":0}"#)
                 || text.contains(r#""layers":[0]"#),
             "{text}"
         );
