@@ -101,6 +101,12 @@ impl Stream {
         Ok(Self { source, facts, places })
     }
 
+    /// The file itself.
+    #[must_use]
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
     /// What is known of the file as a whole.
     #[must_use]
     pub fn facts(&self) -> &Facts {

@@ -17,3 +17,4 @@ mod profiles;
 mod reading;
 mod schema;
 mod viewer;
+mod ways;
