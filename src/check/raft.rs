@@ -1,3 +1,9 @@
+//! Print + Mesh -> how far a raft lifts the part off the bed.
+//!
+//! Files call the lines of a raft support. So a raft is layers at the bottom without a line of the part,
+//! but support alone can also lie below a part that is too thin there to be printed. The two differ in
+//! height: on a raft all of the part lies higher.
+
 use super::survey::Survey;
 use crate::mesh::Mesh;
 use crate::units::to_mm;

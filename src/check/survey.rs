@@ -77,8 +77,8 @@ struct Counted {
 
 impl Survey {
     pub(super) fn new<E>(facts: &Facts, terms: &Terms, pages: Pages<'_, E>) -> Result<Self, E> {
-        let mut survey = Self::default();
-        survey.strays = vec![Vec::new(); facts.layers.len()];
+        let strays = vec![Vec::new(); facts.layers.len()];
+        let mut survey = Self { strays, ..Self::default() };
         let mut plastic: [[Counted; 2]; Role::ALL.len()] = Default::default();
         let mut widths = Counted::default();
         let every = facts.layers.len().div_ceil(LAYERS_LOOKED_AT).max(1);

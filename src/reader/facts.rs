@@ -175,9 +175,6 @@ impl Gatherer {
         facts.has_heights |= motion.height.is_some();
         facts.roles[motion.role as usize] = true;
         facts.move_count += 1;
-        if !(motion.filament > 0.0) {
-            return;
-        }
         let step = Step::of(line, motion);
         if step.is_line() {
             facts.last_line = facts.move_count;

@@ -156,6 +156,7 @@ impl Kept {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reader::Role;
 
     fn print(text: &str) -> Print {
         Print::read(&mut text.as_bytes(), 1.75).unwrap()
