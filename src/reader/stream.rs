@@ -255,7 +255,7 @@ mod tests {
             let text = text(layers, marked);
             let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
             let source = Source::of_bytes(text.into_bytes());
-            let stream = Stream::open(source, Firmware::default(), 1.75).unwrap();
+            let stream = Stream::open(source, Reading::default(), 1.75).unwrap();
             assert_eq!(stream.facts(), &print.facts);
             assert!(print.layers.len() >= layers && (!marked || print.layers.len() == layers));
             let sections: Vec<Section> = stream.sections().map(Result::unwrap).collect();
@@ -277,7 +277,7 @@ mod tests {
         let text = "x\n".repeat(100_000);
         let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
         assert_eq!((print.notes.len(), print.summary.unknown), (1000, 100_000));
-        let stream = Stream::open(Source::of_bytes(text.into()), Firmware::default(), 1.75);
+        let stream = Stream::open(Source::of_bytes(text.into()), Reading::default(), 1.75);
         let notes = stream.unwrap().sections().map(|one| one.unwrap().notes.len()).sum::<usize>();
         assert_eq!(notes, 1000);
     }
