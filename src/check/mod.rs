@@ -11,8 +11,8 @@
 //! - *Terms* are what the file or a profile says of the machine and the beads.
 //! - The *verdict* is all findings, sorted, and what was measured on the way.
 //!
-//! Layers are judged as they come, some side by side, so that a file need not be held ([`judge`]). How
-//! lines lie on each other is worked out between those that are near ([`laid`]); what they fill is drawn on
+//! Layers are judged as they come, some side by side, so that a file need not be held (`judge`). How
+//! lines lie on each other is worked out between those that are near (`laid`); what they fill is drawn on
 //! rows of spans. A thick bead fills the layers below it too.
 
 mod against;
