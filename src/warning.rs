@@ -177,15 +177,8 @@ impl Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::MeshMended { file, what } => write!(
-                f,
-                "{file}: the mesh was mended: {what}; look whether it is what was meant, or mend \
-                 the model"
-            ),
-            Self::OpenMesh { file, what } => write!(
-                f,
-                "{file}: the mesh is not closed: {what}; check the print or mend the model"
-            ),
+            Self::MeshMended { file, what } => f.write_str(&mended(file, what)),
+            Self::OpenMesh { file, what } => f.write_str(&open(file, what)),
             Self::OpenContours { layers, longest_gap_mm } => {
                 f.write_str(&closed(*layers, *longest_gap_mm))
             }
@@ -240,6 +233,18 @@ impl fmt::Display for Warning {
             }
         }
     }
+}
+
+/// That a mesh was mended.
+fn mended(file: &str, what: &str) -> String {
+    format!(
+        "{file}: the mesh was mended: {what}; look whether it is what was meant, or mend the model"
+    )
+}
+
+/// That a mesh is not closed.
+fn open(file: &str, what: &str) -> String {
+    format!("{file}: the mesh is not closed: {what}; check the print or mend the model")
 }
 
 /// That contours were closed.

@@ -11,7 +11,9 @@
 //! - *Terms* are what the file or a profile says of the machine and the beads.
 //! - The *verdict* is all findings, sorted, and what was measured on the way.
 //!
-//! Beads are drawn on rows of spans, layer by layer; a thick bead fills the layers below it too.
+//! Layers are judged as they come, some side by side, so that a file need not be held (`judge`). How
+//! lines lie on each other is worked out between those that are near (`laid`); what they fill is drawn on
+//! rows of spans. A thick bead fills the layers below it too.
 
 mod against;
 mod air;

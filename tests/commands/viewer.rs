@@ -263,7 +263,8 @@ fn the_command_writes_the_page_and_refuses_what_is_for_pictures() {
         command.args(["preview", "fixtures/clock.gcode", "-o"]).arg(&out).args(words);
         command
     };
-    slicer(&[]).assert().success().stderr("2 layers, 11 moves\n");
+    let told = "2 layers, 11 moves, timed by the limits of profile zcube-dual\n";
+    slicer(&[]).assert().success().stderr(told);
     let page = fs::read_to_string(&out).unwrap();
     assert!(page.contains("<title>clock.gcode</title>"));
     let refused = slicer(&["--layer", "1"]).assert().code(2);
