@@ -13,8 +13,8 @@ use super::standing::Standing;
 use super::terms::Terms;
 use crate::reader::print::Step;
 
-/// How deep the nozzle may lie in what stands, mm: half of a usual layer.
-const DEEP: f64 = 0.11;
+/// How deep the nozzle may lie in what stands, mm: half of a thick layer, and more than skins are bent.
+const DEEP: f64 = 0.16;
 
 /// The nozzle's flat end by its hole, and its width where nobody tells the hole, mm.
 const FLAT: f64 = 2.5;

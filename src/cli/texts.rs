@@ -6,7 +6,7 @@ Findings, each with a stable code, a place and a measure:
   unknown-code         a command that the machine's firmware does not know
   outside-volume       a line or travel beyond the machine's x, y or z
   through-print        a travel, of start and end block too, through what stands by the nozzle's flat
-                       end, 2.5 times as wide as its hole, over 0.11 mm deep
+                       end, 2.5 times as wide as its hole, over 0.16 mm deep
   changes-the-machine  a command that changes what the rest relies on: G92 of an axis, steps, offsets,
                        flow, homing or motors off in the print, a tool that is not there, heaters far
                        from what the settings say, hotter after the print; a warning for pauses,
