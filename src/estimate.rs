@@ -45,6 +45,8 @@ pub struct Estimate {
     pub seconds: f64,
     /// Of these, before the first layer, s.
     pub start_seconds: f64,
+    /// Of these, after the last line: what is pulled back and the end block, s.
+    pub end_seconds: f64,
     /// Of these, standing still by G4, s.
     pub dwell_seconds: f64,
     /// Number of moves; an arc counts as the straight pieces that it is read as.
@@ -96,6 +98,8 @@ pub struct NotCounted {
     pub heating: u64,
     /// Homing and probing.
     pub homing: u64,
+    /// Pauses and changes of filament, which last until somebody goes on.
+    pub pauses: u64,
     /// Retractions whose length only the printer knows (G10, G11).
     pub firmware_retractions: u64,
     /// Lines of code that the reader does not know.
@@ -159,6 +163,8 @@ struct Meter {
     /// Where the layers begin that comments mark.
     first_marked: Option<usize>,
     dwell: f64,
+    /// Since the last line.
+    end: f64,
     moves: u64,
     filament: f64,
     most_filament: f64,
@@ -177,6 +183,7 @@ impl Meter {
             layers: vec![Layer::default()],
             first_marked: None,
             dwell: 0.0,
+            end: 0.0,
             moves: 0,
             filament: 0.0,
             most_filament: 0.0,
@@ -197,6 +204,7 @@ impl Meter {
                 match wait {
                     Wait::Heating => self.not_counted.heating += 1,
                     Wait::Homing => self.not_counted.homing += 1,
+                    Wait::User => self.not_counted.pauses += 1,
                     Wait::Moves => {}
                 }
             }
@@ -247,6 +255,7 @@ impl Meter {
                 None => self.dwell += seconds,
             }
             self.layers[tag.layer].seconds += seconds;
+            self.end = if tag.area > 0.0 { 0.0 } else { self.end + seconds };
             self.peak_flow = self.peak_flow.max(tag.area * peak);
         }
     }
@@ -274,6 +283,7 @@ impl Meter {
             schema: SCHEMA,
             seconds: roles.iter().map(|role| role.seconds).sum::<f64>() + self.dwell,
             start_seconds,
+            end_seconds: self.end,
             dwell_seconds: self.dwell,
             moves: self.moves,
             filament_mm: self.most_filament,

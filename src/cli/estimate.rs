@@ -38,7 +38,7 @@ pub(super) fn run(args: &EstimateArgs) -> Result<String> {
 
 /// For people.
 fn table(found: &Estimate) -> String {
-    let mut text = row("print time", found.seconds, None, "");
+    let mut text = row("print time", found.seconds, None, "") + &ends(found);
     for role in &found.roles {
         let count = plural(role.moves, "move");
         let moves = format!("{count:>15} {:>12.1} mm", role.length_mm);
@@ -69,6 +69,13 @@ fn table(found: &Estimate) -> String {
     text
 }
 
+/// What of the time is no printing: the summary and the file's own comments leave it out.
+fn ends(found: &Estimate) -> String {
+    let [start, end] = [found.start_seconds, found.end_seconds].map(clock);
+    let between = clock(found.seconds - found.start_seconds - found.end_seconds);
+    format!("{start} until the first layer, {between} printing, {end} after the last line\n")
+}
+
 fn row(name: &str, seconds: f64, of: Option<f64>, more: &str) -> String {
     let share = of.map_or_else(String::new, |all| format!("{:>5.1} %", 100.0 * seconds / all));
     format!("{name:<12} {:>9} {share}{more}", clock(seconds)).trim_end().to_owned() + "\n"
@@ -80,6 +87,7 @@ fn not_counted(not: &NotCounted) -> String {
     for (count, name) in [
         (not.heating, "wait for heat"),
         (not.homing, "homing"),
+        (not.pauses, "pause"),
         (not.firmware_retractions, "firmware retraction"),
     ] {
         match (count, name) {

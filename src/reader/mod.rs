@@ -89,6 +89,8 @@ pub enum Wait {
     Heating,
     /// While it looks for its end stops.
     Homing,
+    /// Until its user, or what it was told to wait for, says so: a pause, or another filament.
+    User,
     /// Only until the moves so far have ended.
     Moves,
 }

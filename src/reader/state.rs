@@ -193,7 +193,12 @@ impl State {
             // Only the printer knows where its end stops are.
             (b'M', 132) => self.recall(words),
             (b'M', 191 | 303) => sink(Event::Wait(Wait::Heating)),
-            (b'M', 0 | 1 | 25 | 226 | 400 | 600 | 601) => sink(Event::Wait(Wait::Moves)),
+            // There M0 and M1 end the job.
+            (b'M', 0 | 1) if matches!(self.firmware, Firmware::RepRap) => {
+                sink(Event::Wait(Wait::Moves));
+            }
+            (b'M', 0 | 1 | 25 | 226 | 600 | 601) => sink(Event::Wait(Wait::User)),
+            (b'M', 400) => sink(Event::Wait(Wait::Moves)),
             (b'M', 201 | 203 | 204 | 205 | 566) => {
                 if let Some(change) = Change::of_code(code.number, words) {
                     sink(Event::Change(change));

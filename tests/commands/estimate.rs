@@ -116,6 +116,48 @@ fn the_clock_for_comparing_files_minds_corners_and_retractions_only() {
     near(json["seconds"].as_f64().unwrap(), seconds);
 }
 
+/// The file's own settings time it, and give what the summary, the report and the file's head say.
+#[test]
+fn a_file_of_ours_takes_as_long_by_its_own_settings_as_its_report_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let (out, report) = (folder.path().join("a.gcode"), folder.path().join("a.json"));
+    for printer in ["zcube-dual", "generic-klipper", "voron-2.4", "prusa-mk4", "witbox-1"] {
+        let mut made = slicer(&["fixtures/tile.stl", "-q", "-p", printer, "-o"]);
+        made.arg(&out).arg("--report").arg(&report);
+        // More than the printer is set to: Klipper does as it is told.
+        made.args(["--set", "machine.acceleration=2000"]);
+        made.assert().success();
+        let json = |bytes: &[u8]| serde_json::from_slice::<serde_json::Value>(bytes).unwrap();
+        let told = &json(&std::fs::read(&report).unwrap())["time"];
+        let mut estimate = slicer(&["estimate", "--json"]);
+        let read = json(&estimate.arg(&out).assert().success().get_output().stdout);
+        assert_eq!(read["limits"], "the file's own settings");
+        let seconds = |value: &serde_json::Value| value.as_f64().unwrap();
+        // The way to the first line begins where the start block ends, which only the file says.
+        let read = seconds(&read["seconds"])
+            - seconds(&read["start_seconds"])
+            - seconds(&read["layers"][0]["seconds"])
+            - seconds(&read["end_seconds"]);
+        let told = seconds(&told["total_s"]) - seconds(&told["layers"][0]["time_s"]);
+        assert!((read - told).abs() < 0.5, "{printer}: {read} s, {told} s told");
+    }
+    let mut by_profile = slicer(&["estimate", "--json", "-p", "generic-marlin"]);
+    let read = by_profile.arg(&out).assert().success().get_output().stdout.clone();
+    assert!(String::from_utf8(read).unwrap().contains("\"limits\": \"profile generic-marlin"));
+}
+
+/// Somebody has to go on after a pause; M0 ends a job of RepRapFirmware.
+#[test]
+fn pauses_are_counted_and_not_timed() {
+    let pauses = |flavour: &str| {
+        let text = format!("{flavour}\nG1 X9 E1 F600\nM600\nM0\nM400\nG1 X0 E2\n");
+        let told = slicer(&["estimate", "-"]).write_stdin(text).assert().success();
+        String::from_utf8(told.get_output().stdout.clone()).unwrap()
+    };
+    assert!(pauses("").contains("not counted: 2 pauses\n"), "{}", pauses(""));
+    assert!(pauses("; gcode_flavor = reprapfirmware").contains("not counted: 1 pause\n"));
+}
+
 #[test]
 fn errors_name_the_file_the_cause_and_what_to_do() {
     for (words, code, part) in [
