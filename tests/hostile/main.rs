@@ -4,7 +4,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+#[path = "../common/mod.rs"]
+mod common;
+mod edits;
 mod properties;
+mod sound;
+mod witness;
 
 use proptest::prelude::*;
 use proptest::sample::Index;
