@@ -57,19 +57,22 @@ const FILES_OF: [(&str, f64, &[(&str, &str)]); 4] = [
     (
         "overhang.stl",
         0.0,
-        &[("machine.thumbnails", "[]"), ("support.enabled", "true"), ("layer_height", "0.3")],
+        &[("machine.thumbnails", "[]"), ("support.enabled", "true"), ("layer_height", "0.35")],
     ),
     (
         "sphere_20.stl",
-        14.0,
+        16.0,
         &[
             ("machine.thumbnails", "[]"),
-            ("ironing.enabled", "true"),
+            ("ironing.where", "top"),
             ("skirt.loops", "2"),
             ("machine.relative_e", "true"),
         ],
     ),
 ];
+
+/// Where the parts lie, mm: near what the start block draws, since maps of a small print are small.
+const BESIDE_THE_START: [f64; 2] = [35.0, 28.0];
 
 /// A sound file, ready to be compared with its edits.
 struct File {
@@ -122,7 +125,8 @@ fn is_new(verdict: &Verdict, sound: &Verdict) -> bool {
 
 impl File {
     fn new((stl, sink, set): &(&str, f64, &[(&str, &str)])) -> Self {
-        let placement = Placement { sink: *sink, ..common::as_it_is() };
+        let placement =
+            Placement { sink: *sink, at: Some(BESIDE_THE_START), ..common::as_it_is() };
         let settings = common::shipped("generic-marlin", set);
         let path = common::fixtures().join(stl);
         let (text, _) = common::slice_file(&path, &settings, &placement).unwrap();
@@ -135,7 +139,10 @@ impl File {
             assert!(!verdict.fails(), "{stl}: {}", common::damage::listed(verdict));
         }
         let side = side(&text, print, &settings).unwrap();
-        Self { sound: Sound::new(&text), settings, placed, side, found }
+        let me = Self { sound: Sound::new(&text), settings, placed, side, found };
+        let t=std::time::Instant::now(); let pr=read(&text); let t1=t.elapsed(); judge(&pr,&me.settings,None); let t2=t.elapsed(); judge(&pr,&me.settings,Some(&me.placed)); let t3=t.elapsed(); me.sees(&text); let t4=t.elapsed(); me.sound.counts(&text); let t5=t.elapsed();
+        eprintln!("{stl} {} moves {} layers {t1:?} {t2:?} {t3:?} {t4:?} {t5:?} {:?}", pr.moves.len(), pr.layers.len(), common::damage::warned(&me.found[1]));
+        me
     }
 
     /// Whether an edit is seen by `check`, by `check` with the model, by `diff`.
