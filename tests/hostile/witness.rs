@@ -125,8 +125,7 @@ fn is_new(verdict: &Verdict, sound: &Verdict) -> bool {
 
 impl File {
     fn new((stl, sink, set): &(&str, f64, &[(&str, &str)])) -> Self {
-        let placement =
-            Placement { sink: *sink, at: Some(BESIDE_THE_START), ..common::as_it_is() };
+        let placement = Placement { sink: *sink, at: Some(BESIDE_THE_START), ..common::as_it_is() };
         let settings = common::shipped("generic-marlin", set);
         let path = common::fixtures().join(stl);
         let (text, _) = common::slice_file(&path, &settings, &placement).unwrap();
@@ -140,8 +139,23 @@ impl File {
         }
         let side = side(&text, print, &settings).unwrap();
         let me = Self { sound: Sound::new(&text), settings, placed, side, found };
-        let t=std::time::Instant::now(); let pr=read(&text); let t1=t.elapsed(); judge(&pr,&me.settings,None); let t2=t.elapsed(); judge(&pr,&me.settings,Some(&me.placed)); let t3=t.elapsed(); me.sees(&text); let t4=t.elapsed(); me.sound.counts(&text); let t5=t.elapsed();
-        eprintln!("{stl} {} moves {} layers {t1:?} {t2:?} {t3:?} {t4:?} {t5:?} {:?}", pr.moves.len(), pr.layers.len(), common::damage::warned(&me.found[1]));
+        let t = std::time::Instant::now();
+        let pr = read(&text);
+        let t1 = t.elapsed();
+        judge(&pr, &me.settings, None);
+        let t2 = t.elapsed();
+        judge(&pr, &me.settings, Some(&me.placed));
+        let t3 = t.elapsed();
+        me.sees(&text);
+        let t4 = t.elapsed();
+        me.sound.counts(&text);
+        let t5 = t.elapsed();
+        eprintln!(
+            "{stl} {} moves {} layers {t1:?} {t2:?} {t3:?} {t4:?} {t5:?} {:?}",
+            pr.moves.len(),
+            pr.layers.len(),
+            common::damage::warned(&me.found[1])
+        );
         me
     }
 
