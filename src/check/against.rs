@@ -15,13 +15,17 @@
 
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Place, short};
-use super::part::{Part, Section};
+use super::laid::{Bead, Seen};
+use super::part::Section;
 use super::rows::Lattice;
+use super::runs::united;
 use super::samples::Samples;
+use super::survey::Survey;
 use super::terms::Terms;
+use super::window::Window;
 use crate::geom::spans::Rows;
+use crate::reader::Role;
 use crate::reader::print::{Layer, Step};
-use crate::reader::{Print, Role};
 
 /// Width of the rim that must be printed, mm: three quarters of a usual line. A wider one would ask
 /// for walls where sparse infill is right.
@@ -53,8 +57,10 @@ const LEAST_WIDE: f64 = 6.0;
 /// Heights that differ by less are the same, mm.
 const SAME_HEIGHT: f64 = 1e-3;
 
-/// Length of the pieces in which lines are sampled, mm: half of a line's width.
-const PIECE: f64 = 0.2;
+/// Length of the pieces in which lines are looked at, mm: half of a line's width; and of those of sparse
+/// infill, of which the density is asked for over many lines.
+pub(super) const PIECE: f64 = 0.2;
+const LONG_PIECE: f64 = 0.5;
 
 /// Findings and measures of one layer.
 #[derive(Debug, Clone, Default)]
@@ -82,17 +88,9 @@ pub(super) struct Areas {
 
 /// What judging a layer needs.
 pub(super) struct Judge<'a> {
-    pub(super) print: &'a Print,
-    pub(super) part: &'a Part,
+    pub(super) window: &'a Window<'a>,
+    pub(super) survey: &'a Survey,
     pub(super) lattice: Lattice,
-    /// Usual width of a wall, mm.
-    pub(super) line_width: f64,
-    /// How high each layer's lines are, mm.
-    pub(super) heights: &'a [f64],
-    /// For each layer where it and all above it reach down to, mm.
-    pub(super) floors: &'a [f64],
-    /// For each layer the lines of other layers that lie at its height: places in the moves.
-    pub(super) strays: &'a [Vec<usize>],
     pub(super) terms: &'a Terms,
     /// Whether the file gives roles, so that the part's lines differ from others.
     pub(super) has_roles: bool,
@@ -109,17 +107,21 @@ impl Judge<'_> {
     pub(super) fn layer(&self, index: usize, [below, cut, above]: [&Section; 3]) -> Verdict {
         let lattice = self.lattice;
         let lines = || self.lines_at(index);
-        let draw = |is_sparse: bool| {
-            let some = lines().filter(move |step| (step.role == Role::Infill) == is_sparse);
-            lattice.draw(some.map(|step| Capsule::of(step, 1.0)))
-        };
-        let (solid, sparse) = (draw(false), draw(true));
+        let solid = lines().filter(|step| step.role != Role::Infill);
+        let solid = lattice.draw(solid.map(|step| Capsule::of(step, 1.0)));
+        // Inside the part nothing depends on where sparse infill lies.
+        let moved =
+            self.terms.moved_at(self.window.facts.layers[index].z - self.survey.heights[index]);
+        let most = MOST_OUT + moved;
+        let sparse = lines().filter(|step| step.role == Role::Infill);
+        let sparse = lattice.draw(near_outline(cut, lattice, most.max(RIM), sparse).into_iter());
         let (here, own) = (&cut.inside, sparse.or(&solid));
         let reaching = self.reaching_down(index);
         let (printed, closed) = (own.or(&reaching), solid.or(&reaching));
-        let printable = cut.opened(lattice, self.line_width * PRINTABLE / 2.0);
+        let printable = cut.opened(lattice, self.survey.line_width * PRINTABLE / 2.0);
         let along = cut.along(lattice, RIM);
-        let moved = self.terms.moved_at(self.print.layers[index].z - self.heights[index]);
+        let moved =
+            self.terms.moved_at(self.window.facts.layers[index].z - self.survey.heights[index]);
 
         let mut verdict = Verdict::default();
         let rim = here.and(&along).and(&printable);
@@ -145,7 +147,6 @@ impl Judge<'_> {
         verdict.findings.extend(patches);
 
         if self.has_roles {
-            let most = MOST_OUT + moved;
             let near = if RIM == most { along } else { cut.along(lattice, most) };
             let out = own.minus(&here.or(&near));
             let patches = self.patches(&out, index, Code::OutsidePart, |area| {
@@ -153,7 +154,7 @@ impl Judge<'_> {
             });
             verdict.findings.extend(patches);
         }
-        let height = self.heights[index];
+        let height = self.survey.heights[index];
         self.amounts((lines(), height), here, [&solid, &closed], &mut verdict.areas);
         verdict
     }
@@ -161,27 +162,26 @@ impl Judge<'_> {
     /// The part's lines at the height of a layer: its own, and those of other layers that vary in
     /// height so much that they lie here.
     fn lines_at(&self, index: usize) -> impl Iterator<Item = &Step> {
-        let layer = &self.print.layers[index];
-        let own = self.print.moves_of(layer).iter().filter(|step| !is_stray(step, layer));
-        let strays = self.strays[index].iter().map(|&stray| &self.print.moves[stray]);
-        own.chain(strays).filter(|step| is_of_part(step, self.has_roles))
+        let layer = &self.window.facts.layers[index];
+        let own = self.window.moves(index).iter().filter(|step| !is_stray(step, layer));
+        own.chain(&self.survey.strays[index]).filter(|step| is_of_part(step, self.has_roles))
     }
 
     /// What walls and skins of the layers above cover of this one: thick ones, and those that vary
     /// in height.
     fn reaching_down(&self, index: usize) -> Rows {
-        let layer = &self.print.layers[index];
+        let layer = &self.window.facts.layers[index];
         let (top, bottom) = (layer.z - SAME_HEIGHT, layer.z - layer.height + SAME_HEIGHT);
         let mut capsules = Vec::new();
-        for above in index + 1..self.print.layers.len() {
-            if self.floors[above] >= top {
+        for above in index + 1..self.window.end() {
+            if self.survey.floors[above] >= top {
                 break;
             }
             let reaches = |step: &&Step| {
                 let [low, high] = step.heights();
                 step.role != Role::Infill && low - f64::from(step.height) < top && high > bottom
             };
-            let steps = self.print.moves_of(&self.print.layers[above]).iter();
+            let steps = self.window.moves(above).iter();
             let steps = steps.filter(|step| is_of_part(step, self.has_roles)).filter(reaches);
             capsules.extend(steps.map(|step| Capsule::of(step, 1.0)));
         }
@@ -210,7 +210,7 @@ impl Judge<'_> {
         let place = |at: [f64; 2]| Place {
             line: None,
             layer: Some(index + 1),
-            z_mm: Some(short(self.print.layers[index].z)),
+            z_mm: Some(short(self.window.facts.layers[index].z)),
             at_mm: Some(at.map(short)),
         };
         let finding = |area: f64| Finding::of(code, area, "mm²", text(short(area)));
@@ -233,7 +233,7 @@ impl Judge<'_> {
         for step in lines {
             let plastic = self.terms.plastic(step);
             if step.role == Role::Infill {
-                areas.sparse[1] += plastic * share_in(step, lattice, &core);
+                areas.sparse[1] += plastic * share_in(step, lattice, &core, LONG_PIECE);
             } else {
                 // Of a thick line this layer's part: the rest lies in layers below.
                 areas.solid[1] += plastic * (height / f64::from(step.height)).min(1.0);
@@ -242,33 +242,53 @@ impl Judge<'_> {
     }
 }
 
+/// What of lines lies within `mm` of the outline of a cut, or outside it.
+fn near_outline<'s>(
+    cut: &Section,
+    lattice: Lattice,
+    mm: f64,
+    lines: impl Iterator<Item = &'s Step>,
+) -> Vec<Capsule> {
+    let outline = cut.outline();
+    let (mut pieces, mut seen, mut ways) = (Vec::new(), Seen::default(), Vec::new());
+    for step in lines {
+        let line = Bead::of(step);
+        let reach = line.radius + mm + lattice.pitch();
+        ways.clear();
+        outline
+            .near(&line, reach, &mut seen, &mut |_, border| ways.extend(line.way(border, reach)));
+        united(&mut ways, 0.0);
+        // Where it does not come near, it lies inside or outside all along.
+        let (mut at, count) = (0.0, ways.len());
+        for k in 0..=count {
+            let [from, to] = ways.get(k).copied().unwrap_or([1.0, 1.0]);
+            if from > at && !lattice.has(&cut.inside, line.place(0.5 * (at + from))) {
+                ways.push([at, from]);
+            }
+            at = to;
+        }
+        let piece = |&[from, to]: &[f64; 2]| Capsule {
+            from: line.place(from),
+            to: line.place(to),
+            radius: line.radius,
+        };
+        pieces.extend(ways.iter().map(piece));
+    }
+    pieces
+}
+
 /// Whether a line lies so far from its layer's height that it is judged with another layer.
-fn is_stray(step: &Step, layer: &Layer) -> bool {
+pub(super) fn is_stray(step: &Step, layer: &Layer) -> bool {
     let [low, high] = step.heights();
     (0.5 * (low + high) - layer.z).abs() > layer.height + SAME_HEIGHT
 }
 
-/// For each layer the lines of other layers that lie at its height.
-pub(super) fn strays(print: &Print) -> Vec<Vec<usize>> {
-    let mut strays = vec![Vec::new(); print.layers.len()];
-    for layer in &print.layers {
-        for index in layer.moves.clone() {
-            let step = &print.moves[index];
-            if step.is_line() && is_stray(step, layer) {
-                let [low, high] = step.heights();
-                let at = print.layers.partition_point(|one| one.z < 0.5 * (low + high));
-                strays[at.min(print.layers.len() - 1)].push(index);
-            }
-        }
-    }
-    strays
-}
-
 /// What part of a line lies in an area.
-pub(super) fn share_in(step: &Step, lattice: Lattice, area: &Rows) -> f64 {
+/// It is looked at in pieces of about `piece` mm.
+pub(super) fn share_in(step: &Step, lattice: Lattice, area: &Rows, piece: f64) -> f64 {
     if area.is_empty() {
         return 0.0;
     }
-    let inside = Samples::of(step, PIECE).filter(|piece| lattice.has(area, piece.at)).count();
-    inside as f64 / Samples::of(step, PIECE).count() as f64
+    let inside = Samples::of(step, piece).filter(|one| lattice.has(area, one.at)).count();
+    inside as f64 / Samples::of(step, piece).count() as f64
 }

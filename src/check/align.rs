@@ -8,18 +8,18 @@
 //! print that fits in neither is one of another model, and its size is compared. A raft lifts it.
 
 use super::Model;
-use super::against::{SOME_WIDTH, is_of_part, share_in};
+use super::against::{PIECE, SOME_WIDTH, share_in};
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Findings, short};
+use super::median;
 use super::part::Part;
 use super::raft;
 use super::rows::Lattice;
-use super::stack::gap_below;
+use super::survey::Survey;
 use super::terms::Terms;
-use super::{extent, median};
 use crate::geom::segment;
-use crate::reader::print::{Layer, Step};
-use crate::reader::{Print, Role};
+use crate::reader::print::Step;
+use crate::reader::{Facts, Role};
 use nalgebra::Vector2;
 
 /// A model that lies within this of where it is expected is not moved, mm.
@@ -32,9 +32,6 @@ const BAND: [f64; 2] = [0.3, 0.6];
 /// Share of the outer walls that must lie in that band; below it the print is taken for one of
 /// another model.
 const LEAST_FIT: f64 = 0.75;
-
-/// Layers on which that is measured, spread over the print.
-const LAYERS_LOOKED_AT: usize = 16;
 
 /// Distance of rows for that, mm, and rows at most.
 const ROWS: (f64, f64) = (0.1, 3000.0);
@@ -65,16 +62,15 @@ struct Off {
 /// The model cut at the print's layers, moved to where the lines lie. `None` if the two cannot be
 /// compared; a finding or note gives the reason.
 pub(super) fn place(
-    print: &Print,
+    (facts, survey): (&Facts, &Survey),
     (model, terms): (Model<'_>, &Terms),
     has_roles: bool,
     (found, notes): (&mut Findings, &mut Vec<String>),
 ) -> Option<Part> {
     // A layer above a gap is no higher than its lines.
-    let layers = print.layers.iter().enumerate();
-    let heights: Vec<(f64, f64)> =
-        layers.map(|(index, layer)| (layer.z, layer.height - gap_below(print, index))).collect();
-    let seen = || if has_roles { raft::lift(print, model.mesh) } else { 0.0 };
+    let layers = facts.layers.iter().zip(&survey.heights);
+    let heights: Vec<(f64, f64)> = layers.map(|(layer, height)| (layer.z, *height)).collect();
+    let seen = || if has_roles { raft::lift(survey, model.mesh) } else { 0.0 };
     let lift = terms.lift.unwrap_or_else(seen);
     let mut part = match Part::new(model.mesh, (model.offset, lift), &heights) {
         Ok(part) => part,
@@ -87,11 +83,11 @@ pub(super) fn place(
             return None;
         }
     };
-    let layers = print.layers.iter().enumerate();
-    let offs: Vec<Off> = layers
-        .filter_map(|(index, layer)| off(print, layer, part.extent_of(index)?, has_roles))
+    let outlines = survey.outlines.iter().enumerate();
+    let offs: Vec<Off> = outlines
+        .filter_map(|(index, outline)| Some(off((*outline)?, part.extent_of(index)?)))
         .collect();
-    let mut fits = fit(print, &part, has_roles);
+    let mut fits = fit(survey, &part, has_roles);
     let usual = |of: fn(&Off) -> Vector2<f64>| {
         let axis = |axis: usize| median(offs.iter().map(|off| of(off)[axis]).collect());
         [axis(0).unwrap_or(0.0), axis(1).unwrap_or(0.0)]
@@ -99,7 +95,7 @@ pub(super) fn place(
     let by = usual(|off| off.middle);
     if fits < 1.0 && by.iter().any(|by| by.abs() > MOST_OFF) {
         part.shift(by);
-        let shifted = fit(print, &part, has_roles);
+        let shifted = fit(survey, &part, has_roles);
         if shifted > fits {
             fits = shifted;
             let [x, y] = segment::along(model.offset, 1.0, by).map(short);
@@ -118,34 +114,32 @@ pub(super) fn place(
         );
         return None;
     }
-    height(print, (model, lift), &part, found);
+    height((facts, survey), (model, lift), &part, found);
     Some(part)
 }
 
 /// What part of the outer walls lies along the model's outline, or of the outline along outer walls:
 /// whichever is more. Files call inner walls that hang the same as outer ones, and leave thin places
 /// without walls.
-fn fit(print: &Print, part: &Part, has_roles: bool) -> f64 {
+fn fit(survey: &Survey, part: &Part, has_roles: bool) -> f64 {
     let Some((low, high)) = part.extent() else { return 0.0 };
     let lattice = Lattice::new(ROWS.0, high[1] - low[1], ROWS.1);
-    let every = print.layers.len().div_ceil(LAYERS_LOOKED_AT).max(1);
-    let looked_at = print.layers.iter().enumerate().step_by(every);
     let mut shares = [[0.0; 2]; 2];
-    for (index, layer) in looked_at {
-        let cut = part.section(index, lattice);
+    for (index, moves) in &survey.looked_at {
+        let cut = part.section(*index, lattice);
         let near = cut.along(lattice, BAND[0]);
         let mut band = cut.inside.or(&near);
         if has_roles {
             band = band.minus(&cut.inside.minus(&cut.along(lattice, BAND[1])));
         }
-        let steps = print.moves_of(layer).iter();
+        let steps = moves.iter();
         let walls = || {
             let walls = |step: &&Step| step.role == Role::OuterWall || !has_roles;
             steps.clone().filter(|step| step.is_line()).filter(walls)
         };
         for step in walls() {
             let length = step.length();
-            shares[0][0] += length * share_in(step, lattice, &band);
+            shares[0][0] += length * share_in(step, lattice, &band, PIECE);
             shares[0][1] += length;
         }
         let rim = cut.inside.and(&near);
@@ -157,20 +151,10 @@ fn fit(print: &Print, part: &Part, has_roles: bool) -> f64 {
     if has_roles { of_walls.max(of_rim) } else { of_walls }
 }
 
-/// How a layer's lines lie to the model's cut, by their extents.
-fn off(
-    print: &Print,
-    layer: &Layer,
-    (low, high): ([f64; 2], [f64; 2]),
-    has_roles: bool,
-) -> Option<Off> {
-    let steps = print.moves_of(layer);
-    let outlines = |step: &&Step| step.is_line() && step.role == Role::OuterWall;
-    let any = |step: &&Step| is_of_part(step, has_roles);
-    let walls = extent(steps.iter().filter(outlines));
-    let (from, to) = walls.or_else(|| extent(steps.iter().filter(any)))?;
+/// How a layer's lines lie to the model's cut, by what both cover.
+fn off((from, to): ([f64; 2], [f64; 2]), (low, high): ([f64; 2], [f64; 2])) -> Off {
     let [from, to, low, high] = [from, to, low, high].map(Vector2::from);
-    Some(Off { middle: (from + to - low - high) / 2.0, size: (to - from) - (high - low) })
+    Off { middle: (from + to - low - high) / 2.0, size: (to - from) - (high - low) }
 }
 
 /// Reports which size is wrong, or else that the shape is.
@@ -192,9 +176,14 @@ fn sizes(larger: [f64; 2], fits: f64, found: &mut Findings) {
 }
 
 /// Whether the print is as high as what of the model can be printed.
-fn height(print: &Print, (model, lift): (Model<'_>, f64), part: &Part, found: &mut Findings) {
-    let Some(last) = print.layers.last() else { return };
-    let top = print.top();
+fn height(
+    (facts, survey): (&Facts, &Survey),
+    (model, lift): (Model<'_>, f64),
+    part: &Part,
+    found: &mut Findings,
+) {
+    let Some(last) = facts.layers.last() else { return };
+    let top = survey.top;
     let lacks = part.height() - top;
     let mut report = |than: &str| {
         let text = format!("the print is {} mm {than} than the part", short(lacks.abs()));

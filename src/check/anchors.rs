@@ -12,7 +12,7 @@
 //! Infill and skin turn at each end of a line, so that such chains are cut at corners, and each line
 //! is judged alone. Walls are judged as a whole: they go round corners by right.
 
-use super::pile::{Pile, lower_side};
+use super::ground::{Ground, PITCH, lower_side};
 use super::samples::Sample;
 use crate::geom::segment;
 use crate::reader::Role;
@@ -69,8 +69,8 @@ pub(super) struct Loose {
     pub(super) why: &'static str,
 }
 
-/// The loose lines of a chain of the layer that is being laid on the pile.
-pub(super) fn loose(pile: &Pile, chain: &[Step], pieces: &[Piece]) -> Vec<Loose> {
+/// The loose lines of a chain of the layer that is laid on the ground.
+pub(super) fn loose(ground: &Ground<'_>, chain: &[Step], pieces: &[Piece]) -> Vec<Loose> {
     let mut found = Vec::new();
     let mut from = 0;
     for run in pieces.chunk_by(|a, b| a.carried == b.carried) {
@@ -80,7 +80,7 @@ pub(super) fn loose(pile: &Pile, chain: &[Step], pieces: &[Piece]) -> Vec<Loose>
             continue;
         }
         let ends = [first > 0, end < pieces.len()];
-        let judge = Judge { pile, chain };
+        let judge = Judge { ground, chain };
         match chain[run[0].step].role {
             Role::Support | Role::Adhesion => {}
             Role::OuterWall | Role::InnerWall => {
@@ -95,7 +95,7 @@ pub(super) fn loose(pile: &Pile, chain: &[Step], pieces: &[Piece]) -> Vec<Loose>
 }
 
 struct Judge<'a> {
-    pile: &'a Pile,
+    ground: &'a Ground<'a>,
     chain: &'a [Step],
 }
 
@@ -150,13 +150,13 @@ impl Judge<'_> {
 
     fn stands(&self, piece: &Piece, at: [f64; 2]) -> bool {
         let needed = lower_side(&self.chain[piece.step], piece.sample.z);
-        self.pile.standing(at, needed).is_some()
+        self.ground.stands(at, needed)
     }
 
     /// Whether a line runs along a void that it should cross.
     fn is_along(&self, line: &[Piece]) -> bool {
         let most = ALONG * length_of(line);
-        let step = self.pile.grid.pitch;
+        let step = PITCH;
         let aside = |piece: &Piece, side: f64| {
             let way = piece.sample.across.map(|part| side * part);
             let tries = (most.min(MOST_ASIDE) / step) as usize;

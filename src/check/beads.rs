@@ -1,10 +1,9 @@
 //! Print + Terms -> findings of amounts: lines with odd plastic, narrow lines, and the file's own sums.
 
 use super::finding::{Code, Finding, Findings, Place, short};
-use super::median;
 use super::terms::Terms;
 use crate::reader::print::Step;
-use crate::reader::{Print, Role};
+use crate::reader::{Facts, Role};
 
 /// Shorter lines are not judged, mm: their plastic is mostly rounding.
 const LEAST_LENGTH: f64 = 0.5;
@@ -21,7 +20,7 @@ const LEAST: f64 = 0.55;
 const MOST_WITHOUT_WIDTH: f64 = 4.0;
 
 /// Least number of lines of a role: of fewer none is usual.
-const LEAST_LINES: usize = 20;
+pub(super) const LEAST_LINES: u64 = 20;
 
 /// A line narrower than this many nozzles is drawn thinner than it can be laid: it breaks, or curls
 /// up. The thinnest that slicers lay on purpose are 0.85 wide.
@@ -33,79 +32,76 @@ const LEAST_NARROW: f64 = 1.0;
 /// How far the file's own sums may be off: a part of 1, and mm. Some count primed filament.
 const SUM_SLACK: (f64, f64) = (0.01, 1.0);
 
-/// Lines whose plastic does not fit their size.
-pub(super) fn odd(print: &Print, terms: &Terms, found: &mut Findings) {
-    let lines = |role| {
-        let places = print.layers.iter().enumerate();
-        places.flat_map(move |(layer, one)| {
-            let steps = print.moves_of(one).iter();
-            steps.filter(move |step| is_judged(step, role)).map(move |step| (layer, step))
-        })
-    };
-    for role in Role::ALL {
-        let ratio =
-            |step: &Step| f64::from(step.filament) * terms.filament_area / room(print, step);
-        let ratios: Vec<f64> = lines(role).map(|(_, step)| ratio(step)).collect();
-        if ratios.len() < LEAST_LINES {
-            continue;
-        }
-        let Some(usual) = median(ratios) else { continue };
-        for (layer, step) in lines(role) {
-            let times = ratio(step) / usual;
-            let is_odd = if print.has_widths {
-                !(LEAST..=MOST).contains(&times)
-            } else {
-                times > MOST_WITHOUT_WIDTH
-            };
-            if is_odd {
-                let text = format!(
-                    "{} times the plastic that {} lines of this size take",
-                    short(times),
-                    role.name()
-                );
-                let measure = if times > 1.0 { times } else { 1.0 / times };
-                let finding = Finding::of(Code::OddBead, measure, "times", text);
-                found.add(Finding { place: place(layer, step), ..finding });
-            }
+/// Lines of a layer whose plastic does not fit their size, with their roles. `usual` is what lines of
+/// each role take as a rule by [`ratio`].
+pub(super) fn odd(
+    (facts, terms): (&Facts, &Terms),
+    (layer, moves): (usize, &[Step]),
+    usual: &[Option<f64>; Role::ALL.len()],
+) -> Vec<(Role, Finding)> {
+    let mut found = Vec::new();
+    for step in moves.iter().filter(|step| is_judged(step)) {
+        let Some(usual) = usual[step.role as usize] else { continue };
+        let times = ratio(facts, terms, step) / usual;
+        let is_odd = if facts.has_widths {
+            !(LEAST..=MOST).contains(&times)
+        } else {
+            times > MOST_WITHOUT_WIDTH
+        };
+        if is_odd {
+            let text = format!(
+                "{} times the plastic that {} lines of this size take",
+                short(times),
+                step.role.name()
+            );
+            let measure = if times > 1.0 { times } else { 1.0 / times };
+            let finding = Finding::of(Code::OddBead, measure, "times", text);
+            found.push((step.role, Finding { place: place(layer, step), ..finding }));
         }
     }
+    found
 }
 
-/// Lines that stay too narrow for the nozzle. Their width is that of a box of the same height and
+/// The plastic of a line by its size.
+pub(super) fn ratio(facts: &Facts, terms: &Terms, step: &Step) -> f64 {
+    f64::from(step.filament) * terms.filament_area / room(facts, step)
+}
+
+/// Lines of a layer that stay too narrow for the nozzle. Their width is that of a box of the same height and
 /// plastic, whatever the file says.
-pub(super) fn narrow(print: &Print, terms: &Terms, found: &mut Findings) {
-    let Some(nozzle) = terms.nozzle else { return };
+pub(super) fn narrow(terms: &Terms, (layer, steps): (usize, &[Step])) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let Some(nozzle) = terms.nozzle else { return found };
     // What irons is pressed flat on what is there.
     let is_narrow = |step: &Step| {
         step.is_line() && step.role != Role::Ironing && terms.box_width(step) < NARROW * nozzle
     };
-    for (layer, one) in print.layers.iter().enumerate() {
-        let steps = print.moves_of(one);
-        let runs = steps.chunk_by(|a, b| is_narrow(a) && is_narrow(b) && a.to == b.from);
-        for run in runs.filter(|run| is_narrow(&run[0])) {
-            let length: f64 = run.iter().map(Step::length).sum();
-            if length <= LEAST_NARROW {
-                continue;
-            }
-            let mean =
-                run.iter().map(|step| terms.box_width(step) * step.length()).sum::<f64>() / length;
-            let role = run[0].role.name();
-            let text = format!("{} mm of {role} are {} mm wide", short(length), short(mean));
-            let middle = &run[run.len() / 2];
-            let finding = Finding::warning(Code::NarrowBead, length, "mm", text);
-            found.add(finding.at(place(layer, middle)));
+    let runs = steps.chunk_by(|a, b| is_narrow(a) && is_narrow(b) && a.to == b.from);
+    for run in runs.filter(|run| is_narrow(&run[0])) {
+        let length: f64 = run.iter().map(Step::length).sum();
+        if length <= LEAST_NARROW {
+            continue;
         }
+        let mean =
+            run.iter().map(|step| terms.box_width(step) * step.length()).sum::<f64>() / length;
+        let role = run[0].role.name();
+        let text = format!("{} mm of {role} are {} mm wide", short(length), short(mean));
+        let middle = &run[run.len() / 2];
+        let finding = Finding::warning(Code::NarrowBead, length, "mm", text);
+        found.push(finding.at(place(layer, middle)));
     }
+    found
 }
 
-fn is_judged(step: &Step, role: Role) -> bool {
-    step.role == role && step.is_line() && step.length() >= LEAST_LENGTH
+/// Whether a line is long enough to be judged.
+pub(super) fn is_judged(step: &Step) -> bool {
+    step.is_line() && step.length() >= LEAST_LENGTH
 }
 
 /// The room that a line's plastic is compared with, mm³: its length times its height and, if the
 /// file gives it, its width.
-fn room(print: &Print, step: &Step) -> f64 {
-    let width = if print.has_widths { f64::from(step.width) } else { 1.0 };
+fn room(facts: &Facts, step: &Step) -> f64 {
+    let width = if facts.has_widths { f64::from(step.width) } else { 1.0 };
     step.length() * width * f64::from(step.height)
 }
 
@@ -121,31 +117,29 @@ pub(super) fn place(layer: usize, step: &Step) -> Place {
 }
 
 /// Compares filament and layers with the sums in the file's comments.
-pub(super) fn sums(print: &Print, found: &mut Findings) {
+/// `used` is what the moves up to the last line take, of the whole file and from the first layer on.
+pub(super) fn sums(facts: &Facts, used: [f64; 2], found: &mut Findings) {
     let sum_of = |keys: &[&str]| {
-        let text = keys.iter().find_map(|key| print.value(key))?;
+        let text = keys.iter().find_map(|key| facts.value(key))?;
         let parts: Option<Vec<f64>> = text.split(',').map(|one| one.trim().parse().ok()).collect();
         parts.map(|parts| parts.iter().sum::<f64>()).filter(|sum| sum.is_finite())
     };
     if let Some(stated) = sum_of(&["filament used [mm]"]) {
-        let sum = |steps: &[Step]| steps.iter().map(|step| f64::from(step.filament)).sum::<f64>();
-        let last = print.moves.iter().rposition(Step::is_line).map_or(0, |index| index + 1);
-        // Some slicers count the start block, some do not.
-        let sums = [sum(&print.moves[..last]), sum(&print.moves[print.start.end.min(last)..last])];
         let fits = |sum: &f64| (sum - stated).abs() <= SUM_SLACK.0 * stated + SUM_SLACK.1;
-        if !sums.iter().any(fits) {
+        // Some slicers count the start block, some do not.
+        if !used.iter().any(fits) {
             let text = format!(
                 "the file says that it uses {} mm of filament, but uses {}",
                 short(stated),
-                short(sums[1])
+                short(used[1])
             );
-            let measure = (sums[1] - stated).abs();
+            let measure = (used[1] - stated).abs();
             found.add(Finding::of(Code::WrongSums, measure, "mm", text));
         }
     }
     if let Some(stated) = sum_of(&["total layers count", "layers"]) {
         // A layer may have nothing to print.
-        let count = print.begun as f64;
+        let count = facts.begun as f64;
         if count != stated {
             let text = format!("the file says that it has {stated} layers, but has {count}");
             found.add(Finding::of(Code::WrongSums, (count - stated).abs(), "layers", text));

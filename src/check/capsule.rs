@@ -1,6 +1,5 @@
 //! A line with round ends -> what it covers, row by row.
 
-use super::grid::Grid;
 use crate::reader::print::Step;
 use nalgebra::Vector2;
 
@@ -31,19 +30,6 @@ impl Capsule {
         let (from, to) = (Vector2::from(self.from), Vector2::from(self.to));
         let (low, high) = from.inf_sup(&to);
         (low.add_scalar(-self.radius).into(), high.add_scalar(self.radius).into())
-    }
-
-    /// Hands each row's pixels to `sink`.
-    pub(super) fn rows(&self, grid: &Grid, mut sink: impl FnMut(usize, std::ops::Range<usize>)) {
-        let ((low, high), flanks) = (self.extent(), self.flanks());
-        for row in grid.span(1, low[1], high[1]) {
-            if let Some((from, to)) = flanks.chord(grid.middle(0, row)[1]) {
-                let span = grid.span(0, from, to);
-                if !span.is_empty() {
-                    sink(row, span);
-                }
-            }
-        }
     }
 
     /// Its borders.

@@ -15,17 +15,16 @@
 
 use super::capsule::Capsule;
 use super::filled::Filled;
-use super::finding::{Code, Finding, Findings, Place, short};
-use super::part::extent_of;
+use super::finding::{Code, Finding, Place, short};
 use super::rows::{Lattice, united};
 use super::samples::Samples;
+use super::survey::Survey;
 use super::terms::Terms;
 use crate::geom::segment;
 use crate::geom::spans::{Rows, Span};
 use crate::reader::Role;
 use crate::reader::print::Step;
 use crate::units::{to_mm, to_units};
-use rayon::prelude::*;
 
 /// Distance of rows, mm: an eighth of a usual line, so that a line along a row is covered by eight.
 const PITCH: f64 = 0.05;
@@ -72,29 +71,41 @@ const ROUND: f64 = 0.86;
 /// Lanes side by side in which a line's plastic is counted: it may run along a border of cells.
 const LANES: usize = 4;
 
-/// Judges all layers.
-pub(super) fn check(filled: &Filled<'_>, terms: &Terms, found: &mut Findings) {
-    let ends = filled
-        .print
-        .lines()
-        .filter(|step| is_solid(step))
-        .flat_map(|step| [step.from, step.to].map(|at| [f64::from(at[0]), f64::from(at[1])]));
-    let Some((low, high)) = extent_of(ends) else { return };
-    let sides = [high[0] - low[0], high[1] - low[1]];
-    let longest = sides[0].max(sides[1]);
-    let side = CELL.max(longest / MOST_CELLS);
-    let judge = Judge {
-        filled,
-        terms,
-        lattice: Lattice::new(PITCH, longest, MOST_ROWS),
-        // One more around, for what lines cover beyond their ends.
-        low: low.map(|low| low - side),
-        side,
-        count: sides.map(|length| (length / side) as usize + 3),
-    };
-    let layers = (0..filled.print.layers.len()).into_par_iter();
-    let judged: Vec<Vec<Finding>> = layers.map(|layer| judge.layer(layer)).collect();
-    found.extend(judged.into_iter().flatten());
+/// Where lines of walls and skins are looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Field {
+    lattice: Lattice,
+    /// Lowest corner of the cells, mm.
+    low: [f64; 2],
+    /// Side of a cell, mm.
+    side: f64,
+    count: [usize; 2],
+}
+
+impl Field {
+    /// Of all walls and skins of a print, if it has any.
+    pub(super) fn over(survey: &Survey) -> Option<Self> {
+        let (low, high) = survey.solid?;
+        let sides = [high[0] - low[0], high[1] - low[1]];
+        let longest = sides[0].max(sides[1]);
+        let side = CELL.max(longest / MOST_CELLS);
+        Some(Self {
+            lattice: Lattice::new(PITCH, longest, MOST_ROWS),
+            // One more around, for what lines cover beyond their ends.
+            low: low.map(|low| low - side),
+            side,
+            count: sides.map(|length| (length / side) as usize + 3),
+        })
+    }
+}
+
+/// Judges a layer.
+pub(super) fn layer(
+    filled: &Filled<'_>,
+    (field, terms): (Field, &Terms),
+    layer: usize,
+) -> Vec<Finding> {
+    Judge { filled, terms, field }.layer(layer)
 }
 
 fn is_solid(step: &Step) -> bool {
@@ -109,12 +120,7 @@ fn is_thread(step: &Step, terms: &Terms) -> bool {
 struct Judge<'a> {
     filled: &'a Filled<'a>,
     terms: &'a Terms,
-    lattice: Lattice,
-    /// Lowest corner of the cells, mm.
-    low: [f64; 2],
-    /// Side of a cell, mm.
-    side: f64,
-    count: [usize; 2],
+    field: Field,
 }
 
 /// What is measured in a cell: mm², and plastic in mm³.
@@ -130,27 +136,14 @@ struct Cell {
 
 impl Judge<'_> {
     fn layer(&self, layer: usize) -> Vec<Finding> {
-        let mut cells = vec![Cell::default(); self.count[0] * self.count[1]];
-        let own = &self.filled.print.layers[layer].moves;
-        let own = &self.filled.print.moves[own.clone()];
+        let mut cells = vec![Cell::default(); self.field.count[0] * self.field.count[1]];
+        let own = self.filled.window.moves(layer);
         let lines: Vec<(&Step, f64)> =
             self.filled.lines(layer).filter(|(step, _)| !is_thread(step, self.terms)).collect();
         let threads = || own.iter().filter(|step| step.is_line() && is_thread(step, self.terms));
         let counts = |step: &Step| is_solid(step) || step.role == Role::Ironing;
         for &(step, share) in lines.iter().filter(|(step, _)| counts(step)) {
-            let pieces = Samples::of(step, PIECE);
-            let plastic = self.terms.plastic(step) * share / step.length();
-            let lane = f64::from(step.width) / LANES as f64;
-            for piece in pieces {
-                for k in 0..LANES {
-                    let aside = (k as f64 + 0.5 - LANES as f64 / 2.0) * lane;
-                    let at = segment::along(piece.at, aside, piece.across);
-                    if let Some(cell) = self.cell(at).and_then(|k| cells.get_mut(k)) {
-                        let of = if is_solid(step) { &mut cell.plastic } else { &mut cell.ironed };
-                        *of += plastic * piece.length / LANES as f64;
-                    }
-                }
-            }
+            self.add_plastic(step, share, &mut cells);
         }
         let solids = || lines.iter().filter(|(step, _)| is_solid(step)).map(|(step, _)| *step);
         let sparse =
@@ -160,60 +153,92 @@ impl Judge<'_> {
             if !flipped {
                 self.share(&solid, flipped, |k, area| cells[k].room += area);
             }
-            let mut open = gaps(&solid, &self.inside(layer, flipped));
             // Most layers have too few gaps for any place to be open: no more is drawn for them.
-            if self.lattice.area(&open) >= LEAST_OPEN {
-                open = open
-                    .minus(&self.drawn(sparse(), flipped))
-                    .minus(&self.drawn(threads(), flipped));
-                self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
+            let between = gaps(&solid);
+            if self.field.lattice.area(&between) < LEAST_OPEN {
+                continue;
             }
+            let open = between.and(&self.inside(layer, flipped));
+            let mut areas = vec![0.0; cells.len()];
+            self.share(&open, flipped, |k, area| areas[k] += area);
+            if !areas.iter().zip(&cells).any(|(open, cell)| is_open(*open, cell.room)) {
+                continue;
+            }
+            let all = sparse().chain(threads());
+            let open = open.minus(&self.field.lattice.draw_on(&open, capsules(all, flipped)));
+            self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
         }
         let judged = cells.iter().enumerate().filter_map(|(k, cell)| {
-            let finding = self.judged(cell, self.filled.heights[layer])?;
-            let [x, y] = [k % self.count[0], k / self.count[0]];
-            let middle = |low: f64, k: usize| short(low + (k as f64 + 0.5) * self.side);
+            let finding = self.judged(cell, self.filled.height(layer))?;
+            let [x, y] = [k % self.field.count[0], k / self.field.count[0]];
+            let middle = |low: f64, k: usize| short(low + (k as f64 + 0.5) * self.field.side);
             Some(finding.at(Place {
                 line: None,
                 layer: Some(layer + 1),
-                z_mm: Some(short(self.filled.print.layers[layer].z)),
-                at_mm: Some([middle(self.low[0], x), middle(self.low[1], y)]),
+                z_mm: Some(short(self.filled.top(layer))),
+                at_mm: Some([middle(self.field.low[0], x), middle(self.field.low[1], y)]),
             }))
         });
         judged.collect()
     }
 
+    /// Adds the share of a line's plastic to the cells that it lies in.
+    fn add_plastic(&self, step: &Step, share: f64, cells: &mut [Cell]) {
+        let mut add = |cell: Option<usize>, plastic: f64| {
+            if let Some(cell) = cell.and_then(|k| cells.get_mut(k)) {
+                *(if is_solid(step) { &mut cell.plastic } else { &mut cell.ironed }) += plastic;
+            }
+        };
+        let plastic = self.terms.plastic(step) * share;
+        let (low, high) = Capsule::of(step, 1.0).extent();
+        let ends = [self.cell(low), self.cell(high)];
+        if ends[0].is_some() && ends[0] == ends[1] {
+            return add(ends[0], plastic);
+        }
+        let lane = f64::from(step.width) / LANES as f64;
+        for piece in Samples::of(step, PIECE) {
+            for k in 0..LANES {
+                let aside = (k as f64 + 0.5 - LANES as f64 / 2.0) * lane;
+                let at = segment::along(piece.at, aside, piece.across);
+                add(self.cell(at), plastic / step.length() * piece.length / LANES as f64);
+            }
+        }
+    }
+
     /// What lines cover.
     fn drawn<'s>(&self, lines: impl Iterator<Item = &'s Step>, flipped: bool) -> Rows {
-        let capsules = lines.map(|step| Capsule::of(step, 1.0));
-        self.lattice.draw(capsules.map(|one| if flipped { one.flipped() } else { one }))
+        self.field.lattice.draw(capsules(lines, flipped))
     }
 
     /// The cell of a place.
     fn cell(&self, at: [f64; 2]) -> Option<usize> {
-        let [x, y] = [0, 1].map(|axis| (at[axis] - self.low[axis]) / self.side);
-        let is_in = x >= 0.0 && y >= 0.0 && x < self.count[0] as f64 && y < self.count[1] as f64;
-        is_in.then_some(x as usize + y as usize * self.count[0])
+        let x = (at[0] - self.field.low[0]) / self.field.side;
+        let y = (at[1] - self.field.low[1]) / self.field.side;
+        let is_in = x >= 0.0
+            && y >= 0.0
+            && x < self.field.count[0] as f64
+            && y < self.field.count[1] as f64;
+        is_in.then_some(x as usize + y as usize * self.field.count[0])
     }
 
     /// Hands each cell's part of an area to `sink`, mm².
     fn share(&self, rows: &Rows, flipped: bool, mut sink: impl FnMut(usize, f64)) {
         let (along, across) = if flipped { (1, 0) } else { (0, 1) };
-        let strides = [1, self.count[0]];
+        let strides = [1, self.field.count[0]];
         for (j, row) in rows.iter().filter(|(_, row)| !row.is_empty()) {
-            let y = (self.lattice.middle(j) - self.low[across]) / self.side;
-            if y < 0.0 || y >= self.count[across] as f64 {
+            let y = (self.field.lattice.middle(j) - self.field.low[across]) / self.field.side;
+            if y < 0.0 || y >= self.field.count[across] as f64 {
                 continue;
             }
             let base = y as usize * strides[across];
             for span in row {
                 let [mut from, to] = [span.start, span.end]
-                    .map(|at| ((to_mm(at) - self.low[along]) / self.side).max(0.0));
+                    .map(|at| ((to_mm(at) - self.field.low[along]) / self.field.side).max(0.0));
                 while from < to {
                     let k = from as usize;
                     let end = to.min((k + 1) as f64);
-                    if k < self.count[along] {
-                        let area = (end - from) * self.side * self.lattice.pitch();
+                    if k < self.field.count[along] {
+                        let area = (end - from) * self.field.side * self.field.lattice.pitch();
                         sink(base + k * strides[along], area);
                     }
                     from = end;
@@ -224,8 +249,7 @@ impl Judge<'_> {
 
     /// What the closed loops of a layer's outer walls enclose, between the middles of their lines.
     fn inside(&self, layer: usize, flipped: bool) -> Rows {
-        let print = self.filled.print;
-        let steps = print.moves_of(&print.layers[layer]);
+        let steps = self.filled.window.moves(layer);
         let is_wall = |step: &Step| step.is_line() && step.role == Role::OuterWall;
         let mut crossings: Vec<(i32, f64)> = Vec::new();
         for chain in steps.chunk_by(|a, b| is_wall(a) && is_wall(b) && a.to == b.from) {
@@ -242,8 +266,8 @@ impl Judge<'_> {
                 };
                 let (a, b) = (at(from), at(to));
                 let (low, high) = if a[1] < b[1] { (a, b) } else { (b, a) };
-                for row in self.lattice.range(low[1], high[1]) {
-                    let part = (self.lattice.middle(row) - low[1]) / (high[1] - low[1]);
+                for row in self.field.lattice.range(low[1], high[1]) {
+                    let part = (self.field.lattice.middle(row) - low[1]) / (high[1] - low[1]);
                     crossings.push((row, low[0] + part * (high[0] - low[0])));
                 }
             }
@@ -270,7 +294,7 @@ impl Judge<'_> {
             return Some(Finding::warning(Code::Overfilled, percent, "%", text));
         }
         let open = cell.open[0].max(cell.open[1]);
-        if open >= LEAST_OPEN && open > OPEN * (open + cell.room) {
+        if is_open(open, cell.room) {
             let text = format!("{} mm² between walls or skins are open", short(open));
             return Some(Finding::warning(Code::Underfilled, open, "mm²", text));
         }
@@ -283,8 +307,22 @@ impl Judge<'_> {
     }
 }
 
-/// The gaps of each row inside an area.
-fn gaps(solid: &Rows, inside: &Rows) -> Rows {
+/// Lines from above, with x and y exchanged or not.
+fn capsules<'s>(
+    lines: impl Iterator<Item = &'s Step>,
+    flipped: bool,
+) -> impl Iterator<Item = Capsule> {
+    let capsules = lines.map(|step| Capsule::of(step, 1.0));
+    capsules.map(move |one| if flipped { one.flipped() } else { one })
+}
+
+/// Whether gaps are large, in a cell of which walls and skins cover this, mm².
+fn is_open(gaps: f64, room: f64) -> bool {
+    gaps >= LEAST_OPEN && gaps > OPEN * (gaps + room)
+}
+
+/// The gaps of each row.
+fn gaps(solid: &Rows) -> Rows {
     let most = i64::from(to_units(GAP));
     let mut between = Rows::with_room_of(solid, solid.range().start);
     for (_, row) in solid.iter() {
@@ -293,5 +331,5 @@ fn gaps(solid: &Rows, inside: &Rows) -> Rows {
             spans.extend(gaps.filter(|gap| gap.len() <= most));
         });
     }
-    between.and(inside)
+    between
 }

@@ -16,9 +16,10 @@ use super::dialect;
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::heat::Heat;
 use super::terms::{Machine, Terms};
+use super::window::Page;
 use crate::profile::DialectName;
-use crate::reader::Print;
-use crate::reader::print::{Step, What};
+use crate::reader::Facts;
+use crate::reader::print::{Note, Step, What};
 
 /// Coordinates are rounded to this or less, mm; a smaller value would report files with two decimals.
 pub(super) const ROUNDING: f64 = 0.01;
@@ -38,30 +39,90 @@ const MOST_DIGITS: usize = 6;
 /// Filament that may be missing or too much at a restore, mm: room for what slicers add to prime.
 const FILAMENT_SLACK: f64 = 0.3;
 
-/// Judges the moves one by one, in the file's order. What cannot be judged goes to `notes`.
-pub(super) fn check(print: &Print, terms: &Terms, found: &mut Findings, notes: &mut Vec<String>) {
-    codes(print, terms, found, notes);
-    let mut walk = Walk::new(print, terms.machine.as_ref(), terms.filament_area);
-    let mut next_note = 0;
-    for (index, step) in print.moves.iter().enumerate() {
-        while let Some(note) = print.notes.get(next_note).filter(|note| note.at <= index) {
-            walk.note(&note.what);
-            next_note += 1;
-        }
-        walk.step(index, step, found);
+/// Judges the moves one by one, in the file's order, as they come.
+pub(super) struct Moves<'a> {
+    walk: Walk<'a>,
+    codes: Codes<'a>,
+    next: usize,
+}
+
+impl<'a> Moves<'a> {
+    pub(super) fn new(facts: &'a Facts, terms: &'a Terms) -> Self {
+        let walk = Walk::new(facts, terms.machine.as_ref(), terms.filament_area);
+        Self { walk, codes: Codes::new(terms.machine.as_ref()), next: 0 }
     }
-    if let Some(macros) = walk.heated_by_macro {
-        notes.push(format!("whether the nozzle is hot: that is left to `{macros}`"));
+
+    /// The next moves, and the notes before, between and after them.
+    pub(super) fn page(&mut self, page: &Page<'_>, found: &mut Findings) {
+        let mut notes = page.notes.iter().peekable();
+        for step in page.moves.iter() {
+            while let Some(note) = notes.next_if(|note| note.at <= self.next) {
+                self.note(note);
+            }
+            self.walk.step(self.next, step, found);
+            self.next += 1;
+        }
+        notes.for_each(|note| self.note(note));
+    }
+
+    fn note(&mut self, note: &Note) {
+        self.walk.note(&note.what);
+        self.codes.note(note);
+    }
+
+    /// Ends the file. What cannot be judged goes to `notes`.
+    pub(super) fn finish(self, found: &mut Findings, notes: &mut Vec<String>) {
+        self.codes.finish(self.walk.facts, found, notes);
+        if let Some(macros) = self.walk.heated_by_macro {
+            notes.push(format!("whether the nozzle is hot: that is left to `{macros}`"));
+        }
     }
 }
 
 /// Commands that the machine does not know.
-fn codes(print: &Print, terms: &Terms, found: &mut Findings, notes: &mut Vec<String>) {
-    let Some(machine) = &terms.machine else { return };
-    let finding = |line, text| {
-        let place = Place { line: Some(line), ..Place::default() };
-        Finding::of(Code::UnknownCode, 1.0, "lines", text).at(place)
-    };
+struct Codes<'a> {
+    machine: Option<&'a Machine>,
+    unknown: Vec<Finding>,
+    /// Words that a module or a macro of Klipper's may know.
+    words: Vec<String>,
+}
+
+impl<'a> Codes<'a> {
+    fn new(machine: Option<&'a Machine>) -> Self {
+        Self { machine, unknown: Vec::new(), words: Vec::new() }
+    }
+
+    fn note(&mut self, note: &Note) {
+        let (What::Unknown(code), Some(machine)) = (&note.what, self.machine) else { return };
+        let first: String = code.split_whitespace().next().unwrap_or_default().to_owned();
+        let is_word = first.starts_with(|c: char| c.is_ascii_alphabetic())
+            && first.chars().nth(1).is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
+        if machine.dialect == DialectName::Klipper && is_word {
+            // A module's command or a macro of the machine's own.
+            if !self.words.contains(&first) {
+                self.words.push(first);
+            }
+        } else if !is_numbered(&first) {
+            let shown: String = code.chars().take(40).collect();
+            self.unknown.push(unknown(machine, note.line, &format!("`{shown}`")));
+        }
+    }
+
+    fn finish(self, facts: &Facts, found: &mut Findings, notes: &mut Vec<String>) {
+        let Some(machine) = self.machine else { return };
+        for (&(letter, number), &line) in &facts.commands {
+            if !dialect::knows(machine.dialect, letter, number) {
+                found.add(unknown(machine, line, &format!("{}{number}", char::from(letter))));
+            }
+        }
+        found.extend(self.unknown);
+        if !self.words.is_empty() {
+            notes.push(format!("what Klipper makes of {}", self.words.join(", ")));
+        }
+    }
+}
+
+fn unknown(machine: &Machine, line: u64, what: &str) -> Finding {
     let firmware = match machine.dialect {
         DialectName::Makerbot => "GPX",
         DialectName::Marlin => "Marlin",
@@ -69,31 +130,9 @@ fn codes(print: &Print, terms: &Terms, found: &mut Findings, notes: &mut Vec<Str
         DialectName::Reprapfirmware => "RepRapFirmware",
         DialectName::Ultigcode => "the Ultimaker 2",
     };
-    for (&(letter, number), &line) in &print.commands {
-        if !dialect::knows(machine.dialect, letter, number) {
-            let code = format!("{}{number}", char::from(letter));
-            found.add(finding(line, format!("{firmware} does not know {code}")));
-        }
-    }
-    let mut words = Vec::new();
-    for note in &print.notes {
-        let What::Unknown(code) = &note.what else { continue };
-        let first: String = code.split_whitespace().next().unwrap_or_default().to_owned();
-        let is_word = first.starts_with(|c: char| c.is_ascii_alphabetic())
-            && first.chars().nth(1).is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
-        if machine.dialect == DialectName::Klipper && is_word {
-            // A module's command or a macro of the machine's own.
-            if !words.contains(&first) {
-                words.push(first);
-            }
-        } else if !is_numbered(&first) {
-            let shown: String = code.chars().take(40).collect();
-            found.add(finding(note.line, format!("{firmware} does not know `{shown}`")));
-        }
-    }
-    if !words.is_empty() {
-        notes.push(format!("what Klipper makes of {}", words.join(", ")));
-    }
+    let place = Place { line: Some(line), ..Place::default() };
+    let text = format!("{firmware} does not know {what}");
+    Finding::of(Code::UnknownCode, 1.0, "lines", text).at(place)
 }
 
 /// Whether the word is a letter and a number of at most [`MOST_DIGITS`]: those are judged as commands.
@@ -105,7 +144,7 @@ fn is_numbered(word: &str) -> bool {
 
 /// What is known after the moves so far.
 struct Walk<'a> {
-    print: &'a Print,
+    facts: &'a Facts,
     machine: Option<&'a Machine>,
     filament_area: f64,
     /// Layer of the next move; `None` before the first.
@@ -125,15 +164,14 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    fn new(print: &'a Print, machine: Option<&'a Machine>, filament_area: f64) -> Self {
-        let last = print.moves.iter().rposition(Step::is_line).map_or(0, |index| index + 1);
+    fn new(facts: &'a Facts, machine: Option<&'a Machine>, filament_area: f64) -> Self {
         Self {
-            print,
+            facts,
             machine,
             filament_area,
             layer: None,
-            printing: print.start.end..last.max(print.start.end),
-            heat: if print.summary.volumes_by > 0.0 { Heat::by_printer() } else { Heat::default() },
+            printing: facts.start.end..facts.last_line.max(facts.start.end),
+            heat: if facts.summary.volumes_by > 0.0 { Heat::by_printer() } else { Heat::default() },
             stranger: None,
             heated_by_macro: None,
             is_cold_reported: false,
@@ -155,7 +193,7 @@ impl<'a> Walk<'a> {
 
     fn step(&mut self, index: usize, step: &Step, found: &mut Findings) {
         let next = self.layer.map_or(0, |layer| layer + 1);
-        if self.print.layers.get(next).is_some_and(|layer| layer.moves.start <= index) {
+        if self.facts.layers.get(next).is_some_and(|layer| layer.moves.start <= index) {
             self.layer = Some(next);
         }
         let before = found.len();

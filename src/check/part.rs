@@ -17,6 +17,7 @@
 //! grown and shrunk by an exact distance that way.
 
 use super::capsule::Capsule;
+use super::laid::{Bead, Laid};
 use super::rows::{Lattice, united};
 use crate::geom::cells::Cells;
 use crate::geom::segment;
@@ -74,6 +75,11 @@ impl Section {
     /// Nothing, where the model is not.
     pub(super) fn empty() -> Self {
         Self { closes: true, ..Self::default() }
+    }
+
+    /// Its outline, by which what lies near it is found.
+    pub(super) fn outline(&self) -> Laid {
+        Laid::of(self.outline.iter().map(|&[from, to]| Bead::between(from, to)).collect())
     }
 
     /// All places within `mm` of the outline.

@@ -10,13 +10,12 @@
 use super::capsule::Capsule;
 use super::filled::Filled;
 use super::finding::{Code, Finding, Findings, Place, short};
-use super::part::extent_of;
 use super::rows::Lattice;
 use super::sets::Sets;
+use super::survey::Survey;
 use crate::geom::spans::{Rows, Span};
-use crate::reader::Role;
+use crate::reader::{Facts, Role};
 use crate::units::to_mm;
-use rayon::prelude::*;
 
 /// The most slender post that stands while the nozzle pushes it.
 const MOST: f64 = 10.0;
@@ -29,7 +28,7 @@ const PITCH: f64 = 0.1;
 const MOST_ROWS: f64 = 6000.0;
 
 /// Support of a layer that touches.
-#[derive(Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default)]
 struct Island {
     /// Sums of area, of x, y, xx, xy and yy over it, from its first span, mm.
     sums: [f64; 6],
@@ -40,40 +39,66 @@ struct Island {
     goes_on: bool,
 }
 
-/// Judges all support.
-pub(super) fn check(filled: &Filled<'_>, found: &mut Findings) {
-    let print = filled.print;
-    let lines = || print.lines().filter(|step| step.role == Role::Support);
-    let ends = lines()
-        .flat_map(|step| [step.from, step.to].map(|at| [f64::from(at[0]), f64::from(at[1])]));
-    let Some((low, high)) = extent_of(ends) else { return };
-    let lattice = Lattice::new(PITCH, high[1] - low[1], MOST_ROWS);
-    let layers = (0..print.layers.len()).into_par_iter();
-    let drawn: Vec<(Vec<Island>, Rows, Vec<usize>)> = layers
-        .map(|layer| {
-            let lines = filled.lines(layer).filter(|(step, _)| step.role == Role::Support);
-            let rows = lattice.draw(lines.map(|(step, _)| Capsule::of(step, 1.0)));
-            let (islands, of_span) = islands(&rows, lattice);
-            (islands, rows, of_span)
-        })
-        .collect();
-    let (mut below, mut rows_below, mut of_below) = (Vec::new(), Rows::default(), Vec::new());
-    for (layer, (mut islands, rows, of_span)) in drawn.into_iter().enumerate() {
-        let on = overlaps((&rows, &of_span), (&rows_below, &of_below));
-        for (k, island) in islands.iter_mut().enumerate() {
+/// The support of a layer.
+#[derive(Debug, Default)]
+pub(super) struct Drawn {
+    islands: Vec<Island>,
+    rows: Rows,
+    /// The island of each span.
+    of_span: Vec<usize>,
+}
+
+/// Posts as far as they are known.
+pub(super) struct Posts {
+    lattice: Lattice,
+    below: Drawn,
+}
+
+impl Posts {
+    /// Of all support of a print, if it has any.
+    pub(super) fn over(survey: &Survey) -> Option<Self> {
+        let (low, high) = survey.support?;
+        let lattice = Lattice::new(PITCH, high[1] - low[1], MOST_ROWS);
+        Some(Self { lattice, below: Drawn::default() })
+    }
+
+    /// The islands of a layer.
+    pub(super) fn drawn(&self, filled: &Filled<'_>, layer: usize) -> Drawn {
+        let lines = filled.lines(layer).filter(|(step, _)| step.role == Role::Support);
+        let rows = self.lattice.draw(lines.map(|(step, _)| Capsule::of(step, 1.0)));
+        let (islands, of_span) = islands(&rows, self.lattice);
+        Drawn { islands, rows, of_span }
+    }
+
+    /// Lays the next layer on those before.
+    pub(super) fn layer(
+        &mut self,
+        (filled, layer): (&Filled<'_>, usize),
+        mut drawn: Drawn,
+        found: &mut Findings,
+    ) {
+        let below = &mut self.below;
+        let on = overlaps((&drawn.rows, &drawn.of_span), (&below.rows, &below.of_span));
+        for (k, island) in drawn.islands.iter_mut().enumerate() {
             let mut stands_on = on.iter().filter(|(above, _)| *above == k).map(|(_, under)| *under);
-            island.grow(filled.heights[layer], &mut stands_on, &mut below);
+            island.grow(filled.height(layer), &mut stands_on, &mut below.islands);
         }
         if let Some(before) = layer.checked_sub(1) {
-            report(filled, before, &below, found);
+            report(filled.window.facts, before, &below.islands, found);
         }
-        (below, rows_below, of_below) = (islands, rows, of_span);
+        self.below = drawn;
     }
-    report(filled, print.layers.len() - 1, &below, found);
+
+    /// Ends the print.
+    pub(super) fn finish(self, facts: &Facts, found: &mut Findings) {
+        if let Some(last) = facts.layers.len().checked_sub(1) {
+            report(facts, last, &self.below.islands, found);
+        }
+    }
 }
 
 /// Reports posts that end on a layer.
-fn report(filled: &Filled<'_>, layer: usize, islands: &[Island], found: &mut Findings) {
+fn report(facts: &Facts, layer: usize, islands: &[Island], found: &mut Findings) {
     for island in islands.iter().filter(|island| !island.goes_on) {
         let slender = island.height / island.thick;
         if slender > MOST {
@@ -83,7 +108,7 @@ fn report(filled: &Filled<'_>, layer: usize, islands: &[Island], found: &mut Fin
             found.add(finding.at(Place {
                 line: None,
                 layer: Some(layer + 1),
-                z_mm: Some(short(filled.print.layers[layer].z)),
+                z_mm: Some(short(facts.layers[layer].z)),
                 at_mm: Some(island.middle().map(short)),
             }));
         }

@@ -8,10 +8,11 @@
 //! dense. A section of a model has few spans in a row, however wide it is: booleans, and all that
 //! grows and shrinks, cost what there are edges, not what there is area.
 
-use super::capsule::Capsule;
+use super::capsule::{Capsule, Flanks};
 use super::sets::Sets;
-use crate::geom::spans::{Rows, Span, intersect, merge};
+use crate::geom::spans::{Rows, Span, intersect, merge, unite};
 use crate::units::{Coord, UNITS_PER_MM, to_mm, to_units};
+use std::ops::Range;
 
 /// Where rows lie.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,16 +68,57 @@ impl Lattice {
 
     /// What capsules cover.
     pub(super) fn draw(self, capsules: impl Iterator<Item = Capsule>) -> Rows {
-        let mut chords = Vec::new();
+        self.draw_where(capsules, |_, _| true)
+    }
+
+    /// What capsules cover of an area and beside it: less than all of it, where only that is asked for.
+    pub(super) fn draw_on(self, area: &Rows, capsules: impl Iterator<Item = Capsule>) -> Rows {
+        self.draw_where(capsules, |j, span| {
+            let row = area.row(j);
+            let next = row.partition_point(|one| one.end <= span.start);
+            row.get(next).is_some_and(|one| one.start < span.end)
+        })
+    }
+
+    fn draw_where(
+        self,
+        capsules: impl Iterator<Item = Capsule>,
+        is_asked: impl Fn(i32, Span) -> bool,
+    ) -> Rows {
+        let mut drawn: Vec<(Range<i32>, Flanks)> = Vec::with_capacity(capsules.size_hint().0);
         for capsule in capsules {
-            let ((low, high), flanks) = (capsule.extent(), capsule.flanks());
-            for row in self.range(low[1], high[1]) {
-                let chord = flanks.chord(self.middle(row));
-                let span = chord.and_then(|(from, to)| Span::new(to_units(from), to_units(to)));
-                chords.extend(span.map(|span| (row, span)));
+            let (low, high) = capsule.extent();
+            let rows = self.range(low[1], high[1]);
+            if !rows.is_empty() {
+                drawn.push((rows, capsule.flanks()));
             }
         }
-        united(&chords)
+        let first = drawn.iter().map(|(rows, _)| rows.start).min().unwrap_or(0);
+        let end = drawn.iter().map(|(rows, _)| rows.end).max().unwrap_or(first);
+        // Where capsules begin and end, from row to row: how many each row has.
+        let mut counts = vec![0_i32; (end - first) as usize + 1];
+        for (rows, _) in &drawn {
+            counts[(rows.start - first) as usize] += 1;
+            counts[(rows.end - first) as usize] -= 1;
+        }
+        let (mut here, mut sum) = (0, 0_u32);
+        let starts = counts.into_iter().map(|change| {
+            let start = sum;
+            here += change;
+            sum += here as u32;
+            start
+        });
+        let mut spans = Buckets::new(first, starts.collect());
+        for (rows, flanks) in drawn {
+            for row in rows {
+                let chord = flanks.chord(self.middle(row));
+                let span = chord.and_then(|(from, to)| Span::new(to_units(from), to_units(to)));
+                if let Some(span) = span.filter(|span| is_asked(row, *span)) {
+                    spans.add(row, span);
+                }
+            }
+        }
+        spans.rows()
     }
 
     /// All places within `mm` of an area.
@@ -128,12 +170,12 @@ impl Lattice {
             thin.push_row(|spans| narrowed(row, by, spans));
         }
         let window = |mm: f64| 2 * (mm / self.pitch()).round() as i32 + 1;
-        let low = stacked(&thin, window(half), Rows::and);
+        let low = stacked(&thin, window(half), (intersect, false));
         if low.is_empty() {
             return low;
         }
         let by = to_units(half - less);
-        let high = stacked(&low, window(half - less), Rows::or);
+        let high = stacked(&low, window(half - less), (unite, true));
         let mut out = Rows::with_room_of(&high, high.range().start);
         let mut grown = Vec::new();
         for (_, row) in high.iter() {
@@ -187,24 +229,27 @@ fn narrowed(row: &[Span], by: Coord, out: &mut Vec<Span>) {
     out.extend(row.iter().filter_map(|span| Span::new(span.start + by, span.end - by)));
 }
 
-/// Each row joined with those around it, `window` rows in all, an odd number.
-fn stacked(rows: &Rows, window: i32, join: fn(&Rows, &Rows) -> Rows) -> Rows {
+/// How two rows are joined.
+type Join = fn(&[Span], &[Span], &mut Vec<Span>);
+
+/// Each row joined with those around it, `window` rows in all, an odd number; `beyond` says whether
+/// something is left where some of them are beyond the rows there are.
+fn stacked(rows: &Rows, window: i32, (join, beyond): (Join, bool)) -> Rows {
     let mut out = rows.clone();
     let mut done = 1;
     while done < window {
         // What `done` rows from each row on gave, joined with the same some rows further.
         let step = done.min(window - done);
-        out = join(&out, &shifted(&out, -step));
+        let range = out.range();
+        let start = if beyond { range.start - step } else { range.start };
+        // The last time it is moved to the middle of the window.
+        let moved = if done + step == window { window / 2 } else { 0 };
+        let mut next = Rows::with_room_of(&out, start + moved);
+        for j in start..range.end {
+            next.push_row(|spans| join(out.row(j), out.row(j + step), spans));
+        }
+        out = next;
         done += step;
-    }
-    shifted(&out, window / 2)
-}
-
-/// The same rows, moved.
-fn shifted(rows: &Rows, by: i32) -> Rows {
-    let mut out = Rows::with_room_of(rows, rows.range().start + by);
-    for (_, row) in rows.iter() {
-        out.push_row(|spans| spans.extend_from_slice(row));
     }
     out
 }
@@ -220,28 +265,51 @@ pub(super) fn united(chords: &[(i32, Span)]) -> Rows {
     for k in 0..count {
         starts[k + 1] += starts[k];
     }
-    let mut ends = starts.clone();
-    let mut sorted = vec![Span::default(); chords.len()];
-    for (j, span) in chords {
-        let row = (j - first) as usize;
-        let (start, end) = (starts[row] as usize, ends[row] as usize);
+    let mut spans = Buckets::new(first, starts);
+    chords.iter().for_each(|(j, span)| spans.add(*j, *span));
+    spans.rows()
+}
+
+/// Spans by row, in the order in which they come.
+struct Buckets {
+    first: i32,
+    /// Where each row's room begins, and where the last one's ends.
+    starts: Vec<u32>,
+    /// Where each row's spans end.
+    ends: Vec<u32>,
+    spans: Vec<Span>,
+}
+
+impl Buckets {
+    fn new(first: i32, starts: Vec<u32>) -> Self {
+        let room = starts.last().map_or(0, |end| *end as usize);
+        Self { first, ends: starts.clone(), starts, spans: vec![Span::default(); room] }
+    }
+
+    fn add(&mut self, j: i32, span: Span) {
+        let row = (j - self.first) as usize;
+        let (start, end) = (self.starts[row] as usize, self.ends[row] as usize);
         // Lines one after the other mostly overlap: joined at once, rows stay short.
-        match sorted[start..end].last_mut() {
+        match self.spans[start..end].last_mut() {
             Some(last) if last.start <= span.end && span.start <= last.end => {
                 last.start = last.start.min(span.start);
                 last.end = last.end.max(span.end);
             }
             _ => {
-                sorted[end] = *span;
-                ends[row] += 1;
+                self.spans[end] = span;
+                self.ends[row] += 1;
             }
         }
     }
-    let mut rows = Rows::with_room(first, count, chords.len());
-    for (start, end) in starts.iter().zip(&ends).take(count) {
-        rows.push_row(|out| merge(&mut sorted[*start as usize..*end as usize], out));
+
+    fn rows(mut self) -> Rows {
+        let count = self.starts.len() - 1;
+        let mut rows = Rows::with_room(self.first, count, self.spans.len());
+        for (start, end) in self.starts.iter().zip(&self.ends).take(count) {
+            rows.push_row(|out| merge(&mut self.spans[*start as usize..*end as usize], out));
+        }
+        rows
     }
-    rows
 }
 
 #[cfg(test)]

@@ -34,6 +34,13 @@ impl Samples {
         let count = (length / pitch).ceil().max(1.0) as usize;
         Self { from, way, length, count, next: 0 }
     }
+
+    /// Those whose middles lie between two places, from 0 to 1.
+    pub(super) fn between(self, from: f64, to: f64) -> impl Iterator<Item = Sample> {
+        let count = self.count as f64;
+        let is_in = move |k: usize| (from..=to).contains(&((k as f64 + 0.5) / count));
+        self.enumerate().filter(move |(k, _)| is_in(*k)).map(|(_, sample)| sample)
+    }
 }
 
 impl Iterator for Samples {

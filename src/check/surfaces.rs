@@ -10,24 +10,22 @@
 //!   the whole print against what the file asks for, and for blocks of layers against the whole
 //!   print. Thick lines fill several layers, so that a single layer has no density.
 
-use super::against::{Areas, Judge, SOME_WIDTH, Verdict, is_of_part, strays};
+use super::against::{Areas, Judge, Verdict};
 use super::filled::Filled;
 use super::finding::{Code, Finding, Findings, Place, short};
-use super::part::{Part, Section, extent_of};
+use super::part::{Part, Section};
 use super::rows::Lattice;
+use super::survey::{Survey, both};
 use super::terms::Terms;
-use super::{extent, median};
-use crate::reader::{Print, Role};
+use crate::reader::Facts;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Distance of rows, mm: an eighth of a usual line.
 const PITCH: f64 = 0.05;
 
 /// Rows of a layer at most; larger prints get rows further apart.
 const MOST_ROWS: f64 = 6000.0;
-
-/// Layers that are cut at a time, so that few are held.
-const BATCH: usize = 32;
 
 /// Layers over which infill is measured together: three of the largest usual groups of thick infill.
 const BLOCK: usize = 12;
@@ -63,85 +61,86 @@ pub(super) struct Sums {
     pub(super) density: Option<f64>,
 }
 
-/// Judges all layers by the part.
-pub(super) fn check(
-    filled: &Filled<'_>,
-    part: &Part,
-    terms: &Terms,
+/// All layers by the part.
+pub(super) struct Surfaces<'a> {
+    part: &'a Part,
+    terms: &'a Terms,
     has_roles: bool,
-    (found, notes): (&mut Findings, &mut Vec<String>),
-) -> Sums {
-    let print = filled.print;
-    let lines = print.moves.iter().filter(|step| is_of_part(step, has_roles));
-    let both = [extent(lines), part.extent()];
-    let corners = both.into_iter().flatten().flat_map(|(low, high)| [low, high]);
-    let Some((low, high)) = extent_of(corners) else { return Sums::default() };
-    let strays = strays(print);
-    let judge = Judge {
-        print,
-        part,
-        lattice: Lattice::new(PITCH, high[1] - low[1], MOST_ROWS),
-        heights: &filled.heights,
-        line_width: line_width(print),
-        floors: &filled.floors,
-        strays: &strays,
-        terms,
-        has_roles,
-    };
-    let mut layers = Vec::with_capacity(print.layers.len());
-    for first in (0..print.layers.len()).step_by(BATCH) {
-        let end = (first + BATCH).min(print.layers.len());
-        layers.extend(batch(&judge, first..end));
-    }
-    let unsure = layers.iter().filter(|verdict| verdict.is_unsure).count();
-    if unsure > 0 {
-        notes.push(format!(
-            "{unsure} of {} layers against the part: its outline does not close, or they are cut \
-             along a face of it",
-            layers.len()
-        ));
-    }
-    for verdict in &mut layers {
-        found.extend(std::mem::take(&mut verdict.findings));
-    }
-    let areas: Vec<Areas> = layers.iter().map(|verdict| verdict.areas).collect();
-    sums(print, (terms, &filled.heights), (&areas, has_roles), found)
+    lattice: Lattice,
+    areas: Vec<Areas>,
+    unsure: usize,
 }
 
-/// Judges some layers side by side.
-fn batch(judge: &Judge<'_>, layers: std::ops::Range<usize>) -> Vec<Verdict> {
-    // From the layer below the first to that above the last.
-    let cuts: Vec<Section> = (layers.start..layers.end + 2)
-        .into_par_iter()
-        .map(|above| match above.checked_sub(1) {
-            Some(layer) => judge.part.section(layer, judge.lattice),
-            None => Section::empty(),
-        })
-        .collect();
-    let judged = layers.clone().into_par_iter().map(|index| {
-        let k = index - layers.start;
-        let three = &cuts[k..k + 3];
-        let is_sure = three.iter().all(|cut| cut.closes)
-            && (judge.terms.is_own
-                || !(index.saturating_sub(1)..=index + 1).any(|k| judge.part.is_along_a_face(k)));
-        if is_sure {
-            judge.layer(index, [&three[0], &three[1], &three[2]])
-        } else {
-            Verdict { is_unsure: true, ..Verdict::default() }
+impl<'a> Surfaces<'a> {
+    /// `None` without a line and without a part.
+    pub(super) fn new(
+        part: &'a Part,
+        (survey, terms): (&Survey, &'a Terms),
+        has_roles: bool,
+    ) -> Option<Self> {
+        let (low, high) = both(survey.part, part.extent())?;
+        let lattice = Lattice::new(PITCH, high[1] - low[1], MOST_ROWS);
+        Some(Self { part, terms, has_roles, lattice, areas: Vec::new(), unsure: 0 })
+    }
+
+    /// Judges some layers side by side.
+    pub(super) fn batch(&self, filled: &Filled<'_>, layers: Range<usize>) -> Vec<Verdict> {
+        let &Filled { window, survey } = filled;
+        let (lattice, terms, has_roles) = (self.lattice, self.terms, self.has_roles);
+        let judge = Judge { window, survey, lattice, terms, has_roles };
+        // From the layer below the first to that above the last.
+        let cuts: Vec<Section> = (layers.start..layers.end + 2)
+            .into_par_iter()
+            .map(|above| match above.checked_sub(1) {
+                Some(layer) => self.part.section(layer, lattice),
+                None => Section::empty(),
+            })
+            .collect();
+        let judged = layers.clone().into_par_iter().map(|index| {
+            let k = index - layers.start;
+            let three = &cuts[k..k + 3];
+            let is_sure = three.iter().all(|cut| cut.closes)
+                && (terms.is_own
+                    || !(index.saturating_sub(1)..=index + 1)
+                        .any(|k| self.part.is_along_a_face(k)));
+            if is_sure {
+                judge.layer(index, [&three[0], &three[1], &three[2]])
+            } else {
+                Verdict { is_unsure: true, ..Verdict::default() }
+            }
+        });
+        judged.collect()
+    }
+
+    /// The next layer.
+    pub(super) fn layer(&mut self, verdict: Verdict, found: &mut Findings) {
+        self.unsure += usize::from(verdict.is_unsure);
+        self.areas.push(verdict.areas);
+        found.extend(verdict.findings);
+    }
+
+    /// Judges the sums.
+    pub(super) fn finish(
+        self,
+        (facts, survey): (&Facts, &Survey),
+        (found, notes): (&mut Findings, &mut Vec<String>),
+    ) -> Sums {
+        if self.unsure > 0 {
+            notes.push(format!(
+                "{} of {} layers against the part: its outline does not close, or they are cut \
+                 along a face of it",
+                self.unsure,
+                self.areas.len()
+            ));
         }
-    });
-    judged.collect()
-}
-
-/// The usual width of outer walls, mm.
-fn line_width(print: &Print) -> f64 {
-    let walls = print.lines().filter(|step| step.role == Role::OuterWall);
-    median(walls.map(|step| f64::from(step.width)).collect()).unwrap_or(SOME_WIDTH)
+        let heights = (self.terms, &survey.heights[..]);
+        sums(facts, heights, (&self.areas, self.has_roles), found)
+    }
 }
 
 /// Adds up, and judges the amounts.
 fn sums(
-    print: &Print,
+    facts: &Facts,
     (terms, heights): (&Terms, &[f64]),
     (areas, has_roles): (&[Areas], bool),
     found: &mut Findings,
@@ -160,7 +159,7 @@ fn sums(
         }
     }
     let [room, plastic] = sums.total.solid;
-    if room > 0.0 && print.has_widths && !is_within(plastic / room, SOLID_SLACK) {
+    if room > 0.0 && facts.has_widths && !is_within(plastic / room, SOLID_SLACK) {
         let percent = short(100.0 * plastic / room);
         let text =
             format!("walls and skins take {percent} % of the plastic that they have room for");
@@ -169,7 +168,7 @@ fn sums(
     let [room, plastic] = sums.total.sparse;
     sums.density = (room >= ENOUGH_ROOM).then_some(plastic / room);
     if has_roles {
-        infill(print, terms, areas, &sums, found);
+        infill(facts, terms, areas, &sums, found);
     } else {
         sums.density = None;
     }
@@ -181,7 +180,7 @@ fn is_within(value: f64, [low, high]: [f64; 2]) -> bool {
 }
 
 /// Judges the density of the sparse infill: in all, and by blocks of layers.
-fn infill(print: &Print, terms: &Terms, areas: &[Areas], sums: &Sums, found: &mut Findings) {
+fn infill(facts: &Facts, terms: &Terms, areas: &[Areas], sums: &Sums, found: &mut Findings) {
     if let (Some(asked), Some(density)) = (terms.infill, sums.density)
         && !is_within(density, INFILL_SLACK.map(|slack| slack * asked))
     {
@@ -199,7 +198,7 @@ fn infill(print: &Print, terms: &Terms, areas: &[Areas], sums: &Sums, found: &mu
         let block = first..first + if rest < 2 * BLOCK { rest } else { BLOCK };
         let (mut room, mut plastic) = (0.0, 0.0);
         for index in block.clone() {
-            room += areas[index].sparse[0] * print.layers[index].height;
+            room += areas[index].sparse[0] * facts.layers[index].height;
             plastic += areas[index].sparse[1];
         }
         // A thick line may fill layers of the block before: few layers have no density.

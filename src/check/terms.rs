@@ -2,7 +2,7 @@
 
 use crate::profile::{DialectName, ExtrusionModel, Settings};
 use crate::reader::print::Step;
-use crate::reader::{Print, Role};
+use crate::reader::{Facts, Role};
 use std::f64::consts::PI;
 
 /// What a file is judged by.
@@ -52,7 +52,7 @@ impl Terms {
     /// The machine of `settings`, the settings that the file was made with (`own`, if it is one of
     /// this program's), and else what the file's comments hold.
     #[must_use]
-    pub fn new(settings: Option<&Settings>, own: Option<&Settings>, print: &Print) -> Self {
+    pub fn new(settings: Option<&Settings>, own: Option<&Settings>, print: &Facts) -> Self {
         let diameter = print.filament_diameter;
         let by_file = || {
             let text = DENSITY_KEYS.iter().find_map(|key| print.value(key))?;

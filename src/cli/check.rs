@@ -9,7 +9,7 @@ use slicer::check::{self, Measures, Model, Verdict};
 use slicer::mesh::Bed;
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
-use slicer::reader::{Cause, Firmware, Print};
+use slicer::reader::{Cause, Firmware, Stream};
 use slicer::warning::plural;
 use std::path::Path;
 
@@ -29,18 +29,19 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
         return Err(failure::usage("--set changes a profile; name one with -p, too"));
     }
     let given = if profiles.any() { Some(profiles.load([])?) } else { None };
-    let (name, mut source) = input::open(&args.file)?;
+    let (name, source) = input::again(&args.file)?;
     let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
     let firmware = given.as_ref().map_or_else(Firmware::default, |p| input::firmware(&p.settings));
-    let print = Print::read_as(&mut source, firmware, diameter)
-        .map_err(|e| Cause::Unreadable(e).of(name))?;
+    let unreadable = |error| Cause::Unreadable(error).of(name);
+    let stream = Stream::open(source, firmware, diameter).map_err(unreadable)?;
+    let print = stream.facts();
     if print.layers.is_empty() {
         return Err(Cause::NoLine.of(name).into());
     }
     let own = profile::recorded(&print.values)?;
     let judge = given.as_ref().or(own.as_ref());
     let machine = judge.map(|profile| &profile.settings);
-    let terms = Terms::new(machine, own.as_ref().map(|profile| &profile.settings), &print);
+    let terms = Terms::new(machine, own.as_ref().map(|profile| &profile.settings), print);
     let bed = judge.map_or(Bed::ANY, |profile| slicer::bed(&profile.settings.machine));
     let placed = if args.against.is_empty() {
         None
@@ -53,7 +54,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
         Some(slicer::place(&models, &placement, &bed, &Progress::default())?)
     };
     let model = placed.as_ref().map(|placed| Model { mesh: &placed.mesh, offset: placed.offset });
-    let verdict = check::check(&print, &terms, model);
+    let verdict = check::check_stream(&stream, &terms, model).map_err(unreadable)?;
     let code = u8::from(verdict.fails());
     let text = if args.json {
         output::json(&verdict, Path::new("-"))?

@@ -1,7 +1,7 @@
 //! Path -> bytes of a G-code file, from a file or from standard input.
 
 use slicer::profile::{DialectName, Settings};
-use slicer::reader::{Cause, Error, Firmware, OwnFilament};
+use slicer::reader::{Cause, Error, Firmware, OwnFilament, Source};
 use slicer::units::MmPerS;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read as _};
@@ -20,6 +20,20 @@ pub(super) fn open(file: &str) -> Result<(&str, Box<dyn BufRead>), Error> {
     }
     let source = File::open(file).map_err(|error| Cause::Unreadable(error).of(file))?;
     Ok((file, Box::new(BufReader::with_capacity(BUFFER, source))))
+}
+
+/// Opens a file that is read more than once, `-` being standard input; gives its name for messages,
+/// too.
+///
+/// # Errors
+/// [`Cause::Unreadable`].
+pub(super) fn again(file: &str) -> Result<(&str, Source), Error> {
+    let (name, source) = if file == "-" {
+        ("<stdin>", Source::spooled(&mut std::io::stdin().lock()))
+    } else {
+        (file, File::open(file).and_then(Source::of_file))
+    };
+    Ok((name, source.map_err(|error| Cause::Unreadable(error).of(name))?))
 }
 
 /// A whole file and its name for messages.

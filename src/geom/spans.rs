@@ -108,6 +108,22 @@ pub fn merge(spans: &mut [Span], out: &mut Vec<Span>) {
     }
 }
 
+/// Appends `a ∪ b` to `out`.
+pub fn unite(a: &[Span], b: &[Span], out: &mut Vec<Span>) {
+    let base = out.len();
+    let (mut a, mut b) = (a, b);
+    while let ([p, after_p @ ..], [q, after_q @ ..]) = (a, b) {
+        if p.start <= q.start {
+            push(out, base, *p);
+            a = after_p;
+        } else {
+            push(out, base, *q);
+            b = after_q;
+        }
+    }
+    a.iter().chain(b).for_each(|&span| push(out, base, span));
+}
+
 /// The total length of a row, grid units.
 #[must_use]
 pub fn total(row: &[Span]) -> i64 {
@@ -230,16 +246,10 @@ impl Rows {
         let rows = a.start.min(b.start)..a.end.max(b.end);
         let spans = self.spans.len() + other.spans.len();
         let mut out = Self::with_room(rows.start, rows.len(), spans);
-        let mut both = Vec::new();
         for j in rows {
             out.push_row(|spans| match (self.row(j), other.row(j)) {
                 (only, []) | ([], only) => spans.extend_from_slice(only),
-                (a, b) => {
-                    both.clear();
-                    both.extend_from_slice(a);
-                    both.extend_from_slice(b);
-                    merge(&mut both, spans);
-                }
+                (a, b) => unite(a, b, spans),
             });
         }
         out

@@ -1,18 +1,32 @@
-//! Bytes -> lines without their ends; an endless line is cut short.
+//! Bytes -> lines without their ends, and where each ends; an endless line is cut short.
 
 use std::io::{self, BufRead};
 
 /// Bytes of a line that are read: far more than any printer takes, and little memory.
 const LONGEST: usize = 1 << 16;
 
-/// Hands each line to `sink`. `\n`, `\r\n` and `\r` end one.
+/// Where a line ends and the next begins: reading may go on here.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Place {
+    /// Bytes before it.
+    pub(super) offset: u64,
+    /// Whether the last of them is a `\r`: a `\n` that follows is of the same end.
+    after_return: bool,
+}
+
+/// Hands each line to `sink`, with the place where it ends. `\n`, `\r\n` and `\r` end one. `from` is
+/// where `source` begins. Returns where it ends.
 ///
 /// # Errors
 /// What reading gives.
-pub(super) fn each(source: &mut dyn BufRead, sink: &mut dyn FnMut(&[u8])) -> io::Result<()> {
+pub(super) fn each(
+    source: &mut dyn BufRead,
+    from: Place,
+    sink: &mut dyn FnMut(&[u8], Place),
+) -> io::Result<Place> {
     // The beginning of a line whose end has not come yet.
     let mut begun: Vec<u8> = Vec::new();
-    let mut after_return = false;
+    let Place { mut offset, mut after_return } = from;
     loop {
         let bytes = match source.fill_buf() {
             Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
@@ -22,37 +36,42 @@ pub(super) fn each(source: &mut dyn BufRead, sink: &mut dyn FnMut(&[u8])) -> io:
             break;
         }
         let mut rest = bytes;
-        while let Some(end) = rest.iter().position(|&byte| byte == b'\n' || byte == b'\r') {
+        while let Some(end) = memchr::memchr2(b'\n', b'\r', rest) {
             // `\r\n` is one end: nothing lies between the two.
             let halves = after_return && end == 0 && rest[0] == b'\n' && begun.is_empty();
-            if !halves {
-                hand_on(&mut begun, &rest[..end], sink);
-            }
+            offset += end as u64 + 1;
             after_return = rest[end] == b'\r';
+            if !halves {
+                let line = whole(&mut begun, &rest[..end]);
+                sink(line, Place { offset, after_return });
+                begun.clear();
+            }
             rest = &rest[end + 1..];
         }
         if !rest.is_empty() {
             after_return = false;
+            offset += rest.len() as u64;
             let room = LONGEST - begun.len().min(LONGEST);
             begun.extend_from_slice(&rest[..rest.len().min(room)]);
         }
         let count = bytes.len();
         source.consume(count);
     }
+    let end = Place { offset, after_return };
     if !begun.is_empty() {
-        sink(&begun);
+        sink(&begun, end);
     }
-    Ok(())
+    Ok(end)
 }
 
-fn hand_on(begun: &mut Vec<u8>, end: &[u8], sink: &mut dyn FnMut(&[u8])) {
+/// A line of which a part may have come before.
+fn whole<'a>(begun: &'a mut Vec<u8>, end: &'a [u8]) -> &'a [u8] {
     if begun.is_empty() {
-        return sink(&end[..end.len().min(LONGEST)]);
+        return &end[..end.len().min(LONGEST)];
     }
     let room = LONGEST - begun.len().min(LONGEST);
     begun.extend_from_slice(&end[..end.len().min(room)]);
-    sink(begun);
-    begun.clear();
+    begun
 }
 
 #[cfg(test)]
@@ -63,8 +82,23 @@ mod tests {
     fn lines(bytes: &[u8], buffer: usize) -> Vec<Vec<u8>> {
         let mut found = Vec::new();
         let mut source = BufReader::with_capacity(buffer, bytes);
-        each(&mut source, &mut |line| found.push(line.to_vec())).unwrap();
+        each(&mut source, Place::default(), &mut |line, _| found.push(line.to_vec())).unwrap();
         found
+    }
+
+    #[test]
+    fn reading_goes_on_at_the_end_of_any_line() {
+        let bytes = b"a\nbc\r\nd\re\n\nf\r\n";
+        let mut all: Vec<(Vec<u8>, Place)> = Vec::new();
+        let mut keep = |line: &[u8], place| all.push((line.to_vec(), place));
+        each(&mut &bytes[..], Place::default(), &mut keep).unwrap();
+        for (k, (_, place)) in all.iter().enumerate() {
+            let mut rest = Vec::new();
+            let mut source = &bytes[place.offset as usize..];
+            let mut keep = |line: &[u8], place| rest.push((line.to_vec(), place));
+            each(&mut source, *place, &mut keep).unwrap();
+            assert_eq!(rest, all[k + 1..], "{k}");
+        }
     }
 
     #[test]

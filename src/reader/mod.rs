@@ -6,6 +6,7 @@
 
 mod change;
 mod error;
+mod facts;
 mod heat;
 mod height;
 mod layers;
@@ -13,15 +14,20 @@ mod lines;
 mod marks;
 pub mod print;
 mod role;
+mod source;
 mod state;
+pub mod stream;
 mod words;
 
 pub use change::Change;
 pub use error::{Cause, Error};
+pub use facts::Facts;
 pub use heat::{Heater, Heating};
 pub(crate) use height::Heights;
 pub use print::Print;
 pub use role::Role;
+pub use source::Source;
+pub use stream::Stream;
 
 use crate::units::MmPerS;
 use std::io::{self, BufRead};
@@ -145,7 +151,7 @@ pub fn read(
     let mut state = state::State::new(firmware);
     let mut layers = layers::Layers::default();
     let mut number = 0;
-    lines::each(source, &mut |line| {
+    lines::each(source, lines::Place::default(), &mut |line, _| {
         number += 1;
         state.line(line, &mut |event| layers.event(number, event, sink));
     })?;

@@ -2,76 +2,50 @@
 //!
 //! Words used here: a *move* (or step) is a straight way of the nozzle; a *line* is a move that goes
 //! sideways and extrudes; the *start* is all moves before the first layer; a *note* is what happens
-//! between two moves; a *value* is `key = value` in a comment.
+//! between two moves.
 //!
 //! Moves are collected as they come, with floats of 32 bits: files have millions, and positions with
-//! three decimals below 10 m survive that. At the end they are divided into layers:
-//! - by the file's comments if any marks a layer, else by the heights of lines (see `layers`);
-//! - a layer without a line is no layer: its moves belong to the one before;
-//! - a layer lies where most of its lines do (see `height`), and is as high as it lies above the
-//!   layer before.
+//! three decimals below 10 m survive that. Beside them the facts of the file are gathered ([`Facts`]),
+//! its layers among them.
 //!
 //! Then each line gets its width and height: from comments where the file has them, else the height
 //! of the layer, and the width that its plastic fills at that height.
+//!
+//! Who needs a layer at a time reads a [`Stream`](super::Stream) instead: it gives the same moves.
 
-use super::{Event, Firmware, Heating, Heights, Motion, Role, Summary};
-use std::collections::BTreeMap;
-use std::f64::consts::{FRAC_PI_4, PI};
+use super::facts::Gatherer;
+use super::{Event, Facts, Firmware, Heating, Motion, Role};
+use std::f64::consts::FRAC_PI_4;
 use std::io::{self, BufRead};
-use std::ops::Range;
+use std::ops::{Deref, DerefMut, Range};
 
-/// Longest part of a comment that is kept, bytes: the longest settings are lists of a few hundred.
-const LONGEST_COMMENT: usize = 4096;
+/// Lines of code that the reader does not know and that are kept, of a file: the first show what
+/// it is.
+pub(super) const MOST_UNKNOWN: u64 = 1000;
 
-/// Comments of a file that are kept: more than any slicer writes settings.
-const MOST_COMMENTS: usize = 10_000;
-
-/// Heights that differ by less are the same, mm.
-const SAME_HEIGHT: f64 = 1e-4;
-
-/// Keys under which slicers write the filament's diameter, mm.
-const DIAMETER_KEYS: &[&str] = &["filament.diameter", "filament_diameter"];
-
-/// Diameters that a filament may have, mm.
-const DIAMETERS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
-
-/// Height of a line where neither a comment nor a layer below gives one, mm: the most usual one.
-const SOME_HEIGHT: f64 = 0.2;
-
-/// No line is higher than this, mm: twice what the widest nozzles print. A layer that lies higher
-/// above the one before, or above the bed, hangs.
-const HIGHEST: f64 = 2.0;
-
-/// A whole G-code file.
+/// A whole G-code file: its moves, and the facts of it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Print {
+    /// What is known of the file as a whole.
+    pub facts: Facts,
     /// All moves, in the file's order.
     pub moves: Vec<Step>,
-    /// Moves before the first layer: the start block and what it draws.
-    pub start: Range<usize>,
-    /// The layers from the bed up. Each ends where the next begins; the last
-    /// holds what comes after the print as well.
-    pub layers: Vec<Layer>,
     /// What lies between the moves, in the file's order.
     pub notes: Vec<Note>,
-    /// `key = value` in comments: settings and sums that slicers write, in the file's order.
-    pub values: Vec<(String, String)>,
-    /// Commands that occur, but for moves: letter and number -> the first line with it.
-    pub commands: BTreeMap<(u8, u32), u64>,
-    /// The file's first comments, up to the first line that is something else.
-    pub head: Vec<String>,
-    /// Whether comments mark where layers begin.
-    pub marked: bool,
-    /// Layers that begin, those without a line included.
-    pub begun: usize,
-    /// Whether comments give widths of lines.
-    pub has_widths: bool,
-    /// Whether comments give heights of lines.
-    pub has_heights: bool,
-    /// Diameter of the filament, mm: the file's own, else what the caller gave.
-    pub filament_diameter: f64,
-    /// What was read besides the moves.
-    pub summary: Summary,
+}
+
+impl Deref for Print {
+    type Target = Facts;
+
+    fn deref(&self) -> &Facts {
+        &self.facts
+    }
+}
+
+impl DerefMut for Print {
+    fn deref_mut(&mut self) -> &mut Facts {
+        &mut self.facts
+    }
 }
 
 /// One layer.
@@ -127,7 +101,7 @@ pub enum What {
         /// Whether filament is pulled back.
         back: bool,
     },
-    /// Code that the reader does not know.
+    /// Code that the reader does not know: the first thousand lines of it.
     Unknown(String),
 }
 
@@ -174,9 +148,15 @@ impl Print {
         firmware: Firmware,
         filament_diameter: f64,
     ) -> io::Result<Self> {
-        let mut builder = Builder::default();
-        let summary = super::read(source, firmware, &mut |line, event| builder.event(line, event))?;
-        Ok(builder.print(summary, filament_diameter))
+        let (mut gatherer, mut moves) = (Gatherer::default(), Kept::default());
+        let summary = super::read(source, firmware, &mut |line, event| {
+            gatherer.event(line, &event);
+            moves.event(line, event);
+        })?;
+        let facts = gatherer.facts(summary, filament_diameter);
+        let Kept { mut moves, notes, .. } = moves;
+        facts.measure(0, &mut moves);
+        Ok(Self { facts, moves, notes })
     }
 
     /// The moves of a layer.
@@ -196,53 +176,42 @@ impl Print {
     pub fn top(&self) -> f64 {
         self.lines().map(|step| step.heights()[1]).fold(0.0, f64::max)
     }
-
-    /// The last of the values with this key.
-    #[must_use]
-    pub fn value(&self, key: &str) -> Option<&str> {
-        self.values.iter().rev().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
-    }
 }
 
-/// Collects events.
+/// What of the events is kept: moves, not measured yet, and notes.
 #[derive(Default)]
-struct Builder {
-    print: Print,
-    /// Where layers begin: place in the moves, and whether a comment marks it.
-    begins: Vec<(usize, bool)>,
-    /// Whether the head goes on.
-    past_head: bool,
+pub(super) struct Kept {
+    pub(super) moves: Vec<Step>,
+    pub(super) notes: Vec<Note>,
+    /// Lines of unknown code so far, those before these moves included.
+    pub(super) unknown: u64,
 }
 
-impl Builder {
-    fn event(&mut self, line: u64, event: Event) {
-        let at = self.print.moves.len();
-        let mut note = |what| self.print.notes.push(Note { at, line, what });
-        match event {
-            Event::Move(motion) => self.motion(line, &motion),
-            Event::Layer { marked } => {
-                self.print.marked |= marked;
-                self.begins.push((at, marked));
-            }
-            Event::Heating(heating) => note(What::Heating(heating)),
-            Event::FirmwareRetraction { back } => note(What::FirmwareRetraction { back }),
+impl Kept {
+    pub(super) fn event(&mut self, line: u64, event: Event) {
+        let at = self.moves.len();
+        let what = match event {
+            Event::Move(motion) => return self.moves.push(Step::of(line, &motion)),
+            Event::Heating(heating) => What::Heating(heating),
+            Event::FirmwareRetraction { back } => What::FirmwareRetraction { back },
             Event::Unknown(code) => {
-                note(What::Unknown(String::from_utf8_lossy(&code).into_owned()));
+                self.unknown += 1;
+                if self.unknown > MOST_UNKNOWN {
+                    return;
+                }
+                What::Unknown(String::from_utf8_lossy(&code).into_owned())
             }
-            Event::Command { letter, number } => {
-                self.print.commands.entry((letter, number)).or_insert(line);
-            }
-            Event::Comment(comment) => return self.comment(&comment),
-            Event::Dwell(_) | Event::Wait(_) | Event::Change(_) => {}
-        }
-        self.past_head = true;
+            _ => return,
+        };
+        self.notes.push(Note { at, line, what });
     }
+}
 
-    fn motion(&mut self, line: u64, motion: &Motion) {
-        self.print.has_widths |= motion.width.is_some();
-        self.print.has_heights |= motion.height.is_some();
+impl Step {
+    /// A move of this line, not measured yet.
+    pub(super) fn of(line: u64, motion: &Motion) -> Self {
         let narrow = |at: [f64; 3]| at.map(|at| at as f32);
-        self.print.moves.push(Step {
+        Self {
             from: narrow(motion.from),
             to: narrow(motion.to),
             filament: motion.filament as f32,
@@ -251,89 +220,12 @@ impl Builder {
             height: motion.height.unwrap_or(0.0) as f32,
             role: motion.role,
             line: u32::try_from(line).unwrap_or(u32::MAX),
-        });
-    }
-
-    fn comment(&mut self, comment: &[u8]) {
-        let short = &comment[..comment.len().min(LONGEST_COMMENT)];
-        let text = || String::from_utf8_lossy(short).trim().to_owned();
-        if !self.past_head && self.print.head.len() < MOST_COMMENTS {
-            self.print.head.push(text());
-        }
-        if short.windows(3).any(|three| three == b" = ") && self.print.values.len() < MOST_COMMENTS
-        {
-            let text = text();
-            if let Some((key, value)) = text.split_once(" = ") {
-                self.print.values.push((key.trim().to_owned(), value.trim().to_owned()));
-            }
         }
     }
 
-    fn print(mut self, summary: Summary, diameter: f64) -> Print {
-        self.print.summary = summary;
-        let own = DIAMETER_KEYS.iter().find_map(|key| self.print.value(key)?.parse().ok());
-        let diameter = own.filter(|own| DIAMETERS.contains(own)).unwrap_or(diameter);
-        self.print.filament_diameter = diameter;
-        self.divide();
-        let area = PI * diameter * diameter / 4.0;
-        let print = &mut self.print;
-        // Read before the file said its diameter, which stands at its end.
-        if summary.volumes_by > 0.0 {
-            let scale = (summary.volumes_by / area) as f32;
-            print.moves.iter_mut().for_each(|step| step.filament *= scale);
-            print.summary.volumes_by = area;
-        }
-        let start = (&print.start, SOME_HEIGHT);
-        let height = |rise: f64| if rise > HIGHEST { SOME_HEIGHT } else { rise };
-        let layers = print.layers.iter().map(|layer| (&layer.moves, height(layer.height)));
-        for (range, height) in std::iter::once(start).chain(layers) {
-            print.moves[range.clone()].iter_mut().for_each(|step| step.measure(height, area));
-        }
-        self.print
-    }
-
-    /// Divides the moves into layers. What comes before the first mark is no layer; a layer
-    /// without a line belongs to the one before.
-    fn divide(&mut self) {
-        let print = &mut self.print;
-        let marked = print.marked;
-        let begins: Vec<usize> = self
-            .begins
-            .iter()
-            .filter(|(_, by_mark)| *by_mark || !marked)
-            .map(|(at, _)| *at)
-            .collect();
-        print.begun = begins.len();
-        let mut below = 0.0;
-        for (k, &first) in begins.iter().enumerate() {
-            let end = begins.get(k + 1).copied().unwrap_or(print.moves.len());
-            let mut heights = Heights::default();
-            for line in print.moves[first..end].iter().filter(|step| step.is_line()) {
-                heights.add([line.from[2], line.to[2]].map(f64::from), line.length());
-            }
-            let (Some(z), last) = (heights.height(), print.layers.last_mut()) else {
-                if let Some(last) = print.layers.last_mut() {
-                    last.moves.end = end;
-                }
-                continue;
-            };
-            let height = match (z - below, last) {
-                (rise, _) if rise > SAME_HEIGHT => rise,
-                // At the height of the layer before, or the first layer of another part.
-                (_, Some(last)) => last.height,
-                (_, None) => SOME_HEIGHT,
-            };
-            below = z;
-            print.layers.push(Layer { moves: first..end, z, height });
-        }
-        print.start = 0..print.layers.first().map_or(print.moves.len(), |layer| layer.moves.start);
-    }
-}
-
-impl Step {
     /// Fills in the width and height that comments do not give; `layer` is the layer's height,
     /// `area` the filament's cross-section.
-    fn measure(&mut self, layer: f64, area: f64) {
+    pub(super) fn measure(&mut self, layer: f64, area: f64) {
         if !self.is_line() {
             (self.width, self.height) = (0.0, 0.0);
             return;

@@ -43,6 +43,7 @@ const HARMLESS: &[u32] = &[
     907, 910, 911, 912, 913, 914, 915, 950, 955, 970, 971, 973, 974, 975, 981, 982, 983, 991, 1002,
 ];
 
+#[derive(Debug, Clone)]
 pub(super) struct State {
     firmware: Firmware,
     /// Where the nozzle is, mm; `None` where only the printer knows.

@@ -1,0 +1,127 @@
+//! Layers below a layer -> Ground: what stands where, and what carries a line.
+//!
+//! Words: a place of a line is *carried* if plastic or the bed reaches up to its lower side there, below
+//! its middle or anywhere across it. A layer's lines carry none of their own layer.
+
+use super::laid::{Bead, Laid, SUPPORT_GAP, Seen, within};
+use crate::reader::Role;
+use crate::reader::print::Step;
+
+/// Length of the pieces in which a hanging line is looked at, mm: a quarter of a usual line.
+pub(super) const PITCH: f64 = 0.1;
+
+/// Part of a line's height that may be missing under it: less makes findings of rounded heights,
+/// more hides a missing layer under a thick line.
+const GAP: f64 = 0.5;
+
+/// What carries a line: a chain of a layer, both from 0, or the bed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Carrier {
+    Bed,
+    Chain(usize, u32),
+}
+
+/// What layers below a layer have laid, as far as it may meet a line of the layer.
+pub(super) struct Ground<'a> {
+    /// The layers with their numbers, the highest first.
+    layers: Vec<(usize, &'a Laid)>,
+}
+
+impl<'a> Ground<'a> {
+    /// Of `kept`, the layers below `layer`, the lines of which lie this low or higher, mm.
+    pub(super) fn below(layer: &Laid, kept: &'a [Option<Laid>], lowest: f64) -> Self {
+        let some = kept.iter().enumerate().rev();
+        let some = some.filter_map(|(k, one)| Some((k, one.as_ref()?)));
+        let layers = some.filter(|(_, one)| one.top >= lowest && one.meets(layer)).collect();
+        Self { layers }
+    }
+
+    /// Whether plastic or the bed stands so high at a place, mm.
+    pub(super) fn stands(&self, at: [f64; 2], needed: f64) -> bool {
+        let covers = |laid: &Laid| laid.covers(at, |_, bead| bead.top() >= needed);
+        needed <= 0.0 || self.layers.iter().any(|(_, laid)| laid.top >= needed && covers(laid))
+    }
+
+    /// Hands the beads within `more` mm of a line that reach up to a height to `sink`, with their
+    /// layers.
+    pub(super) fn near(
+        &self,
+        line: &Bead,
+        (needed, more): (f64, f64),
+        seen: &mut [Seen],
+        sink: &mut dyn FnMut(usize, &Bead),
+    ) {
+        for ((layer, laid), seen) in self.layers.iter().zip(seen) {
+            if laid.top >= needed {
+                laid.near(line, more, seen, &mut |_, bead| {
+                    if bead.top() >= needed {
+                        sink(*layer, bead);
+                    }
+                });
+            }
+        }
+    }
+
+    /// How deep a line lies in the way that the nozzle took in a layer before, mm: in the last one
+    /// that it meets. `core` is the part of a bead's width that is this way.
+    pub(super) fn depth(
+        &self,
+        line: &Bead,
+        core: f64,
+        seen: &mut [Seen],
+        counts: impl Fn([f64; 2]) -> bool,
+    ) -> f64 {
+        let lowest = line.heights[0].min(line.heights[1]);
+        for ((_, laid), seen) in self.layers.iter().zip(seen) {
+            let mut deepest = 0.0_f64;
+            laid.near(line, 0.0, seen, &mut |_, bead| {
+                if bead.middle() <= lowest {
+                    return;
+                }
+                let Some([from, to]) = line.way(bead, core * bead.radius) else { return };
+                let part = 0.5 * (from + to);
+                let z = line.heights[0] + part * (line.heights[1] - line.heights[0]);
+                if counts(line.place(part)) {
+                    deepest = deepest.max(bead.middle() - z);
+                }
+            });
+            if deepest > 0.0 {
+                return deepest;
+            }
+        }
+        0.0
+    }
+
+    /// Room to mark beads in, for [`Self::near`] and [`Self::depth`].
+    pub(super) fn seen(&self) -> Vec<Seen> {
+        self.layers.iter().map(|_| Seen::default()).collect()
+    }
+}
+
+/// The part of a line, from 0 to 1, that lies no higher than this, mm.
+pub(super) fn below(line: &Bead, most: f64) -> Option<[f64; 2]> {
+    let [from, to] = line.heights;
+    within(from, to - from, [f64::NEG_INFINITY, most])
+}
+
+/// How high plastic must stand to carry a line at this height of the nozzle, mm. Support stands on the
+/// part with the gap that the part has above it.
+pub(super) fn lower_side(step: &Step, z: f64) -> f64 {
+    z - room_below(step)
+}
+
+/// How far below the nozzle plastic must stand to carry a line, mm.
+pub(super) fn room_below(step: &Step) -> f64 {
+    let gap = if step.role == Role::Support { SUPPORT_GAP } else { own_gap(step) };
+    f64::from(step.height) + gap + 1e-3
+}
+
+/// The height up to which a line lies on the bed, mm: support keeps off the part, not off the bed.
+pub(super) fn bed_room(step: &Step) -> f64 {
+    own_gap(step) + f64::from(step.height) + 1e-3
+}
+
+/// What may be missing under a line, mm.
+fn own_gap(step: &Step) -> f64 {
+    GAP * f64::from(step.height).min(0.3)
+}

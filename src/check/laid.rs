@@ -1,0 +1,423 @@
+//! Lines of a layer -> Laid: which of them lie near a line, and over which part of it.
+//!
+//! Words used here: a *chain* is lines one after the other without a break; a *bead* is a line as it is
+//! laid: all places within half of its width of the way of the nozzle; a *way* is the part of a line,
+//! from 0 at its beginning to 1 at its end, that lies within some distance of a bead: one stretch, since
+//! such a place has no dents; a *cell* is a square of the bed.
+//!
+//! Beads are sorted into the cells that they reach into. Those near a line are in the cells that the
+//! line reaches into, itself as wide as it is. So what a line costs is how many lines are near it, not
+//! how long it is.
+
+use crate::geom::cells::Cells;
+use crate::geom::segment;
+use crate::reader::Role;
+use crate::reader::print::Step;
+use std::ops::Range;
+
+/// Side of a cell, mm: two lines.
+const CELL: f64 = 1.0;
+
+/// Gap that may be between support and part, mm: it must come off. Two layers of 0.2 mm, and rounding.
+pub(super) const SUPPORT_GAP: f64 = 0.45;
+
+/// Cells for each bead at most, and at least so many.
+const MOST_CELLS: (f64, f64) = (4.0, 256.0);
+
+/// A line with round ends, from above.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bead {
+    pub(super) from: [f64; 2],
+    /// From its beginning to its end, of length 1.
+    pub(super) along: [f64; 2],
+    /// mm.
+    pub(super) length: f64,
+    /// Half of its width, mm.
+    pub(super) radius: f64,
+    /// Height of the nozzle at its beginning and its end, mm.
+    pub(super) heights: [f64; 2],
+    /// Its chain, from 0 in its layer.
+    pub(super) chain: u32,
+    /// Its line, by the moves of its layer.
+    pub(super) step: u32,
+    /// Length of its chain up to its end, mm.
+    pub(super) reach: f64,
+    /// Whether it is of support.
+    pub(super) is_support: bool,
+}
+
+impl Bead {
+    pub(super) fn of(step: &Step) -> Self {
+        let flat = |at: [f32; 3]| [f64::from(at[0]), f64::from(at[1])];
+        Self {
+            radius: f64::from(step.width) / 2.0,
+            heights: [step.from[2], step.to[2]].map(f64::from),
+            is_support: step.role == Role::Support,
+            ..Self::between(flat(step.from), flat(step.to))
+        }
+    }
+
+    /// A line without a width, from above.
+    pub(super) fn between(from: [f64; 2], to: [f64; 2]) -> Self {
+        let way = segment::way(from, to);
+        let length = segment::dot(way, way).sqrt();
+        let scale = 1.0 / length.max(f64::MIN_POSITIVE);
+        Self {
+            from,
+            along: [way[0] * scale, way[1] * scale],
+            length,
+            radius: 0.0,
+            heights: [0.0; 2],
+            chain: 0,
+            step: 0,
+            reach: 0.0,
+            is_support: false,
+        }
+    }
+
+    /// Height of the nozzle at its higher end, mm.
+    pub(super) fn highest(&self) -> f64 {
+        self.heights[0].max(self.heights[1])
+    }
+
+    /// How high what it carries may lie, mm: on support, with the gap by which that comes off.
+    pub(super) fn top(&self) -> f64 {
+        self.highest() + if self.is_support { SUPPORT_GAP } else { 0.0 }
+    }
+
+    /// Height in its middle, mm.
+    pub(super) fn middle(&self) -> f64 {
+        0.5 * (self.heights[0] + self.heights[1])
+    }
+
+    /// The same line, as much to its left, mm; below 0 to its right.
+    pub(super) fn aside(&self, mm: f64) -> Self {
+        let [x, y] = self.along;
+        Self { from: segment::along(self.from, mm, [-y, x]), ..*self }
+    }
+
+    /// A place of it, from 0 to 1.
+    pub(super) fn place(&self, part: f64) -> [f64; 2] {
+        segment::along(self.from, part * self.length, self.along)
+    }
+
+    /// The part of this line that lies within `mm` of the middle of another.
+    pub(super) fn way(&self, other: &Self, mm: f64) -> Option<[f64; 2]> {
+        // As the other sees it: along itself, and to its side. Most lines are off to a side.
+        let [u, v] = segment::way(other.from, self.from);
+        let [x, y] = other.along;
+        let [dx, dy] = [self.along[0] * self.length, self.along[1] * self.length];
+        let is_off = |from: f64, to: f64, low: f64, high: f64| {
+            (from < low && to < low) || (from > high && to > high)
+        };
+        let (off, aside) = (x * v - y * u, x * dy - y * dx);
+        if is_off(off, off + aside, -mm, mm) {
+            return None;
+        }
+        let (at, by) = ([x * u + y * v, off], [x * dx + y * dy, aside]);
+        if is_off(at[0], at[0] + by[0], -mm, other.length + mm) {
+            return None;
+        }
+        let beside = within(at[1], by[1], [-mm, mm]).and_then(|beside| {
+            let between = within(at[0], by[0], [0.0, other.length])?;
+            both(beside, between)
+        });
+        // Its straight sides hold all of it, unless it leaves by an end.
+        let mut way = beside;
+        let ends = [0.0, other.length];
+        let leaves = |part: f64| !(ends[0]..=ends[1]).contains(&(at[0] + part * by[0]));
+        let is_whole = |[from, to]: [f64; 2]| {
+            let (before, after) = (from - 1e-9, to + 1e-9);
+            (from == 0.0 || !leaves(before)) && (to == 1.0 || !leaves(after))
+        };
+        if beside.is_some_and(is_whole) {
+            return beside;
+        }
+        for end in ends {
+            let round = in_circle([at[0] - end, at[1]], by, mm);
+            way = match (way, round) {
+                (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
+                (a, b) => a.or(b),
+            };
+        }
+        way
+    }
+
+    /// Whether a place lies within `mm` of its middle.
+    pub(super) fn is_near(&self, at: [f64; 2], mm: f64) -> bool {
+        let arm = segment::way(self.from, at);
+        let along = segment::dot(arm, self.along).clamp(0.0, self.length);
+        let off = segment::along(arm, -along, self.along);
+        segment::dot(off, off) <= mm * mm
+    }
+}
+
+/// The part from 0 to 1 over which `at + part · by` lies between two bounds.
+pub(super) fn within(at: f64, by: f64, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
+    if by == 0.0 {
+        return (low <= at && at <= high).then_some([0.0, 1.0]);
+    }
+    let (a, b) = ((low - at) / by, (high - at) / by);
+    let (from, to) = (a.min(b).max(0.0), a.max(b).min(1.0));
+    (from <= to).then_some([from, to])
+}
+
+/// What two stretches have in common.
+pub(super) fn both(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
+    let (from, to) = (a[0].max(b[0]), a[1].min(b[1]));
+    (from <= to).then_some([from, to])
+}
+
+/// The part from 0 to 1 over which `at + part · by` lies in a circle around 0.
+fn in_circle(at: [f64; 2], by: [f64; 2], radius: f64) -> Option<[f64; 2]> {
+    let (square, half) = (segment::dot(by, by), segment::dot(at, by));
+    let rest = segment::dot(at, at) - radius * radius;
+    if square == 0.0 {
+        return (rest <= 0.0).then_some([0.0, 1.0]);
+    }
+    let root = half * half - square * rest;
+    if root < 0.0 {
+        return None;
+    }
+    let root = root.sqrt();
+    both([(-half - root) / square, (-half + root) / square], [0.0, 1.0])
+}
+
+/// The lines of a layer, but for those that iron.
+#[derive(Debug, Default)]
+pub(super) struct Laid {
+    pub(super) beads: Vec<Bead>,
+    /// The beads of each chain.
+    pub(super) chains: Vec<Range<usize>>,
+    field: Field,
+    cells: Option<Cells<u32>>,
+    /// The highest that its beads carry something at, mm.
+    pub(super) top: f64,
+    /// The highest way of the nozzle, mm.
+    pub(super) highest: f64,
+}
+
+/// Where cells lie.
+#[derive(Debug, Default, Clone, Copy)]
+struct Field {
+    low: [f64; 2],
+    side: f64,
+    count: [usize; 2],
+}
+
+impl Laid {
+    /// Of the chains of a layer, by its moves.
+    pub(super) fn new(moves: &[Step], chains: impl Iterator<Item = Range<usize>>) -> Self {
+        let mut laid = Self::default();
+        for chain in chains {
+            let (first, mut reach) = (laid.beads.len(), 0.0);
+            for step in chain {
+                let bead = Bead::of(&moves[step]);
+                reach += bead.length;
+                let chain = laid.chains.len() as u32;
+                laid.beads.push(Bead { chain, step: step as u32, reach, ..bead });
+            }
+            laid.chains.push(first..laid.beads.len());
+        }
+        laid.sorted()
+    }
+
+    /// Of beads in any order, each a chain of its own.
+    pub(super) fn of(beads: Vec<Bead>) -> Self {
+        let chains = (0..beads.len()).map(|bead| bead..bead + 1).collect();
+        Self { beads, chains, ..Self::default() }.sorted()
+    }
+
+    fn sorted(mut self) -> Self {
+        for bead in &self.beads {
+            self.top = self.top.max(bead.top());
+            self.highest = self.highest.max(bead.highest());
+        }
+        self.field = Field::over(&self.beads);
+        let (field, beads) = (self.field, &self.beads);
+        let reach = |bead: u32| field.reach(&beads[bead as usize], 0.0);
+        let count = field.count[0] * field.count[1];
+        self.cells = Some(Cells::new(count, || 0..beads.len() as u32, reach));
+        self
+    }
+
+    /// Hands the beads that may lie within `more` mm of a line to `sink`, each once, in any order.
+    pub(super) fn near(
+        &self,
+        line: &Bead,
+        more: f64,
+        seen: &mut Seen,
+        sink: &mut dyn FnMut(usize, &Bead),
+    ) {
+        let Some(cells) = &self.cells else { return };
+        seen.next(self.beads.len());
+        for cell in self.field.reach(line, more) {
+            for &bead in cells.of(cell..cell + 1) {
+                let bead = bead as usize;
+                if seen.is_new(bead) {
+                    sink(bead, &self.beads[bead]);
+                }
+            }
+        }
+    }
+
+    /// Whether beads of both layers may lie on one another.
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        let ends = |laid: &Self, axis: usize| {
+            let field = laid.field;
+            [field.low[axis], field.low[axis] + field.side * field.count[axis] as f64]
+        };
+        (0..2).all(|axis| both(ends(self, axis), ends(other, axis)).is_some())
+    }
+
+    /// Whether some bead that `counts` covers a place.
+    pub(super) fn covers(&self, at: [f64; 2], counts: impl Fn(usize, &Bead) -> bool) -> bool {
+        let Some(cells) = &self.cells else { return false };
+        let Some(cell) = self.field.cell(at) else { return false };
+        cells.of(cell..cell + 1).iter().any(|&bead| {
+            let one = &self.beads[bead as usize];
+            counts(bead as usize, one) && one.is_near(at, one.radius)
+        })
+    }
+}
+
+/// Which beads have been handed out for a line.
+#[derive(Debug, Default)]
+pub(super) struct Seen {
+    last: Vec<u32>,
+    line: u32,
+}
+
+impl Seen {
+    fn next(&mut self, count: usize) {
+        if self.last.len() < count {
+            self.last.resize(count, 0);
+        }
+        self.line += 1;
+    }
+
+    fn is_new(&mut self, bead: usize) -> bool {
+        std::mem::replace(&mut self.last[bead], self.line) != self.line
+    }
+}
+
+impl Field {
+    fn over(beads: &[Bead]) -> Self {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for bead in beads {
+            for at in [bead.from, bead.place(1.0)] {
+                for axis in 0..2 {
+                    low[axis] = low[axis].min(at[axis] - bead.radius);
+                    high[axis] = high[axis].max(at[axis] + bead.radius);
+                }
+            }
+        }
+        if beads.is_empty() {
+            return Self { low: [0.0; 2], side: CELL, count: [1; 2] };
+        }
+        let sides = segment::way(low, high);
+        let most = MOST_CELLS.0 * beads.len() as f64 + MOST_CELLS.1;
+        let longest = sides[0].max(sides[1]);
+        let side = CELL.max((sides[0] * sides[1] / most).sqrt()).max(longest / most);
+        Self { low, side, count: sides.map(|length| (length / side) as usize + 1) }
+    }
+
+    fn cell(&self, at: [f64; 2]) -> Option<usize> {
+        let x = (at[0] - self.low[0]) / self.side;
+        let y = (at[1] - self.low[1]) / self.side;
+        let is_in = x >= 0.0 && y >= 0.0 && x < self.count[0] as f64 && y < self.count[1] as f64;
+        is_in.then_some(x as usize + y as usize * self.count[0])
+    }
+
+    /// The cells within `more` mm of a bead.
+    fn reach(self, bead: &Bead, more: f64) -> impl Iterator<Item = usize> {
+        let radius = bead.radius + more;
+        // In cells from the lowest corner.
+        let scale = 1.0 / self.side;
+        let (radius, length) = (radius * scale, bead.length * scale);
+        let x = (bead.from[0] - self.low[0]) * scale;
+        let y = (bead.from[1] - self.low[1]) * scale;
+        let (dx, dy) = (bead.along[0] * length, bead.along[1] * length);
+        let span = move |from: f64, to: f64, count: usize| {
+            let first = (from - radius).max(0.0) as usize;
+            let end = (to + radius + 1.0).max(0.0) as usize;
+            first..end.min(count)
+        };
+        let rows = span(y.min(y + dy), y.max(y + dy), self.count[1]);
+        rows.flat_map(move |row| {
+            let low = row as f64 - radius;
+            let part = within(y, dy, [low, low + 1.0 + 2.0 * radius]);
+            let [from, to] = part.map_or([0.0, 1.0], |part| part.map(|part| x + part * dx));
+            let columns =
+                if part.is_some() { span(from.min(to), from.max(to), self.count[0]) } else { 0..0 };
+            columns.map(move |column| column + row * self.count[0])
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn step(from: [f64; 2], to: [f64; 2], width: f64) -> Step {
+        let at = |[x, y]: [f64; 2]| [x as f32, y as f32, 0.2];
+        let (filament, feed, height) = (1.0, 1.0, 0.2);
+        let width = width as f32;
+        Step {
+            from: at(from),
+            to: at(to),
+            filament,
+            feed,
+            width,
+            height,
+            role: Role::Skin,
+            line: 1,
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_way_is_what_lies_within_the_distance(
+            lines in prop::array::uniform4([0.0..9.0_f64, 0.0..9.0_f64]),
+            mm in 0.1..2.0_f64,
+        ) {
+            let [a, b, c, d] = lines;
+            let (line, other) = (Bead::of(&step(a, b, 0.4)), Bead::of(&step(c, d, 0.4)));
+            let way = line.way(&other, mm);
+            for k in 0..=200 {
+                let part = f64::from(k) / 200.0;
+                let distance = segment::distance2(line.place(part), [other.from, other.place(1.0)]).sqrt();
+                if (distance - mm).abs() > 1e-3 {
+                    let is_in = way.is_some_and(|[from, to]| from <= part && part <= to);
+                    prop_assert_eq!(is_in, distance < mm, "{} {:?}", part, way);
+                }
+            }
+        }
+
+        #[test]
+        fn all_beads_near_a_line_are_found_once(
+            lines in prop::collection::vec([0.0..30.0_f64, 0.0..30.0_f64, -9.0..9.0_f64, -9.0..9.0_f64], 1..40),
+            line in [-5.0..35.0_f64, -5.0..35.0_f64, -9.0..9.0_f64, -9.0..9.0_f64],
+        ) {
+            let of = |[x, y, dx, dy]: [f64; 4]| step([x, y], [x + dx, y + dy], 0.5);
+            let moves: Vec<Step> = lines.into_iter().map(of).collect();
+            let laid = Laid::new(&moves, (0..moves.len()).map(|k| k..k + 1));
+            let (line, mut seen) = (Bead::of(&of(line)), Seen::default());
+            for _ in 0..2 {
+                let mut found = Vec::new();
+                laid.near(&line, 0.3, &mut seen, &mut |k, _| found.push(k));
+                found.sort_unstable();
+                prop_assert!(found.windows(2).all(|two| two[0] < two[1]));
+                for (k, bead) in laid.beads.iter().enumerate() {
+                    if line.way(bead, bead.radius + line.radius + 0.3).is_some() {
+                        prop_assert!(found.contains(&k));
+                    }
+                }
+            }
+            for bead in &laid.beads {
+                prop_assert!(laid.covers(bead.place(0.5), |_, _| true));
+            }
+        }
+    }
+}

@@ -1,0 +1,460 @@
+//! A layer on the ground -> what hangs on it, lies twice or falls, and its patches: all lines that touch.
+//!
+//! Words used here: a *chain* is lines one after the other without a break; a *patch* is all lines of a
+//! layer that touch; a *way* is a part of a line, from 0 to 1; a *run* is a stretch of a chain that
+//! is carried all along, or nowhere. What is judged is told in [`stack`](super::stack).
+//!
+//! Chains are laid in the file's order, each on the ground and beside those of its layer before it:
+//! 1. the ways of each of its lines that are carried, or lie on another line, are found among the
+//!    lines near it;
+//! 2. they are put together to runs of the chain, which are judged;
+//! 3. chains that touch become patches, which are judged last.
+
+use super::anchors::{self, LEAST_RUN, Loose, Piece};
+use super::beads::place;
+use super::bodies::Start;
+use super::finding::{Code, Finding, Place, short};
+use super::ground::{Carrier, Ground, PITCH, bed_room, below, lower_side, room_below};
+use super::laid::{Bead, Laid, Seen, both};
+use super::moves::ROUNDING;
+use super::part::Part;
+use super::runs::{Runs, Twice, united};
+use super::samples::{Sample, Samples};
+use super::sets::Sets;
+use crate::reader::Role;
+use crate::reader::print::Step;
+use std::ops::Range;
+
+/// A patch with shorter lines in all is no layer that is missing below, but a blob, mm.
+const LEAST_PATCH: f64 = 4.0;
+
+/// Longest stretch that is ironed where the layer has nothing, mm: hair lines between beads are less.
+const LEAST_BARE: f64 = 1.5;
+
+/// Layers that may be missing below lines, by which that differs from a body that begins.
+const MOST_MISSING: f64 = 2.0;
+
+/// Length behind the nozzle that does not count as laid, mm: a line may turn back within it.
+const BEHIND: f64 = 1.5;
+
+/// A line runs on another where their cores meet, which are this part of their widths: neighbours
+/// overlap by less, turns of a zigzag by more.
+const CORE: f64 = 0.4;
+
+/// What carries a line may end so far beside it, mm: a tenth of a line, by which widths are rounded
+/// and beads are wider than files say.
+const SLACK: f64 = 0.05;
+
+/// Gaps in what a line lies on that do not count, mm.
+const CLOSED: f64 = 0.03;
+
+/// Heights of lines that differ by less are the same, mm: positions are rounded to this or less.
+const SAME_HEIGHT: f64 = 0.01;
+
+/// Lines this near to each other touch, mm: a sixth of a line.
+const BESIDE: f64 = 0.07;
+
+/// What was measured.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Measured {
+    /// Longest stretch between two carried places, mm.
+    pub(super) longest_bridge: f64,
+    /// Longest end of a line that only the line itself and its neighbours hold, mm.
+    pub(super) longest_end: f64,
+    /// Length of lines that hang where the part itself hangs, mm.
+    pub(super) part_hangs: f64,
+}
+
+/// The chains of a layer's moves.
+pub(super) fn chains_of(moves: &[Step]) -> impl Iterator<Item = Range<usize>> {
+    let mut next = 0;
+    let chains = moves.chunk_by(|a, b| {
+        a.is_line() && b.is_line() && a.to == b.from && is_ironing(a) == is_ironing(b)
+    });
+    let chains = chains.map(move |chain| {
+        let first = next;
+        next += chain.len();
+        first..next
+    });
+    chains.filter(|chain| moves[chain.start].is_line())
+}
+
+/// Whether a line lies on purpose on others of its layer.
+pub(super) fn is_ironing(step: &Step) -> bool {
+    step.role == Role::Ironing
+}
+
+/// A chain once it is laid.
+struct Line {
+    /// mm.
+    length: f64,
+    /// What carries it, each once.
+    carriers: Vec<Carrier>,
+    /// Longest stretch that nothing carries at one of its ends, and between two that are carried, mm.
+    longest_end: f64,
+    longest_bridge: f64,
+    /// Lines without an anchor.
+    loose: Vec<(Loose, Step)>,
+}
+
+/// All lines of a layer that touch.
+pub(super) struct Patch {
+    /// mm.
+    pub(super) length: f64,
+    /// Whether the part stands by it.
+    pub(super) is_part: bool,
+    pub(super) carriers: Vec<Carrier>,
+    /// Where a body begins, if it does.
+    pub(super) start: Option<Start>,
+}
+
+/// What was found on a layer.
+pub(super) struct Judged {
+    pub(super) found: Vec<Finding>,
+    pub(super) measured: Measured,
+    pub(super) patches: Vec<Patch>,
+    /// The patch of each chain.
+    pub(super) of_chain: Vec<usize>,
+}
+
+/// Judges a layer.
+pub(super) struct Judge<'a> {
+    layer: usize,
+    part: Option<&'a Part>,
+    laid: &'a Laid,
+    moves: &'a [Step],
+    ground: &'a Ground<'a>,
+    /// The highest line of the layers before, mm.
+    highest: f64,
+    /// Which chains touch.
+    touching: Sets,
+    /// Beads of this layer, and of those below, that were looked at for a line.
+    seen: Seen,
+    seen_below: Vec<Seen>,
+    pub(super) found: Vec<Finding>,
+    measured: Measured,
+    /// How deep a line of this layer lies in what the layers before have printed, mm, and the line
+    /// that lies deepest.
+    fall: Option<(f64, Step)>,
+}
+
+/// What of a line is carried, and what of it lies on others of its layer: stretches from 0 to 1.
+#[derive(Default)]
+struct Ways {
+    carried: Vec<[f64; 2]>,
+    /// Carried on the middle, and beside it: by what.
+    middle: Vec<[f64; 2]>,
+    beside: Vec<(Carrier, [f64; 2])>,
+    laid: Vec<[f64; 2]>,
+}
+
+impl<'a> Judge<'a> {
+    pub(super) fn new(
+        (layer, part): (usize, Option<&'a Part>),
+        (laid, moves): (&'a Laid, &'a [Step]),
+        ground: &'a Ground<'a>,
+        highest: f64,
+    ) -> Self {
+        let mut touching = Sets::default();
+        laid.chains.iter().for_each(|_| _ = touching.add());
+        Self {
+            layer,
+            part,
+            laid,
+            moves,
+            ground,
+            highest,
+            touching,
+            seen: Seen::default(),
+            seen_below: ground.seen(),
+            found: Vec::new(),
+            measured: Measured::default(),
+            fall: None,
+        }
+    }
+
+    pub(super) fn layer(mut self) -> Judged {
+        let mut ways = Ways::default();
+        let lines: Vec<Line> =
+            (0..self.laid.chains.len()).map(|chain| self.lay(chain, &mut ways)).collect();
+        let (patches, of_chain) = self.patches(&lines);
+        for chain in chains_of(self.moves).filter(|chain| is_ironing(&self.moves[chain.start])) {
+            self.iron(&self.moves[chain]);
+        }
+        if let Some((fall, step)) = self.fall {
+            let text = format!("{} mm lower than what is printed already", short(fall));
+            self.add(Finding::of(Code::FallingZ, fall, "mm", text), &step);
+        }
+        Judged { found: self.found, measured: self.measured, patches, of_chain }
+    }
+
+    fn add(&mut self, finding: Finding, step: &Step) {
+        self.found.push(finding.at(place(self.layer, step)));
+    }
+
+    /// Lays a chain, of many straight lines.
+    fn lay(&mut self, chain: usize, ways: &mut Ways) -> Line {
+        let beads = self.laid.chains[chain].clone();
+        let (mut runs, mut twice, mut carriers) = (Runs::default(), Twice::default(), Vec::new());
+        for index in beads.clone() {
+            let bead = &self.laid.beads[index];
+            let step = &self.moves[bead.step as usize];
+            self.find_fall(bead, step, beads.start);
+            self.carry(bead, step, ways, &mut carriers);
+            self.touch(bead, index, ways);
+            united(&mut ways.carried, 0.0);
+            runs.add(index - beads.start, bead.length, &ways.carried);
+            united(&mut ways.laid, CLOSED / bead.length);
+            twice.step(&ways.laid, bead.length, step);
+        }
+        let length = self.laid.beads[beads.clone()].iter().map(|bead| bead.length).sum();
+        for (long, step) in twice.ends(length) {
+            let text = format!("{} mm of a line lie on another of the layer", short(long));
+            self.add(Finding::of(Code::PrintedTwice, long, "mm", text), &step);
+        }
+        let loose = if runs.hanging() > LEAST_RUN { self.loose(beads, &runs) } else { Vec::new() };
+        let (longest_end, longest_bridge) = runs.longest();
+        Line { length, carriers, longest_end, longest_bridge, loose }
+    }
+
+    /// Finds what carries a line.
+    fn carry(&mut self, bead: &Bead, step: &Step, ways: &mut Ways, carriers: &mut Vec<Carrier>) {
+        ways.carried.clear();
+        ways.middle.clear();
+        ways.beside.clear();
+        ways.laid.clear();
+        // What lies lower falls into other lines before it lies on one.
+        let is_highest = bead.middle() > self.highest - SAME_HEIGHT;
+        let mut is_whole = false;
+        if let Some(way) = below(bead, bed_room(step)) {
+            is_whole = way == [0.0, 1.0];
+            ways.carried.push(way);
+            add(carriers, Carrier::Bed);
+        }
+        let room = room_below(step);
+        let needed = bead.heights[0].min(bead.heights[1]) - room;
+        self.ground.near(bead, (needed, SLACK), &mut self.seen_below, &mut |layer, other| {
+            if is_highest && (other.middle() - bead.middle()).abs() < SAME_HEIGHT {
+                ways.laid.extend(bead.way(other, CORE * other.radius));
+            }
+            let carrier = Carrier::Chain(layer, other.chain);
+            let is_known = carriers.contains(&carrier);
+            if is_whole && is_known {
+                return;
+            }
+            let low = below(bead, other.top() + room);
+            let side = bead.way(other, other.radius + bead.radius + SLACK);
+            let Some(side) = low.zip(side).and_then(|(a, b)| both(a, b)) else { return };
+            is_whole |= side == [0.0, 1.0];
+            ways.carried.push(side);
+            if is_known {
+                return;
+            }
+            match bead.way(other, other.radius + SLACK).and_then(|way| both(way, side)) {
+                Some(middle) => {
+                    ways.middle.push(middle);
+                    carriers.push(carrier);
+                }
+                None => ways.beside.push((carrier, side)),
+            }
+        });
+        // What lies beside the middle carries only where nothing lies below that.
+        if !ways.beside.is_empty() {
+            united(&mut ways.middle, 0.0);
+            for (carrier, [from, to]) in ways.beside.drain(..) {
+                if !ways.middle.iter().any(|middle| middle[0] <= from && to <= middle[1]) {
+                    add(carriers, carrier);
+                }
+            }
+        }
+    }
+
+    /// Joins a line's chain to those that it touches, and finds what it lies on of its own layer: of
+    /// what was laid before.
+    fn touch(&mut self, bead: &Bead, index: usize, ways: &mut Ways) {
+        let (touching, chain) = (&mut self.touching, bead.chain as usize);
+        self.laid.near(bead, BESIDE, &mut self.seen, &mut |k, other| {
+            if k >= index {
+                return;
+            }
+            let is_own = other.chain == bead.chain;
+            if !is_own
+                && touching.root(chain) != touching.root(other.chain as usize)
+                && bead.way(other, bead.radius + other.radius + BESIDE).is_some()
+            {
+                touching.join(chain, other.chain as usize);
+            }
+            let is_behind = !is_own || bead.reach - other.reach > BEHIND;
+            if is_behind && (other.middle() - bead.middle()).abs() < SAME_HEIGHT {
+                ways.laid.extend(bead.way(other, CORE * other.radius));
+            }
+        });
+    }
+
+    /// Notes how far a line lies below the nozzle's way there in a layer before; `before` is how many
+    /// beads of its own layer lie there already.
+    fn find_fall(&mut self, bead: &Bead, step: &Step, before: usize) {
+        if bead.heights[0].min(bead.heights[1]) >= self.highest - ROUNDING {
+            return;
+        }
+        let is_free = |at| !self.laid.covers(at, |k, _| k < before);
+        let fall = self.ground.depth(bead, CORE, &mut self.seen_below, is_free);
+        if fall > self.fall.map_or(ROUNDING, |(most, _)| most) {
+            self.fall = Some((fall, *step));
+        }
+    }
+
+    /// Reports what of a chain that irons lies beside all that the layer has laid.
+    fn iron(&mut self, chain: &[Step]) {
+        let (mut run, mut longest) = (0.0, (0.0, chain[0]));
+        for step in chain {
+            let bead = Bead::of(step);
+            self.find_fall(&bead, step, usize::MAX);
+            let mut covered = Vec::new();
+            self.laid.near(&bead, 0.0, &mut self.seen, &mut |_, other| {
+                covered.extend(bead.way(other, other.radius));
+            });
+            united(&mut covered, 0.0);
+            let mut at = 0.0;
+            for [from, to] in covered.into_iter().chain([[1.0, 1.0]]) {
+                run += (from - at) * bead.length;
+                if run > longest.0 {
+                    longest = (run, *step);
+                }
+                run = if to > from { 0.0 } else { run };
+                at = to;
+            }
+        }
+        let (length, step) = longest;
+        if length >= LEAST_BARE {
+            let text = format!("{} mm are ironed where the layer has nothing", short(length));
+            self.add(Finding::of(Code::InTheAir, length, "mm", text), &step);
+        }
+    }
+
+    /// The loose lines of a chain.
+    fn loose(&self, beads: Range<usize>, runs: &Runs) -> Vec<(Loose, Step)> {
+        let first = self.laid.beads[beads.start].step as usize;
+        let chain = &self.moves[first..first + beads.len()];
+        let mut pieces = Vec::new();
+        for run in &runs.all {
+            if run.carried || run.length <= LEAST_RUN {
+                let (step, _) = run.from;
+                let sample = Samples::of(&chain[step], f64::INFINITY).next();
+                pieces.extend(sample.map(|sample| Piece {
+                    sample: Sample { length: run.length, ..sample },
+                    carried: run.carried,
+                    step,
+                }));
+                continue;
+            }
+            for step in run.from.0..=run.to.0 {
+                let from = if step == run.from.0 { run.from.1 } else { 0.0 };
+                let to = if step == run.to.0 { run.to.1 } else { 1.0 };
+                let samples = Samples::of(&chain[step], PITCH).between(from, to);
+                pieces.extend(samples.map(|sample| Piece { sample, carried: false, step }));
+            }
+        }
+        let loose = anchors::loose(self.ground, chain, &pieces);
+        loose.into_iter().map(|one| (chain[one.step], one)).map(|(step, one)| (one, step)).collect()
+    }
+
+    /// Judges the patches of the layer, in the order of their first chains; gives each chain's.
+    fn patches(&mut self, lines: &[Line]) -> (Vec<Patch>, Vec<usize>) {
+        let roots: Vec<usize> = (0..lines.len()).map(|line| self.touching.root(line)).collect();
+        // The lines of each patch side by side, in the order of their first lines.
+        let mut order: Vec<usize> = (0..lines.len()).collect();
+        order.sort_by_key(|&line| roots[line]);
+        let (mut patches, mut of_chain) = (Vec::new(), vec![0; lines.len()]);
+        for patch in order.chunk_by(|&a, &b| roots[a] == roots[b]) {
+            patch.iter().for_each(|&line| of_chain[line] = patches.len());
+            let patch = self.patch(lines, patch);
+            patches.push(patch);
+        }
+        (patches, of_chain)
+    }
+
+    fn patch(&mut self, lines: &[Line], chains: &[usize]) -> Patch {
+        let of_patch = || chains.iter().map(|&chain| &lines[chain]);
+        let length = of_patch().map(|line| line.length).sum();
+        let mut carriers = Vec::new();
+        for line in of_patch() {
+            carriers.extend_from_slice(&line.carriers);
+            self.measured.longest_bridge = self.measured.longest_bridge.max(line.longest_bridge);
+        }
+        let is_part = chains.iter().any(|&chain| !is_beside(self.first(chain).role));
+        if carriers.is_empty() {
+            let start = self.begins(chains, length);
+            return Patch { length, is_part, carriers, start };
+        }
+        for line in of_patch() {
+            // Skins may begin and end between two lines of sparse infill.
+            self.measured.longest_end = self.measured.longest_end.max(line.longest_end);
+            for (loose, step) in &line.loose {
+                let what = step.role.name();
+                let text = format!("{} mm of {what} {}", short(loose.length), loose.why);
+                let finding = Finding::warning(Code::Unanchored, loose.length, "mm", text);
+                let at_mm = Some(loose.at.map(short));
+                self.found.push(finding.at(Place { at_mm, ..place(self.layer, step) }));
+            }
+        }
+        Patch { length, is_part, carriers, start: None }
+    }
+
+    /// The first line of a chain.
+    fn first(&self, chain: usize) -> &'a Step {
+        let first = self.laid.chains[chain].start;
+        &self.moves[self.laid.beads[first].step as usize]
+    }
+
+    /// A patch hangs: a layer below is missing, unless the part itself hangs there. Where that is
+    /// not known, plastic a layer or two lower tells.
+    fn begins(&mut self, chains: &[usize], length: f64) -> Option<Start> {
+        let beads =
+            chains.iter().flat_map(|&chain| &self.laid.beads[self.laid.chains[chain].clone()]);
+        let samples = beads.flat_map(|bead| Samples::of(&self.moves[bead.step as usize], PITCH));
+        let all: Vec<Sample> = samples.collect();
+        let step = self.first(chains[0]);
+        let hangs = |sample: &Sample| match self.part {
+            Some(part) => part.hangs(self.layer, sample.at),
+            None => {
+                let low = lower_side(step, sample.z) - MOST_MISSING * f64::from(step.height);
+                low <= 0.0 || !self.ground.stands(sample.at, low)
+            }
+        };
+        let (by_part, own): (Vec<Sample>, Vec<Sample>) = all.iter().copied().partition(hangs);
+        let middle = |of: &[Sample]| of.get(of.len() / 2).map(|sample| sample.at.map(short));
+        let at = |of: &[Sample]| Place { at_mm: middle(of), ..place(self.layer, step) };
+        if length >= LEAST_PATCH && self.part.is_some() {
+            self.measured.part_hangs += length_of(&by_part);
+        }
+        if length_of(&own) >= LEAST_PATCH {
+            let what = step.role.name();
+            let text = format!("{} mm of {what} have nothing under them", short(length_of(&own)));
+            let finding = Finding::of(Code::InTheAir, length_of(&own), "mm", text);
+            self.found.push(finding.at(at(&own)));
+            return None;
+        }
+        Some(Start {
+            place: at(&all),
+            role: step.role,
+            length,
+            bottom: step.heights()[0] - f64::from(step.height),
+        })
+    }
+}
+
+fn length_of(samples: &[Sample]) -> f64 {
+    samples.iter().map(|sample| sample.length).sum()
+}
+
+fn add(carriers: &mut Vec<Carrier>, carrier: Carrier) {
+    if !carriers.contains(&carrier) {
+        carriers.push(carrier);
+    }
+}
+
+/// Whether lines of this role are printed beside the part, which does not stand by them.
+fn is_beside(role: Role) -> bool {
+    matches!(role, Role::Support | Role::Adhesion)
+}

@@ -1,0 +1,245 @@
+//! Layers as they come -> Survey: what must be known of all of them before any is judged.
+//!
+//! Words used here: a layer's *floor* is how low its lines and those of all layers above reach; its
+//! *gap* is how much higher it lies above the layer below than its walls are; a *stray* is a line
+//! so far from its layer's height that it is judged with the layer it lies at; what is *usual* is the
+//! middle one of all by their order (the median).
+//!
+//! A few numbers a layer are kept, and no moves, but for strays, which are rare, and a few layers by
+//! which the part is laid where it was printed. What is usual is found by counting in narrow classes, a
+//! part in four thousand wide, instead of keeping all values.
+
+use super::against::{SOME_WIDTH, is_of_part, is_stray};
+use super::beads;
+use super::capsule::Capsule;
+use super::part::extent_of;
+use super::terms::Terms;
+use super::window::{Page, Pages};
+use crate::reader::print::Step;
+use crate::reader::{Facts, Role};
+use std::collections::BTreeMap;
+
+/// Layers on which is looked where the part lies, spread over the print.
+const LAYERS_LOOKED_AT: usize = 16;
+
+/// Part of its walls' height by which a layer may lie too high: variable heights are rounded,
+/// a missing layer is a whole height.
+const LEAST_GAP: f64 = 0.4;
+
+/// Lowest and highest x and y, mm.
+pub(super) type Extent = Option<([f64; 2], [f64; 2])>;
+
+/// What is known of the layers; lists have a value for each.
+#[derive(Debug, Default)]
+pub(super) struct Survey {
+    /// How high outer walls are at most, mm; 0 without one.
+    walls: Vec<f64>,
+    /// How high its lines are, mm.
+    pub(super) heights: Vec<f64>,
+    /// See the words of this file, mm.
+    pub(super) gaps: Vec<f64>,
+    pub(super) floors: Vec<f64>,
+    /// How low lines of the part reach, mm; endless without one.
+    pub(super) bottoms: Vec<f64>,
+    /// What outer walls cover, or else lines of the part.
+    pub(super) outlines: Vec<Extent>,
+    /// Lines of other layers that lie at its height.
+    pub(super) strays: Vec<Vec<Step>>,
+    /// What all lines cover; those of the part, those before the layers included.
+    pub(super) extent: Extent,
+    pub(super) part: Extent,
+    /// Where ends of lines of walls and skins lie, and of support.
+    pub(super) solid: Extent,
+    pub(super) support: Extent,
+    /// The highest line, mm.
+    pub(super) top: f64,
+    /// Filament of the lines of the layers, mm.
+    pub(super) filament: f64,
+    /// Filament up to the last line, of the whole file and from the first layer on, mm.
+    pub(super) used: [f64; 2],
+    /// Usual width of outer walls, mm.
+    pub(super) line_width: f64,
+    /// Usual plastic of lines of each role by their size, if there are enough.
+    pub(super) usual: [Option<f64>; Role::ALL.len()],
+    /// Some layers, spread over the print.
+    pub(super) looked_at: Vec<(usize, Vec<Step>)>,
+}
+
+/// Values counted in narrow classes.
+#[derive(Debug, Default)]
+struct Counted {
+    /// How many there are of each class, and the first of them.
+    classes: BTreeMap<u32, (u64, f64)>,
+    /// The class of the last ones, which are not among those yet.
+    last: Option<(u32, (u64, f64))>,
+    count: u64,
+}
+
+impl Survey {
+    pub(super) fn new<E>(facts: &Facts, terms: &Terms, pages: Pages<'_, E>) -> Result<Self, E> {
+        let mut survey = Self::default();
+        survey.strays = vec![Vec::new(); facts.layers.len()];
+        let mut plastic: [Counted; Role::ALL.len()] = Default::default();
+        let mut widths = Counted::default();
+        let every = facts.layers.len().div_ceil(LAYERS_LOOKED_AT).max(1);
+        for page in pages {
+            let page = page?;
+            survey.page(facts, &page);
+            let Some(layer) = page.layer else { continue };
+            for step in page.moves.iter().filter(|step| step.is_line()) {
+                if step.role == Role::OuterWall {
+                    widths.add(f64::from(step.width));
+                }
+                if beads::is_judged(step) {
+                    plastic[step.role as usize].add(beads::ratio(facts, terms, step));
+                }
+            }
+            if layer % every == 0 {
+                survey.looked_at.push((layer, page.moves.into_owned()));
+            }
+        }
+        let mut floor = f64::INFINITY;
+        for own in survey.floors.iter_mut().rev() {
+            floor = floor.min(*own);
+            *own = floor;
+        }
+        for (layer, walls) in facts.layers.iter().zip(&survey.walls) {
+            let missing = layer.height - walls;
+            let is_gap = facts.has_heights && *walls > 0.0 && missing > LEAST_GAP * walls;
+            let gap = if is_gap { missing } else { 0.0 };
+            survey.gaps.push(gap);
+            survey.heights.push(layer.height - gap);
+        }
+        survey.line_width = widths.median().unwrap_or(SOME_WIDTH);
+        survey.usual = plastic.map(|counted| {
+            let enough = counted.count >= beads::LEAST_LINES;
+            counted.median().filter(|_| enough)
+        });
+        Ok(survey)
+    }
+
+    /// Whether a layer has an outer wall.
+    pub(super) fn has_walls(&self, layer: usize) -> bool {
+        self.walls[layer] > 0.0
+    }
+
+    fn page(&mut self, facts: &Facts, page: &Page<'_>) {
+        let has_roles = facts.has(Role::OuterWall);
+        let (mut walls, mut floor, mut bottom) = (0.0_f64, f64::INFINITY, f64::INFINITY);
+        let (mut of_walls, mut of_part) = (None, None);
+        for (index, step) in (page.first..).zip(page.moves.iter()) {
+            if index < facts.last_line {
+                self.used[0] += f64::from(step.filament);
+                self.used[1] += if page.layer.is_some() { f64::from(step.filament) } else { 0.0 };
+            }
+            if !step.is_line() {
+                continue;
+            }
+            let covered = Capsule::of(step, 1.0).extent();
+            let is_of = is_of_part(step, has_roles);
+            if is_of {
+                self.part = both(self.part, Some(covered));
+                of_part = both(of_part, Some(covered));
+            }
+            if page.layer.is_none() {
+                continue;
+            }
+            self.filament += f64::from(step.filament);
+            self.extent = both(self.extent, Some(covered));
+            let ends = || extent_of([step.from, step.to].map(flat).into_iter());
+            match step.role {
+                Role::OuterWall | Role::InnerWall | Role::Skin => {
+                    self.solid = both(self.solid, ends())
+                }
+                Role::Support => self.support = both(self.support, ends()),
+                _ => {}
+            }
+            let low = step.heights()[0] - f64::from(step.height);
+            floor = floor.min(low);
+            self.top = self.top.max(step.heights()[1]);
+            if is_of_part(step, true) {
+                bottom = bottom.min(low);
+            }
+            if step.role == Role::OuterWall {
+                walls = walls.max(f64::from(step.height));
+                of_walls = both(of_walls, Some(covered));
+            }
+            if let Some(layer) = page.layer
+                && is_stray(step, &facts.layers[layer])
+            {
+                let [low, high] = step.heights();
+                let at = facts.layers.partition_point(|one| one.z < 0.5 * (low + high));
+                self.strays[at.min(facts.layers.len() - 1)].push(*step);
+            }
+        }
+        if page.layer.is_some() {
+            self.walls.push(walls);
+            self.floors.push(floor);
+            self.bottoms.push(bottom);
+            self.outlines.push(of_walls.or(of_part));
+        }
+    }
+}
+
+fn flat(at: [f32; 3]) -> [f64; 2] {
+    [f64::from(at[0]), f64::from(at[1])]
+}
+
+/// What either covers.
+pub(super) fn both(a: Extent, b: Extent) -> Extent {
+    let (Some((low, high)), Some((from, to))) = (a, b) else { return a.or(b) };
+    let lower = [low[0].min(from[0]), low[1].min(from[1])];
+    Some((lower, [high[0].max(to[0]), high[1].max(to[1])]))
+}
+
+impl Counted {
+    /// Bits of a double of 32 bits that a class leaves open: it is 1/4096 wide.
+    const OPEN: u32 = 11;
+
+    fn add(&mut self, value: f64) {
+        let class = (value as f32).to_bits() >> Self::OPEN;
+        self.count += 1;
+        match &mut self.last {
+            // Most lines are like the one before.
+            Some((last, (count, _))) if *last == class => *count += 1,
+            _ => {
+                if let Some(last) = self.last.replace((class, (1, value))) {
+                    Self::put(&mut self.classes, last);
+                }
+            }
+        }
+    }
+
+    fn put(classes: &mut BTreeMap<u32, (u64, f64)>, (class, more): (u32, (u64, f64))) {
+        classes.entry(class).and_modify(|(count, _)| *count += more.0).or_insert(more);
+    }
+
+    /// One of the class of the middle one of all by their order.
+    fn median(mut self) -> Option<f64> {
+        if let Some(last) = self.last {
+            Self::put(&mut self.classes, last);
+        }
+        let mut below = 0;
+        let class = self.classes.into_values().find(|(count, _)| {
+            below += count;
+            below > self.count / 2
+        });
+        class.map(|(_, value)| value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_one_is_found_by_counting() {
+        assert_eq!(Counted::default().median(), None);
+        let mut counted = Counted::default();
+        for k in 1..=99 {
+            counted.add(f64::from((k * 37) % 100) / 100.0);
+        }
+        let median = counted.median().unwrap();
+        assert!((median - 0.5).abs() < 0.5 / 4096.0, "{median}");
+    }
+}

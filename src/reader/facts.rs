@@ -1,0 +1,259 @@
+//! Events -> Facts: what is known of a G-code file as a whole, without its moves.
+//!
+//! Words used here: a *move* is a straight way of the nozzle; a *line* is a move that goes sideways and
+//! extrudes; a *segment* is all moves from the beginning of one layer to that of the next; a *value*
+//! is `key = value` in a comment.
+//!
+//! Segments become layers:
+//! - by the file's comments if any marks a layer, else by the heights of lines (see `layers`). What
+//!   comes before the first mark is no layer: what heights told until then is forgotten;
+//! - a segment without a line is no layer: its moves belong to the one before;
+//! - a layer lies where most of its lines do (see `height`), and is as high as it lies above the
+//!   layer before.
+//!
+//! Nothing here grows with the number of moves or lines; what a file may have many of is bounded.
+
+use super::print::{Layer, Step};
+use super::{Event, Heights, Motion, Role, Summary};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// Longest part of a comment that is kept, bytes: the longest settings are lists of a few hundred.
+const LONGEST_COMMENT: usize = 4096;
+
+/// Comments of a file that are kept: more than any slicer writes settings; and their bytes.
+const MOST_COMMENTS: usize = 10_000;
+const MOST_BYTES: usize = 1 << 22;
+
+/// Different commands that are kept: firmwares know some hundreds.
+const MOST_COMMANDS: usize = 10_000;
+
+/// Heights that differ by less are the same, mm.
+const SAME_HEIGHT: f64 = 1e-4;
+
+/// Keys under which slicers write the filament's diameter, mm.
+const DIAMETER_KEYS: &[&str] = &["filament.diameter", "filament_diameter"];
+
+/// Diameters that a filament may have, mm.
+const DIAMETERS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
+
+/// Height of a line where neither a comment nor a layer below gives one, mm: the most usual one.
+const SOME_HEIGHT: f64 = 0.2;
+
+/// No line is higher than this, mm: twice what the widest nozzles print. A layer that lies higher
+/// above the one before, or above the bed, hangs.
+const HIGHEST: f64 = 2.0;
+
+/// What is known of a file as a whole.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Facts {
+    /// Moves before the first layer: the start block and what it draws.
+    pub start: Range<usize>,
+    /// The layers from the bed up. Each ends where the next begins; the last
+    /// holds what comes after the print as well.
+    pub layers: Vec<Layer>,
+    /// Moves in all.
+    pub move_count: usize,
+    /// Place in the moves after the last line; 0 without one.
+    pub last_line: usize,
+    /// Roles that moves have, by [`Role::ALL`].
+    pub roles: [bool; Role::ALL.len()],
+    /// `key = value` in comments: settings and sums that slicers write, in the file's order.
+    pub values: Vec<(String, String)>,
+    /// Commands that occur, but for moves: letter and number -> the first line with it.
+    pub commands: BTreeMap<(u8, u32), u64>,
+    /// The file's first comments, up to the first line that is something else.
+    pub head: Vec<String>,
+    /// Whether comments mark where layers begin.
+    pub marked: bool,
+    /// Layers that begin, those without a line included.
+    pub begun: usize,
+    /// Whether comments give widths of lines.
+    pub has_widths: bool,
+    /// Whether comments give heights of lines.
+    pub has_heights: bool,
+    /// Diameter of the filament, mm: the file's own, else what the caller gave.
+    pub filament_diameter: f64,
+    /// By how much filament is multiplied that was read before the file said its diameter.
+    scale: Option<f32>,
+    /// What was read besides the moves.
+    pub summary: Summary,
+}
+
+impl Facts {
+    /// The last of the values with this key.
+    #[must_use]
+    pub fn value(&self, key: &str) -> Option<&str> {
+        self.values.iter().rev().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
+    }
+
+    /// Whether some move has this role.
+    #[must_use]
+    pub fn has(&self, role: Role) -> bool {
+        self.roles[role as usize]
+    }
+
+    /// Cross-section of the filament, mm².
+    fn area(&self) -> f64 {
+        PI * self.filament_diameter * self.filament_diameter / 4.0
+    }
+
+    /// Fills in what comments do not give of moves, the first of which is move `first` of the file.
+    pub(super) fn measure(&self, first: usize, moves: &mut [Step]) {
+        if let Some(scale) = self.scale {
+            moves.iter_mut().for_each(|step| step.filament *= scale);
+        }
+        let area = self.area();
+        let mut next = self.layers.partition_point(|layer| layer.moves.end <= first);
+        let mut index = first;
+        let mut rest = moves;
+        while !rest.is_empty() {
+            let (height, end) = match self.layers.get(next) {
+                Some(layer) if layer.moves.start <= index => {
+                    next += 1;
+                    (
+                        if layer.height > HIGHEST { SOME_HEIGHT } else { layer.height },
+                        layer.moves.end,
+                    )
+                }
+                Some(layer) => (SOME_HEIGHT, layer.moves.start),
+                None => (SOME_HEIGHT, usize::MAX),
+            };
+            let (some, after) = rest.split_at_mut(rest.len().min(end - index));
+            index += some.len();
+            some.iter_mut().for_each(|step| step.measure(height, area));
+            rest = after;
+        }
+    }
+}
+
+/// Gathers the facts of a file, event by event.
+#[derive(Default)]
+pub(super) struct Gatherer {
+    facts: Facts,
+    /// Where the segment begins that goes on; `None` before the first.
+    segment: Option<usize>,
+    /// Heights of its lines.
+    heights: Heights,
+    /// Height of the layer before, mm.
+    below: f64,
+    /// Whether the head has ended.
+    past_head: bool,
+    /// Bytes of comments that are kept.
+    bytes: usize,
+}
+
+impl Gatherer {
+    pub(super) fn event(&mut self, line: u64, event: &Event) {
+        match event {
+            Event::Move(motion) => self.motion(line, motion),
+            Event::Layer { marked } => self.begin(*marked),
+            Event::Command { letter, number } => {
+                let commands = &mut self.facts.commands;
+                if commands.len() < MOST_COMMANDS {
+                    commands.entry((*letter, *number)).or_insert(line);
+                }
+            }
+            Event::Comment(comment) => return self.comment(comment),
+            _ => {}
+        }
+        self.past_head = true;
+    }
+
+    fn motion(&mut self, line: u64, motion: &Motion) {
+        let facts = &mut self.facts;
+        facts.has_widths |= motion.width.is_some();
+        facts.has_heights |= motion.height.is_some();
+        facts.roles[motion.role as usize] = true;
+        facts.move_count += 1;
+        if !(motion.filament > 0.0) {
+            return;
+        }
+        let step = Step::of(line, motion);
+        if step.is_line() {
+            facts.last_line = facts.move_count;
+            if self.segment.is_some() {
+                self.heights.add([step.from[2], step.to[2]].map(f64::from), step.length());
+            }
+        }
+    }
+
+    /// A layer begins.
+    fn begin(&mut self, marked: bool) {
+        let facts = &mut self.facts;
+        if facts.marked && !marked {
+            return;
+        }
+        if facts.marked || !marked {
+            self.end();
+        } else {
+            // The first mark: what heights told is part of the start.
+            (facts.layers, facts.begun) = (Vec::new(), 0);
+            (self.heights, self.below) = (Heights::default(), 0.0);
+        }
+        let facts = &mut self.facts;
+        facts.marked |= marked;
+        facts.begun += 1;
+        self.segment = Some(facts.move_count);
+    }
+
+    /// Ends the segment that goes on.
+    fn end(&mut self) {
+        let Some(first) = self.segment else { return };
+        let facts = &mut self.facts;
+        let (end, last) = (facts.move_count, facts.layers.last_mut());
+        let Some(z) = std::mem::take(&mut self.heights).height() else {
+            if let Some(last) = last {
+                last.moves.end = end;
+            }
+            return;
+        };
+        let height = match (z - self.below, last) {
+            (rise, _) if rise > SAME_HEIGHT => rise,
+            // At the height of the layer before, or the first layer of another part.
+            (_, Some(last)) => last.height,
+            (_, None) => SOME_HEIGHT,
+        };
+        self.below = z;
+        facts.layers.push(Layer { moves: first..end, z, height });
+    }
+
+    fn comment(&mut self, comment: &[u8]) {
+        let short = &comment[..comment.len().min(LONGEST_COMMENT)];
+        if self.bytes + short.len() > MOST_BYTES {
+            return;
+        }
+        let text = || String::from_utf8_lossy(short).trim().to_owned();
+        let facts = &mut self.facts;
+        if !self.past_head && facts.head.len() < MOST_COMMENTS {
+            self.bytes += short.len();
+            facts.head.push(text());
+        }
+        if short.windows(3).any(|three| three == b" = ") && facts.values.len() < MOST_COMMENTS {
+            let text = text();
+            if let Some((key, value)) = text.split_once(" = ") {
+                self.bytes += short.len();
+                facts.values.push((key.trim().to_owned(), value.trim().to_owned()));
+            }
+        }
+    }
+
+    /// The facts, at the file's end. `diameter`, mm, is that of the filament if the file gives none.
+    pub(super) fn facts(mut self, summary: Summary, diameter: f64) -> Facts {
+        self.end();
+        let mut facts = self.facts;
+        facts.summary = summary;
+        let own = DIAMETER_KEYS.iter().find_map(|key| facts.value(key)?.parse().ok());
+        facts.filament_diameter = own.filter(|own| DIAMETERS.contains(own)).unwrap_or(diameter);
+        // Read before the file said its diameter, which stands at its end.
+        if summary.volumes_by > 0.0 {
+            let area = facts.area();
+            facts.scale = Some((summary.volumes_by / area) as f32);
+            facts.summary.volumes_by = area;
+        }
+        let first = facts.layers.first();
+        facts.start = 0..first.map_or(facts.move_count, |layer| layer.moves.start);
+        facts
+    }
+}
