@@ -307,6 +307,9 @@ pub(crate) struct SettingArgs {
     /// Temperature of the nozzle, °C
     #[arg(long, value_name = "CELSIUS", allow_negative_numbers = true)]
     temperature: Option<String>,
+    /// What the file says of this program: `version`, or `none` for the same bytes in the next one
+    #[arg(long, value_name = "WHAT", value_parser = PossibleValuesParser::new(words("output.stamp")), hide_possible_values = true)]
+    stamp: Option<String>,
 }
 
 /// How the models are laid on the bed.
@@ -379,7 +382,7 @@ impl SettingArgs {
     }
 
     /// Each flag, the key it sets, and the value given.
-    fn all(&self) -> [(&'static str, &'static str, Option<String>); 23] {
+    fn all(&self) -> [(&'static str, &'static str, Option<String>); 24] {
         let switched = |on: bool, value: &str| on.then(|| value.to_owned());
         [
             ("--dual", "dual.mode", switched(self.dual, "pair")),
@@ -406,6 +409,7 @@ impl SettingArgs {
             ("--raft", "raft.enabled", switched(self.raft, "true")),
             ("--skirt", "skirt.loops", self.skirt.clone()),
             ("--temperature", "filament.temperature", self.temperature.clone()),
+            ("--stamp", "output.stamp", self.stamp.clone()),
         ]
     }
 }

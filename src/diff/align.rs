@@ -1,6 +1,13 @@
 //! Layers of two files -> pairs: which layer of one is which of the other, by height.
 
-use crate::reader::print::Layer;
+/// How high a layer lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Level {
+    /// Height of the nozzle where most of its lines lie, mm.
+    pub(super) z: f64,
+    /// How far it lies above the layer below, or the bed, mm.
+    pub(super) height: f64,
+}
 
 /// Two layers of the same height, or one that the other file has not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,16 +27,16 @@ const SAME_HEIGHT: f64 = 1e-3;
 
 /// Pairs the layers in their order; both may come back to the bed for another part.
 /// `tolerance` in mm.
-pub(super) fn align(a: &[Layer], b: &[Layer], tolerance: f64) -> Vec<Pair> {
+pub(super) fn align(a: &[Level], b: &[Level], tolerance: f64) -> Vec<Pair> {
     let mut pairs = Vec::with_capacity(a.len().max(b.len()));
     let (mut i, mut j) = (0, 0);
     while let (Some(one), Some(other)) = (a.get(i), b.get(j)) {
         let lower = one.height.min(other.height);
         let same = tolerance.min(0.25 * lower).max(SAME_HEIGHT);
-        let is_same = |a: &Layer, b: &Layer| (a.z - b.z).abs() <= same;
+        let is_same = |a: &Level, b: &Level| (a.z - b.z).abs() <= same;
         let (mut skip_a, mut skip_b) = (0, 0);
         if !is_same(one, other) {
-            let ahead = |layers: &[Layer], from: usize, of: &Layer| {
+            let ahead = |layers: &[Level], from: usize, of: &Level| {
                 let ahead = layers[from..].iter().take(FARTHEST);
                 ahead.enumerate().skip(1).find(|(_, layer)| is_same(layer, of)).map(|(k, _)| k)
             };
@@ -61,8 +68,8 @@ pub(super) fn align(a: &[Layer], b: &[Layer], tolerance: f64) -> Vec<Pair> {
 mod tests {
     use super::*;
 
-    fn layers(heights: &[f64]) -> Vec<Layer> {
-        heights.iter().map(|&z| Layer { moves: 0..0, z, height: 0.2 }).collect()
+    fn layers(heights: &[f64]) -> Vec<Level> {
+        heights.iter().map(|&z| Level { z, height: 0.2 }).collect()
     }
 
     fn pairs_of(a: &[f64], b: &[f64]) -> String {

@@ -29,6 +29,15 @@ const NO_GAP: f64 = 1e-9;
 /// Accuracy of the largest distance, mm; halving it costs a step of the search for each gap.
 const EXACT: f64 = 1e-3;
 
+/// A part of a line that the other file has not, or not as thick.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Mark {
+    pub(super) from: Point,
+    pub(super) to: Point,
+    /// mm.
+    pub(super) width: f64,
+}
+
 /// What of some lines has no counterpart among others.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Apart {
@@ -80,20 +89,20 @@ pub(super) fn apart<'a>(lines: &'a [Line], others: &'a [Line], reach: f64, share
         let far = lines.iter().map(|line| line.length).fold(0.0, |sum, length| sum + length);
         return Apart { far, ..Apart::default() };
     }
-    let reach = reach + SLACK;
-    let mut search = Search {
-        others,
-        reach,
-        share,
-        grid: OnceCell::new(),
-        last: usize::MAX,
-        near: Vec::new(),
-        open: Vec::new(),
-        found: Apart::default(),
-    };
+    let mut search = Search::new(others, reach, share);
     lines.iter().for_each(|line| search.line(line));
     search.farthest();
     search.found
+}
+
+/// The parts of `lines` that [`apart`] finds.
+pub(super) fn marks(lines: &[Line], others: &[Line], reach: f64, share: f64) -> Vec<Mark> {
+    if others.is_empty() {
+        return lines.iter().map(|line| line.mark([0.0, 1.0])).collect();
+    }
+    let mut search = Search::new(others, reach, share);
+    lines.iter().for_each(|line| search.line(line));
+    search.marks
 }
 
 struct Search<'a> {
@@ -108,6 +117,8 @@ struct Search<'a> {
     near: Vec<usize>,
     /// Gaps in which the farthest place is searched.
     open: Vec<Open<'a>>,
+    /// What is far or unlike.
+    marks: Vec<Mark>,
     found: Apart,
 }
 
@@ -128,6 +139,21 @@ struct Covered {
 }
 
 impl<'a> Search<'a> {
+    /// Among `others`, of which there is at least one.
+    fn new(others: &'a [Line], reach: f64, share: f64) -> Self {
+        Self {
+            others,
+            reach: reach + SLACK,
+            share,
+            grid: OnceCell::new(),
+            last: usize::MAX,
+            near: Vec::new(),
+            open: Vec::new(),
+            marks: Vec::new(),
+            found: Apart::default(),
+        }
+    }
+
     fn grid(&self) -> &Grid<'a> {
         self.grid.get_or_init(|| Grid::new(self.others))
     }
@@ -174,6 +200,7 @@ impl<'a> Search<'a> {
             gaps.iter().map(|gap| (gap.to.0 - gap.from.0) * line.length).sum::<f64>()
         };
         let (far_length, unlike_length) = (length(&far), length(&unlike));
+        self.marks.extend(unlike.iter().map(|gap| line.mark([gap.from.0, gap.to.0])));
         self.found.far += far_length;
         if unlike_length - far_length > NO_GAP * line.length {
             self.found.unlike += unlike_length - far_length;
@@ -238,6 +265,12 @@ impl<'a> Search<'a> {
         let to = |probe: &Probe, t: f64| self.others[probe.nearest].distance(line.at(t));
         let by_way = 0.5 * (a.distance + b.distance + (b.t - a.t) * line.length);
         by_way.min(a.distance.max(to(a, b.t))).min(b.distance.max(to(b, a.t)))
+    }
+}
+
+impl Line {
+    fn mark(&self, [from, to]: Part) -> Mark {
+        Mark { from: self.at(from), to: self.at(to), width: self.section[0] }
     }
 }
 

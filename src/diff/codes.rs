@@ -13,10 +13,12 @@
 //! codes matters, their place between the lines does not.
 
 use super::sums::Both;
-use crate::reader::print::{Print, What};
-use crate::reader::{Heater, Heating};
+use crate::reader::print::{Note, What};
+use crate::reader::{self, Heater, Heating};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::io::{self, BufRead};
 
 /// Commands that moves and their times already show (positions, units, dwells, retractions, limits)
 /// or that only inform (progress, reports, messages).
@@ -61,7 +63,7 @@ pub(super) struct Code {
 }
 
 /// Commands in a layer of one file but not of the other.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct CodeDifference {
     /// Those of only one file, in its order.
     pub only: Both<Vec<String>>,
@@ -70,7 +72,7 @@ pub struct CodeDifference {
 }
 
 /// A setting in the comments that differs.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Setting {
     /// Its name.
     pub key: String,
@@ -79,7 +81,7 @@ pub struct Setting {
 }
 
 /// Commands that differ in one place of both files.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Orders {
     /// For heaters.
     pub heaters: Option<CodeDifference>,
@@ -87,69 +89,127 @@ pub struct Orders {
     pub commands: Option<CodeDifference>,
 }
 
-/// A file's codes by layer; first those before the first line of all, last those after the last.
-pub(super) fn by_layer(bytes: &[u8], print: &Print) -> Vec<Vec<Code>> {
-    let mut codes = others(bytes, print);
-    for note in &print.notes {
-        if let What::Heating(heating) = note.what {
-            codes.push(Code { line: note.line, text: heater(heating), heats: true });
-        }
+/// Codes of a file that are kept: more than any slicer writes.
+const MOST_CODES: usize = 50_000;
+
+/// Longest code that is kept, bytes.
+const LONGEST: usize = 512;
+
+/// The codes of a file by place.
+#[derive(Debug, Default)]
+pub(super) struct Codes {
+    /// First those before the first line of all, then those of each layer, last those after the last.
+    layers: Vec<Vec<Code>>,
+    /// How many there are beyond [`MOST_CODES`], and a sum of all their letters, which is another
+    /// where they differ.
+    more: u64,
+    sum: u64,
+}
+
+/// A command for a heater.
+#[derive(Debug, Clone)]
+pub(super) struct Heat {
+    line: u64,
+    text: String,
+}
+
+impl Heat {
+    /// The command of a note, if it is for a heater.
+    pub(super) fn of(note: &Note) -> Option<Self> {
+        let What::Heating(heating) = note.what else { return None };
+        Some(Self { line: note.line, text: heater(heating) })
     }
-    codes.sort_by_key(|code| code.line);
-    let lines = || print.layers.first().map_or(0, |layer| layer.moves.start)..print.moves.len();
-    let first = lines().find(|&index| print.moves[index].is_line());
-    let last = lines().rfind(|&index| print.moves[index].is_line());
-    let end = print.layers.len() + 1;
-    let mut layers = vec![Vec::new(); end + 1];
-    for code in codes {
-        let before = print.moves.partition_point(|step| u64::from(step.line) < code.line);
-        let layer = match (first, last) {
-            (Some(first), Some(last)) if before > first => {
-                let layer = print.layers.partition_point(|layer| layer.moves.start <= before);
-                if before > last { end } else { layer }
+}
+
+/// Where codes belong: the file's lines, from 1, at which places begin.
+#[derive(Debug, Default)]
+pub(super) struct Places {
+    /// For each layer the line of the last move before it.
+    pub(super) before: Vec<u32>,
+    /// The first line and the last line that extrude in a layer; `None` without one.
+    pub(super) lines: Option<[u32; 2]>,
+}
+
+impl Places {
+    /// The place of a code: 0 before the first line, else the layer, and one more after the last.
+    fn of(&self, line: u64) -> usize {
+        match self.lines {
+            Some([first, last]) if line > u64::from(first) => {
+                let layer = self.before.partition_point(|before| u64::from(*before) < line);
+                if line > u64::from(last) { self.before.len() + 1 } else { layer }
             }
             _ => 0,
-        };
-        layers[layer].push(code);
-    }
-    layers
-}
-
-/// Lines of code that are neither moves nor for heaters.
-fn others(bytes: &[u8], print: &Print) -> Vec<Code> {
-    let heats = |line: u64| {
-        let at = print.notes.partition_point(|note| note.line < line);
-        let note = print.notes.get(at).filter(|note| note.line == line);
-        note.is_some_and(|note| matches!(note.what, What::Heating(_)))
-    };
-    let mut codes = Vec::new();
-    for (line, bytes) in (1_u64..).zip(lines(bytes)) {
-        // Nearly all lines are moves.
-        if matches!(bytes, [b'G', b'0'..=b'3', b' ', ..] | [b';', ..] | []) {
-            continue;
-        }
-        let Some(text) = plain(bytes) else { continue };
-        let command = text.split(' ').next().unwrap_or_default();
-        if !SHOWN_ELSEWHERE.contains(&command) && !heats(line) {
-            codes.push(Code { line, text, heats: false });
         }
     }
-    codes
 }
 
-/// Lines as the reader counts them: `\n`, `\r\n` and `\r` end one.
-fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let mut rest = Some(bytes);
-    std::iter::from_fn(move || {
-        let bytes = rest?;
-        let Some(end) = bytes.iter().position(|&byte| byte == b'\n' || byte == b'\r') else {
-            rest = None;
-            return Some(bytes);
-        };
-        let long = if bytes[end..].starts_with(b"\r\n") { 2 } else { 1 };
-        rest = Some(&bytes[end + long..]);
-        Some(&bytes[..end])
-    })
+impl Codes {
+    /// Gathers the codes of a file. `heats` are those for heaters, in the file's order.
+    ///
+    /// # Errors
+    /// What reading gives.
+    pub(super) fn read(
+        source: &mut dyn BufRead,
+        heats: &[Heat],
+        places: &Places,
+    ) -> io::Result<Self> {
+        let layers = vec![Vec::new(); places.before.len() + 2];
+        let mut codes = Self { layers, ..Self::default() };
+        let (mut line, mut kept) = (0, 0);
+        let mut heats = heats.iter().peekable();
+        reader::lines(source, &mut |bytes| {
+            line += 1;
+            let heat = heats.next_if(|heat| heat.line == line);
+            // Nearly all lines are moves.
+            if matches!(bytes, [b'G', b'0'..=b'3', b' ', ..] | [b';', ..] | []) {
+                return;
+            }
+            let text = match heat {
+                Some(heat) => Some(heat.text.clone()),
+                None => plain(&bytes[..bytes.len().min(LONGEST)]).filter(|text| {
+                    !SHOWN_ELSEWHERE.contains(&text.split(' ').next().unwrap_or_default())
+                }),
+            };
+            let Some(text) = text else { return };
+            kept += 1;
+            if kept > MOST_CODES {
+                return codes.add_more(&text);
+            }
+            codes.layers[places.of(line)].push(Code { line, text, heats: heat.is_some() });
+        })?;
+        Ok(codes)
+    }
+
+    /// Those of a place: 0 is before the first line.
+    pub(super) fn of(&self, place: Option<usize>) -> &[Code] {
+        place.and_then(|place| self.layers.get(place)).map_or(&[], Vec::as_slice)
+    }
+
+    /// Those after the last line.
+    pub(super) fn last(&self) -> &[Code] {
+        self.layers.last().map_or(&[], Vec::as_slice)
+    }
+
+    /// Counts a code that is not kept, by the sum of Fowler, Noll and Vo (FNV-1a).
+    fn add_more(&mut self, text: &str) {
+        self.more += 1;
+        for byte in text.bytes().chain([b'\n']) {
+            self.sum = (self.sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+}
+
+/// The commands that differ after the last line; beside them those beyond what is kept, if they do.
+pub(super) fn end(codes: Both<&Codes>) -> Orders {
+    let mut orders = orders(codes.map(Codes::last));
+    if (codes.a.more, codes.a.sum) != (codes.b.more, codes.b.sum) {
+        let more = codes.map(|codes| vec![format!("{} more that are not listed", codes.more)]);
+        let none = CodeDifference { only: Both::default(), line: Both::default() };
+        let commands = orders.commands.get_or_insert(none);
+        commands.only.a.extend(more.a);
+        commands.only.b.extend(more.b);
+    }
+    orders
 }
 
 /// The code of a line without its number, comment and checksum, numbers in their shortest form.
@@ -195,13 +255,13 @@ fn heater(Heating { heater, celsius, waits }: Heating) -> String {
 }
 
 /// The commands that differ in one place of both files.
-pub(super) fn orders(codes: Both<&Vec<Code>>) -> Orders {
+pub(super) fn orders(codes: Both<&[Code]>) -> Orders {
     Orders { heaters: difference(codes, true), commands: difference(codes, false) }
 }
 
 /// The codes of a layer that differ: for heaters, or all others. The same codes in another order
 /// differ, too: then all are listed.
-fn difference(codes: Both<&Vec<Code>>, heats: bool) -> Option<CodeDifference> {
+fn difference(codes: Both<&[Code]>, heats: bool) -> Option<CodeDifference> {
     let codes = codes.map(|codes| codes.iter().filter(|code| code.heats == heats));
     let codes = codes.map(Iterator::collect::<Vec<&Code>>);
     if codes.a.iter().map(|code| &code.text).eq(codes.b.iter().map(|code| &code.text)) {
@@ -231,9 +291,10 @@ fn rest<'a>(codes: &[&'a Code], others: &[&Code]) -> Vec<&'a Code> {
 }
 
 /// The settings in the comments that differ, by name. Of several with a name the last holds.
-pub(super) fn settings(a: &Print, b: &Print) -> Vec<Setting> {
-    let all =
-        |print: &'_ Print| -> BTreeMap<String, String> { print.values.iter().cloned().collect() };
+pub(super) fn settings(a: &[(String, String)], b: &[(String, String)]) -> Vec<Setting> {
+    let all = |values: &[(String, String)]| -> BTreeMap<String, String> {
+        values.iter().cloned().collect()
+    };
     let (a, b) = (all(a), all(b));
     let keys: std::collections::BTreeSet<&String> = a.keys().chain(b.keys()).collect();
     let differs = keys.into_iter().filter(|key| a.get(*key) != b.get(*key));
@@ -259,6 +320,5 @@ mod tests {
         ] {
             assert_eq!(plain(line.as_bytes()).as_deref(), expected, "{line}");
         }
-        assert_eq!(lines(b"a\r\nb\rc\n\nd").count(), 5);
     }
 }

@@ -1,198 +1,30 @@
 //! Difference -> Findings: what makes two files unequal, worst first.
 //!
 //! A cause is reported once, where it says most:
+//! - a print that moved as a whole is one finding, and all else is looked at as if it had not;
 //! - layers that only one file has, and roles that only one file has in a layer, are one finding for
 //!   all layers together, not one for each;
-//! - layers at other heights likewise, with the one that differs most;
-//! - lines that are far or unlike are a finding for each layer and role, with the worst place;
+//! - layers at other heights likewise, with the one that differs most; seams with the farthest;
+//! - lines that are far or unlike are a finding for each layer and role, with the worst place; travels
+//!   one for each layer;
+//! - where the lines are the same in another order, other travels follow: one finding for all such
+//!   layers, but for those where the nozzle also goes lower or higher;
 //! - a sum of a layer is a finding only if no line of it is: lines that are drawn twice lie nowhere
 //!   else, and only their sum shows;
 //! - sums of the file come last.
 //!
-//! Findings are sorted by [`Kind`], in the order of what spoils a print most, and in a kind by how
-//! far, how much or how long. Their JSON form is stable.
+//! Findings are sorted by [`Kind`](super::Kind), in the order of what spoils a print most, and in a
+//! kind by how far, how much or how long.
 
-use super::codes::{CodeDifference, Orders, Setting};
-use super::pair::{Flow, PairOfLayers, Place, RoleOfPair};
+use super::codes::Orders;
+use super::finding::{File, Finding, Ordered, Quantity};
+use super::pair::{PairOfLayers, RoleOfPair};
+use super::place::Place;
+use super::seams::WALLS;
 use super::sums::{Both, Sum};
+use super::travels::TravelsOfPair;
 use super::{Difference, Tolerances};
 use crate::reader::Role;
-use serde::Serialize;
-
-/// One of the two files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum File {
-    /// The first.
-    A,
-    /// The second.
-    B,
-}
-
-/// What a sum is of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Quantity {
-    /// Way of the nozzle, mm.
-    Length,
-    /// Filament, mm.
-    Filament,
-    /// s.
-    Time,
-    /// Time at the feeds that the file asks for, s.
-    AskedTime,
-}
-
-/// Something that makes two files unequal. Layers are counted from 1; 0 is what comes before
-/// the first.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Finding {
-    /// Layers that the other file does not have.
-    LayersOnlyIn {
-        /// The file that has them.
-        file: File,
-        /// Which ones.
-        layers: Vec<usize>,
-        /// Length of their lines, mm.
-        length_mm: f64,
-    },
-    /// Layers at other heights.
-    Heights {
-        /// How many.
-        count: usize,
-        /// The one that differs most.
-        layer: Both<usize>,
-        /// Its height of the nozzle, mm.
-        z_mm: Both<f64>,
-    },
-    /// Commands for heaters differ.
-    Heaters {
-        /// In this layer; `None` is after the last line.
-        layer: Option<Both<usize>>,
-        /// What.
-        difference: CodeDifference,
-    },
-    /// Other commands differ.
-    Commands {
-        /// In this layer; `None` is after the last line.
-        layer: Option<Both<usize>>,
-        /// What.
-        difference: CodeDifference,
-    },
-    /// Lines of a role that the other file has nowhere in the same layer.
-    RoleOnlyIn {
-        /// The file that has them.
-        file: File,
-        /// Their role.
-        role: Role,
-        /// In these of its layers.
-        layers: Vec<usize>,
-        /// Their length, mm.
-        length_mm: f64,
-    },
-    /// Lines where the other file has none of their role.
-    Lines {
-        /// In this layer.
-        layer: Both<usize>,
-        /// Their role.
-        role: Role,
-        /// Length of all lines of the role there, mm.
-        length_mm: Both<f64>,
-        /// Length that is farther than the tolerance from the other file's lines, mm.
-        far_mm: Both<f64>,
-        /// The farthest place.
-        farthest: Place,
-    },
-    /// Lines in the same place with another amount of filament.
-    Flow {
-        /// In this layer.
-        layer: Both<usize>,
-        /// Their role.
-        role: Role,
-        /// Their length, mm.
-        unlike_mm: Both<f64>,
-        /// The two that differ most.
-        most_unlike: Flow,
-    },
-    /// A sum that differs where no other finding explains it.
-    Sum {
-        /// In this layer; `None` for the whole file.
-        layer: Option<Both<usize>>,
-        /// Of this role; `None` for all together.
-        role: Option<Role>,
-        /// What is summed up.
-        quantity: Quantity,
-        /// The sums.
-        sum: Sum,
-    },
-    /// A setting in the comments, where they have to be the same.
-    Setting(Setting),
-}
-
-/// Kinds of findings, the worst first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
-    /// [`Finding::LayersOnlyIn`].
-    Layers,
-    /// [`Finding::Heights`].
-    Heights,
-    /// [`Finding::Heaters`].
-    Heaters,
-    /// [`Finding::RoleOnlyIn`].
-    Roles,
-    /// [`Finding::Lines`].
-    Lines,
-    /// [`Finding::Flow`].
-    Flow,
-    /// [`Finding::Sum`] of a layer.
-    LayerSum,
-    /// [`Finding::Commands`].
-    Commands,
-    /// [`Finding::Sum`] of the file.
-    FileSum,
-    /// [`Finding::Setting`].
-    Setting,
-}
-
-impl Finding {
-    /// Of what kind it is.
-    #[must_use]
-    pub fn kind(&self) -> Kind {
-        match self {
-            Self::LayersOnlyIn { .. } => Kind::Layers,
-            Self::Heights { .. } => Kind::Heights,
-            Self::Heaters { .. } => Kind::Heaters,
-            Self::RoleOnlyIn { .. } => Kind::Roles,
-            Self::Lines { .. } => Kind::Lines,
-            Self::Flow { .. } => Kind::Flow,
-            Self::Sum { layer: Some(_), .. } => Kind::LayerSum,
-            Self::Commands { .. } => Kind::Commands,
-            Self::Sum { layer: None, .. } => Kind::FileSum,
-            Self::Setting(_) => Kind::Setting,
-        }
-    }
-
-    /// How bad it is among those of its kind: a distance in mm, where there is one, and then
-    /// a length in mm or a share.
-    fn weight(&self) -> [f64; 2] {
-        match self {
-            Self::LayersOnlyIn { length_mm, .. } | Self::RoleOnlyIn { length_mm, .. } => {
-                [*length_mm, 0.0]
-            }
-            Self::Lines { far_mm, farthest, .. } => [farthest.distance_mm, far_mm.a.max(far_mm.b)],
-            Self::Flow { most_unlike: Flow { filament_per_mm: flow, .. }, unlike_mm, .. } => {
-                let share = (flow.a - flow.b).abs() / flow.a.max(flow.b);
-                [share, unlike_mm.a.max(unlike_mm.b)]
-            }
-            Self::Sum { sum, .. } => [sum.share(), 0.0],
-            Self::Heights { .. }
-            | Self::Heaters { .. }
-            | Self::Commands { .. }
-            | Self::Setting(_) => [0.0; 2],
-        }
-    }
-}
 
 /// What in this difference makes the files unequal, worst first.
 pub(super) fn findings(difference: &Difference, tolerances: &Tolerances) -> Vec<Finding> {
@@ -202,13 +34,17 @@ pub(super) fn findings(difference: &Difference, tolerances: &Tolerances) -> Vec<
         let roles = Role::ALL.into_iter();
         found.extend(roles.filter_map(|role| role_only_in(file, role, &difference.pairs)));
     }
-    found.extend(heights(&difference.pairs, tolerances.place));
+    found.extend(difference.moved_mm.map(|by_mm| Finding::Moved { by_mm }));
+    let raised = difference.moved_mm.map_or(0.0, |[_, _, z]| z);
+    found.extend(heights(&difference.pairs, raised, tolerances.place));
     for pair in &difference.pairs {
         if let Both { a: Some(a), b: Some(b) } = pair.layer {
             of_layer(pair, Both { a, b }, &mut found);
         }
     }
     of_orders(&difference.end, None, &mut found);
+    of_travels(difference, &mut found);
+    found.extend(WALLS.iter().filter_map(|wall| seams(*wall, &difference.pairs)));
     of_file(difference, &mut found);
     if tolerances.settings {
         found.extend(difference.settings.iter().cloned().map(Finding::Setting));
@@ -253,7 +89,7 @@ fn role_only_in(file: File, role: Role, pairs: &[PairOfLayers]) -> Option<Findin
     (!layers.is_empty()).then_some(Finding::RoleOnlyIn { file, role, layers, length_mm })
 }
 
-fn heights(pairs: &[PairOfLayers], tolerance: f64) -> Option<Finding> {
+fn heights(pairs: &[PairOfLayers], raised: f64, tolerance: f64) -> Option<Finding> {
     let mut count = 0;
     let mut worst: Option<(f64, Both<usize>, Both<f64>)> = None;
     for pair in pairs {
@@ -262,7 +98,7 @@ fn heights(pairs: &[PairOfLayers], tolerance: f64) -> Option<Finding> {
         else {
             continue;
         };
-        let apart = (low - high).abs();
+        let apart = (low + raised - high).abs();
         if apart <= tolerance + super::apart::SLACK {
             continue;
         }
@@ -272,6 +108,94 @@ fn heights(pairs: &[PairOfLayers], tolerance: f64) -> Option<Finding> {
         }
     }
     worst.map(|(_, layer, z_mm)| Finding::Heights { count, layer, z_mm })
+}
+
+/// Where the nozzle goes between lines, and what it pulls back.
+fn of_travels(difference: &Difference, found: &mut Vec<Finding>) {
+    let mut lines: Option<Finding> = None;
+    let mut travels: Option<Finding> = None;
+    let mut retractions: Option<Finding> = None;
+    let pairs = difference.pairs.iter().filter_map(|pair| {
+        let Both { a: Some(a), b: Some(b) } = pair.layer else { return None };
+        let z = pair.z_mm;
+        Some((Some(Both { a, b }), z, pair.travels.as_ref()?))
+    });
+    let none = Both { a: None, b: None };
+    let end = difference.end_travels.iter().map(|travels| (None, none, travels));
+    let mut other_before = false;
+    for (layer, z, own) in pairs.chain(end) {
+        let z = Both { a: z.a.unwrap_or_default(), b: z.b.unwrap_or_default() };
+        let own_order = own.lines_other_from;
+        // Where the layer before ends elsewhere, the way from there is another one.
+        let way_from_there =
+            own.other_from.filter(|_| other_before && own.is_far() && own.has_same_lines);
+        other_before = own_order.is_some();
+        let other_lines = own_order.or(way_from_there);
+        let is_as_high = own.is_as_high(z, difference.tolerance_mm);
+        if let Some(farthest) = own.farthest.filter(|_| other_lines.is_none() || !is_as_high) {
+            let TravelsOfPair { length_mm, far_mm, z_mm, .. } = *own;
+            let layer = if own.is_before_layers { Some(Both::default()) } else { layer };
+            found.push(Finding::Travels { layer, length_mm, far_mm, z_mm, farthest });
+        }
+        if let Some(line) = other_lines {
+            order(&mut lines, Ordered::Lines, layer, line, own.farthest);
+        } else if let Some(line) = own.other_from.filter(|_| !own.is_far()) {
+            order(&mut travels, Ordered::Travels, layer, line, None);
+        }
+        if !(own.is_far() || own.pulled_mm.equal && own.pushed_mm.equal) {
+            retracted(&mut retractions, layer, own);
+        }
+    }
+    found.extend([lines, travels, retractions].into_iter().flatten());
+    let count = difference.firmware_retractions;
+    if difference.travels && count.a != count.b {
+        found.push(Finding::FirmwareRetractions { count });
+    }
+}
+
+/// Adds a layer to those with another order.
+fn order(
+    known: &mut Option<Finding>,
+    of: Ordered,
+    layer: Option<Both<usize>>,
+    line: Both<u32>,
+    place: Option<Place>,
+) {
+    let first = Finding::Order { of, layers: Vec::new(), layer, line, farthest: None };
+    if let Finding::Order { layers, farthest, .. } = known.get_or_insert(first) {
+        layers.extend(layer.map(|layer| layer.a));
+        let is_farther = |place: &Place| {
+            farthest.is_none_or(|known: Place| place.distance_mm > known.distance_mm)
+        };
+        *farthest = place.filter(is_farther).or(*farthest);
+    }
+}
+
+/// Adds a layer to those with other retractions.
+fn retracted(known: &mut Option<Finding>, layer: Option<Both<usize>>, own: &TravelsOfPair) {
+    let both = |sum: &Sum| Both { a: sum.a, b: sum.b };
+    let (pulled_mm, pushed_mm) = (both(&own.pulled_mm), both(&own.pushed_mm));
+    let first = Finding::Retractions { layers: Vec::new(), layer, pulled_mm, pushed_mm };
+    if let Finding::Retractions { layers, .. } = known.get_or_insert(first) {
+        layers.extend(layer.map(|layer| layer.a));
+    }
+}
+
+/// Walls of a role that begin elsewhere, in all layers together.
+fn seams(role: Role, pairs: &[PairOfLayers]) -> Option<Finding> {
+    let mut worst: Option<(Both<usize>, Place)> = None;
+    let (mut layers, mut moved) = (Vec::new(), Both::default());
+    for pair in pairs {
+        let Both { a: Some(a), b: Some(b) } = pair.layer else { continue };
+        let Some(own) = pair.seams.iter().find(|own| own.role == role) else { continue };
+        let Some(place) = own.farthest else { continue };
+        layers.push(a);
+        moved = Both { a: moved.a + own.moved.a, b: moved.b + own.moved.b };
+        if worst.is_none_or(|(_, known)| place.distance_mm > known.distance_mm) {
+            worst = Some((Both { a, b }, place));
+        }
+    }
+    worst.map(|(layer, farthest)| Finding::Seams { role, layers, moved, layer, farthest })
 }
 
 fn of_layer(pair: &PairOfLayers, layer: Both<usize>, found: &mut Vec<Finding>) {

@@ -27,7 +27,8 @@ const FILAMENT_ROUNDING: f64 = 2e-5;
 /// Rounding of a coordinate with three decimals, mm; two of them make a difference.
 const PLACE_ROUNDING: f64 = 1e-3;
 
-/// A straight line of plastic. Heights are above the layer.
+/// A straight line of plastic, or a way without. Places are seen from an origin: heights are above the
+/// layer, and a print that moved as a whole lies where it was.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
     pub(super) from: Point,
@@ -43,18 +44,28 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// The line that this move lays in a layer at `z`.
-    pub(super) fn new(step: &Step, z: f64) -> Self {
-        let place = |[x, y, height]: [f32; 3]| [f64::from(x), f64::from(y), f64::from(height) - z];
+    /// The line that this move lays, as seen from `origin`.
+    pub(super) fn new(step: &Step, origin: Point) -> Self {
         let length = step.length();
         Self {
-            from: place(step.from),
-            to: place(step.to),
+            from: seen(step.from, origin),
+            to: seen(step.to, origin),
             length,
             flow: f64::from(step.filament) / length,
             section: [f64::from(step.width), f64::from(step.height)],
             number: step.line,
         }
+    }
+
+    /// The way of a move that lays no line, as seen from `origin`.
+    pub(super) fn way(step: &Step, origin: Point) -> Self {
+        Self { flow: 0.0, section: [0.0; 2], ..Self::new(step, origin) }
+    }
+
+    /// A place where something is without a line.
+    pub(super) fn dot(at: Point, number: u32) -> Self {
+        // The length says only how large cells are to be; 0 would be divided by.
+        Self { from: at, to: at, length: 1.0, flow: 0.0, section: [0.0; 2], number }
     }
 
     /// The place at `t`, from 0 to 1.
@@ -98,6 +109,11 @@ impl Line {
         let allowed = most * (share + ends) + FILAMENT_ROUNDING / shorter;
         (self.flow - other.flow).abs() <= allowed
     }
+}
+
+/// A place of the file, as seen from `origin`.
+pub(super) fn seen(at: [f32; 3], origin: Point) -> Point {
+    way(origin, at.map(f64::from))
 }
 
 /// Where `w` + t·`u` is no longer than `reach`, within 0 to 1.

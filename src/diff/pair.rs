@@ -1,9 +1,9 @@
 //! Two layers -> PairOfLayers: what they have and have not in common, role by role.
 //!
 //! Words used here: a *pair* is two layers of the same height, or a layer that only one file has, or
-//! the *start*, which is all before the first layer; a *half* is one file's part of a pair.
+//! the *start*, which is all before the first layer; a *half* is one file's part of a pair (`half`).
 //!
-//! Lines are compared with their heights above the layer, so that a file whose layers all lie a
+//! Lines are compared as seen from each half's origin, so that a file whose layers all lie a
 //! little higher differs once, in its heights, and not in every line. Distances are taken both ways:
 //! a line that only one file has is far from all of the other's, whichever file it is in. Of places
 //! and amounts the worst one is kept with its lines in both files, for people to look up.
@@ -12,21 +12,24 @@
 //! the same for each role. The time that the machine takes depends on the order of lines, too; it is
 //! reported for each layer, but must be the same only for the whole file.
 
-use super::align::Pair;
-use super::apart::{Apart, Farthest, Unlike, apart};
-use super::codes::{self, Orders};
-use super::line::Line;
-use super::sums::{self, Both, Extent, Measure, ROLES, Sum};
-use super::{LEAST_FILAMENT, LEAST_LENGTH, Side, Tolerances, is_plastic};
+use super::apart::{Apart, Unlike, apart};
+use super::codes::{self, Code, Orders};
+use super::half::Half;
+use super::line::{Line, Point};
+use super::place::{Place, farthest, in_file};
+use super::seams::{self, SeamsOfPair, WALLS};
+use super::sums::{Both, Extent, Measure, ROLES, Sum};
+use super::travels::{self, TravelsOfPair};
+use super::{LEAST_FILAMENT, LEAST_LENGTH, Tolerances, is_plastic};
 use crate::reader::Role;
-use crate::reader::print::{Layer, Step};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Time at the feeds asked for that sums may differ by besides the share, s.
 const LEAST_TIME: f64 = 0.1;
 
 /// A layer that both files have, or one of them; or what comes before the first layer.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct PairOfLayers {
     /// Which one, counted from 1; 0 is what comes before the first. `None` where a file has none.
     pub layer: Both<Option<usize>>,
@@ -43,12 +46,18 @@ pub struct PairOfLayers {
     pub orders: Orders,
     /// By role, those that leave plastic.
     pub roles: Vec<RoleOfPair>,
+    /// What the nozzle does between the lines, on its way to the layer and in it; `None` where
+    /// only one file has the layer, or if it is not compared.
+    pub travels: Option<TravelsOfPair>,
+    /// Where walls begin, by kind of wall; only where their lines are the same.
+    pub seams: Vec<SeamsOfPair>,
 }
 
 /// The lines of one role in both layers.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RoleOfPair {
     /// The role; `other` is all that extrudes if one of the files gives no roles.
+    #[schemars(with = "String")]
     pub role: Role,
     /// Number of moves.
     pub moves: Both<u64>,
@@ -71,19 +80,8 @@ pub struct RoleOfPair {
     pub most_unlike: Option<Flow>,
 }
 
-/// A place in one file that is far from all lines of its role in the other.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Place {
-    /// How far, mm.
-    pub distance_mm: f64,
-    /// x, y and z, mm.
-    pub at_mm: [f64; 3],
-    /// Line of either file, from 1: the one that the place is on, and the nearest one of the other.
-    pub line: Both<u32>,
-}
-
 /// Two lines in the same place with different amounts of filament.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Flow {
     /// Filament for each mm of line, mm.
     pub filament_per_mm: Both<f64>,
@@ -95,89 +93,80 @@ pub struct Flow {
     pub line: Both<u32>,
 }
 
-/// One file's part of a pair.
-struct Half<'a> {
-    moves: &'a [Step],
-    layer: Option<&'a Layer>,
-    /// Counted from 1.
-    number: Option<usize>,
-    seconds: f64,
+/// How pairs are compared.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rules<'a> {
+    pub(super) tolerances: &'a Tolerances,
+    /// Whether both files give roles.
+    pub(super) by_role: bool,
+    /// How far the second print moved as a whole, mm.
+    pub(super) moved: Option<Point>,
 }
 
-impl<'a> Half<'a> {
-    /// What comes before the first layer.
-    fn start(side: &'a Side) -> Self {
-        let moves = &side.print.moves[side.print.start.clone()];
-        Self { moves, layer: None, number: Some(0), seconds: side.estimate.start_seconds }
-    }
-
-    fn layer(side: &'a Side, index: Option<usize>) -> Self {
-        let layer = index.and_then(|index| side.print.layers.get(index));
-        let time = index.and_then(|index| side.estimate.layers.get(index));
-        Self {
-            moves: layer.map_or(&[], |layer| side.print.moves_of(layer)),
-            layer,
-            number: index.map(|index| index + 1),
-            seconds: time.map_or(0.0, |time| time.seconds),
-        }
-    }
-
-    fn z(&self) -> f64 {
-        self.layer.map_or(0.0, |layer| layer.z)
-    }
-
-    fn lines(&self, role: Role, by_role: bool) -> Vec<Line> {
-        let steps = self.moves.iter();
-        let lines = steps.filter(|step| step.is_line() && sums::role(step.role, by_role) == role);
-        lines.map(|step| Line::new(step, self.z())).collect()
-    }
-}
-
-/// Compares two layers, or what comes before the first ones.
+/// Compares two layers, or what comes before the first ones. `slack` is how far the layers lie apart
+/// in z, here and before, mm; `codes` are those of both.
 pub(super) fn compare(
-    a: &Side,
-    b: &Side,
-    pair: Option<Pair>,
-    by_role: bool,
-    tolerances: &Tolerances,
+    halves: Both<&Half<'_>>,
+    codes: Both<&[Code]>,
+    slack: f64,
+    rules: Rules<'_>,
 ) -> (PairOfLayers, Both<Measure>) {
-    let halves = match pair {
-        None => Both { a: Half::start(a), b: Half::start(b) },
-        Some(pair) => Both { a: Half::layer(a, pair.a), b: Half::layer(b, pair.b) },
-    };
-    let halves = halves.as_ref();
-    let measures = halves.map(|half| Measure::new(half.moves, by_role));
-    let of_role = |index: usize| role(halves, measures.as_ref(), index, by_role, tolerances);
+    let Rules { tolerances, by_role, .. } = rules;
+    let measures = halves.map(|half| Measure::new(half.steps, by_role));
+    let of_role = |index: usize| role(halves, measures.as_ref(), index, rules);
     let plastic = (0..ROLES).filter(|&index| is_plastic(Role::ALL[index]));
-    let roles = plastic.map(of_role).filter(|role| role.moves.a + role.moves.b > 0).collect();
-    let numbers = halves.map(|half| half.number.unwrap_or(usize::MAX));
-    let orders = match (a.codes.get(numbers.a), b.codes.get(numbers.b)) {
-        (Some(a), Some(b)) => codes::orders(Both { a, b }),
-        _ => Orders::default(),
+    let roles = plastic.map(of_role).filter(|role| role.moves.a + role.moves.b > 0);
+    let roles: Vec<RoleOfPair> = roles.collect();
+    let both = halves.a.number.is_some() && halves.b.number.is_some();
+    let travels = (both && tolerances.travels).then(|| travels(halves, &roles, slack, rules));
+    let has_same_lines = |wall: &Role| {
+        let own = roles.iter().find(|one| one.role == *wall);
+        own.is_some_and(|own| own.far_mm.a + own.far_mm.b == 0.0)
     };
+    let walls = WALLS.iter().filter(|wall| both && by_role && has_same_lines(wall));
+    let seams = walls.filter_map(|wall| seams::compare(halves, *wall, tolerances.seams));
     let found = PairOfLayers {
         layer: halves.map(|half| half.number),
-        z_mm: halves.map(|half| half.layer.map(|layer| layer.z)),
-        height_mm: halves.map(|half| half.layer.map(|layer| layer.height)),
+        z_mm: halves.map(|half| half.level.map(|[z, _]| z)),
+        height_mm: halves.map(|half| half.level.map(|[_, height]| height)),
         time_s: halves.map(|half| half.seconds),
         extent_mm: measures.as_ref().map(|measure| measure.extent),
-        orders,
+        orders: if both { codes::orders(codes) } else { Orders::default() },
+        travels,
+        seams: seams.collect(),
         roles,
     };
     (found, measures)
+}
+
+/// Travels, and whether others come from another order of the same lines.
+fn travels(
+    halves: Both<&Half<'_>>,
+    roles: &[RoleOfPair],
+    slack: f64,
+    rules: Rules<'_>,
+) -> TravelsOfPair {
+    let mut travels = travels::compare(halves, rules.tolerances, slack, rules.moved);
+    let same = |role: &RoleOfPair| role.far_mm.a + role.far_mm.b + role.unlike_mm.a == 0.0;
+    travels.has_same_lines = roles.iter().all(same);
+    if travels.other_from.is_some() && travels.has_same_lines {
+        let lines = halves.map(Half::all_lines);
+        let lines = lines.as_ref().map(Vec::as_slice);
+        travels.lines_other_from = travels::other_from(lines, rules.tolerances.place);
+    }
+    travels
 }
 
 fn role(
     halves: Both<&Half<'_>>,
     measures: Both<&Measure>,
     index: usize,
-    by_role: bool,
-    tolerances: &Tolerances,
+    rules: Rules<'_>,
 ) -> RoleOfPair {
     let role = Role::ALL[index];
     let tally = measures.map(|measure| measure.roles[index]);
-    let lines = halves.map(|half| half.lines(role, by_role));
-    let Tolerances { place, share, .. } = *tolerances;
+    let lines = halves.map(|half| half.lines(role, rules.by_role));
+    let Tolerances { place, share, .. } = *rules.tolerances;
     let one = apart(&lines.a, &lines.b, place, share);
     let other = apart(&lines.b, &lines.a, place, share);
     RoleOfPair {
@@ -193,37 +182,18 @@ fn role(
     }
 }
 
-/// The farther of the two places.
-fn farthest(one: &Apart, other: &Apart, halves: Both<&Half<'_>>) -> Option<Place> {
-    let place = |found: Farthest, z: f64, line: Both<u32>| Place {
-        distance_mm: found.distance,
-        at_mm: [found.at[0], found.at[1], found.at[2] + z],
-        line,
-    };
-    let a = one
-        .farthest
-        .map(|found| place(found, halves.a.z(), Both { a: found.number, b: found.nearest }));
-    let b = other
-        .farthest
-        .map(|found| place(found, halves.b.z(), Both { a: found.nearest, b: found.number }));
-    match (a, b) {
-        (Some(a), Some(b)) => Some(if b.distance_mm > a.distance_mm { b } else { a }),
-        (a, b) => a.or(b),
-    }
-}
-
 /// The two lines whose filament differs more.
 fn most_unlike(one: &Apart, other: &Apart, halves: Both<&Half<'_>>) -> Option<Flow> {
-    let flow = |found: &Unlike, z: f64, lines: Both<&Line>| Flow {
+    let flow = |found: &Unlike, half: &Half<'_>, lines: Both<&Line>| Flow {
         filament_per_mm: lines.map(|line| line.flow),
         section_mm: lines.map(|line| line.section),
-        at_mm: [found.at[0], found.at[1], found.at[2] + z],
+        at_mm: in_file(found.at, half),
         line: lines.map(|line| line.number),
     };
     let a = one.most_unlike.as_ref();
     let b = other.most_unlike.as_ref();
     if b.is_some_and(|b| a.is_none_or(|a| b.share() > a.share())) {
-        return b.map(|b| flow(b, halves.b.z(), Both { a: &b.other, b: &b.line }));
+        return b.map(|b| flow(b, halves.b, Both { a: &b.other, b: &b.line }));
     }
-    a.map(|a| flow(a, halves.a.z(), Both { a: &a.line, b: &a.other }))
+    a.map(|a| flow(a, halves.a, Both { a: &a.line, b: &a.other }))
 }

@@ -2,13 +2,14 @@
 
 use crate::reader::Role;
 use crate::reader::print::Step;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Number of roles.
 pub(super) const ROLES: usize = Role::ALL.len();
 
 /// The same thing in both files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Both<T> {
     /// In the first file.
     pub a: T,
@@ -17,7 +18,7 @@ pub struct Both<T> {
 }
 
 /// A sum in both files.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Sum {
     /// In the first file.
     pub a: f64,
@@ -28,7 +29,7 @@ pub struct Sum {
 }
 
 /// A box around lines, mm.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Extent {
     /// Lowest x, y and z of the nozzle.
     pub min: [f64; 3],

@@ -126,7 +126,8 @@ impl<'a> Writer<'a> {
             template::render("machine.start_gcode", &settings.machine.start_gcode, &values)?;
         let e_mode = if settings.machine.relative_e { "M83" } else { "M82" };
         // Its numbers are filled in at the end.
-        let head = dialect_head(settings, 0.0, 0.0) + &hosts::head(facts.layers, thumbnails);
+        let head = hosts::head(facts.layers, settings.output.stamp, thumbnails);
+        let head = dialect_head(settings, 0.0, 0.0) + &head;
         let advance = dialect_advance(settings);
         let start = format!("{head};TYPE:Custom\n{block}G90\n{e_mode}\nG92 E0\n{advance}");
         writer.out.put(start.as_bytes())?;

@@ -1,8 +1,9 @@
 //! Print -> pictures: what a G-code file of any slicer prints, drawn without a window.
 //!
-//! [`layer`] and [`cut`] make a [`drawing::Drawing`]; [`svg`] and [`png`] write it.
+//! [`layer`], [`cut`] and, of two files, [`both`] make a [`drawing::Drawing`]; [`svg`] and [`png`] write it.
 //! [`html`] writes a page to look through all layers.
 
+pub mod both;
 pub mod colours;
 pub mod cut;
 pub mod drawing;

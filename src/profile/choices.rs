@@ -47,6 +47,16 @@ pub enum SeamInner {
     Staggered,
 }
 
+/// See [`Output::stamp`](super::Output::stamp).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stamp {
+    /// The program's name and version.
+    Version,
+    /// Its name alone.
+    None,
+}
+
 /// See [`Brim::place`](super::Brim::place).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -139,6 +139,14 @@ pub struct OwnFilament {
     pub speed: MmPerS,
 }
 
+/// Hands each line to `sink` as it is, as [`read()`] counts them.
+///
+/// # Errors
+/// What reading the bytes gives.
+pub(crate) fn lines(source: &mut dyn BufRead, sink: &mut dyn FnMut(&[u8])) -> io::Result<()> {
+    lines::each(source, lines::Place::default(), &mut |line, _| sink(line)).map(drop)
+}
+
 /// Reads G-code and hands each event to `sink` with its line, counted from 1, in the file's order.
 ///
 /// # Errors

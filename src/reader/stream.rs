@@ -99,6 +99,12 @@ impl Stream {
         Ok(Self { source, facts, places })
     }
 
+    /// The bytes that it reads.
+    #[must_use]
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
     /// What is known of the file as a whole.
     #[must_use]
     pub fn facts(&self) -> &Facts {

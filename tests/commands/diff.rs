@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use slicer::diff::{Both, Difference, File, Finding, Quantity, Side, Tolerances, diff};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
-use slicer::reader::{Print, Role};
+use slicer::reader::Role;
 use std::fmt::Write as _;
 
 /// A line of a small print: role's comment, start, end, filament.
@@ -43,20 +43,20 @@ fn gcode(model: &Model) -> String {
     text + "M104 S0\n"
 }
 
-fn side(text: &str) -> Side {
-    let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
+pub(crate) fn side(text: &str) -> Side {
     let limits = Limits::new(&settings("generic-marlin", &[]));
     let options = Options { filament_diameter: 1.75, ..Options::default() };
     let time = estimate(&mut text.as_bytes(), "x", &limits, options).unwrap();
-    Side::new(text.as_bytes(), print, time)
+    Side::of_bytes(text.as_bytes(), time).unwrap()
 }
 
 fn compared(a: &str, b: &str) -> Difference {
-    let tolerances = Tolerances { place: 0.01, share: 0.001, settings: false };
+    // Ways and seams have tests of their own, in `ways.rs`.
+    let tolerances = Tolerances { travels: false, seams: f64::INFINITY, ..Tolerances::default() };
     let (a, b) = (side(a), side(b));
-    let found = diff(&a, &b, &tolerances);
+    let found = diff(&a, &b, &tolerances).unwrap();
     // It has no direction: what is told of A is told of B the other way round.
-    assert_eq!(diff(&b, &a, &tolerances).findings.len(), found.findings.len());
+    assert_eq!(diff(&b, &a, &tolerances).unwrap().findings.len(), found.findings.len());
     found
 }
 

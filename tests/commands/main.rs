@@ -14,3 +14,4 @@ mod preview;
 mod profiles;
 mod schema;
 mod viewer;
+mod ways;

@@ -176,8 +176,9 @@ pub(crate) fn gcode(bytes: &[u8]) {
         let options = layer::Options { size: 400, below: 1, travels: true, frame };
         drop(svg::write(&layer::drawing(&print, index, &options)));
     }
-    let [a, b] = [a, b].map(|time| Side::new(bytes, print.clone(), time));
-    let found = diff(&a, &b, &Tolerances { place: 0.01, share: 0.001, settings: true });
+    let [a, b] = [a, b].map(|time| Side::of_bytes(bytes, time).unwrap());
+    let tolerances = Tolerances { settings: true, ..Tolerances::default() };
+    let found = diff(&a, &b, &tolerances).unwrap();
     assert!(found.equal, "a file differs from itself: {:?}", found.findings);
 }
 

@@ -10,7 +10,6 @@ use slicer::diff::{Side, Tolerances, diff};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::profile::{Override, ValueOrigin, load};
-use slicer::reader;
 use slicer::warning::Warning;
 use std::collections::BTreeMap;
 
@@ -128,14 +127,13 @@ fn files_with_and_without_arcs_print_the_same_and_check_finds_nothing() {
         let verdict = judge(&run.text, path.to_str().unwrap(), &as_it_is());
         assert_eq!(kinds(&verdict), [], "{set:?}");
         let (bytes, limits) = (run.text.as_bytes(), Limits::new(&run.settings));
-        let print = reader::Print::read(&mut &bytes[..], 1.75).unwrap();
         let options = Options { filament_diameter: 1.75, ..Options::default() };
         let times = estimate(&mut &bytes[..], "test", &limits, options).unwrap();
-        Side::new(bytes, print, times)
+        Side::of_bytes(bytes, times).unwrap()
     });
     // An arc off its lines, and the pieces that it is read as off the arc.
-    let tolerances = Tolerances { place: 0.018, share: 0.002, settings: false };
-    let difference = diff(&sides[0], &sides[1], &tolerances);
+    let tolerances = Tolerances { place: 0.018, share: 0.002, ..Tolerances::default() };
+    let difference = diff(&sides[0], &sides[1], &tolerances).unwrap();
     assert_eq!(difference.findings, []);
 }
 

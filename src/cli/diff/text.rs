@@ -11,7 +11,8 @@
 //! in a row are written as a range.
 
 use slicer::diff::{
-    Both, CodeDifference, Difference, File, Finding, Flow, Kind, Place, Quantity, Setting, Sum,
+    Both, CodeDifference, Difference, File, Finding, Flow, Kind, Ordered, Place, Quantity, Setting,
+    Sum,
 };
 use slicer::reader::Role;
 use slicer::warning::plural;
@@ -97,7 +98,7 @@ fn table(found: &Difference, limits: &str) -> String {
     if let Both { a: Some(a), b: Some(b) } = found.extent_mm {
         let apart = (0..3).map(|k| (a.min[k] - b.min[k]).abs().max((a.max[k] - b.max[k]).abs()));
         let apart = apart.fold(0.0, f64::max);
-        if apart > found.tolerance_mm {
+        if found.moved_mm.is_none() && apart > found.tolerance_mm {
             text.push_str(&format!("the box around all lines differs by {apart:.3} mm\n"));
         }
     }
@@ -145,8 +146,18 @@ fn listed(findings: &[Finding], all: bool) -> Vec<&Finding> {
 }
 
 /// One difference in one line.
-fn line(finding: &Finding, tolerance: f64) -> String {
+pub(super) fn line(finding: &Finding, tolerance: f64) -> String {
     match finding {
+        Finding::Moved { by_mm } => {
+            let [x, y, z] = by_mm.map(short);
+            let z = if by_mm[2] == 0.0 { String::new() } else { format!(", {z}") };
+            format!("all moved by {x}, {y}{z} mm; the rest is compared as if it had not")
+        }
+        Finding::Travels { .. }
+        | Finding::Order { .. }
+        | Finding::Seams { .. }
+        | Finding::Retractions { .. }
+        | Finding::FirmwareRetractions { .. } => between_lines(finding, tolerance),
         Finding::LayersOnlyIn { file, layers, length_mm } => {
             format!("only in {}: {} ({length_mm:.1} mm of lines)", name(*file), runs(layers))
         }
@@ -189,6 +200,83 @@ fn line(finding: &Finding, tolerance: f64) -> String {
     }
 }
 
+/// What the nozzle does between lines.
+fn between_lines(finding: &Finding, tolerance: f64) -> String {
+    match finding {
+        Finding::Travels { layer, length_mm, far_mm, z_mm, farthest } => {
+            let heights = |z: Option<[f64; 2]>| {
+                z.map_or_else(
+                    || "none".to_owned(),
+                    |[low, high]| format!("z {low:.2} to {high:.2}"),
+                )
+            };
+            format!(
+                "{}: travels {}; {:.1} of {:.1} mm in A ({}) and {:.1} of {:.1} in B ({}) farther \
+                 than {tolerance} mm",
+                place(*layer),
+                apart(farthest),
+                far_mm.a,
+                length_mm.a,
+                heights(z_mm.a),
+                far_mm.b,
+                length_mm.b,
+                heights(z_mm.b)
+            )
+        }
+        Finding::Order { of, layers, layer, line, farthest } => {
+            let farthest = farthest.as_ref().map_or_else(String::new, |place| {
+                format!("; so travels are others, {}", apart(place))
+            });
+            let what = match of {
+                Ordered::Lines => "lines are the same in another order or direction",
+                Ordered::Travels => "travels are the same in another order",
+            };
+            let layers = in_layers(layers, *layer);
+            format!("{layers}: {what}, from lines {} on{farthest}", numbers(*line))
+        }
+        Finding::Seams { role, layers, moved, layer, farthest } => {
+            let walls = plural(moved.a.max(moved.b) as u64, "wall");
+            format!(
+                "{}: {walls} ({}) begin elsewhere, most in {}, {}",
+                runs(layers),
+                role.name(),
+                label(*layer),
+                apart(farthest)
+            )
+        }
+        Finding::Retractions { layers, layer, pulled_mm: back, pushed_mm: forth } => format!(
+            "{}: in {} {:.3} mm of filament are pulled back in A and {:.3} in B, {:.3} and {:.3} \
+             pushed out again",
+            in_layers(layers, *layer),
+            place(*layer),
+            back.a,
+            back.b,
+            forth.a,
+            forth.b
+        ),
+        Finding::FirmwareRetractions { count } => {
+            format!("retractions by the printer (G10, G11): {} in A, {} in B", count.a, count.b)
+        }
+        _ => String::new(),
+    }
+}
+
+/// How far and where.
+fn apart(Place { distance_mm, at_mm: [x, y, z], line }: &Place) -> String {
+    let lines = numbers(*line);
+    format!("{distance_mm:.3} mm apart at x {x:.3} y {y:.3} z {z:.3} (lines {lines})")
+}
+
+/// Layers, or what comes after them.
+fn in_layers(layers: &[usize], first: Option<Both<usize>>) -> String {
+    if layers.is_empty() { place(first) } else { runs(layers) }
+}
+
+/// A length in mm without zeros that say nothing.
+pub(super) fn short(mm: f64) -> String {
+    format!("{}", (mm * 1e4).round() / 1e4)
+}
+
 fn lines(
     role: Role,
     length: Both<f64>,
@@ -196,12 +284,10 @@ fn lines(
     farthest: &Place,
     tolerance: f64,
 ) -> String {
-    let role = role.name();
-    let Place { distance_mm, at_mm: [x, y, z], line } = *farthest;
     format!(
-        "{role} {distance_mm:.3} mm apart at x {x:.3} y {y:.3} z {z:.3} (lines {}); {:.1} of {:.1} mm \
-         in A and {:.1} of {:.1} in B farther than {tolerance} mm",
-        numbers(line),
+        "{} {}; {:.1} of {:.1} mm in A and {:.1} of {:.1} in B farther than {tolerance} mm",
+        role.name(),
+        apart(farthest),
         far.a,
         length.a,
         far.b,

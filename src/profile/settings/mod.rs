@@ -32,6 +32,7 @@ mod jerk;
 mod limits;
 mod machine;
 mod material;
+mod output;
 mod speed;
 mod support;
 mod travel;
@@ -47,6 +48,7 @@ pub use jerk::Jerk;
 pub use limits::MotionLimits;
 pub use machine::{Machine, Reach};
 pub use material::Filament;
+pub use output::Output;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 pub use speed::Speed;
@@ -226,6 +228,8 @@ pub struct Settings {
     pub filament: Filament,
     /// How a layer gets the time and the air that it needs to set.
     pub cooling: Cooling,
+    /// What the file says of itself.
+    pub output: Output,
     /// The printer.
     pub machine: Machine,
     /// What the printer's planner holds itself to. It changes estimates of time; only max_segment_rate,
