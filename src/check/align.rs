@@ -70,9 +70,18 @@ pub(super) fn place(
     // A layer above a gap is no higher than its lines.
     let layers = facts.layers.iter().zip(&survey.heights);
     let heights: Vec<(f64, f64)> = layers.map(|(layer, height)| (layer.z, *height)).collect();
-    let seen = || if has_roles { raft::lift(survey, model.mesh) } else { 0.0 };
-    let lift = terms.lift.unwrap_or_else(seen);
-    let mut part = match Part::new(model.mesh, (model.offset, lift), &heights) {
+    let seen = || if has_roles { raft::lift((facts, survey), model.mesh) } else { 0.0 };
+    let mut lift = terms.lift.unwrap_or_else(seen);
+    let mut made = Part::new(model.mesh, (model.offset, lift), &heights);
+    let untold = match &made {
+        Ok(part) if !has_roles && terms.lift.is_none() => raft::untold_lift((facts, survey), part),
+        _ => 0.0,
+    };
+    if untold > 0.0 {
+        lift = untold;
+        made = Part::new(model.mesh, (model.offset, lift), &heights);
+    }
+    let mut part = match made {
         Ok(part) => part,
         Err(layer) => {
             notes.push(format!(

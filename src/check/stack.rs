@@ -27,7 +27,7 @@ use super::lay::{Judge, Judged, Measured, Patch, chains_of, is_ironing};
 use super::part::Part;
 use super::survey::Survey;
 use super::window::Window;
-use crate::reader::Role;
+use crate::reader::{Facts, Role};
 use crate::reader::print::Step;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -35,9 +35,20 @@ use std::ops::Range;
 /// How far below the lower side of a line something may stand that carries it, mm.
 const MOST_BELOW: f64 = SUPPORT_GAP + 1e-3;
 
+/// Keys under which slicers write that there is support or a raft.
+const SUPPORT_KEYS: &[&str] = &["support_material", "raft_layers"];
+
+/// Whether a file by its settings has support or a raft, and does not tell which lines those are.
+fn has_untold_support(facts: &Facts) -> bool {
+    let is_set = |key: &&str| facts.value(key).is_some_and(|value| !matches!(value, "" | "0"));
+    !facts.has(Role::OuterWall) && SUPPORT_KEYS.iter().any(is_set)
+}
+
 /// All layers so far, and what stands of them.
 pub(super) struct Stack<'a> {
     part: Option<&'a Part>,
+    /// Whether any line may be support: the file has some, and does not tell which.
+    untold_support: bool,
     measured: Measured,
     bodies: Bodies,
     /// The first chain of each layer.
@@ -51,9 +62,10 @@ pub(super) struct Stack<'a> {
 
 impl<'a> Stack<'a> {
     /// Nothing yet. Where `part` itself has nothing below, a hanging line is no missing layer.
-    pub(super) fn new(part: Option<&'a Part>) -> Self {
+    pub(super) fn new(facts: &Facts, part: Option<&'a Part>) -> Self {
         Self {
             part,
+            untold_support: has_untold_support(facts),
             measured: Measured::default(),
             bodies: Bodies::default(),
             firsts: Vec::new(),
@@ -68,7 +80,8 @@ impl<'a> Stack<'a> {
         let laid = batch.clone().into_par_iter().map(|layer| {
             let moves = window.moves(layer);
             let chains = chains_of(moves).filter(|chain| !is_ironing(&moves[chain.start]));
-            Some(Laid::new(moves, chains))
+            let laid = Laid::new(moves, chains);
+            Some(if self.untold_support { laid.as_support() } else { laid })
         });
         self.kept.extend(laid.collect::<Vec<_>>());
         for layer in batch {

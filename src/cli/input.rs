@@ -47,20 +47,6 @@ pub(super) fn read(file: &str) -> Result<(&str, Vec<u8>), Error> {
     Ok((name, bytes))
 }
 
-/// A file that is read more than once, and its name for messages.
-///
-/// # Errors
-/// [`Cause::Unreadable`].
-pub(super) fn again(file: &str) -> Result<(&str, Source), Error> {
-    if file == "-" {
-        let name = "<stdin>";
-        let source = Source::spooled(&mut std::io::stdin().lock());
-        return Ok((name, source.map_err(|error| Cause::Unreadable(error).of(name))?));
-    }
-    let source = File::open(file).and_then(Source::of_file);
-    Ok((file, source.map_err(|error| Cause::Unreadable(error).of(file))?))
-}
-
 /// The firmware by whose rules files for a machine are read.
 pub(super) fn firmware(settings: &Settings) -> Firmware {
     match settings.machine.dialect {

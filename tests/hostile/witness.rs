@@ -109,10 +109,10 @@ fn judge(print: &Print, settings: &Settings, placed: Option<&Placed>) -> Verdict
     check::check(print, &terms, model)
 }
 
-fn side(text: &str, print: Print, settings: &Settings) -> Option<Side> {
+fn side(text: &str, settings: &Settings) -> Option<Side> {
     let options = estimate::Options { filament_diameter: 1.75, ..estimate::Options::default() };
     let time = estimate(&mut text.as_bytes(), "x.gcode", &Limits::new(settings), options).ok()?;
-    Some(Side::new(text.as_bytes(), print, time))
+    Side::of_bytes(text.as_bytes(), time).ok()
 }
 
 /// Whether some kind of finding is there more often than in the sound file.
@@ -137,26 +137,8 @@ impl File {
         for verdict in &found {
             assert!(!verdict.fails(), "{stl}: {}", common::damage::listed(verdict));
         }
-        let side = side(&text, print, &settings).unwrap();
-        let me = Self { sound: Sound::new(&text), settings, placed, side, found };
-        let t = std::time::Instant::now();
-        let pr = read(&text);
-        let t1 = t.elapsed();
-        judge(&pr, &me.settings, None);
-        let t2 = t.elapsed();
-        judge(&pr, &me.settings, Some(&me.placed));
-        let t3 = t.elapsed();
-        me.sees(&text);
-        let t4 = t.elapsed();
-        me.sound.counts(&text);
-        let t5 = t.elapsed();
-        eprintln!(
-            "{stl} {} moves {} layers {t1:?} {t2:?} {t3:?} {t4:?} {t5:?} {:?}",
-            pr.moves.len(),
-            pr.layers.len(),
-            common::damage::warned(&me.found[1])
-        );
-        me
+        let side = side(&text, &settings).unwrap();
+        Self { sound: Sound::new(&text), settings, placed, side, found }
     }
 
     /// Whether an edit is seen by `check`, by `check` with the model, by `diff`.
@@ -165,9 +147,8 @@ impl File {
         let new = |k: usize, placed| is_new(&judge(&print, &self.settings, placed), &self.found[k]);
         let alone = print.layers.is_empty() || new(0, None);
         let with_model = alone || new(1, Some(&self.placed));
-        let tolerances = Tolerances { place: 0.01, share: 0.001, settings: false };
-        let differs = match side(text, print, &self.settings) {
-            Some(other) => !diff(&self.side, &other, &tolerances).equal,
+        let differs = match side(text, &self.settings) {
+            Some(other) => !diff(&self.side, &other, &Tolerances::default()).unwrap().equal,
             None => true,
         };
         [alone, with_model, differs]
