@@ -6,7 +6,10 @@
 //! - The message is one line that names the file or the flag, the cause and what to do. It holds
 //!   the text of its causes: print the error alone, not its chain of sources.
 //! - The cause, such as the system's error, is the `source()`.
+//! - [`details`] gives each a stable word, and the place, for programs.
 //! - Wrong command lines are errors of the program, not of the library.
+
+pub mod details;
 
 use crate::profile::ProfileError;
 use crate::warning::plural;

@@ -13,7 +13,9 @@
 //! - Dwells (G4) are timed, and belong to no role.
 
 use crate::motion::{Clock, Junction, Limits, Move, Timed};
-use crate::reader::{self, Cause, Change, Event, Firmware, Heights, Motion, Role, Summary, Wait};
+use crate::reader::{
+    self, Cause, Change, Event, Firmware, Heights, Motion, Reading, Role, Summary, Wait,
+};
 use serde::Serialize;
 use std::f64::consts::PI;
 use std::io::BufRead;
@@ -30,6 +32,8 @@ pub struct Options {
     pub fixed_limits: bool,
     /// Whose rules the file is read by.
     pub firmware: Firmware,
+    /// Diameter of the filament by which E is a volume, as [`Reading::volumes`].
+    pub volumes: Option<f64>,
 }
 
 /// How long a print takes.
@@ -98,6 +102,9 @@ pub struct NotCounted {
     pub unknown_lines: u64,
     /// The first of them, from 1; 0 if there is none.
     pub first_unknown_line: u64,
+    /// Arcs that were read coarser, or with fewer turns, than they are: see
+    /// [`Summary::coarse_arcs`](reader::Summary::coarse_arcs).
+    pub coarse_arcs: u64,
 }
 
 /// Reads G-code from `source` and estimates how long it takes on a machine of these limits.
@@ -112,7 +119,8 @@ pub fn estimate(
     options: Options,
 ) -> Result<Estimate, reader::Error> {
     let mut meter = Meter::new(limits, options);
-    let summary = reader::read(source, options.firmware, &mut |_, event| meter.event(event))
+    let reading = Reading { firmware: options.firmware, volumes: options.volumes };
+    let summary = reader::read(source, reading, &mut |_, event| meter.event(event))
         .map_err(|error| Cause::Unreadable(error).of(file))?;
     meter.clock.finish();
     meter.collect();
@@ -278,6 +286,7 @@ impl Meter {
                 firmware_retractions: summary.firmware_retractions,
                 unknown_lines: summary.unknown,
                 first_unknown_line: summary.first_unknown,
+                coarse_arcs: summary.coarse_arcs,
                 ..self.not_counted
             },
         }

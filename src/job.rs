@@ -2,6 +2,9 @@
 
 use crate::mesh::Placement;
 use crate::profile::{Profile, Settings, Sources};
+use crate::text;
+use std::borrow::Cow;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Name and version of this program.
@@ -24,7 +27,7 @@ pub struct Job {
 #[derive(Debug, Clone)]
 pub enum Model {
     /// A file, or standard input if it is `-`.
-    Path(String),
+    Path(PathBuf),
     /// The bytes of a file.
     Bytes {
         /// What messages and the report call it.
@@ -63,7 +66,7 @@ impl Job {
 
 impl Model {
     /// The model in the file of this name; `-` is standard input.
-    pub fn path(file: impl Into<String>) -> Self {
+    pub fn path(file: impl Into<PathBuf>) -> Self {
         Self::Path(file.into())
     }
 
@@ -72,11 +75,12 @@ impl Model {
         Self::Bytes { name: name.into(), bytes: bytes.into() }
     }
 
-    /// What messages and the report call it.
+    /// What messages and the report call it: [`text::name`] of a file.
     #[must_use]
-    pub fn name(&self) -> &str {
+    pub fn name(&self) -> Cow<'_, str> {
         match self {
-            Self::Path(name) | Self::Bytes { name, .. } => name,
+            Self::Path(path) => Cow::Owned(text::name(path)),
+            Self::Bytes { name, .. } => text::line(name),
         }
     }
 }

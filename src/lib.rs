@@ -39,6 +39,7 @@
 //! | [`mod@compare`] | one job, printed in several ways -> what each saves |
 //! | [`pattern`] | how sparse lines run |
 //! | [`geom`], [`units`] | plane geometry on the integer grid |
+//! | [`text`] | names and texts of files, made safe to show |
 //! | [`render`] | triangles -> a picture |
 //!
 //! The command line is the binary's own. [`guide`] has the words, the reasons, and where to add what.
@@ -66,6 +67,7 @@ pub mod region;
 pub mod render;
 pub mod report;
 pub mod slice;
+pub mod text;
 pub mod units;
 pub mod warning;
 

@@ -96,6 +96,21 @@ pub enum Warning {
         /// Its value, mm/s.
         speed_mm_s: f64,
     },
+    /// A value that is hardly meant, or more than printer or material bear.
+    OutsideRange {
+        /// The setting.
+        setting: String,
+        /// Its value.
+        value: f64,
+        /// Its unit, and that of the range.
+        unit: String,
+        /// Least of what is usual or borne.
+        least: f64,
+        /// Most of it.
+        most: f64,
+        /// Whose range it is.
+        what: String,
+    },
     /// Lines that are printed slower than asked for, since the hot end cannot melt as fast.
     FlowLimited {
         /// What they are for, as in the report's roles.
@@ -201,6 +216,12 @@ impl fmt::Display for Warning {
             ),
             Self::SlowSpeed { setting, speed_mm_s } => {
                 write!(f, "{setting} = {speed_mm_s} is very slow; speeds are in mm/s")
+            }
+            Self::OutsideRange { setting, value, unit, least, most, what } => {
+                write!(
+                    f,
+                    "{setting} = {value} {unit} lies outside {least} to {most}, {what}; change one"
+                )
             }
             Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
                 let speeds = [*asked_mm_s, *lowest_mm_s].map(short);

@@ -13,6 +13,7 @@
 //! Only places that are wide enough for a line count. Thick lines, and lines that vary in height,
 //! also cover the layers that they reach down into. Volumes of plastic are summed up on the way.
 
+use super::belongs::{SAME_HEIGHT, is_of_part, is_stray};
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Place, short};
 use super::laid::{Bead, Seen};
@@ -25,7 +26,7 @@ use super::terms::Terms;
 use super::window::Window;
 use crate::geom::spans::Rows;
 use crate::reader::Role;
-use crate::reader::print::{Layer, Step};
+use crate::reader::print::Step;
 
 /// Width of the rim that must be printed, mm: three quarters of a usual line. A wider one would ask
 /// for walls where sparse infill is right.
@@ -45,17 +46,11 @@ const LEAST_AREA: f64 = 0.6;
 /// Places narrower than this many line widths count as too narrow to print.
 pub(super) const PRINTABLE: f64 = 1.2;
 
-/// Width of a line where no wall gives one, mm.
-pub(super) const SOME_WIDTH: f64 = 0.4;
-
 /// How far from walls and skins sparse infill is measured, mm: its lines end in them, …
 const FROM_WALLS: f64 = 0.5;
 
 /// … and how wide a place must be for its lines to show their density, mm.
 const LEAST_WIDE: f64 = 6.0;
-
-/// Heights that differ by less are the same, mm.
-const SAME_HEIGHT: f64 = 1e-3;
 
 /// Length of the pieces in which lines are looked at, mm: half of a line's width; and of those of sparse
 /// infill, of which the density is asked for over many lines.
@@ -94,12 +89,6 @@ pub(super) struct Judge<'a> {
     pub(super) terms: &'a Terms,
     /// Whether the file gives roles, so that the part's lines differ from others.
     pub(super) has_roles: bool,
-}
-
-/// Whether a line is of the part itself: no support, skirt or start line.
-pub(super) fn is_of_part(step: &Step, has_roles: bool) -> bool {
-    let roles = [Role::OuterWall, Role::InnerWall, Role::Skin, Role::Infill];
-    step.is_line() && (!has_roles || roles.contains(&step.role))
 }
 
 impl Judge<'_> {
@@ -275,12 +264,6 @@ fn near_outline<'s>(
         pieces.extend(ways.iter().map(piece));
     }
     pieces
-}
-
-/// Whether a line lies so far from its layer's height that it is judged with another layer.
-pub(super) fn is_stray(step: &Step, layer: &Layer) -> bool {
-    let [low, high] = step.heights();
-    (0.5 * (low + high) - layer.z).abs() > layer.height + SAME_HEIGHT
 }
 
 /// What part of a line lies in an area.

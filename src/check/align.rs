@@ -8,7 +8,8 @@
 //! print that fits in neither is one of another model, and its size is compared. A raft lifts it.
 
 use super::Model;
-use super::against::{PIECE, SOME_WIDTH, share_in};
+use super::against::{PIECE, share_in};
+use super::belongs::SOME_WIDTH;
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Findings, short};
 use super::median;

@@ -33,20 +33,21 @@ const LEAST_NARROW: f64 = 1.0;
 const SUM_SLACK: (f64, f64) = (0.01, 1.0);
 
 /// Lines of a layer whose plastic does not fit their size, with their roles. `usual` is what lines of
-/// each role take as a rule by [`ratio`].
+/// each role take as a rule.
 pub(super) fn odd(
     (facts, terms): (&Facts, &Terms),
     (layer, moves): (usize, &[Step]),
-    usual: &[Option<f64>; Role::ALL.len()],
+    usual: &[Option<Usual>; Role::ALL.len()],
 ) -> Vec<(Role, Finding)> {
     let mut found = Vec::new();
     for step in moves.iter().filter(|step| is_judged(step)) {
         let Some(usual) = usual[step.role as usize] else { continue };
-        let times = ratio(facts, terms, step) / usual;
+        let times = ratio(facts, terms, step) / usual.ratio;
         let is_odd = if facts.has_widths {
             !(LEAST..=MOST).contains(&times)
         } else {
-            times > MOST_WITHOUT_WIDTH
+            // The first layer on a raft is pressed into less than its height.
+            times > MOST_WITHOUT_WIDTH && thick(terms, step) > MOST * usual.thick
         };
         if is_odd {
             let text = format!(
@@ -60,6 +61,20 @@ pub(super) fn odd(
         }
     }
     found
+}
+
+/// What lines of a role take as a rule.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Usual {
+    /// See [`ratio`].
+    pub(super) ratio: f64,
+    /// See [`thick`], mm².
+    pub(super) thick: f64,
+}
+
+/// The plastic of a mm of a line, mm².
+pub(super) fn thick(terms: &Terms, step: &Step) -> f64 {
+    f64::from(step.filament) * terms.filament_area / step.length()
 }
 
 /// The plastic of a line by its size.

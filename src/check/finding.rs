@@ -29,6 +29,13 @@ pub enum Code {
     UnknownCode,
     /// A line or travel leaves the space that the machine has.
     OutsideVolume,
+    /// A travel goes below what stands, and through it, by the nozzle's flat end.
+    ThroughPrint,
+    /// A command in the print changes what the commands after it do: where 0 is, how far a motor turns,
+    /// how much is pushed out, how hot it is; or it stops the print.
+    ChangesTheMachine,
+    /// The nozzle or the bed is set to what the material does not take, or no machine.
+    WrongTemperature,
     /// Plastic is pushed out before the nozzle is set to a temperature and waited for.
     ColdExtrusion,
     /// A move is faster than the machine's axes.
@@ -78,9 +85,12 @@ pub enum Code {
 
 impl Code {
     /// All of them.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 27] = [
         Self::UnknownCode,
         Self::OutsideVolume,
+        Self::ThroughPrint,
+        Self::ChangesTheMachine,
+        Self::WrongTemperature,
         Self::ColdExtrusion,
         Self::TooFast,
         Self::TooMuchFlow,
@@ -111,6 +121,9 @@ impl Code {
         match self {
             Self::UnknownCode => "unknown-code",
             Self::OutsideVolume => "outside-volume",
+            Self::ThroughPrint => "through-print",
+            Self::ChangesTheMachine => "changes-the-machine",
+            Self::WrongTemperature => "wrong-temperature",
             Self::ColdExtrusion => "cold-extrusion",
             Self::TooFast => "too-fast",
             Self::TooMuchFlow => "too-much-flow",
@@ -246,9 +259,17 @@ impl Findings {
         self.found.len()
     }
 
-    /// Sets the place of all findings from `first` on.
-    pub(super) fn place(&mut self, first: usize, place: Place) {
-        self.found[first..].iter_mut().for_each(|finding| finding.place = place);
+    /// Fills in the place of all findings from `first` on, where they have none of their own.
+    pub(super) fn fill_in(&mut self, first: usize, place: Place) {
+        for finding in &mut self.found[first..] {
+            let own = finding.place;
+            finding.place = Place {
+                line: own.line.or(place.line),
+                layer: own.layer.or(place.layer),
+                z_mm: own.z_mm.or(place.z_mm),
+                at_mm: own.at_mm.or(place.at_mm),
+            };
+        }
     }
 
     pub(super) fn extend(&mut self, findings: impl IntoIterator<Item = Finding>) {

@@ -348,10 +348,11 @@ impl<'a> Judge<'a> {
                 }));
                 continue;
             }
-            for step in run.from.0..=run.to.0 {
+            let steps = chain.iter().enumerate().take(run.to.0 + 1).skip(run.from.0);
+            for (step, line) in steps {
                 let from = if step == run.from.0 { run.from.1 } else { 0.0 };
                 let to = if step == run.to.0 { run.to.1 } else { 1.0 };
-                let samples = Samples::of(&chain[step], PITCH).between(from, to);
+                let samples = Samples::of(line, PITCH).between(from, to);
                 pieces.extend(samples.map(|sample| Piece { sample, carried: false, step }));
             }
         }

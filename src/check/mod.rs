@@ -14,11 +14,14 @@
 //! Beads are drawn on rows of spans, layer by layer; a thick bead fills the layers below it too.
 
 mod against;
+mod air;
 mod align;
 mod anchors;
 mod beads;
+mod belongs;
 mod bodies;
 mod capsule;
+mod changes;
 mod contact;
 mod dialect;
 mod filled;
@@ -30,17 +33,22 @@ mod judge;
 mod laid;
 mod lay;
 mod moves;
+mod orders;
 mod part;
 mod posts;
+mod primed;
 mod raft;
 mod rows;
 mod runs;
 mod samples;
 mod sets;
 mod stack;
+mod standing;
 mod surfaces;
 mod survey;
 pub mod terms;
+mod through;
+mod warmth;
 mod window;
 
 use crate::mesh::Mesh;

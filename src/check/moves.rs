@@ -6,20 +6,31 @@
 //! - filament that is still pulled back when a line begins, or pushed out more than was pulled back;
 //! - lines outside the machine's volume, other moves beyond the nozzle's reach;
 //! - speeds in x and y beyond the machine's, and more plastic per second than the hot end melts.
-//!   Speeds in z and of the filament alone are not judged: firmwares cap them, and slicers rely on
-//!   that. A line that rises is as slow as the cap on z makes it.
+//!   Speeds of the filament alone are not judged, and speeds in z only in files of this program's, or
+//!   beyond any machine's: firmwares cap them, and slicers rely on that. A line that rises is as slow as
+//!   the cap on z makes it;
+//! - travels through what stands ([`through`](super::through)), and lines on what the start block primed
+//!   ([`primed`](super::primed)).
+//!
+//! Between the moves are commands: those that change the machine ([`changes`](super::changes)), and those
+//! for heaters ([`warmth`](super::warmth)) and the fan ([`air`](super::air)).
 //!
 //! Commands are judged once each, by a list of what the firmware knows. Klipper's macros cannot be
 //! judged, and are listed as such.
 
+use super::air::Air;
+use super::changes::Changes;
 use super::dialect;
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::heat::Heat;
+use super::primed::Primed;
 use super::terms::{Machine, Terms};
+use super::through::Through;
+use super::warmth::Warmth;
 use super::window::Page;
 use crate::profile::DialectName;
 use crate::reader::Facts;
-use crate::reader::print::{Note, Step, What};
+use crate::reader::print::{Note, Order, Step, What};
 
 /// Coordinates are rounded to this or less, mm; a smaller value would report files with two decimals.
 pub(super) const ROUNDING: f64 = 0.01;
@@ -33,11 +44,24 @@ const FLOW_SLACK: f64 = 1.05;
 /// Shorter moves are not judged, mm: their speed and flow are mostly rounding.
 const LEAST_LENGTH: f64 = 0.2;
 
+/// Lower lifts are not judged, mm.
+const LEAST_LIFT: f64 = 0.05;
+
 /// Digits of a command's number.
 const MOST_DIGITS: usize = 6;
 
 /// Filament that may be missing or too much at a restore, mm: room for what slicers add to prime.
 const FILAMENT_SLACK: f64 = 0.3;
+
+/// No nozzle goes so far from 0, or so low below the bed where no machine is known, mm.
+const FARTHEST: f64 = 10_000.0;
+const LOWEST: f64 = -1.0;
+
+/// No machine lifts so fast, mm/s; slicers write the speed of travels, too, where only z moves.
+const FASTEST_LIFT: f64 = 500.0;
+
+/// Factors on all plastic that a material may need.
+const MULTIPLIERS: std::ops::RangeInclusive<f64> = 0.5..=1.6;
 
 /// Judges the moves one by one, in the file's order, as they come.
 pub(super) struct Moves<'a> {
@@ -48,7 +72,7 @@ pub(super) struct Moves<'a> {
 
 impl<'a> Moves<'a> {
     pub(super) fn new(facts: &'a Facts, terms: &'a Terms) -> Self {
-        let walk = Walk::new(facts, terms.machine.as_ref(), terms.filament_area);
+        let walk = Walk::new(facts, terms);
         Self { walk, codes: Codes::new(terms.machine.as_ref()), next: 0 }
     }
 
@@ -57,26 +81,51 @@ impl<'a> Moves<'a> {
         let mut notes = page.notes.iter().peekable();
         for step in page.moves.iter() {
             while let Some(note) = notes.next_if(|note| note.at <= self.next) {
-                self.note(note);
+                self.note(note, found);
             }
             self.walk.step(self.next, step, found);
             self.next += 1;
         }
-        notes.for_each(|note| self.note(note));
+        notes.for_each(|note| self.note(note, found));
     }
 
-    fn note(&mut self, note: &Note) {
-        self.walk.note(&note.what);
+    fn note(&mut self, note: &Note, found: &mut Findings) {
+        self.walk.note(note, found);
         self.codes.note(note);
     }
 
     /// Ends the file. What cannot be judged goes to `notes`.
     pub(super) fn finish(self, found: &mut Findings, notes: &mut Vec<String>) {
-        self.codes.finish(self.walk.facts, found, notes);
-        if let Some(macros) = self.walk.heated_by_macro {
+        let mut walk = self.walk;
+        self.codes.finish(walk.facts, found, notes);
+        multiplier(walk.terms, found);
+        walk.changes.finish(found);
+        walk.warmth.finish(found);
+        walk.primed.finish(found);
+        let summary = &walk.facts.summary;
+        if summary.coarse_arcs > 0 {
+            let (arcs, line) = (summary.coarse_arcs, summary.first_coarse_arc);
+            notes.push(format!(
+                "where {arcs} arcs go exactly (the first in line {line}): so short a file may not ask \
+                 for that many pieces"
+            ));
+        }
+        if let Some(macros) = walk.heated_by_macro {
             notes.push(format!("whether the nozzle is hot: that is left to `{macros}`"));
         }
     }
+}
+
+/// Settings of the file's own that push out far too much or too little.
+fn multiplier(terms: &Terms, found: &mut Findings) {
+    if MULTIPLIERS.contains(&terms.multiplier) {
+        return;
+    }
+    let (times, is_more) = (terms.multiplier, terms.multiplier > 1.0);
+    let code = if is_more { Code::Overfilled } else { Code::Underfilled };
+    let text =
+        format!("the file's settings push out {} times the plastic of all lines", short(times));
+    found.add(Finding::of(code, times, "times", text));
 }
 
 /// Commands that the machine does not know.
@@ -151,8 +200,16 @@ fn heats_by_itself(facts: &Facts) -> bool {
 /// What is known after the moves so far.
 struct Walk<'a> {
     facts: &'a Facts,
+    terms: &'a Terms,
     machine: Option<&'a Machine>,
     filament_area: f64,
+    changes: Changes,
+    warmth: Warmth,
+    air: Air,
+    through: Through,
+    primed: Primed,
+    /// Where the nozzle is.
+    at: [f64; 3],
     /// Layer of the next move; `None` before the first.
     layer: Option<usize>,
     /// The moves from the first layer's to the last line.
@@ -170,11 +227,18 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    fn new(facts: &'a Facts, machine: Option<&'a Machine>, filament_area: f64) -> Self {
+    fn new(facts: &'a Facts, terms: &'a Terms) -> Self {
         Self {
             facts,
-            machine,
-            filament_area,
+            terms,
+            machine: terms.machine.as_ref(),
+            filament_area: terms.filament_area,
+            changes: Changes::new(terms),
+            warmth: Warmth::new(terms),
+            air: Air::new(terms),
+            through: Through::new(terms),
+            primed: Primed::default(),
+            at: [0.0; 3],
             layer: None,
             printing: facts.start.end..facts.last_line.max(facts.start.end),
             heat: if heats_by_itself(facts) { Heat::by_printer() } else { Heat::default() },
@@ -186,13 +250,28 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn note(&mut self, what: &What) {
-        match what {
-            What::Heating(heating) => self.heat.set(heating),
+    fn note(&mut self, note: &Note, found: &mut Findings) {
+        let layer = self.layer.map(|layer| layer + 1);
+        let place = Place { line: Some(note.line), layer, ..Place::default() };
+        self.changes.note(note, (self.at, layer), found);
+        match &note.what {
+            What::Heating(heating) => {
+                self.warmth.set(heating, place, found);
+                self.heat.set(heating);
+            }
             What::FirmwareRetraction { back } => self.pulled_by_firmware = *back,
             What::Unknown(code) => {
                 let word = code.split_whitespace().next().map(str::to_owned);
                 self.stranger = self.stranger.take().or(word);
+            }
+            What::Command(order) => {
+                self.air.set(order, place);
+                if matches!((order.letter, order.number), (b'G', 161 | 162) | (b'M', 132)) {
+                    self.through.lose();
+                }
+                if let Some(tool) = tool_of(order) {
+                    self.warmth.tool(tool);
+                }
             }
         }
     }
@@ -202,14 +281,28 @@ impl<'a> Walk<'a> {
         if self.facts.layers.get(next).is_some_and(|layer| layer.moves.start <= index) {
             self.layer = Some(next);
         }
+        let printing = self.printing.contains(&index);
+        let is_of_layer = printing && step.is_line();
+        match self.layer {
+            Some(layer) if is_of_layer => {
+                self.changes.line(found);
+                self.warmth.line(found);
+                self.air.line(step, layer, found);
+                self.primed.line(step, layer);
+            }
+            None => self.primed.start(step),
+            Some(_) => {}
+        }
         let before = found.len();
         self.retraction(index, step, found);
         self.cold(step, found);
-        let printing = self.printing.contains(&index);
         self.place(step, printing, found);
+        self.lift(step, printing, found);
         if step.is_line() || printing {
             self.speed(step, found);
         }
+        self.through.step(step, is_of_layer, found);
+        self.at = step.to.map(f64::from);
         // All of them lie where the move ends.
         let place = Place {
             line: Some(u64::from(step.line)),
@@ -217,7 +310,7 @@ impl<'a> Walk<'a> {
             z_mm: Some(short(f64::from(step.to[2]))),
             at_mm: Some([step.to[0], step.to[1]].map(|at| short(f64::from(at)))),
         };
-        found.place(before, place);
+        found.fill_in(before, place);
     }
 
     fn retraction(&mut self, index: usize, step: &Step, found: &mut Findings) {
@@ -274,9 +367,12 @@ impl<'a> Walk<'a> {
     /// Lines of the print must lie in the print volume. Travels, and all that start and end blocks do,
     /// must stay where the nozzle may go.
     fn place(&self, step: &Step, printing: bool, found: &mut Findings) {
-        let Some(machine) = self.machine else { return };
         let lies = printing && step.is_line();
-        let [low, high] = if lies { machine.volume } else { machine.reach };
+        let [low, high] = match self.machine {
+            Some(machine) if lies => machine.volume,
+            Some(machine) => machine.reach,
+            None => [[-FARTHEST, -FARTHEST, LOWEST], [FARTHEST; 3]],
+        };
         let beyond = |axis: usize| {
             let at = f64::from(step.to[axis]);
             (low[axis] - at).max(at - high[axis])
@@ -288,9 +384,29 @@ impl<'a> Walk<'a> {
         if out > ROUNDING {
             let (low, high, out) = (low[axis], high[axis], short(out));
             let axis = ["x", "y", "z"][axis];
-            let whose = if lies { "machine's" } else { "nozzle's" };
-            let text = format!("{out} mm beyond the {whose} {axis} of {low} to {high}");
+            let whose = match self.machine {
+                Some(_) if lies => "the machine's",
+                Some(_) => "the nozzle's",
+                None => "any machine's",
+            };
+            let text = format!("{out} mm beyond {whose} {axis} of {low} to {high}");
             found.add(Finding::of(Code::OutsideVolume, out, "mm", text));
+        }
+    }
+
+    /// A move in z alone that no machine follows, or, in a file of this program's, not this one.
+    fn lift(&self, step: &Step, printing: bool, found: &mut Findings) {
+        let rise = (f64::from(step.to[2]) - f64::from(step.from[2])).abs();
+        if rise < LEAST_LIFT || step.from[..2] != step.to[..2] {
+            return;
+        }
+        let own = self.machine.filter(|_| printing && self.terms.is_own);
+        let most = own.map_or(FASTEST_LIFT, |machine| machine.speed[2]);
+        let feed = f64::from(step.feed);
+        if feed > most * SPEED_SLACK {
+            let (speed, most) = (short(feed), short(most));
+            let text = format!("{speed} mm/s in z, where the machine does {most}");
+            found.add(Finding::of(Code::TooFast, feed, "mm/s", text));
         }
     }
 
@@ -323,5 +439,14 @@ impl<'a> Walk<'a> {
                 format!("{} mm³/s, where the hot end melts {}", short(flow), short(machine.flow));
             found.add(Finding::of(Code::TooMuchFlow, flow, "mm³/s", text));
         }
+    }
+}
+
+/// The tool that a command takes, if it takes one.
+fn tool_of(order: &Order) -> Option<u32> {
+    match (order.letter, order.number) {
+        (b'T', tool) => Some(tool),
+        (b'M', 108 | 135) => order.value(b'T').filter(|tool| *tool >= 0.0).map(|tool| tool as u32),
+        _ => None,
     }
 }

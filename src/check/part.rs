@@ -221,7 +221,7 @@ impl Part {
         }
         crossings
             .sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
-        let (mut closes, mut overlaps) = (true, false);
+        let (mut closes, mut overlaps) = (is_closed(&outline), false);
         let mut spans: Vec<(i32, Span)> = Vec::with_capacity(crossings.len() / 2);
         for row in crossings.chunk_by(|a, b| a.0 == b.0) {
             let mut winding = 0;
@@ -276,6 +276,24 @@ impl Part {
         }
         winding == 0
     }
+}
+
+/// Whether each stretch of an outline begins where another ends. Two gaps beside each other leave the
+/// winding numbers of rows whole, and still hide what lies between them.
+fn is_closed(outline: &[Segment]) -> bool {
+    // All bits of the sum depend on all of a place's (the steps of SplitMix64).
+    let mixed = |n: u64| {
+        let n = (n ^ (n >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let n = (n ^ (n >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        n ^ (n >> 31)
+    };
+    let number = |at: [f64; 2]| {
+        // 0 and -0 are one place.
+        let [x, y] = at.map(|side| (side + 0.0).to_bits());
+        mixed(mixed(x).wrapping_add(y))
+    };
+    let ends = outline.iter().map(|[from, to]| number(*from).wrapping_sub(number(*to)));
+    ends.fold(0, u64::wrapping_add) == 0
 }
 
 /// Whether some of a stretch of an outline has solid on both sides: bodies that touch by a face have.
@@ -347,6 +365,21 @@ mod tests {
         ];
         let face = |[a, b, c]: [u32; 3]| if turned { [a, c, b] } else { [a, b, c] };
         Mesh { vertices: (0..8).map(corner).collect(), triangles: faces.map(face).to_vec() }
+    }
+
+    #[test]
+    fn a_section_with_two_gaps_beside_each_other_does_not_close() {
+        let mut mesh = solid([4.0, 2.0, 0.5], false);
+        let lattice = Lattice::new(0.1, 2.0, 1e4);
+        let closes = |mesh: &Mesh| {
+            let part = Part::new(mesh, ([10.0, 5.0], 0.0), &[(0.2, 0.2), (0.4, 0.2)]).unwrap();
+            part.section(0, lattice).closes
+        };
+        assert!(closes(&mesh));
+        // Without its faces to the left and to the right all rows have as many ways in as out: none.
+        let x = |v: u32| mesh.vertices[v as usize][0];
+        mesh.triangles.retain(|&[a, b, c]| x(a) != x(b) || x(b) != x(c));
+        assert!(!closes(&mesh));
     }
 
     #[test]

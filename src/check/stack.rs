@@ -27,8 +27,8 @@ use super::lay::{Judge, Judged, Measured, Patch, chains_of, is_ironing};
 use super::part::Part;
 use super::survey::Survey;
 use super::window::Window;
-use crate::reader::{Facts, Role};
 use crate::reader::print::Step;
+use crate::reader::{Facts, Role};
 use rayon::prelude::*;
 use std::ops::Range;
 

@@ -9,8 +9,8 @@
 //! which the part is laid where it was printed. What is usual is found by counting in narrow classes, a
 //! part in four thousand wide, instead of keeping all values.
 
-use super::against::{SOME_WIDTH, is_of_part, is_stray};
-use super::beads;
+use super::beads::{self, Usual};
+use super::belongs::{SOME_WIDTH, is_of_part, is_stray};
 use super::capsule::Capsule;
 use super::part::extent_of;
 use super::terms::Terms;
@@ -70,7 +70,7 @@ pub(super) struct Survey {
     /// Usual width of outer walls, mm.
     pub(super) line_width: f64,
     /// Usual plastic of lines of each role by their size, if there are enough.
-    pub(super) usual: [Option<f64>; Role::ALL.len()],
+    pub(super) usual: [Option<Usual>; Role::ALL.len()],
     /// Some layers, spread over the print.
     pub(super) looked_at: Vec<(usize, Vec<Step>)>,
 }
@@ -87,9 +87,9 @@ struct Counted {
 
 impl Survey {
     pub(super) fn new<E>(facts: &Facts, terms: &Terms, pages: Pages<'_, E>) -> Result<Self, E> {
-        let mut survey = Self::default();
-        survey.strays = vec![Vec::new(); facts.layers.len()];
-        let mut plastic: [Counted; Role::ALL.len()] = Default::default();
+        let strays = vec![Vec::new(); facts.layers.len()];
+        let mut survey = Self { strays, ..Self::default() };
+        let mut plastic: [[Counted; 2]; Role::ALL.len()] = Default::default();
         let mut widths = Counted::default();
         let every = facts.layers.len().div_ceil(LAYERS_LOOKED_AT).max(1);
         for page in pages {
@@ -101,7 +101,9 @@ impl Survey {
                     widths.add(f64::from(step.width));
                 }
                 if beads::is_judged(step) {
-                    plastic[step.role as usize].add(beads::ratio(facts, terms, step));
+                    let [ratio, thick] = &mut plastic[step.role as usize];
+                    ratio.add(beads::ratio(facts, terms, step));
+                    thick.add(beads::thick(terms, step));
                 }
             }
             if layer % every == 0 {
@@ -115,9 +117,10 @@ impl Survey {
         }
         survey.set_heights(facts);
         survey.line_width = widths.median().unwrap_or(SOME_WIDTH);
-        survey.usual = plastic.map(|counted| {
-            let enough = counted.count >= beads::LEAST_LINES;
-            counted.median().filter(|_| enough)
+        survey.usual = plastic.map(|[ratio, thick]| {
+            let enough = ratio.count >= beads::LEAST_LINES;
+            let usual = |ratio| Some(Usual { ratio, thick: thick.median()? });
+            ratio.median().filter(|_| enough).and_then(usual)
         });
         Ok(survey)
     }

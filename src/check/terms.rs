@@ -1,4 +1,12 @@
 //! Settings and a file's own comments -> Terms: what a file is judged by.
+//!
+//! Words used here: the *machine* is that of a profile, or of the file's own settings; *own* settings are
+//! those that this program writes into its files; *keys* are names under which slicers write settings as
+//! comments `key = value`.
+//!
+//! What own settings say counts. Of other slicers' files the comments are read that tell the nozzle, the
+//! infill, the material and its temperatures; a list has an entry for each tool, and the first counts. What
+//! nobody tells is `None`, empty, or a value that accuses no file.
 
 use crate::profile::{DialectName, ExtrusionModel, Settings};
 use crate::reader::print::Step;
@@ -25,6 +33,17 @@ pub struct Terms {
     pub lift: Option<f64>,
     /// Density of the sparse infill asked for, as a part of 1, if it is known.
     pub infill: Option<f64>,
+    /// The factor on all plastic by settings of the file's own, 1 without any.
+    pub multiplier: f64,
+    /// Name of the material, such as PLA, if the file tells it.
+    pub material: Option<String>,
+    /// Temperatures that the file's own settings name, °C: of the nozzle, of the bed.
+    pub named: [Vec<f64>; 2],
+    /// How many tools the file was made for, if it tells.
+    pub tools: Option<u32>,
+    /// The least power of the part cooling fan by settings of the file's own, %, and the last layer, from
+    /// 1, on which it may be less.
+    pub fan: Option<(f64, usize)>,
 }
 
 /// What a machine can do.
@@ -32,6 +51,8 @@ pub struct Terms {
 pub struct Machine {
     /// Its firmware.
     pub dialect: DialectName,
+    /// Number of the tool that prints.
+    pub tool: u32,
     /// The lowest and the highest corner of the print volume, where lines may lie, mm.
     pub volume: [[f64; 3]; 2],
     /// The lowest and the highest corner of where the nozzle may go, mm.
@@ -47,6 +68,27 @@ const NOZZLE_KEYS: &[&str] = &["nozzle_diameter"];
 
 /// Keys under which slicers write the density of infill, %.
 const DENSITY_KEYS: &[&str] = &["infill", "fill_density", "sparse_infill_density"];
+
+/// Keys under which slicers write the material's name; with several tools a list.
+const MATERIAL_KEYS: &[&str] = &["filament_type"];
+
+/// Keys under which slicers write temperatures of the nozzle and of the bed, °C; lists likewise.
+const NOZZLE_HEATS: &[&str] = &[
+    "temperature",
+    "first_layer_temperature",
+    "nozzle_temperature",
+    "nozzle_temperature_initial_layer",
+    "material_print_temperature",
+];
+const BED_HEATS: &[&str] = &[
+    "bed_temperature",
+    "first_layer_bed_temperature",
+    "hot_plate_temp",
+    "hot_plate_temp_initial_layer",
+    "textured_plate_temp",
+    "textured_plate_temp_initial_layer",
+    "material_bed_temperature",
+];
 
 impl Terms {
     /// The machine of `settings`, the settings that the file was made with (`own`, if it is one of
@@ -76,6 +118,11 @@ impl Terms {
             nozzle: own.map(of).or_else(nozzle).or_else(|| settings.map(of)),
             lift: own.map(Settings::raft_lift),
             infill: by_file(),
+            fan: own.filter(|own| !own.raft.enabled).map(fan),
+            multiplier: own.map_or(1.0, |own| own.extrusion.multiplier),
+            material: material(own, print),
+            named: named(own, print),
+            tools: NOZZLE_KEYS.iter().find_map(|key| print.value(key)).map(count),
         }
     }
 
@@ -103,6 +150,50 @@ impl Terms {
     }
 }
 
+/// See [`Terms::fan`].
+fn fan(own: &Settings) -> (f64, usize) {
+    let (cooling, filament) = (&own.cooling, &own.filament);
+    let others =
+        [cooling.min_fan, Some(cooling.bridge_fan), cooling.overhang_fan, cooling.interface_fan];
+    let least = others.into_iter().flatten().fold(filament.fan, f64::min);
+    (least, filament.fan_from_layer.max(cooling.fan_full_from_layer) as usize)
+}
+
+/// See [`Terms::material`].
+fn material(own: Option<&Settings>, print: &Facts) -> Option<String> {
+    let by_file = || {
+        let text = MATERIAL_KEYS.iter().find_map(|key| print.value(key))?;
+        let first = text.split([',', ';']).next()?.trim().trim_matches('"');
+        (!first.is_empty()).then(|| first.to_owned())
+    };
+    own.map(|own| own.filament.name.clone()).or_else(by_file)
+}
+
+/// See [`Terms::named`].
+fn named(own: Option<&Settings>, print: &Facts) -> [Vec<f64>; 2] {
+    let Some(own) = own else {
+        return [NOZZLE_HEATS, BED_HEATS].map(|keys| {
+            let texts = keys.iter().filter_map(|key| print.value(key));
+            texts.flat_map(|text| text.split([',', ';'])).filter_map(celsius).collect()
+        });
+    };
+    let filament = &own.filament;
+    let of = |first: Option<f64>, usual: f64| first.into_iter().chain([usual]).collect();
+    [
+        of(filament.first_layer_temperature, filament.temperature),
+        of(filament.first_layer_bed_temperature, filament.bed_temperature),
+    ]
+}
+
+fn celsius(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|celsius: &f64| celsius.is_finite())
+}
+
+/// How many entries a list has.
+fn count(text: &str) -> u32 {
+    u32::try_from(text.split([',', ';']).count()).unwrap_or(u32::MAX)
+}
+
 /// See [`Terms::flow`].
 fn flow(own: &Settings) -> [f64; 3] {
     let extrusion = &own.extrusion;
@@ -122,6 +213,7 @@ impl Machine {
         let limits = &settings.limits;
         Self {
             dialect: machine.dialect,
+            tool: machine.tool,
             volume: machine.volume(),
             reach: machine.nozzle_reach(),
             speed: [limits.speed_x, limits.speed_y, limits.speed_z, limits.speed_e],

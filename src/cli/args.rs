@@ -2,6 +2,7 @@
 
 use super::preview::PreviewArgs;
 use super::profiles::{ProfileArgs, ShelfArgs};
+use super::reading::ReadingArgs;
 use super::words::{UNITS, brim, factor, numbers, parts, sunk, triangles, unit, words};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
@@ -9,6 +10,7 @@ use slicer::mesh::place::GAP_MM;
 use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
 use slicer::mesh::{Placement, Policy};
 use slicer::profile::{Override, ValueOrigin};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
@@ -36,8 +38,11 @@ Exit codes:
     4  an output cannot be written
   101  a fault of the slicer itself
   130  interrupted
+  134  no memory to be had
+  137  killed, as by a system that runs out of memory
 Only the product goes to standard output, everything else to standard error.
-A run that fails leaves no file behind.";
+A run that fails changes no file but its report, which tells of the failure: `error.code` is a word
+for its kind, and `slicer report schema` lists them.";
 
 const CHECK_CODES: &str = "\
 Exit codes: 0 clean or warnings, 1 findings, 2 wrong arguments or profile, 3 a file cannot be read, prints
@@ -103,6 +108,16 @@ pub(crate) enum Command {
     },
 }
 
+impl Command {
+    /// Whether it takes long enough to want threads.
+    pub(crate) fn computes(&self) -> bool {
+        !matches!(
+            self,
+            Self::Profile(_) | Self::Report(_) | Self::Completions { .. } | Self::Man { .. }
+        )
+    }
+}
+
 /// What to do with profiles.
 #[derive(Debug, Subcommand)]
 pub(crate) enum ProfileCommand {
@@ -123,7 +138,7 @@ pub(crate) enum ProfileCommand {
     Show {
         /// Name or file (repeatable: a later one is laid over the earlier) [default: your default printer]
         #[arg(value_name = "NAME")]
-        names: Vec<String>,
+        names: Vec<OsString>,
         /// Say what each key means, too
         #[arg(short, long)]
         verbose: bool,
@@ -136,7 +151,7 @@ pub(crate) enum ProfileCommand {
     Check {
         /// Name or file (repeatable: a later one is laid over the earlier)
         #[arg(value_name = "FILE", required = true)]
-        names: Vec<String>,
+        names: Vec<OsString>,
         #[command(flatten)]
         profiles: ProfileArgs,
     },
@@ -154,7 +169,7 @@ pub(crate) enum ReportCommand {
 pub(crate) struct EstimateArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "FILE")]
-    pub(crate) file: String,
+    pub(crate) file: OsString,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -165,6 +180,8 @@ pub(crate) struct EstimateArgs {
     #[arg(long)]
     pub(crate) fixed_limits: bool,
     #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
+    #[command(flatten)]
     pub(crate) profiles: ProfileArgs,
 }
 
@@ -174,13 +191,15 @@ pub(crate) struct EstimateArgs {
 pub(crate) struct CheckArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "FILE")]
-    pub(crate) file: String,
+    pub(crate) file: OsString,
     /// STL file that it was made from (repeatable); placed as the flags below say, then moved to where the lines are
     #[arg(long, value_name = "PART")]
-    pub(crate) against: Vec<String>,
+    pub(crate) against: Vec<OsString>,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
     #[command(flatten)]
     pub(crate) profiles: ProfileArgs,
     #[command(flatten)]
@@ -192,7 +211,7 @@ pub(crate) struct CheckArgs {
 pub(crate) struct CompareArgs {
     /// STL files, binary or ASCII
     #[arg(value_name = "INPUT", required = true)]
-    pub(crate) inputs: Vec<String>,
+    pub(crate) inputs: Vec<OsString>,
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
@@ -209,7 +228,7 @@ pub(crate) struct CompareArgs {
 pub(crate) struct SliceArgs {
     /// STL files, binary or ASCII; `-` reads standard input
     #[arg(value_name = "INPUT", required = true)]
-    pub(crate) inputs: Vec<String>,
+    pub(crate) inputs: Vec<OsString>,
     /// G-code file to write; `-` writes standard output
     #[arg(short, long, value_name = "OUT", required = true)]
     pub(crate) output: Option<PathBuf>,

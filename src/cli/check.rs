@@ -1,7 +1,8 @@
 //! `slicer check` -> what is wrong with a G-code file, as lines or as JSON.
 
 use super::args::CheckArgs;
-use super::{Outcome, failure, input, output};
+use super::reading::Opened;
+use super::{Outcome, failure, output};
 use anyhow::Result;
 use slicer::check::finding::{Code, Count};
 use slicer::check::terms::Terms;
@@ -10,7 +11,9 @@ use slicer::mesh::Bed;
 use slicer::profile::{self, Profile};
 use slicer::progress::Progress;
 use slicer::reader::{Cause, Firmware, Stream};
+use slicer::text;
 use slicer::warning::plural;
+use std::ffi::OsString;
 use std::path::Path;
 
 /// Diameter of the filament where neither file nor profile gives it, mm: the most usual one.
@@ -29,14 +32,15 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
         return Err(failure::usage("--set changes a profile; name one with -p, too"));
     }
     let given = if profiles.any() { Some(profiles.load([])?) } else { None };
-    let (name, source) = input::again(&args.file)?;
+    let machine = given.as_ref().map(|profile| &profile.settings);
+    let Opened { name, source, says, .. } = args.reading.open(&args.file)?;
+    let reading = args.reading.of(machine, says);
     let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
-    let firmware = given.as_ref().map_or_else(Firmware::default, |p| input::firmware(&p.settings));
-    let unreadable = |error| Cause::Unreadable(error).of(name);
-    let stream = Stream::open(source, firmware, diameter).map_err(unreadable)?;
+    let unreadable = |error| Cause::Unreadable(error).of(&name);
+    let stream = Stream::open(source, reading, diameter).map_err(unreadable)?;
     let print = stream.facts();
     if print.layers.is_empty() {
-        return Err(Cause::NoLine.of(name).into());
+        return Err(Cause::NoLine.of(&name).into());
     }
     let own = profile::recorded(&print.values)?;
     let judge = given.as_ref().or(own.as_ref());
@@ -59,20 +63,31 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let text = if args.json {
         output::json(&verdict, Path::new("-"))?
     } else {
-        let by = judged_by(given.as_ref(), own.as_ref(), &args.against);
+        let firmware = print.summary.firmware;
+        let by = judged_by(given.as_ref(), own.as_ref(), firmware, &args.against);
         let (headline, findings) = (headline(&verdict), findings(&verdict));
         format!("{name}: {headline}, {by}\n{findings}{}", notes(&verdict))
     };
     Ok(Outcome { text, code })
 }
 
-fn judged_by(given: Option<&Profile>, own: Option<&Profile>, models: &[String]) -> String {
+fn judged_by(
+    given: Option<&Profile>,
+    own: Option<&Profile>,
+    firmware: Firmware,
+    models: &[OsString],
+) -> String {
     let by = match (given, own) {
         (Some(profile), _) => format!("judged by the profile {}", profile.sources),
         (None, Some(_)) => "judged by its own settings".to_owned(),
-        (None, None) => "judged without a profile".to_owned(),
+        (None, None) if firmware == Firmware::Other => "judged without a profile".to_owned(),
+        (None, None) => format!("judged without a profile, read as {} reads it", firmware.name()),
     };
-    if models.is_empty() { by } else { format!("{by}, against {}", models.join(", ")) }
+    if models.is_empty() {
+        by
+    } else {
+        format!("{by}, against {}", models.iter().map(text::name).collect::<Vec<_>>().join(", "))
+    }
 }
 
 /// `clean` or how many findings and warnings, of how much.

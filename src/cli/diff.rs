@@ -15,16 +15,16 @@ mod text;
 
 use super::output::Sink;
 use super::profiles::ProfileArgs;
-use super::{Outcome, failure, input, interrupt, output};
+use super::reading::{self, ReadingArgs};
+use super::{Outcome, clock, failure, input, interrupt, output};
 use anyhow::Result;
 use clap::{Args, ValueEnum};
-use serde::Serialize;
-use slicer::diff::{Difference, Side, Tolerances, diff, views};
+use slicer::diff::{Side, Tolerances, diff, views};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::profile::{self, Profile};
-use slicer::reader::{Cause, Firmware, Source, Stream};
-use std::io::BufReader;
+use slicer::reader::{Cause, Firmware, Reading, Stream};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 const DIFF_RULES: &str = "\
@@ -67,10 +67,10 @@ output cannot be written.";
 pub(crate) struct DiffArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "A", required_unless_present = "schema")]
-    pub(crate) a: Option<String>,
+    pub(crate) a: Option<OsString>,
     /// The file that it is compared with; `-` reads standard input
     #[arg(value_name = "B", required_unless_present = "schema")]
-    pub(crate) b: Option<String>,
+    pub(crate) b: Option<OsString>,
     /// How far places may lie apart, mm
     #[arg(long, value_name = "MM", default_value = "0.01", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: f64,
@@ -102,6 +102,8 @@ pub(crate) struct DiffArgs {
     #[arg(short, long, conflicts_with_all = ["json", "all"])]
     pub(crate) quiet: bool,
     #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
+    #[command(flatten)]
     pub(crate) profiles: ProfileArgs,
 }
 
@@ -130,7 +132,7 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
         let text = output::json(&slicer::diff::schema(), Path::new("-"))?;
         return Ok(Outcome { text, code: 0 });
     }
-    let name = |file: &'_ Option<String>| file.clone().unwrap_or_default();
+    let name = |file: &'_ Option<OsString>| file.clone().unwrap_or_default();
     let (a, b) = (name(&args.a), name(&args.b));
     if a == "-" && b == "-" {
         let why = "`-` is given twice; standard input holds one file";
@@ -139,11 +141,13 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
     let format = args.output.as_deref().map(|out| picture::format(out, [&a, &b])).transpose()?;
     interrupt::watch();
     let sink = args.output.as_deref().map(Sink::open).transpose()?;
-    let (a, b) = (input::again(&a)?, input::again(&b)?);
-    let names = [a.0, b.0];
-    let (one, other) = rayon::join(|| opened(a), || opened(b));
+    let (a, b) = (args.reading.open(&a)?, args.reading.open(&b)?);
+    let names = [a.name.clone(), b.name.clone()];
+    let [by, or] = readings(args, [a.says, b.says])?;
+    let (one, other) = rayon::join(|| opened(a, by), || opened(b, or));
     let (one, other) = (one?, other?);
-    let (clock, limits) = clock(args, &one, &other)?;
+    let files = [(&*one.values, "the settings in A"), (&*other.values, "the settings in B")];
+    let (clock, limits) = clock::of(&args.profiles, &files)?;
     let (one, other) = rayon::join(|| side(one, &clock), || side(other, &clock));
     let (one, other) = (one?, other?);
     let found = diff(&one, &other, &args.tolerances())?;
@@ -151,14 +155,26 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
     if let (Some(out), Some(format), Some(sink)) = (args.output.as_deref(), format, sink) {
         let said = text::text(&found, &limits, args.all);
         let views = |layers: &[_], in_place| Ok(views(&one, &other, layers, &found, in_place)?);
+        let names = names.each_ref().map(String::as_str);
         picture::write(sink, format, &found, (names, &said), &views, out)?;
     }
     let text = match args {
         _ if args.quiet => String::new(),
-        _ if args.json => json(&found, &limits)?,
+        _ if args.json => clock::json(&found, &limits)?,
         _ => text::text(&found, &limits, args.all),
     };
     Ok(Outcome { text, code })
+}
+
+/// How each file is read. What one does not say, such as a file without comments, the other says for both.
+fn readings(args: &DiffArgs, says: [Reading; 2]) -> Result<[Reading; 2]> {
+    let profile = args.profiles.load([])?;
+    let machine = args.profiles.any().then_some(&profile.settings);
+    let other = |own: usize| match says[own].firmware {
+        Firmware::Other => Reading { firmware: says[1 - own].firmware, ..says[own] },
+        _ => says[own],
+    };
+    Ok([0, 1].map(|file| args.reading.of(machine, other(file))))
 }
 
 impl DiffArgs {
@@ -175,69 +191,35 @@ impl DiffArgs {
 }
 
 /// A file whose facts are known.
-struct Opened<'a> {
-    name: &'a str,
+struct Opened {
+    name: String,
+    reading: Reading,
     stream: Stream,
     /// Settings in its comments, by today's names.
     values: Vec<(String, String)>,
 }
 
-fn opened((name, source): (&str, Source)) -> Result<Opened<'_>> {
-    let stream = Stream::open(source, Firmware::default(), SOME_DIAMETER)
-        .map_err(|error| Cause::Unreadable(error).of(name))?;
+fn opened(file: reading::Opened, reading: Reading) -> Result<Opened> {
+    let reading::Opened { name, source, .. } = file;
+    let stream = Stream::open(source, reading, SOME_DIAMETER)
+        .map_err(|error| Cause::Unreadable(error).of(&name))?;
     let values = profile::renewed(&stream.facts().values);
-    Ok(Opened { name, stream, values })
+    Ok(Opened { name, reading, stream, values })
 }
 
-fn side(opened: Opened<'_>, clock: &Profile) -> Result<Side> {
-    let Opened { name, stream, values } = opened;
+fn side(opened: Opened, clock: &Profile) -> Result<Side> {
+    let Opened { name, reading, stream, values } = opened;
     let settings = &clock.settings;
-    // Whatever the clock's dialect, both files are read alike; but an Ultimaker 2 knows what its own
-    // files leave to it.
-    let firmware = match input::firmware(settings) {
-        own @ Firmware::Ultimaker(_) => own,
-        _ => Firmware::default(),
+    // An Ultimaker 2 knows what its own files leave to it.
+    let firmware = match (reading.firmware, input::firmware(settings)) {
+        (Firmware::Ultimaker(_) | Firmware::Other, own @ Firmware::Ultimaker(_)) => own,
+        (said, _) => said,
     };
     let filament_diameter = settings.filament.diameter;
-    let options = Options { filament_diameter, firmware, ..Options::default() };
-    let mut source = BufReader::with_capacity(input::BUFFER, stream.source().reader());
-    let time = estimate(&mut source, name, &Limits::new(settings), options)?;
-    drop(source);
-    Ok(Side::new(name, stream, values, time)?)
-}
-
-/// The profile by whose limits both files are timed, and where it is from.
-fn clock(args: &DiffArgs, a: &Opened<'_>, b: &Opened<'_>) -> Result<(Profile, String)> {
-    let overrides = args.profiles.overrides()?;
-    let asked = args.profiles.load([])?;
-    if args.profiles.any() {
-        let origin = format!("profile {}", asked.sources);
-        return Ok((asked, origin));
-    }
-    for (opened, file) in [(a, "A"), (b, "B")] {
-        // A file of another version may hold settings that do not exist any more.
-        if !matches!(profile::recorded(&opened.values), Ok(Some(_))) {
-            continue;
-        }
-        let mut values = opened.values.clone();
-        values.extend(overrides.iter().map(|set| (set.key.clone(), set.value.clone())));
-        if let Some(recorded) = profile::recorded(&values)? {
-            return Ok((recorded, format!("the settings in {file}")));
-        }
-    }
-    let origin = format!("profile {}", asked.sources);
-    Ok((asked, origin))
-}
-
-fn json(found: &Difference, limits: &str) -> Result<String> {
-    #[derive(Serialize)]
-    struct Product<'a> {
-        #[serde(flatten)]
-        difference: &'a Difference,
-        /// Where the limits are from that both files are timed with.
-        limits: &'a str,
-    }
-    output::json(&Product { difference: found, limits }, Path::new("-"))
+    let volumes = reading.volumes;
+    let options = Options { filament_diameter, firmware, volumes, ..Options::default() };
+    let time = estimate(&mut stream.source().reader(), &name, &Limits::new(settings), options)?;
+    Ok(Side::new(&name, stream, values, time)?)
 }
 
 fn tolerance(text: &str) -> std::result::Result<f64, String> {

@@ -1,31 +1,35 @@
 //! `slicer estimate` -> how long a G-code file takes, as a table or as JSON.
 
 use super::args::EstimateArgs;
-use super::{input, output};
+use super::clock;
 use anyhow::Result;
 use slicer::estimate::{self, Estimate, LayerTime, NotCounted, Options};
 use slicer::motion::Limits;
 use slicer::warning::plural;
-use std::path::Path;
 
 /// What standard output gets.
 ///
 /// # Errors
 /// A profile or setting that is wrong, a file that cannot be read or holds no move.
 pub(super) fn run(args: &EstimateArgs) -> Result<String> {
-    let profile = args.profiles.load([])?;
-    let settings = &profile.settings;
+    let opened = args.reading.open(&args.file)?;
+    let (clock, limits) = clock::of_file(&args.profiles, &opened)?;
+    let settings = &clock.settings;
+    let machine = args.profiles.any().then_some(settings);
+    let reading = args.reading.of(machine, opened.says);
     let options = Options {
         filament_diameter: settings.filament.diameter,
         fixed_limits: args.fixed_limits,
-        firmware: input::firmware(settings),
+        firmware: reading.firmware,
+        volumes: reading.volumes,
     };
-    let (name, mut source) = input::open(&args.file)?;
-    let found = estimate::estimate(&mut source, name, &Limits::new(settings), options)?;
+    let mut source = opened.source.reader();
+    let found = estimate::estimate(&mut source, &opened.name, &Limits::new(settings), options)?;
     if args.json {
-        return output::json(&found, Path::new("-"));
+        return clock::json(&found, &limits);
     }
     let mut text = table(&found);
+    text.push_str(&format!("timed by the limits of {limits}\n"));
     if args.layers {
         text.push_str(&layers(&found.layers));
     }
@@ -85,6 +89,9 @@ fn not_counted(not: &NotCounted) -> String {
             (_, "homing") => parts.push(format!("{count} times homing")),
             _ => parts.push(plural(count, name)),
         }
+    }
+    if not.coarse_arcs > 0 {
+        parts.push(format!("{} in full", plural(not.coarse_arcs, "huge arc")));
     }
     if not.unknown_lines > 0 {
         let lines = plural(not.unknown_lines, "unknown line");

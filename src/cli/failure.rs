@@ -9,8 +9,9 @@
 //! between them. It ends with the library's error: its line holds what its causes say.
 
 use slicer::error::Error;
+use slicer::error::details::Details;
 use slicer::profile::ProfileError;
-use slicer::{mesh, reader};
+use slicer::{mesh, reader, text};
 use std::error::Error as StdError;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -50,6 +51,11 @@ impl fmt::Display for Output {
     }
 }
 
+/// Context of what fails while an output is written.
+pub(super) fn writing(name: &Path) -> Output {
+    Output { file: name.to_owned(), action: "cannot write" }
+}
+
 /// Context: the input that something is wrong with.
 #[derive(Debug)]
 pub(super) struct Input(pub(super) String);
@@ -67,7 +73,7 @@ pub(crate) fn is_stdout(name: &Path) -> bool {
 
 /// An output's name for people.
 fn shown(file: &Path) -> String {
-    if is_stdout(file) { "standard output".into() } else { file.display().to_string() }
+    if is_stdout(file) { "standard output".into() } else { text::name(file) }
 }
 
 /// The one line of an error, without `error: `.
@@ -79,7 +85,31 @@ pub(super) fn line(error: &anyhow::Error) -> String {
             break;
         }
     }
-    parts.join(": ")
+    text::line(&parts.join(": ")).into_owned()
+}
+
+/// The code, file and place of an error.
+pub(super) fn details(error: &anyhow::Error) -> Details {
+    if let Some(output) = error.downcast_ref::<Output>() {
+        return Details { file: Some(shown(&output.file)), ..Details::of("unwritable") };
+    }
+    if let Some(Input(file)) = error.downcast_ref() {
+        return Details { file: Some(file.clone()), ..Details::of("unreadable") };
+    }
+    error.chain().find_map(details_of).unwrap_or_else(|| Details::of("usage"))
+}
+
+fn details_of(error: &(dyn StdError + 'static)) -> Option<Details> {
+    if let Some(error) = error.downcast_ref::<Error>() {
+        return Some(error.into());
+    }
+    if let Some(error) = error.downcast_ref::<ProfileError>() {
+        return Some(error.into());
+    }
+    if let Some(error) = error.downcast_ref::<mesh::Error>() {
+        return Some(error.into());
+    }
+    error.downcast_ref::<reader::Error>().map(Details::from)
 }
 
 /// The exit code of an error.

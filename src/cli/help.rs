@@ -12,13 +12,13 @@
 
 use super::args::Arguments;
 use super::failure::usage;
-use super::output;
 use super::texts::{DUAL, FINDINGS, MENDING};
 use anyhow::{Context as _, Result};
 use clap::builder::{PossibleValuesParser, Resettable};
 use clap::{Command, CommandFactory as _};
 use clap_complete::Shell;
 use slicer::profile::{builtin_names, keys};
+use slicer::text;
 use std::path::Path;
 
 /// The flags that `-h` shows, in this order, in words that fit on one line of 80.
@@ -82,14 +82,14 @@ pub(super) fn manual(words: &[String]) -> Result<String> {
         page = page.find_subcommand(word).ok_or_else(|| {
             let names: Vec<_> = page.get_subcommands().map(Command::get_name).collect();
             let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-            usage(format!("man: there is no command {}; there are: {known}", word.escape_debug()))
+            usage(format!("man: there is no command {}; there are: {known}", text::line(word)))
         })?;
     }
     let mut text = Vec::new();
     clap_mangen::Man::new(page.clone())
         .source(concat!("slicer ", env!("CARGO_PKG_VERSION")))
         .render(&mut text)
-        .with_context(|| output::writing(Path::new("-")))?;
+        .with_context(|| super::failure::writing(Path::new("-")))?;
     // Lines of tables and examples stay lines.
     Ok(String::from_utf8_lossy(&text).replace(".SH EXTRA\n", ".SH NOTES\n.nf\n"))
 }

@@ -1,7 +1,7 @@
 //! `slicer mesh` -> what is wrong with a model, as text or JSON, and the mended mesh as STL.
 
 use super::output::{self, Sink};
-use super::{Outcome, interrupt, usage, words};
+use super::{Outcome, failure, interrupt, usage, words};
 use anyhow::{Context as _, Result};
 use clap::Args;
 use serde::Serialize;
@@ -10,6 +10,7 @@ use slicer::mesh::place::part::part;
 use slicer::mesh::{Bed, MeshReport, Placement, inspect, read, write};
 use slicer::slice::volume::solid_mm3;
 use slicer::warning::plural;
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
@@ -27,7 +28,7 @@ Places and the mended mesh are in the file's own coordinates.")]
 pub(crate) struct MeshArgs {
     /// STL file; `-` reads standard input
     #[arg(value_name = "FILE")]
-    file: String,
+    file: OsString,
     /// Write the mended mesh here, as binary STL; `-` is standard output
     #[arg(short, long, value_name = "STL")]
     output: Option<PathBuf>,
@@ -92,7 +93,7 @@ pub(super) fn run(args: &MeshArgs) -> Result<Outcome> {
     let code = u8::from(part.adjacency.unpaired > 0);
     if let Some((out, mut sink)) = sink {
         write::write(&mut sink, &model.vertices, &part.mesh.triangles)
-            .with_context(|| output::writing(out))?;
+            .with_context(|| failure::writing(out))?;
         sink.commit()?;
         if output::is_stdout(out) {
             super::say(&text);

@@ -2,9 +2,11 @@
 
 mod args;
 mod check;
+mod clock;
 mod compare;
 mod diff;
 mod estimate;
+mod failed;
 mod failure;
 mod foreign;
 mod help;
@@ -13,12 +15,16 @@ mod interrupt;
 mod mesh;
 mod model;
 mod output;
+mod part;
 mod preview;
 mod profiles;
 mod progress;
+mod publish;
+mod reading;
 mod slice;
 mod summary;
 mod texts;
+mod threads;
 mod usage;
 mod viewer;
 mod words;
@@ -27,10 +33,10 @@ use anyhow::Result;
 use args::{Arguments, Command, ProfileCommand, ReportCommand};
 use clap::FromArgMatches as _;
 use clap::error::{ContextKind, ContextValue};
-use slicer::report::make::slow_speeds;
-use slicer::report::motion;
-use slicer::{profile, report};
+use slicer::report::{doubtful, motion};
+use slicer::{profile, report, text};
 use std::ffi::OsString;
+use std::fmt::Display;
 use std::io::Write as _;
 use std::path::Path;
 
@@ -71,7 +77,10 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
         Err(error) => return refused(&error, words.get(1).and_then(|word| word.to_str())),
     };
     let done = match &arguments.command {
-        None => slice::run(&arguments.slice),
+        None => threads::with(arguments.slice.threads, || slice::run(&arguments.slice)),
+        Some(command) if command.computes() => {
+            threads::with(None, || other(command)).and_then(Outcome::print)
+        }
         Some(command) => other(command).and_then(Outcome::print),
     };
     done.unwrap_or_else(|error| {
@@ -79,7 +88,7 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
         if output::is_closed_stdout(&error) {
             return 0;
         }
-        say(&format!("error: {}\n", failure::line(&error)));
+        say_line("error", failure::line(&error));
         failure::exit_code(&error)
     })
 }
@@ -111,7 +120,7 @@ fn refused(error: &clap::Error, first: Option<&str>) -> u8 {
                 _ => None,
             };
             let line = line.unwrap_or_else(|| usage::one_line(&text.to_string()));
-            say(&format!("error: {line}\n"));
+            say_line("error", line);
             2
         }
     }
@@ -130,9 +139,15 @@ fn unknown_flag(error: &clap::Error, first: Option<&str>) -> Option<String> {
     Some(foreign::unknown_flag(flag, takes_settings, command.unwrap_or(&program)))
 }
 
-/// Prints text for people on standard error. If that fails there is nowhere left to report it.
+/// Prints text for people on standard error. If that fails there is nowhere left to report it. Names
+/// and other texts of files in it are on one line each: see [`text::name`] and [`text::line`].
 fn say(text: &str) {
-    let _ = std::io::stderr().lock().write_all(words::harmless(text).as_bytes());
+    let _ = std::io::stderr().lock().write_all(text::harmless(text).as_bytes());
+}
+
+/// Prints a message on one line of standard error, whatever is in it: `error: …`, `warning: …`.
+fn say_line(kind: &str, message: impl Display) {
+    say(&format!("{kind}: {}\n", text::line(&message.to_string())));
 }
 
 fn other(command: &Command) -> Result<Outcome> {
@@ -165,12 +180,13 @@ fn profile_command(command: &ProfileCommand) -> Result<String> {
             profile::document(&profiles.load_after(names)?, *verbose)
         }
         ProfileCommand::Check { names, profiles } => {
-            let names: Vec<String> = names.iter().map(|name| profiles.meant(name)).collect();
+            let names: Vec<OsString> = names.iter().map(|name| profiles.meant(name)).collect();
             let profile = profiles.load_after(&names)?;
-            let slow = slow_speeds(&profile.settings);
-            for warning in slow.into_iter().chain(motion::warnings(&profile.settings)) {
-                say(&format!("warning: {warning}\n"));
+            let doubtful = doubtful::warnings(&profile.settings);
+            for warning in doubtful.into_iter().chain(motion::warnings(&profile.settings)) {
+                say_line("warning", warning);
             }
+            let names: Vec<String> = names.iter().map(text::name).collect();
             format!("{}: good\n", names.join(" + "))
         }
     })

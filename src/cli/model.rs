@@ -6,7 +6,9 @@ use slicer::Model;
 use slicer::mesh::{Bed, Placement, read};
 use slicer::progress::Progress;
 use slicer::render::{self, Faces, Ground};
+use slicer::text;
 use slicer::warning::Warning;
+use std::ffi::OsStr;
 use std::fs::File;
 use std::io::Read as _;
 
@@ -25,11 +27,11 @@ pub(super) struct Drawn {
 
 /// Whether a file is a model: by the ending of its name, or else by how it begins. Standard input
 /// counts as none, since it cannot be read twice.
-pub(super) fn is_model(file: &str) -> bool {
+pub(super) fn is_model(file: &OsStr) -> bool {
     if file == "-" {
         return false;
     }
-    if file.to_lowercase().ends_with(".stl") {
+    if file.to_string_lossy().to_lowercase().ends_with(".stl") {
         return true;
     }
     let Ok(source) = File::open(file) else { return false };
@@ -46,7 +48,7 @@ pub(super) fn is_model(file: &str) -> bool {
 ///
 /// # Errors
 /// A file that is no usable STL, or a picture that is too large.
-pub(super) fn draw(file: &str, size: u32, max_triangles: usize) -> Result<Drawn> {
+pub(super) fn draw(file: &OsStr, size: u32, max_triangles: usize) -> Result<Drawn> {
     if size > MOST {
         let why = format!("--size {size}: a model is drawn with at most {MOST} pixels; use fewer");
         return Err(usage(why));
@@ -55,9 +57,10 @@ pub(super) fn draw(file: &str, size: u32, max_triangles: usize) -> Result<Drawn>
     let placed = slicer::place(&[Model::path(file)], &placement, &Bed::ANY, &Progress::default())?;
     let (faces, size) = (Faces::of(placed.is_sound), render::fitting(&placed.mesh, size));
     let picture = render::draw(&placed.mesh, faces, size, Ground::White);
-    let png = picture.png().with_context(|| Input(file.to_owned()))?;
+    let png = picture.png().with_context(|| Input(text::name(file)))?;
     let [x, y, z] = placed.size_mm;
     let count = placed.mesh.triangles.len();
+    let file = text::name(file);
     let title = format!("{file}: {count} triangles, {x:.1} x {y:.1} x {z:.1} mm");
     Ok(Drawn { png, title, warnings: placed.warnings })
 }

@@ -1,30 +1,32 @@
 //! Path -> Sink: an output that appears whole or not at all: a file, a device, or standard output.
 //!
-//! A *sink* takes a product until it is whole. *Commit* makes it the output; a sink that is dropped
-//! without commit leaves no file and changes none.
+//! A *sink* takes a product until it is whole. [`publish`] makes all products of a run outputs, or none;
+//! a sink that is dropped before leaves no file and changes none.
 //!
-//! - A file is written beside its final place under a temporary name, and renamed on commit: both
-//!   are in one folder, so that this is one step for the system. Links are followed first, so
-//!   that a link stays a link.
+//! - A file is written beside its final place, as a [`Part`], and renamed. Links are followed first,
+//!   so that a link stays a link.
 //! - Standard output, devices and pipes cannot be replaced. Their product waits in a temporary
-//!   file without a name and is copied on commit: the other end of a pipe never sees half of it.
-//! - Of several files, as `preview --all` writes, each is closed once it is whole, since a system
-//!   allows only some hundred open files. [`commit_all`] puts all in place, or none.
+//!   file without a name and is copied in the end: the other end of a pipe never sees half of it.
+//! - Of hundreds of files, as `preview --all` writes, each is closed once it is whole, since a system
+//!   allows only some hundred open files.
 //!
-//! Temporary names are registered with [`interrupt`], which removes the files if the program is
-//! stopped by a signal or by a fault of its own.
+//! All text leaves the program through [`print`], [`json`] and [`super::say`], where characters are
+//! escaped that a terminal would obey.
 
 pub(crate) use super::failure::is_stdout;
 
-use super::failure::Output;
-use super::input::BUFFER;
-use super::interrupt;
+use super::failure::{Output, writing};
+use super::part::{Batch, Part, folder_of, sweep};
+use super::publish::{End, Product, publish, publish_at_last};
 use anyhow::{Context as _, Result};
 use serde::Serialize;
+use slicer::text;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufRead, BufReader, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use tempfile::{NamedTempFile, TempPath};
+
+/// Bytes that are written at once.
+const BUFFER: usize = 1 << 18;
 
 /// A value as JSON for people and programs, with a line break at its end. `to` is where it goes,
 /// for the message.
@@ -32,8 +34,8 @@ use tempfile::{NamedTempFile, TempPath};
 /// # Errors
 /// [`Output`] if it cannot be written as JSON.
 pub(super) fn json(value: &impl Serialize, to: &Path) -> Result<String> {
-    let text = serde_json::to_string_pretty(value);
-    text.map(|text| text + "\n").with_context(|| writing(to))
+    let written = serde_json::to_string_pretty(value);
+    written.map(|json| text::harmless(&json).into_owned() + "\n").with_context(|| writing(to))
 }
 
 /// Where a product goes. It is opened before the long work, so that a wrong path costs no time.
@@ -49,52 +51,35 @@ enum Target {
     /// A file without a name, and where it is copied to.
     Unnamed(BufWriter<File>, End),
     /// A file beside its final place, and that place.
-    Temporary(BufWriter<NamedTempFile>, PathBuf),
-}
-
-/// Where an unnamed file is copied to.
-#[derive(Debug)]
-enum End {
-    Stdout,
-    /// A device or pipe.
-    Open(File),
-}
-
-/// A whole product beside its final place, no longer open.
-#[derive(Debug)]
-pub(crate) struct Closed {
-    /// As the user named it.
-    name: PathBuf,
-    file: TempPath,
-    path: PathBuf,
+    Beside(BufWriter<Part>, PathBuf),
 }
 
 impl Sink {
-    /// Opens `name`: `-` is standard output, an existing device or pipe is
-    /// written to, anything else becomes a file; all of it on [`Sink::commit`].
+    /// Opens `name`: `-` is standard output, an existing device or pipe is written to, anything else
+    /// becomes a file; all of it when it is published. What killed runs left beside it is removed.
     ///
     /// # Errors
     /// [`Output`] if it cannot be opened for writing.
     pub(crate) fn open(name: &Path) -> Result<Self> {
-        let target = if is_stdout(name) { unnamed(End::Stdout) } else { open_target(name) };
+        Self::open_by(name, |path| {
+            sweep(folder_of(path));
+            Part::beside(path)
+        })
+    }
+
+    /// As [`Self::open`], for the file with this number of a batch.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub(crate) fn open_in(batch: &Batch, number: usize, name: &Path) -> Result<Self> {
+        Self::open_by(name, |path| batch.part(number, path))
+    }
+
+    fn open_by(name: &Path, part: impl FnOnce(&Path) -> io::Result<Part>) -> Result<Self> {
+        let target = if is_stdout(name) { unnamed(End::Stdout) } else { open_target(name, part) };
         let action = "cannot open for writing";
         let target = target.with_context(|| Output { file: name.to_owned(), action })?;
         Ok(Self { name: name.to_owned(), target })
-    }
-
-    /// Ends writing, for [`commit_all`].
-    ///
-    /// # Errors
-    /// [`Output`] if the rest cannot be written, or it goes to no file.
-    pub(crate) fn close(self) -> Result<Closed> {
-        let name = self.name;
-        let Target::Temporary(out, path) = self.target else {
-            return Err(reason("it is no file; choose another name"))
-                .with_context(|| writing(&name));
-        };
-        let file = out.into_inner().map_err(io::IntoInnerError::into_error);
-        let file = file.with_context(|| writing(&name))?.into_temp_path();
-        Ok(Closed { name, file, path })
     }
 
     /// Reads what was written so far, from its beginning. Nothing may be written afterwards.
@@ -105,10 +90,38 @@ impl Sink {
         self.flush()?;
         let file = match &mut self.target {
             Target::Unnamed(out, _) => out.get_mut(),
-            Target::Temporary(out, _) => out.get_mut().as_file_mut(),
+            Target::Beside(out, _) => out.get_mut().file(),
         };
         file.rewind()?;
         Ok(BufReader::with_capacity(BUFFER, file))
+    }
+
+    /// Ends writing, for [`publish`].
+    ///
+    /// # Errors
+    /// [`Output`] if the rest cannot be written.
+    pub(crate) fn whole(self) -> Result<Product> {
+        let name = self.name;
+        let whole = match self.target {
+            Target::Unnamed(out, end) => {
+                let file = out.into_inner().map_err(io::IntoInnerError::into_error);
+                file.map(|file| Product::copy(name.clone(), file, end))
+            }
+            Target::Beside(out, path) => {
+                let part = out.into_inner().map_err(io::IntoInnerError::into_error);
+                part.map(|part| Product::part(name.clone(), part, path))
+            }
+        };
+        whole.with_context(|| writing(&name))
+    }
+
+    /// As [`Self::whole`], and closes the file.
+    ///
+    /// # Errors
+    /// [`Output`] if the rest cannot be written, or it goes to no file.
+    pub(crate) fn close(self) -> Result<Product> {
+        let name = self.name.clone();
+        self.whole()?.close().with_context(|| writing(&name))
     }
 
     /// Makes what was written the output.
@@ -116,49 +129,15 @@ impl Sink {
     /// # Errors
     /// [`Output`] if the rest cannot be written or the file not be put in place.
     pub(crate) fn commit(self) -> Result<()> {
-        let name = self.name;
-        let done = match self.target {
-            Target::Unnamed(out, end) => copy(out, end),
-            Target::Temporary(out, path) => out
-                .into_inner()
-                .map_err(io::IntoInnerError::into_error)
-                .and_then(|file| {
-                    let temporary = file.path().to_owned();
-                    let done = file.persist(path).map_err(|error| error.error);
-                    interrupt::done(&temporary);
-                    done
-                })
-                .map(drop),
-        };
-        done.with_context(|| writing(&name))
+        publish(vec![self.whole()?])
     }
-}
 
-/// Makes all of them outputs, or none.
-///
-/// # Errors
-/// As [`Sink::commit`]; what was put in place by then is removed.
-pub(crate) fn commit_all(products: Vec<Closed>) -> Result<()> {
-    let mut done: Vec<PathBuf> = Vec::with_capacity(products.len());
-    for product in products {
-        let path = product.path.clone();
-        if let Err(error) = product.commit() {
-            for path in done {
-                let _ = fs::remove_file(path);
-            }
-            return Err(error);
-        }
-        done.push(path);
-    }
-    Ok(())
-}
-
-impl Closed {
-    fn commit(self) -> Result<()> {
-        let temporary = self.file.to_path_buf();
-        let done = self.file.persist(self.path).map_err(|error| error.error);
-        interrupt::done(&temporary);
-        done.with_context(|| writing(&self.name))
+    /// As [`Self::commit`], for the report of a failure.
+    ///
+    /// # Errors
+    /// As [`Self::commit`].
+    pub(crate) fn commit_at_last(self) -> Result<()> {
+        publish_at_last(self.whole()?)
     }
 }
 
@@ -166,14 +145,14 @@ impl Write for Sink {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.target {
             Target::Unnamed(out, _) => out.write(bytes),
-            Target::Temporary(out, _) => out.write(bytes),
+            Target::Beside(out, _) => out.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.target {
             Target::Unnamed(out, _) => out.flush(),
-            Target::Temporary(out, _) => out.flush(),
+            Target::Beside(out, _) => out.flush(),
         }
     }
 }
@@ -182,9 +161,20 @@ impl Seek for Sink {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         match &mut self.target {
             Target::Unnamed(out, _) => out.seek(to),
-            Target::Temporary(out, _) => out.seek(to),
+            Target::Beside(out, _) => out.seek(to),
         }
     }
+}
+
+/// A batch of files beside `name`.
+///
+/// # Errors
+/// [`Output`] if no file can be made there.
+pub(crate) fn batch(name: &Path) -> Result<Batch> {
+    let action = "cannot open for writing";
+    let folder = folder_of(name);
+    let made = existing(folder).and_then(|()| Batch::new(folder));
+    made.with_context(|| Output { file: name.to_owned(), action })
 }
 
 /// Whether the error is that nobody reads standard output any more.
@@ -200,17 +190,12 @@ pub(crate) fn is_closed_stdout(error: &anyhow::Error) -> bool {
 /// [`Output`].
 pub(crate) fn print(text: &str) -> Result<()> {
     let mut out = io::stdout().lock();
-    let text = super::words::harmless(text);
+    let text = text::harmless(text);
     let done = out.write_all(text.as_bytes()).and_then(|()| out.flush());
     done.with_context(|| writing(Path::new("-")))
 }
 
-/// Context of what fails while an output is written.
-pub(crate) fn writing(name: &Path) -> Output {
-    Output { file: name.to_owned(), action: "cannot write" }
-}
-
-fn open_target(name: &Path) -> io::Result<Target> {
+fn open_target(name: &Path, part: impl FnOnce(&Path) -> io::Result<Part>) -> io::Result<Target> {
     // Under /dev even a link to a regular file (/dev/stdout) is somebody's open file.
     let device = name.starts_with("/dev");
     match fs::metadata(name) {
@@ -222,33 +207,17 @@ fn open_target(name: &Path) -> io::Result<Target> {
             Err(reason("the file is write-protected; remove it or choose another name"))
         }
         // The end of the links, so that a link stays a link.
-        Ok(_) => beside(fs::canonicalize(name)?),
-        Err(_) => beside(end_of_links(name)?),
+        Ok(_) => beside(fs::canonicalize(name)?, part),
+        Err(_) => beside(end_of_links(name)?, part),
     }
 }
 
 fn unnamed(end: End) -> io::Result<Target> {
     let file = tempfile::tempfile().map_err(|source| {
-        let folder = std::env::temp_dir();
-        io::Error::new(
-            source.kind(),
-            format!("no temporary file in {}: {source}", folder.display()),
-        )
+        let folder = text::name(std::env::temp_dir());
+        io::Error::new(source.kind(), format!("no temporary file in {folder}: {source}"))
     })?;
     Ok(Target::Unnamed(BufWriter::new(file), end))
-}
-
-/// Copies a whole product to its end.
-fn copy(out: BufWriter<File>, end: End) -> io::Result<()> {
-    let mut file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
-    file.rewind()?;
-    match end {
-        End::Stdout => {
-            let mut stdout = io::stdout().lock();
-            io::copy(&mut file, &mut stdout).and_then(|_| stdout.flush())
-        }
-        End::Open(mut end) => io::copy(&mut file, &mut end).and_then(|_| end.flush()),
-    }
 }
 
 /// Follows links whose end does not exist yet.
@@ -265,27 +234,20 @@ fn end_of_links(name: &Path) -> io::Result<PathBuf> {
     Err(reason("the link leads to itself; remove it"))
 }
 
-fn beside(path: PathBuf) -> io::Result<Target> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
+fn beside(path: PathBuf, part: impl FnOnce(&Path) -> io::Result<Part>) -> io::Result<Target> {
     let is_folder = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
     if path.file_name().is_none() || is_folder {
         return Err(reason("this names no file; add a file name"));
     }
-    if !folder.is_dir() {
-        return Err(reason(&format!("there is no directory {}; create it", folder.display())));
+    existing(folder_of(&path))?;
+    Ok(Target::Beside(BufWriter::new(part(&path)?), path))
+}
+
+fn existing(folder: &Path) -> io::Result<()> {
+    if folder.is_dir() {
+        return Ok(());
     }
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".slicer-").suffix(".part");
-    // Temporary files are private by default; the product has the permissions
-    // of any new file (the umask still applies).
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.tempfile_in(folder)?;
-    interrupt::begun(file.path());
-    Ok(Target::Temporary(BufWriter::new(file), path))
+    Err(reason(&format!("there is no directory {}; create it", text::name(folder))))
 }
 
 fn reason(why: &str) -> io::Error {

@@ -12,7 +12,9 @@
 
 use super::output::{self, Sink};
 use super::profiles::ProfileArgs;
-use super::{failure, input, interrupt, model, say, usage, viewer, words};
+use super::publish::publish;
+use super::reading::ReadingArgs;
+use super::{failure, interrupt, model, say, say_line, usage, viewer, words};
 use anyhow::{Context as _, Result};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
@@ -21,6 +23,8 @@ use slicer::preview::cut::{Axis, Cut, Plane};
 use slicer::preview::drawing::{Drawing, Frame};
 use slicer::preview::{layer, png, svg};
 use slicer::reader::{Cause, Print};
+use slicer::text;
+use std::ffi::OsString;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -38,7 +42,7 @@ type Encode = fn(&Drawing) -> io::Result<Vec<u8>>;
 pub(crate) struct PreviewArgs {
     /// G-code file of any slicer, `-` for standard input; or an STL file, to see the model itself
     #[arg(value_name = "FILE")]
-    file: String,
+    file: OsString,
     /// Picture to write, .svg or .png, or .html to look through all layers; `-` writes standard output
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -72,6 +76,8 @@ pub(crate) struct PreviewArgs {
     #[arg(long, value_name = "AXIS=MM", value_parser = plane, conflicts_with_all = ["layer", "all", "fit", "below", "travels"], help_heading = "Cut")]
     cut: Option<Plane>,
 
+    #[command(flatten)]
+    reading: ReadingArgs,
     #[command(flatten)]
     profiles: ProfileArgs,
     /// Refuse a model with more triangles
@@ -134,13 +140,13 @@ pub(super) fn run(args: &PreviewArgs) -> Result<()> {
     match args.cut {
         Some(plane) => {
             let sink = Sink::open(&args.output)?;
-            let drawing = cut(args, name, &print, plane)?;
+            let drawing = cut(args, &name, &print, plane)?;
             finish(args, encode, sink, &drawing)
         }
         None if args.all => all(args, encode, &print),
         None => {
             let sink = Sink::open(&args.output)?;
-            let drawing = one(args, name, &print)?;
+            let drawing = one(args, &name, &print)?;
             finish(args, encode, sink, &drawing)
         }
     }
@@ -156,7 +162,7 @@ fn format(args: &PreviewArgs) -> Result<Format> {
     let names: Vec<String> = known.map(|value| value.get_name().to_owned()).collect();
     let found = names.iter().position(|name| Some(name) == ending.as_ref());
     found.map(|k| Format::value_variants()[k]).ok_or_else(|| {
-        let out = args.output.display();
+        let out = text::name(&args.output);
         let endings: Vec<String> = names.iter().map(|name| format!(".{name}")).collect();
         let endings = match endings.split_last() {
             Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
@@ -170,7 +176,7 @@ fn format(args: &PreviewArgs) -> Result<Format> {
 
 /// Draws a model, which has no layers yet.
 fn model_itself(args: &PreviewArgs, format: Format) -> Result<()> {
-    let file = &args.file;
+    let file = text::name(&args.file);
     if let Some(flag) = args.of_layers() {
         return Err(failure::usage(format!("{flag}: {file} is a model; slice it first")));
     }
@@ -179,12 +185,12 @@ fn model_itself(args: &PreviewArgs, format: Format) -> Result<()> {
         return Err(failure::usage(why));
     }
     let mut sink = Sink::open(&args.output)?;
-    let drawn = model::draw(file, args.size.unwrap_or(SIZE), args.max_triangles)?;
+    let drawn = model::draw(&args.file, args.size.unwrap_or(SIZE), args.max_triangles)?;
     let done = sink.write_all(&drawn.png).and_then(|()| sink.flush());
-    done.with_context(|| output::writing(&args.output))?;
+    done.with_context(|| failure::writing(&args.output))?;
     sink.commit()?;
     for warning in &drawn.warnings {
-        say(&format!("warning: {warning}\n"));
+        say_line("warning", warning);
     }
     if !args.quiet {
         say(&format!("{}\n", drawn.title));
@@ -193,15 +199,18 @@ fn model_itself(args: &PreviewArgs, format: Format) -> Result<()> {
 }
 
 /// The file's name for messages, and what it prints.
-fn read(args: &PreviewArgs) -> Result<(&str, Print)> {
+fn read(args: &PreviewArgs) -> Result<(String, Print)> {
     let profile = args.profiles.load([])?;
-    let (name, mut source) = input::open(&args.file)?;
     let settings = &profile.settings;
-    let firmware = input::firmware(settings);
-    let print = Print::read_as(&mut source, firmware, settings.filament.diameter)
-        .map_err(|error| Cause::Unreadable(error).of(name))?;
+    let machine = args.profiles.any().then_some(settings);
+    let opened = args.reading.open(&args.file)?;
+    let reading = args.reading.of(machine, opened.says);
+    let diameter = settings.filament.diameter;
+    let print = Print::read_as(&mut opened.source.reader(), reading, diameter)
+        .map_err(|error| opened.unreadable(error))?;
+    let name = opened.name;
     if layer::frame(&print, &print.layers).is_empty() {
-        return Err(Cause::NothingToDraw.of(name).into());
+        return Err(Cause::NothingToDraw.of(&name).into());
     }
     Ok((name, print))
 }
@@ -244,19 +253,20 @@ fn cut(args: &PreviewArgs, name: &str, print: &Print, plane: Plane) -> Result<Dr
 fn all(args: &PreviewArgs, encode: Encode, print: &Print) -> Result<()> {
     let frame = frame(args, print);
     let count = print.layers.len();
+    let batch = output::batch(&args.output)?;
     let products = (0..count).into_par_iter().map(|index| {
         let name = numbered(&args.output, index + 1, count);
         usage::replaces(&name, &args.file)?;
-        let mut sink = Sink::open(&name)?;
+        let mut sink = Sink::open_in(&batch, index, &name)?;
         let drawing = draw_layer(args, print, index, frame);
         write(encode, &drawing, &name, &mut sink)?;
         sink.close()
     });
-    output::commit_all(products.collect::<Result<_>>()?)?;
+    publish(products.collect::<Result<_>>()?)?;
     if !args.quiet {
         let (first, last) =
             (numbered(&args.output, 1, count), numbered(&args.output, count, count));
-        say(&format!("{} to {}\n", first.display(), last.display()));
+        say(&format!("{} to {}\n", text::name(first), text::name(last)));
     }
     Ok(())
 }
@@ -293,7 +303,7 @@ fn finish(args: &PreviewArgs, encode: Encode, mut sink: Sink, drawing: &Drawing)
 
 fn write(encode: Encode, drawing: &Drawing, name: &Path, sink: &mut Sink) -> Result<()> {
     let done = encode(drawing).and_then(|bytes| sink.write_all(&bytes)).and_then(|()| sink.flush());
-    done.with_context(|| output::writing(name))
+    done.with_context(|| failure::writing(name))
 }
 
 /// The page with all layers in it, for which nothing can be chosen.
@@ -303,8 +313,7 @@ fn page(args: &PreviewArgs) -> Result<()> {
             "{flag} is for pictures, and a page shows everything; leave it out, or write .svg or .png"
         )));
     }
-    let profile = args.profiles.load([])?;
-    let summary = viewer::write(&args.file, &args.output, &profile.settings)?;
+    let summary = viewer::write(&args.file, &args.output, &args.profiles, &args.reading)?;
     if !args.quiet {
         say(&summary);
     }

@@ -11,7 +11,9 @@ use super::words;
 use anyhow::Result;
 use clap::Args;
 use slicer::profile::{self, Found, Override, Profile, ProfileKind, Shelf, Wanted, keys};
+use slicer::text;
 use std::env;
+use std::ffi::{OsStr, OsString};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -27,13 +29,13 @@ const NO_USER_CONFIG: &str = "SLICER_NO_USER_CONFIG";
 pub(crate) struct ProfileArgs {
     /// Printer or other profile; a file if it has a `/` or ends in .toml (repeatable, later ones win)
     #[arg(short, long, value_name = "NAME")]
-    pub(crate) profile: Vec<String>,
+    pub(crate) profile: Vec<OsString>,
     /// Material [default: the printer's]
     #[arg(long, value_name = "NAME")]
-    material: Option<String>,
+    material: Option<OsString>,
     /// Print, such as fine [default: the printer's]
     #[arg(long, value_name = "NAME")]
-    print: Option<String>,
+    print: Option<OsString>,
     /// Change any setting, such as speed.wall=25 (repeatable)
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -62,8 +64,8 @@ impl ProfileArgs {
     }
 
     /// The files among them, and names that may be some.
-    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
-        self.profile.iter().chain(&self.material).chain(&self.print).map(String::as_str)
+    pub(crate) fn names(&self) -> impl Iterator<Item = &OsStr> {
+        self.profile.iter().chain(&self.material).chain(&self.print).map(OsString::as_os_str)
     }
 
     /// The overrides that `--set` gives.
@@ -78,14 +80,18 @@ impl ProfileArgs {
     ///
     /// # Errors
     /// As [`Self::load`].
-    pub(crate) fn load_after(&self, names: &[String]) -> Result<Profile> {
-        self.lay(names.iter().map(Wanted::any).chain(self.wanted()), [])
+    pub(crate) fn load_after(&self, names: &[OsString]) -> Result<Profile> {
+        self.lay(names.iter().map(|name| Wanted::word(None, name)).chain(self.wanted()), [])
     }
 
     /// The name as it is loaded by: a bare one that finds no profile but is a file is meant as that.
-    pub(crate) fn meant(&self, name: &str) -> String {
-        let known = self.shelf.shelf().find(name, None, |_| false).is_ok();
-        if !known && Path::new(name).is_file() { format!("./{name}") } else { name.to_owned() }
+    pub(crate) fn meant(&self, name: &OsStr) -> OsString {
+        let find = |name: &str| self.shelf.shelf().find(name, None, |_| false).is_ok();
+        let known = name.to_str().is_none_or(find);
+        if !known && Path::new(name).is_file() {
+            return Path::new(".").join(name).into_os_string();
+        }
+        name.to_owned()
     }
 
     /// Loads what is asked for, and lays `more` over it.
@@ -109,8 +115,10 @@ impl ProfileArgs {
     }
 
     fn wanted(&self) -> Vec<Wanted> {
-        let of = |name: &Option<String>, kind| name.clone().map(|name| Wanted::of(kind, name));
-        let any = self.profile.iter().map(Wanted::any);
+        let of = |name: &Option<OsString>, kind| {
+            name.as_deref().map(|name| Wanted::word(Some(kind), name))
+        };
+        let any = self.profile.iter().map(|name| Wanted::word(None, name));
         any.chain(of(&self.material, ProfileKind::Material))
             .chain(of(&self.print, ProfileKind::Print))
             .collect()
@@ -142,7 +150,7 @@ pub(crate) fn list(shelf: &Shelf) -> Result<String> {
     for kind in ProfileKind::ALL {
         let _ = writeln!(text, "{kind}s");
         for found in all.iter().filter(|found| found.kind == Some(kind)) {
-            let _ = write!(text, "  {:<23} {}", found.name, found.description()?);
+            let _ = write!(text, "  {:<23} {}", found.name, text::line(&found.description()?));
             if found.path.is_some() {
                 let _ = write!(text, " ({})", found.shown);
             }
@@ -186,10 +194,11 @@ const fn usual(kind: Option<ProfileKind>) -> &'static [&'static str] {
 /// What is wrong with the profile.
 pub(crate) fn new(shelf: &Shelf, name: &str) -> Result<String> {
     let found: Found = shelf.find(name, None, |_| false)?;
+    let shown = text::line(name);
     let profile = profile::load_from(shelf, &[Wanted::any(name)], &[])?;
     let mut text = format!(
-        "# Whatever is not said here is as in {name}. Remove the # before what you change.\n\
-         # `slicer profile show -v {name}` lists all keys with their meaning.\n\
+        "# Whatever is not said here is as in {shown}. Remove the # before what you change.\n\
+         # `slicer profile show -v {shown}` lists all keys with their meaning.\n\
          inherits = {name:?}\n\
          description = {:?}\n",
         format!("{name}, with changes of my own"),

@@ -29,7 +29,7 @@ impl Meter {
         }
         let (stop, stopped) = mpsc::channel::<()>();
         let progress = Arc::clone(progress);
-        let thread = std::thread::spawn(move || {
+        let draw = move || {
             let mut shown = 0;
             while stopped.recv_timeout(INTERVAL) == Err(RecvTimeoutError::Timeout) {
                 let (done, total) = progress.get();
@@ -40,8 +40,9 @@ impl Meter {
                 }
             }
             write(&format!("\r{:shown$}\r", ""));
-        });
-        Self { stop: Some(stop), thread: Some(thread) }
+        };
+        // Where there is no thread for it, nothing is drawn.
+        Self { stop: Some(stop), thread: std::thread::Builder::new().spawn(draw).ok() }
     }
 }
 

@@ -1,9 +1,19 @@
 //! Arguments of slicing -> G-code, report and exit code: the program's main job.
+//!
+//! 1. No two arguments may mean the same file.
+//! 2. The report's sink is opened, and a report that is there says that the run has not ended.
+//! 3. Profiles are loaded, the models are sliced into the sink of the G-code, and with `--check` that is
+//!    read back and judged.
+//! 4. What was found is told, and written to the report.
+//! 5. G-code and report are put in place together.
+//!
+//! From the second step on a failure is reported, where a report is asked for.
 
 use super::args::SliceArgs;
 use super::failure::Output;
 use super::output::{self, Sink};
-use super::{check, failure, input, interrupt, progress, say, summary, usage};
+use super::publish::publish;
+use super::{check, failed, failure, input, interrupt, progress, say, say_line, summary, usage};
 use anyhow::{Context as _, Result};
 use slicer::check::terms::Terms;
 use slicer::error::Error;
@@ -13,7 +23,8 @@ use slicer::progress::Progress;
 use slicer::reader::Print;
 use slicer::report::Report;
 use slicer::warning::{Warning, plural};
-use slicer::{Job, Model};
+use slicer::{Job, Model, text};
+use std::ffi::OsString;
 use std::io::Write as _;
 use std::path::Path;
 use std::sync::Arc;
@@ -33,13 +44,25 @@ pub(super) fn run(args: &SliceArgs) -> Result<u8> {
         return Err(failure::usage("no output; give one with -o"));
     };
     no_file_twice(args, out)?;
+    let Some(report) = args.report.as_deref() else { return make(args, out, started, &mut None) };
+    let mut report_sink = Some(Sink::open(report)?);
+    failed::promise(report);
+    let made = make(args, out, started, &mut report_sink);
+    made.inspect_err(|error| failed::tell(report, report_sink, error))
+}
+
+/// Makes G-code and report. The sink of the report is left where it was not needed.
+fn make(
+    args: &SliceArgs,
+    out: &Path,
+    started: Instant,
+    report_sink: &mut Option<Sink>,
+) -> Result<u8> {
     let profile = load(args)?;
     if args.verbose {
         say(&summary::settings(&profile));
     }
     let mut sink = Sink::open(out)?;
-    let report_sink = args.report.as_deref().map(|path| Sink::open(path).map(|sink| (path, sink)));
-    let report_sink = report_sink.transpose()?;
 
     let report = work(args, out, profile, &mut sink)?;
     let is_good = report.check.as_ref().is_none_or(|verdict| !verdict.fails());
@@ -47,7 +70,7 @@ pub(super) fn run(args: &SliceArgs) -> Result<u8> {
         say(&summary::notes(&report));
     }
     for warning in &report.warnings {
-        say(&format!("warning: {warning}\n"));
+        say_line("warning", warning);
     }
     if let Some(verdict) = &report.check {
         say(&check::findings(verdict));
@@ -55,18 +78,19 @@ pub(super) fn run(args: &SliceArgs) -> Result<u8> {
             say(&check::notes(verdict));
         }
     }
-    // The report is written before the G-code is put in place: a full disk leaves neither.
-    let report_sink = report_sink.map(|(path, sink)| write_report(path, sink, &report));
-    let report_sink = report_sink.transpose()?;
-    if is_good {
-        sink.commit()?;
-    }
     // The report lists the findings, so that it is written with them, too.
-    report_sink.map_or(Ok(()), Sink::commit)?;
+    let mut products = Vec::new();
+    if is_good {
+        products.push(sink.whole()?);
+    }
+    if let Some((path, sink)) = args.report.as_deref().zip(report_sink.take()) {
+        products.push(write_report(path, sink, &report)?.whole()?);
+    }
+    publish(products)?;
     if !is_good {
-        say(
-            "error: --check has findings, so that no G-code is written; slice without it to see them\n",
-        );
+        let why =
+            "--check has findings, so that no G-code is written; slice without it to see them";
+        say_line("error", why);
         return Ok(FINDINGS);
     }
     if args.verbose {
@@ -99,8 +123,9 @@ fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
         return usage::refuse("-o and --report name the same file; name two");
     }
     for product in std::iter::once(out).chain(report) {
-        let read = args.inputs.iter().map(String::as_str).chain(args.profiles.names());
+        let read = args.inputs.iter().map(OsString::as_os_str).chain(args.profiles.names());
         if let Some(name) = read.into_iter().find(|name| same(product, Path::new(name))) {
+            let name = text::name(name);
             return usage::refuse(&format!(
                 "the output would replace {name}; choose another name for it"
             ));
@@ -116,7 +141,7 @@ fn findings(strict: bool, warnings: usize) -> u8 {
         return 0;
     }
     let warnings = plural(warnings as u64, "warning");
-    say(&format!("error: {warnings} with --strict; look at them before printing\n"));
+    say_line("error", format!("{warnings} with --strict; look at them before printing"));
     FINDINGS
 }
 
@@ -124,7 +149,7 @@ fn load(args: &SliceArgs) -> Result<Profile> {
     args.profiles.load(args.settings.overrides())
 }
 
-/// Runs the pipeline with the threads asked for, under a progress bar.
+/// Runs the pipeline under a progress bar.
 fn work(args: &SliceArgs, out: &Path, profile: Profile, sink: &mut Sink) -> Result<Report> {
     let job = Job {
         models: args.inputs.iter().map(Model::path).collect(),
@@ -134,13 +159,7 @@ fn work(args: &SliceArgs, out: &Path, profile: Profile, sink: &mut Sink) -> Resu
     };
     let progress = Arc::new(Progress::default());
     let _meter = progress::Meter::start(&progress, !args.quiet);
-    let mut slice = || slice_and_check(&job, args.check, out, sink, &progress);
-    let Some(threads) = args.threads else { return slice() };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(usize::from(threads))
-        .build()
-        .map_err(|error| failure::usage(format!("--threads {threads}: {error}; use fewer")))?;
-    pool.install(slice)
+    slice_and_check(&job, args.check, out, sink, &progress)
 }
 
 /// Slices; with `check` reads the product back and checks it against the models.
@@ -189,6 +208,6 @@ fn write_report(path: &Path, mut sink: Sink, report: &Report) -> Result<Sink> {
     let text = output::json(report, path)?;
     sink.write_all(text.as_bytes())
         .and_then(|()| sink.flush())
-        .with_context(|| output::writing(path))?;
+        .with_context(|| failure::writing(path))?;
     Ok(sink)
 }

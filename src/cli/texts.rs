@@ -5,8 +5,16 @@ pub(super) const FINDINGS: &str = "\
 Findings, each with a stable code, a place and a measure:
   unknown-code         a command that the machine's firmware does not know
   outside-volume       a line or travel beyond the machine's x, y or z
+  through-print        a travel, of start and end block too, through what stands by the nozzle's flat
+                       end, 2.5 times as wide as its hole, over 0.11 mm deep
+  changes-the-machine  a command that changes what the rest relies on: G92 of an axis, steps, offsets,
+                       flow, homing or motors off in the print, a tool that is not there, heaters far
+                       from what the settings say, hotter after the print; a warning for pauses,
+                       changes of filament, and what a start or end block need not do
+  wrong-temperature    the nozzle or the bed is set to what the material does not take, or no machine
   cold-extrusion       filament is pushed before the nozzle is told to be hot and waited for
-  too-fast             faster than [limits] allow in x or y
+  too-fast             faster than [limits] allow in x or y; in z in files of this program, or over
+                       500 mm/s
   too-much-flow        5 % more than the hot end melts
   unpaired-retraction  a line with the filament pulled back, or more pushed out than was pulled
   odd-bead             under 0.55 or over 1.6 times the plastic that the role takes for its size
@@ -17,9 +25,10 @@ Findings, each with a stable code, a place and a measure:
                        whole print, never stands on the bed, else a warning, as when slicing
   unanchored         * over 3 mm of a line over nothing with a free end, along a void that it should
                        cross, or, of a wall, in a bow
-  printed-twice        a line on the middle of another of its layer, over 10 mm or most of it
+  printed-twice        a line on the middle of another of its layer, over 10 mm or most of it; lines on
+                       what the start block has primed
   overfilled         * over 1.25 times the plastic that walls and skins have room for, on one layer
-                       within 4 by 4 mm
+                       within 4 by 4 mm; an error where settings ask for over 1.6 times
   underfilled        * under 0.7 times that, or a fifth of the room between them left open
   narrow-bead        * over 1 mm of a line narrower than 70 % of the nozzle
   slender-support    * support over 10 times as high as it is thick

@@ -4,14 +4,17 @@ use super::failure;
 use super::output::is_stdout;
 use anyhow::Result;
 use slicer::profile::suggest;
+use slicer::text;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// Checks that a product does not replace the file that it is made from.
 ///
 /// # Errors
 /// [`failure::Usage`].
-pub(super) fn replaces(product: &Path, input: &str) -> Result<()> {
+pub(super) fn replaces(product: &Path, input: &OsStr) -> Result<()> {
     if input != "-" && !is_stdout(product) && is_same_file(product, Path::new(input)) {
+        let input = text::name(input);
         return refuse(&format!("the output would replace {input}; choose another name for it"));
     }
     Ok(())

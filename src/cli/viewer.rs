@@ -1,36 +1,49 @@
 //! G-code file -> a page to look through all its layers, as `slicer preview` writes it.
 
-use super::input;
-use super::output::{self, Sink};
+use super::clock;
+use super::failure::writing;
+use super::output::Sink;
+use super::profiles::ProfileArgs;
+use super::reading::ReadingArgs;
 use anyhow::{Context as _, Result};
 use slicer::estimate::{self, Options};
 use slicer::motion::Limits;
 use slicer::preview::html;
-use slicer::profile::Settings;
-use slicer::reader::{Cause, Print};
+use slicer::reader::Print;
 use slicer::warning::plural;
+use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::Path;
 
-/// Writes the page of `file` to `out`; returns a line on what is in it.
+/// Writes the page of `file` to `out`; returns a line on what is in it. `reading` tells how it is read,
+/// from what it says of itself.
 ///
 /// # Errors
 /// A file that cannot be read or holds no move, an output that cannot be written.
-pub(super) fn write(file: &str, out: &Path, settings: &Settings) -> Result<String> {
+pub(super) fn write(
+    file: &OsStr,
+    out: &Path,
+    profiles: &ProfileArgs,
+    reading: &ReadingArgs,
+) -> Result<String> {
     let mut sink = Sink::open(out)?;
-    let (name, bytes) = input::read(file)?;
+    let opened = reading.open(file)?;
+    let (clock, limits) = clock::of_file(profiles, &opened)?;
+    let settings = &clock.settings;
     let diameter = settings.filament.diameter;
-    let options = Options { filament_diameter: diameter, ..Options::default() };
-    let estimate = estimate::estimate(&mut &bytes[..], name, &Limits::new(settings), options)?;
-    let print = Print::read(&mut &bytes[..], diameter)
-        .map_err(|error| Cause::Unreadable(error).of(name))?;
-    // The file is not needed any more, and may be large.
-    drop(bytes);
-    let base = Path::new(name).file_name().map_or(name.into(), |base| base.to_string_lossy());
+    let reading = reading.of(profiles.any().then_some(settings), opened.says);
+    let (firmware, volumes) = (reading.firmware, reading.volumes);
+    let options = Options { filament_diameter: diameter, firmware, volumes, ..Options::default() };
+    let (source, name) = (&opened.source, opened.name.as_str());
+    let estimate = estimate::estimate(&mut source.reader(), name, &Limits::new(settings), options)?;
+    let print = Print::read_as(&mut source.reader(), reading, diameter)
+        .map_err(|error| opened.unreadable(error))?;
+    let base = Path::new(name).file_name().map_or(name.into(), OsStr::to_string_lossy);
     html::write(&print, &estimate, &base, diameter, &mut sink)
         .and_then(|()| sink.flush())
-        .with_context(|| output::writing(out))?;
+        .with_context(|| writing(out))?;
     sink.commit()?;
     let layers = plural(print.layers.len() as u64, "layer");
-    Ok(format!("{layers}, {}\n", plural(print.moves.len() as u64, "move")))
+    let moves = plural(print.moves.len() as u64, "move");
+    Ok(format!("{layers}, {moves}, timed by the limits of {limits}\n"))
 }

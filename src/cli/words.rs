@@ -6,25 +6,7 @@ use clap::builder::RangedU64ValueParser;
 use slicer::mesh::Unit;
 use slicer::profile::keys::{self, Kind};
 use slicer::profile::{Override, ValueOrigin};
-use std::borrow::Cow;
-
-/// A text with control characters written out: names and comments of files may hold some that make a
-/// terminal do things. Lines and tabs stay. What is written out is right in JSON and TOML, too.
-pub(super) fn harmless(text: &str) -> Cow<'_, str> {
-    let acts = |c: char| c.is_control() && c != '\n' && c != '\t';
-    if !text.contains(acts) {
-        return Cow::Borrowed(text);
-    }
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        if acts(c) {
-            out.push_str(&format!("\\u{:04x}", u32::from(c)));
-        } else {
-            out.push(c);
-        }
-    }
-    Cow::Owned(out)
-}
+use slicer::text;
 
 /// The overrides that `--set` gives.
 ///
@@ -33,7 +15,7 @@ pub(super) fn harmless(text: &str) -> Cow<'_, str> {
 pub(super) fn set_overrides(words: &[String]) -> Result<Vec<Override>> {
     let one = |word: &String| {
         let (key, value) = word.split_once('=').ok_or_else(|| {
-            let word = word.escape_debug();
+            let word = text::line(word);
             usage(format!("--set {word}: there is no `=`; write --set KEY=VALUE"))
         })?;
         Ok(Override {
@@ -113,18 +95,4 @@ pub(super) fn unit(name: &str) -> Unit {
 /// A number of triangles that a mesh can have.
 pub(super) fn triangles() -> RangedU64ValueParser<usize> {
     RangedU64ValueParser::new().range(1..1 << 30)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::harmless;
-
-    #[test]
-    fn control_characters_are_written_out() {
-        assert_eq!(harmless("a\tb\n"), "a\tb\n");
-        assert_eq!(
-            harmless("\u{1b}[31mX\r\u{9b}2J\u{7f}é\n"),
-            "\\u001b[31mX\\u000d\\u009b2J\\u007fé\n"
-        );
-    }
 }

@@ -10,7 +10,8 @@
 //!
 //! Slicers do not agree on where the first layer begins and the last ends, so what comes before the
 //! first line of all and after the last one are places of their own. Within a layer the order of
-//! codes matters, their place between the lines does not.
+//! codes matters, their place between the lines does not. What stands between the last line of one
+//! layer and the first of the next belongs to the next.
 
 use super::sums::Both;
 use crate::reader::print::{Note, What};
@@ -124,7 +125,7 @@ impl Heat {
 /// Where codes belong: the file's lines, from 1, at which places begin.
 #[derive(Debug, Default)]
 pub(super) struct Places {
-    /// For each layer the line of the last move before it.
+    /// For each layer the last line before it that extrudes.
     pub(super) before: Vec<u32>,
     /// The first line and the last line that extrude in a layer; `None` without one.
     pub(super) lines: Option<[u32; 2]>,

@@ -64,12 +64,13 @@ impl Side {
         let roles = [Role::Other, Role::Travel, Role::Retraction];
         let mut roles = Role::ALL.into_iter().filter(|role| !roles.contains(role));
         let has_roles = roles.any(|role| stream.facts().has(role));
-        let (floors, places, heats) = survey(&stream).map_err(unreadable)?;
+        let Survey { floors, places, heats, first_line } =
+            Survey::new(&stream).map_err(unreadable)?;
         let codes = {
             let mut source = BufReader::with_capacity(BUFFER, stream.source().reader());
             Codes::read(&mut source, &heats, &places).map_err(unreadable)?
         };
-        let first_line = places.before.first().map_or(u32::MAX, |before| before + 1);
+        let first_line = first_line.unwrap_or(u32::MAX);
         let name = name.to_owned();
         Ok(Self { name, stream, values, estimate, floors, has_roles, codes, first_line })
     }
@@ -141,28 +142,43 @@ impl Side {
     }
 }
 
-/// Reads all layers once, for what is known of them without their moves.
-fn survey(stream: &Stream) -> io::Result<(Vec<Floor>, Places, Vec<Heat>)> {
-    let (mut floors, mut places, mut heats) = (Vec::new(), Places::default(), Vec::new());
-    let mut before = 0;
-    for section in stream.sections() {
-        let section = section?;
-        if let Some(layer) = section.of(stream.facts()) {
-            let level = Level { z: layer.z, height: layer.height };
-            let extent = Measure::new(&section.moves, true).extent;
-            floors.push(Floor { level, extent });
-            places.before.push(before);
-            let lines = section.lines().map(|step| step.line);
-            for line in lines {
-                let first = places.lines.map_or(line, |[first, _]| first);
-                places.lines = Some([first, line]);
+/// What is known of a file before it is compared.
+#[derive(Default)]
+struct Survey {
+    floors: Vec<Floor>,
+    places: Places,
+    heats: Vec<Heat>,
+    /// The file's line with which the first layer begins, from 1.
+    first_line: Option<u32>,
+}
+
+impl Survey {
+    /// Reads all layers once, for what is known of them without their moves.
+    fn new(stream: &Stream) -> io::Result<Self> {
+        let mut survey = Self::default();
+        // The file's line of the last line that extrudes: what comes after it belongs to the next
+        // layer, whether a mark stands between or not.
+        let mut last = 0;
+        for section in stream.sections() {
+            let section = section?;
+            if let Some(layer) = section.of(stream.facts()) {
+                let level = Level { z: layer.z, height: layer.height };
+                let extent = Measure::new(&section.moves, true).extent;
+                survey.floors.push(Floor { level, extent });
+                survey.places.before.push(last);
+                let begin = section.moves.first().map(|step| step.line);
+                survey.first_line = survey.first_line.or(begin);
+                for step in section.lines() {
+                    let first = survey.places.lines.map_or(step.line, |[first, _]| first);
+                    survey.places.lines = Some([first, step.line]);
+                }
             }
+            last = section.lines().last().map_or(last, |step| step.line);
+            let room = MOST_HEATS - survey.heats.len().min(MOST_HEATS);
+            survey.heats.extend(section.notes.iter().filter_map(Heat::of).take(room));
         }
-        before = section.moves.last().map_or(before, |step| step.line);
-        let room = MOST_HEATS - heats.len().min(MOST_HEATS);
-        heats.extend(section.notes.iter().filter_map(Heat::of).take(room));
+        Ok(survey)
     }
-    Ok((floors, places, heats))
 }
 
 /// See [`Side::moves`].

@@ -13,10 +13,13 @@ use std::f64::consts::TAU;
 const TOLERANCE_MM: f64 = 0.005;
 
 /// Most pieces of an arc, whatever its radius: a faulty file must not fill the memory.
-const MOST_PIECES: f64 = 10_000.0;
+pub const MOST_PIECES: f64 = 10_000.0;
 
 /// By how much half the chord may be longer than the radius, mm: both are rounded in files.
 const ROUNDING_MM: f64 = 0.01;
+
+/// The same as a part of the radius: RepRapFirmware's, which refuses what is further apart.
+const ROUNDING: f64 = 0.01;
 
 /// An arc in the plane, mm.
 #[derive(Debug, Clone, Copy)]
@@ -39,7 +42,7 @@ impl Arc {
         let (start, end) = (Vector2::from(from), Vector2::from(to));
         let chord = end - start;
         let square = chord.norm_squared();
-        let is_far = 0.5 * square.sqrt() > radius.abs() + ROUNDING_MM;
+        let is_far = 0.5 * square.sqrt() > radius.abs() + ROUNDING_MM.max(ROUNDING * radius.abs());
         let beside = (radius * radius / square - 0.25).max(0.0);
         if !(square > 0.0 && beside.is_finite()) || is_far {
             return None;
@@ -51,23 +54,23 @@ impl Arc {
 
     /// The ends of its pieces; the last one is `to`, exactly. Ends that are the same make a full circle.
     pub fn points(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
-        let arc = *self;
-        let middle = Vector2::from(arc.middle);
-        let (start, end) = (Vector2::from(arc.from) - middle, Vector2::from(arc.to) - middle);
-        let mut turn = libm::atan2(start.perp(&end), start.dot(&end));
-        if arc.from == arc.to {
-            turn = 0.0;
-        }
-        if arc.clockwise && turn >= 0.0 {
-            turn -= TAU;
-        } else if !arc.clockwise && turn <= 0.0 {
-            turn += TAU;
-        }
-        let radius = start.norm();
+        self.divided(self.pieces(0.0).min(MOST_PIECES) as u32, 0.0)
+    }
+
+    /// How many pieces keep within the tolerance, with so many turns more.
+    #[must_use]
+    pub fn pieces(&self, turns: f64) -> f64 {
+        let radius = (Vector2::from(self.from) - Vector2::from(self.middle)).norm();
         let piece = (8.0 * TOLERANCE_MM * radius).sqrt();
         // An arc of no radius has no piece: 0 by 0 is no number, which `max` replaces.
-        let pieces = (turn.abs() * radius / piece).max(1.0).ceil().clamp(1.0, MOST_PIECES);
-        let count = pieces as u32;
+        (self.turn(turns).abs() * radius / piece).max(1.0).ceil()
+    }
+
+    /// The ends of `count` pieces, with so many turns more.
+    pub fn divided(&self, count: u32, turns: f64) -> impl Iterator<Item = [f64; 2]> + use<> {
+        let (arc, turn) = (*self, self.turn(turns));
+        let middle = Vector2::from(arc.middle);
+        let start = Vector2::from(arc.from) - middle;
         (1..=count).map(move |k| {
             if k == count {
                 return arc.to;
@@ -75,6 +78,21 @@ impl Arc {
             let (sin, cos) = libm::sincos(turn * f64::from(k) / f64::from(count));
             (middle + Matrix2::new(cos, -sin, sin, cos) * start).into()
         })
+    }
+
+    /// How far it turns, radians; left is positive.
+    fn turn(&self, more: f64) -> f64 {
+        let middle = Vector2::from(self.middle);
+        let (start, end) = (Vector2::from(self.from) - middle, Vector2::from(self.to) - middle);
+        let mut turn = libm::atan2(start.perp(&end), start.dot(&end));
+        if self.from == self.to {
+            turn = 0.0;
+        }
+        if self.clockwise {
+            (if turn >= 0.0 { turn - TAU } else { turn }) - more * TAU
+        } else {
+            (if turn <= 0.0 { turn + TAU } else { turn }) + more * TAU
+        }
     }
 }
 

@@ -1,12 +1,14 @@
 //! Points -> contours, spans, rasters: plane geometry on the integer grid.
 
 pub mod arc;
+pub mod boxes;
 pub mod cells;
 pub mod decimate;
 pub mod follow;
 pub mod frame;
 pub mod hull;
 pub mod islands;
+pub mod nearest;
 pub mod nest;
 pub mod outline;
 pub mod parallel;

@@ -3,6 +3,9 @@
 //! The contours are those of a layer: they do not cross, outer ones run counter-clockwise, holes
 //! clockwise. Then a hole lies in an outer contour, and an outer contour in a hole or in none.
 
+pub use super::boxes::{extent, meet};
+
+use super::boxes::Boxes;
 use super::{Contour, Point, double_area, edges, encloses};
 
 /// What lies in what.
@@ -12,6 +15,8 @@ pub struct Nest {
     pub parents: Vec<Option<usize>>,
     /// For each contour whether it runs around solid.
     pub is_outer: Vec<bool>,
+    /// The contours by their parents, then by their numbers.
+    children: Vec<(Option<usize>, usize)>,
 }
 
 /// A contour with what is asked of it often.
@@ -47,46 +52,33 @@ impl Nest {
             Known { contour, area: double_area(contour), low, high }
         };
         let known: Vec<Known<'_>> = contours.iter().map(known).collect();
+        let boxes = Boxes::new(known.iter().map(|one| (one.low, one.high)).collect());
         let parent = |one: &Known<'_>| {
-            let around = known.iter().enumerate().filter(|(_, other)| {
+            let around = boxes.around(one.low).filter(|&k| {
+                let other = &known[k];
                 (other.area > 0) != (one.area > 0)
                     && other.area.abs() > one.area.abs()
                     && other.holds(one)
             });
-            around.min_by_key(|(k, other)| (other.area.abs(), *k)).map(|(k, _)| k)
+            around.min_by_key(|&k| (known[k].area.abs(), k))
         };
-        Self {
-            parents: known.iter().map(parent).collect(),
-            is_outer: known.iter().map(|one| one.area > 0).collect(),
-        }
+        let parents: Vec<Option<usize>> = known.iter().map(parent).collect();
+        let mut children: Vec<_> = parents.iter().copied().zip(0..).collect();
+        children.sort_unstable();
+        Self { parents, is_outer: known.iter().map(|one| one.area > 0).collect(), children }
     }
 
     /// The contours that lie directly in contour `k`, or in none.
     pub fn within(&self, k: Option<usize>) -> impl Iterator<Item = usize> {
-        (0..self.parents.len()).filter(move |&child| self.parents[child] == k)
+        let first = self.children.partition_point(|(parent, _)| *parent < k);
+        let own = self.children[first..].iter().take_while(move |(parent, _)| *parent == k);
+        own.map(|(_, child)| *child)
     }
 
     /// The outer contours.
     pub fn outer(&self) -> impl Iterator<Item = usize> {
         (0..self.is_outer.len()).filter(|&k| self.is_outer[k])
     }
-}
-
-/// Lowest and highest x and y of some points; `None` without any.
-#[must_use]
-pub fn extent<'a>(points: impl IntoIterator<Item = &'a Point>) -> Option<(Point, Point)> {
-    points.into_iter().fold(None, |extent, p| {
-        let (low, high) = extent.unwrap_or((*p, *p));
-        let low = Point { x: low.x.min(p.x), y: low.y.min(p.y) };
-        Some((low, Point { x: high.x.max(p.x), y: high.y.max(p.y) }))
-    })
-}
-
-/// Whether two boxes, each of lowest and highest x and y, have a place in common.
-#[must_use]
-pub fn meet(one: (Point, Point), other: (Point, Point)) -> bool {
-    let apart = |a: (Point, Point), b: (Point, Point)| a.1.x < b.0.x || a.1.y < b.0.y;
-    !apart(one, other) && !apart(other, one)
 }
 
 /// A contour that runs the other way: a hole as solid.

@@ -36,6 +36,10 @@ const MITER_LIMIT: f64 = 2.0;
 /// that nothing visible is lost; larger values move walls.
 const CLEAN: f64 = 5.0;
 
+/// More contours that cross are united in parts. A smaller value would change where assemblies of some
+/// bodies cross, by rounding; a larger one takes longer.
+const MANY: usize = 64;
+
 /// Contours with less area than this are dropped (10⁻⁵ mm², a square of 3 µm): they come from rounding.
 /// No bead fits into far larger ones, so that only shapes too small to print are lost.
 const LEAST_AREA: i128 = 1_000;
@@ -44,9 +48,29 @@ const LEAST_AREA: i128 = 1_000;
 /// overlap; outer ones run counter-clockwise, holes clockwise.
 #[must_use]
 pub fn union(contours: &[Contour]) -> Vec<Contour> {
-    disjoint(contours, |winding| winding != 0, 0.0).unwrap_or_else(|| {
-        from_library(&union_subjects_64(&to_library(contours), FillRule::NonZero))
-    })
+    disjoint(contours, |winding| winding != 0, 0.0).unwrap_or_else(|| by_parts(contours))
+}
+
+/// The [`union`] by the library.
+fn united(contours: &[Contour]) -> Vec<Contour> {
+    from_library(&union_subjects_64(&to_library(contours), FillRule::NonZero))
+}
+
+/// The [`union`] of contours that cross. Of many that each run around solid, some are united at a
+/// time, then the results two by two: where all overlap each other, all together have a number of
+/// crossings with the square of theirs, and what is left of some has few corners.
+fn by_parts(contours: &[Contour]) -> Vec<Contour> {
+    let is_solid = |contour: &Contour| {
+        windings(std::slice::from_ref(contour)).is_some_and(|winding| winding == [1])
+    };
+    if contours.len() <= MANY || !contours.iter().all(is_solid) {
+        return united(contours);
+    }
+    let mut parts: Vec<Vec<Contour>> = contours.chunks(MANY / 4).map(united).collect();
+    while parts.len() > 1 {
+        parts = parts.chunks(2).map(|two| united(&two.concat())).collect();
+    }
+    parts.pop().unwrap_or_default()
 }
 
 /// Shrinks `contours` (as from [`union`]) by `distance` > 0, with mitred corners.
@@ -285,6 +309,25 @@ mod tests {
 
     fn area(contours: &[Contour]) -> f64 {
         contours.iter().map(|c| double_area(c) as f64 / 2.0).sum()
+    }
+
+    #[test]
+    fn many_that_overlap_make_one_in_parts() {
+        // 300 triangles that share a middle, and one apart from them.
+        let triangle = |k: i32| -> Contour {
+            let at = |by: f64| {
+                let (sin, cos) = crate::units::sin_cos(by + f64::from(k) * 0.37);
+                Point { x: (cos * 90_000.0) as i32, y: (sin * 90_000.0) as i32 }
+            };
+            vec![at(0.0), at(120.0), at(240.0)]
+        };
+        let mut all: Vec<Contour> = (0..300).map(triangle).collect();
+        all.push(triangle(0).into_iter().map(|p| Point { x: p.x + 500_000, ..p }).collect());
+        let (parts, whole) = (by_parts(&all), united(&all));
+        let area = |contours: &[Contour]| contours.iter().map(|c| double_area(c)).sum::<i128>();
+        assert_eq!((parts.len(), whole.len()), (2, 2));
+        // Corners are rounded to the grid, a few times.
+        assert!((area(&parts) - area(&whole)).abs() < area(&whole) / 20_000);
     }
 
     proptest! {

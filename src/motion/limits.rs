@@ -9,7 +9,8 @@ pub struct Limits {
     /// Highest speed of each axis, mm/s.
     pub feed: [f64; 4],
     /// Highest acceleration of each axis, mm/s². A move along several axes gets
-    /// what leaves each within its own.
+    /// what leaves each within its own. With [`Junction::SquareCorner`] only z has
+    /// one.
     pub acceleration: [f64; 4],
     /// Acceleration along the path of moves that extrude, mm/s².
     pub print_acceleration: f64,
@@ -71,7 +72,7 @@ pub struct Rates {
     pub(super) limits: Limits,
     /// 1 / feed.
     feed_inverse: [f64; 4],
-    /// 1 / acceleration.
+    /// 1 / acceleration; 0 where an axis has no limit of its own.
     acceleration_inverse: [f64; 4],
     /// 1 / jerk.
     pub(super) jerk_inverse: [f64; 4],
@@ -80,8 +81,9 @@ pub struct Rates {
     /// Klipper's acceleration for short sprints, mm/s². It is a part of the machine's,
     /// so that moves which an axis holds back to less have nothing to lose.
     pub(super) sprint: f64,
-    /// Klipper knows limits of the filament only where it moves alone.
-    filament_alone: bool,
+    /// Klipper has one acceleration for x and y, which commands may raise, a limit of its own for z, and
+    /// limits of the filament only where it moves alone.
+    is_klipper: bool,
 }
 
 impl Limits {
@@ -99,8 +101,12 @@ impl Limits {
                 limits.acceleration_e,
             ],
             print_acceleration: settings.machine.acceleration,
-            travel_acceleration: limits.travel_acceleration,
-            retract_acceleration: limits.retract_acceleration,
+            // Klipper has one for all moves.
+            travel_acceleration: match limits.junction {
+                JunctionRule::SquareCorner => settings.machine.acceleration,
+                _ => limits.travel_acceleration,
+            },
+            retract_acceleration: settings.retract_acceleration(),
             junction: match limits.junction {
                 JunctionRule::Jerk => Junction::Jerk(jerk),
                 JunctionRule::VectorJerk => Junction::VectorJerk(jerk),
@@ -137,6 +143,12 @@ impl Rates {
             }
             _ => f64::INFINITY,
         };
+        let is_klipper = matches!(limits.junction, Junction::SquareCorner { .. });
+        let mut acceleration_inverse = inverse(limits.acceleration);
+        if is_klipper {
+            let [x, y, _, e] = &mut acceleration_inverse;
+            (*x, *y, *e) = (0.0, 0.0, 0.0);
+        }
         Self {
             sprint,
             jerk_inverse: match limits.junction {
@@ -146,9 +158,9 @@ impl Rates {
                 _ => [0.0; 4],
             },
             feed_inverse: inverse(limits.feed),
-            acceleration_inverse: inverse(limits.acceleration),
+            acceleration_inverse,
             deviation,
-            filament_alone: matches!(limits.junction, Junction::SquareCorner { .. }),
+            is_klipper,
             limits,
         }
     }
@@ -157,14 +169,16 @@ impl Rates {
     pub(super) fn of_move(&self, delta: &[f64; 4], distance: f64, feed: f64) -> (f64, f64) {
         let limits = &self.limits;
         let moves_nozzle = moves_nozzle(delta);
-        let wanted = if !moves_nozzle {
+        let wanted = if !moves_nozzle && self.is_klipper {
+            limits.retract_acceleration.at_most(limits.print_acceleration)
+        } else if !moves_nozzle {
             limits.retract_acceleration
         } else if delta[3] == 0.0 {
             limits.travel_acceleration
         } else {
             limits.print_acceleration
         };
-        let axes = if moves_nozzle && self.filament_alone { 3 } else { 4 };
+        let axes = if moves_nozzle && self.is_klipper { 3 } else { 4 };
         let (mut slowest, mut laziest) = (0.0_f64, 0.0_f64);
         for (axis, length) in delta.iter().enumerate().take(axes) {
             let length = length.abs();

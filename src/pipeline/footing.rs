@@ -174,7 +174,7 @@ impl Footing {
     fn link(&mut self, island: &Island, below: &Footprint) -> bool {
         let mut touches = false;
         let mut unclear = Vec::new();
-        for other in below.islands.iter().filter(|other| island.boxes_meet(other)) {
+        for other in below.around(island) {
             if island.has_corner_in(other) || other.has_corner_in(island) {
                 touches = true;
                 self.join(island.number, other.number);

@@ -9,6 +9,7 @@
 //! other where no such place is in both.
 
 use crate::fill::Path;
+use crate::geom::boxes::Boxes;
 use crate::geom::{Contour, Point, double_area, edges, encloses, polygon};
 use crate::profile::{DualMode, Settings};
 use crate::region::Region;
@@ -56,6 +57,17 @@ pub struct Footprint {
     pub islands: Vec<Island>,
     /// How many layers its paths are printed for, at most; 0 without paths.
     pub layers: u32,
+    /// The boxes around the islands.
+    boxes: Boxes,
+    /// The squares in which beads of all islands lie, if beads are what counts.
+    beads: HashSet<[Coord; 2]>,
+}
+
+impl Footprint {
+    /// The islands whose boxes share a place with that of another one, in their order.
+    pub fn around(&self, other: &Island) -> impl Iterator<Item = &Island> {
+        self.boxes.meeting((other.low, other.high)).into_iter().map(|k| &self.islands[k])
+    }
 }
 
 /// A printed island.
@@ -80,23 +92,32 @@ pub fn footprint(region: &Region, paths: &[Path], rules: Rules) -> Footprint {
         Some(contours) => islands(&contours),
         None => islands(&region.layer.contours),
     };
+    let boxes = boxes_of(&islands);
+    let mut beads = HashSet::new();
     for path in paths.iter().filter(|path| path.role.facts().place.is_of_part()) {
         let at = path.start();
-        let holds = |(_, island): &(usize, &Island)| islands.len() == 1 || island.encloses(at);
-        let all = islands.iter().enumerate().filter(holds);
+        let holds = |k: &usize| islands.len() == 1 || islands[*k].encloses(at);
+        // An only island may be missed by rounding.
+        let alone = if islands.len() == 1 { Some(0) } else { None };
+        let all = boxes.around(at).filter(|_| alone.is_none()).chain(alone).filter(holds);
         // Of nested contours the one with the smallest box is the path's own.
-        let own = all.min_by_key(|(k, island)| (island.size(), *k)).map(|(k, _)| k);
-        if let Some(k) = own {
+        if let Some(k) = all.min_by_key(|&k| (islands[k].size(), k)) {
             let steps = path.points.windows(2).map(|p| p[0].at.distance(p[1].at));
             islands[k].length += steps.sum::<f64>();
             if rules.by_beads {
                 islands[k].beads.extend(squares(path));
+                beads.extend(squares(path));
             }
         }
     }
     islands.retain(|island| island.length > 0.0);
+    let boxes = boxes_of(&islands);
     let layers = paths.iter().map(|path| path.layers).max().unwrap_or(0);
-    Footprint { islands, layers }
+    Footprint { islands, layers, boxes, beads }
+}
+
+fn boxes_of(islands: &[Island]) -> Boxes {
+    Boxes::new(islands.iter().map(|island| (island.low, island.high)).collect())
 }
 
 /// The squares along a path.
@@ -128,10 +149,11 @@ fn islands(contours: &[Contour]) -> Vec<Island> {
     let (outer, holes): (Vec<&Contour>, Vec<&Contour>) =
         contours.iter().partition(|c| double_area(c) > 0);
     let mut islands: Vec<Island> = outer.into_iter().map(|c| Island::new(c.clone())).collect();
+    let boxes = boxes_of(&islands);
     for hole in holes {
-        let around = islands.iter_mut().filter(|island| island.encloses(hole[0]));
-        if let Some(own) = around.min_by_key(|island| island.size()) {
-            own.contours.push(hole.clone());
+        let around = boxes.around(hole[0]).filter(|&k| islands[k].encloses(hole[0]));
+        if let Some(own) = around.min_by_key(|&k| (islands[k].size(), k)) {
+            islands[own].contours.push(hole.clone());
         }
     }
     islands
@@ -158,15 +180,6 @@ impl Island {
     #[must_use]
     pub fn outer(&self) -> &[Point] {
         &self.contours[0]
-    }
-
-    /// Whether the boxes around the two share a place.
-    #[must_use]
-    pub fn boxes_meet(&self, other: &Self) -> bool {
-        self.low.x <= other.high.x
-            && other.low.x <= self.high.x
-            && self.low.y <= other.high.y
-            && other.low.y <= self.high.y
     }
 
     /// The distance of the boxes around the two, grid units.
@@ -234,10 +247,9 @@ impl Island {
     pub fn lies_on(&self, below: &Footprint) -> bool {
         let touches = |square: &[Coord; 2]| {
             let [x, y] = *square;
-            let around = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [x + i, y + j]));
-            let mut around =
-                around.filter(|near| below.islands.iter().any(|i| i.beads.contains(near)));
-            around.next().is_some()
+            (-1..=1)
+                .flat_map(|i| (-1..=1).map(move |j| [x + i, y + j]))
+                .any(|near| below.beads.contains(&near))
         };
         self.beads.is_empty() || self.beads.iter().any(touches)
     }

@@ -73,7 +73,7 @@ pub fn gaps(job: &Job, placed: &Placed, slicer: &Slicer<'_>, progress: &Progress
         return Ok(());
     }
     Err(Refusal::Open {
-        models: job.models.iter().map(|model| model.name().to_owned()).collect(),
+        models: job.models.iter().map(|model| model.name().into_owned()).collect(),
         layers,
         layer,
         gap_mm,

@@ -7,6 +7,8 @@
 //! above the plane: they are one body if they have an island in common.
 
 use crate::fill::adhesion::loose::Rise;
+use crate::geom::boxes::Boxes;
+use crate::geom::nest::extent;
 use crate::geom::segment::distance2;
 use crate::geom::sets::Sets;
 use crate::geom::{Contour, Point, edges};
@@ -30,6 +32,7 @@ pub(super) fn rise(
             }
         }
     }
+    let nearest = Nearest::new(contours);
     // Where each piece crosses the plane: once is enough.
     for (a, b) in mesh.triangles.iter().flat_map(sides) {
         let (low, high) = if z(a) < z(b) { (a, b) } else { (b, a) };
@@ -37,7 +40,7 @@ pub(super) fn rise(
             let root = flood.sets.root(low as usize);
             if flood.island[root].is_none() {
                 let place = crossing(mesh, (low, high), plane);
-                flood.island[root] = nearest(contours, place).map(|k| islands[k]);
+                flood.island[root] = nearest.to(place).map(|k| islands[k]);
             }
         }
     }
@@ -140,13 +143,39 @@ fn crossing(mesh: &Mesh, (low, high): (u32, u32), plane: Coord) -> Point {
     Point { x: at(0), y: at(1) }
 }
 
-/// The contour nearest to a place; the place is on one, as far as contours are simplified and moved.
-fn nearest(contours: &[Contour], place: Point) -> Option<usize> {
-    let floats = |p: Point| [f64::from(p.x), f64::from(p.y)];
-    let far = |contour: &Contour| {
-        let all = edges(contour).map(|(a, b)| distance2(floats(place), [floats(a), floats(b)]));
-        all.fold(f64::INFINITY, f64::min)
-    };
-    let far: Vec<f64> = contours.iter().map(far).collect();
-    (0..far.len()).min_by(|&a, &b| far[a].total_cmp(&far[b]))
+/// How far from its contour a place of the surface is looked for first, grid units (1 mm): contours are
+/// simplified and moved by less. It affects speed only.
+const REACH: Coord = 10_000;
+
+/// Contours, to find that nearest to a place.
+struct Nearest<'a> {
+    contours: &'a [Contour],
+    boxes: Boxes,
+}
+
+impl<'a> Nearest<'a> {
+    fn new(contours: &'a [Contour]) -> Self {
+        let grown = |contour: &Contour| {
+            let (low, high) = extent(contour).unwrap_or_default();
+            let by = |p: Point, by: Coord| Point { x: p.x + by, y: p.y + by };
+            (by(low, -REACH), by(high, REACH))
+        };
+        Self { contours, boxes: Boxes::new(contours.iter().map(grown).collect()) }
+    }
+
+    /// The contour nearest to a place, of equal ones the first.
+    fn to(&self, place: Point) -> Option<usize> {
+        let floats = |p: Point| [f64::from(p.x), f64::from(p.y)];
+        let far = |k: usize| {
+            let all = edges(&self.contours[k])
+                .map(|(a, b)| distance2(floats(place), [floats(a), floats(b)]));
+            (all.fold(f64::INFINITY, f64::min), k)
+        };
+        let order = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+        // Whatever is nearer than the reach has its grown box around the place.
+        let near = self.boxes.around(place).map(far).min_by(order);
+        let is_sure = near.is_some_and(|(far2, _)| far2 < f64::from(REACH) * f64::from(REACH));
+        let all = || (0..self.contours.len()).map(far).min_by(order);
+        if is_sure { near } else { all() }.map(|(_, k)| k)
+    }
 }

@@ -14,8 +14,8 @@
 //! Rails are simple: each corner is moved by itself, so that they may cross themselves in narrow
 //! places. Step 4 sorts those out; nothing depends on rails being right.
 
-use super::crossings::{Crossings, meet};
-use crate::geom::{Contour, Point, edges, side};
+use super::crossings::Crossings;
+use crate::geom::{Contour, Point, side};
 use crate::units::{Coord, nearest};
 
 /// Most corners of a way before it is tightened. Ways along more are hardly ever short enough; the
@@ -49,10 +49,13 @@ pub(super) fn detour(
 ) -> Option<Vec<Point>> {
     let straight = from.distance(to);
     let longest = (straight + f64::from(params.most_more)).min(f64::from(params.longest));
-    if straight > longest || !crossings.holds(from) || !crossings.holds(to) {
+    if straight > longest {
         return None;
     }
-    let way = along_rails((from, to), contours, params)?;
+    let way = along_rails((from, to), contours, crossings, params)?;
+    if !crossings.holds(from) || !crossings.holds(to) {
+        return None;
+    }
     let free = |a: Point, b: Point| !crossings.is_near(a, b, params.clearance);
     let mut way = tighten(&way, free)?;
     way.reverse();
@@ -66,20 +69,21 @@ pub(super) fn detour(
 type Crossing = (f64, usize, usize);
 
 /// Where the way crosses the contours, in order.
-fn crossed((from, to): (Point, Point), contours: &[Contour]) -> Vec<Crossing> {
+fn crossed((from, to): (Point, Point), crossings: &Crossings) -> Vec<Crossing> {
     let mut found = Vec::new();
-    for (c, contour) in contours.iter().enumerate() {
-        for (k, (p, q)) in edges(contour).enumerate() {
-            // An end on the way belongs to the edge on one side of it, so that none counts twice.
-            let (left, right) = (side(from, to, p), side(from, to, q));
-            if (left > 0) != (right > 0) && meet(from, to, p, q) {
-                let (a, b) = (side(p, q, from) as f64, side(p, q, to) as f64);
-                let along = if a == b { 0.0 } else { a / (a - b) };
-                found.push((along, c, k));
-            }
+    for edge in crossings.met(from, to) {
+        let (p, q) = edge.ends;
+        // An end on the way belongs to the edge on one side of it, so that none counts twice.
+        let (left, right) = (side(from, to, p), side(from, to, q));
+        if (left > 0) != (right > 0) {
+            let (a, b) = (side(p, q, from) as f64, side(p, q, to) as f64);
+            let along = if a == b { 0.0 } else { a / (a - b) };
+            found.push((along, edge.of.0 as usize, edge.of.1 as usize));
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    // An edge may lie in several bands.
+    found.dedup();
     found
 }
 
@@ -87,9 +91,10 @@ fn crossed((from, to): (Point, Point), contours: &[Contour]) -> Vec<Crossing> {
 fn along_rails(
     (from, to): (Point, Point),
     contours: &[Contour],
+    crossings: &Crossings,
     params: &DetourParams,
 ) -> Option<Vec<Point>> {
-    let crossed = crossed((from, to), contours);
+    let crossed = crossed((from, to), crossings);
     let mut way = vec![from];
     let mut next = 0;
     while let Some(&(_, c, leaves)) = crossed.get(next) {

@@ -13,6 +13,8 @@
 
 mod crossings;
 mod detour;
+mod marks;
+mod next;
 pub mod order;
 mod params;
 mod seam;

@@ -16,10 +16,13 @@
 //!
 //! Of equally near paths the first in the list wins, so that the order is always the same.
 
+use super::next::Next;
 use super::seam::{self, Seams};
 use super::{PlanParams, tour};
 use crate::fill::{Path, Place, Role, Shape};
-use crate::geom::{Contour, Point, double_area, edges, encloses};
+use crate::geom::boxes::Around;
+use crate::geom::nest::extent;
+use crate::geom::{Contour, Point, double_area};
 use crate::profile::Seam;
 
 /// The paths of one layer, divided among islands but not sorted.
@@ -45,12 +48,12 @@ struct Island {
 }
 
 impl Island {
-    /// The squared distance from `at` to the nearest vertex of its walls. Without walls: to the
-    /// nearest end of its paths.
-    fn distance2(&self, at: Point) -> i64 {
-        let walls = self.walls.iter().flat_map(|w| &w.points).map(|p| p.at.distance2(at)).min();
-        let ends = || self.inside.iter().flat_map(|c| [c.start(), c.end()]);
-        walls.or_else(|| ends().map(|p| p.distance2(at)).min()).unwrap_or(i64::MAX)
+    /// The places that say how near it is: the vertices of its walls, or without any the ends of
+    /// its paths.
+    fn places(&self) -> impl Iterator<Item = Point> {
+        let inside = if self.walls.is_empty() { self.inside.as_slice() } else { &[] };
+        let walls = self.walls.iter().flat_map(|wall| &wall.points).map(|p| p.at);
+        walls.chain(inside.iter().flat_map(|path| [path.start(), path.end()]))
     }
 }
 
@@ -60,8 +63,9 @@ pub fn order(paths: Unordered, mut at: Point, seams: &mut Seams, params: &PlanPa
     let Unordered { mut islands, first, helpers, last } = paths;
     let mut out = Vec::new();
     first.into_iter().for_each(|path| out.push(entered(path, &mut at)));
-    while let Some(k) = nearest(islands.iter().map(|i| i.distance2(at))) {
-        let Island { mut walls, inside } = islands.remove(k);
+    let mut next = Next::new(islands.iter().map(Island::places));
+    while let Some((k, _)) = next.take(at) {
+        let Island { mut walls, inside } = std::mem::take(&mut islands[k]);
         seams.place(&mut walls, params.seam);
         order_walls(walls, &mut at, params, &mut out);
         order_by_role(inside, Place::Inside, &mut at, &mut out);
@@ -106,8 +110,10 @@ impl Unordered {
 
 /// Divides paths among the outer contours of a layer.
 fn islands(paths: Vec<Path>, contours: &[Contour]) -> Vec<Island> {
-    let outer: Vec<Outer<'_>> =
-        contours.iter().filter(|c| double_area(c) > 0).map(Outer::new).collect();
+    let outer: Vec<&Contour> = contours.iter().filter(|c| double_area(c) > 0).collect();
+    let around = Around::new(outer.iter().copied().enumerate());
+    let size = |k: usize| extent(outer[k]).map_or(0, |(low, high)| low.distance2(high));
+    let sizes: Vec<i64> = (0..outer.len()).map(size).collect();
     // One more than contours: the last takes paths that rounding left outside all of them.
     let mut islands: Vec<Island> = (0..=outer.len()).map(|_| Island::default()).collect();
     // Of nested contours (an island in a hole) the one with the smallest box is the path's own.
@@ -115,8 +121,7 @@ fn islands(paths: Vec<Path>, contours: &[Contour]) -> Vec<Island> {
         if outer.len() == 1 {
             return 0;
         }
-        let holds = outer.iter().enumerate().filter(|(_, o)| o.contains(p));
-        holds.min_by_key(|(k, o)| (o.extent(), *k)).map_or(outer.len(), |(k, _)| k)
+        around.of(p).min_by_key(|&k| (sizes[k], k)).unwrap_or(outer.len())
     };
     for path in paths {
         let island = &mut islands[island_of(path.start())];
@@ -127,84 +132,57 @@ fn islands(paths: Vec<Path>, contours: &[Contour]) -> Vec<Island> {
     islands
 }
 
-/// An outer contour with its bounding box.
-struct Outer<'a> {
-    contour: &'a Contour,
-    low: Point,
-    high: Point,
-}
-
-impl<'a> Outer<'a> {
-    fn new(contour: &'a Contour) -> Self {
-        let xs = || contour.iter().map(|p| p.x);
-        let ys = || contour.iter().map(|p| p.y);
-        let low = Point { x: xs().min().unwrap_or(0), y: ys().min().unwrap_or(0) };
-        let high = Point { x: xs().max().unwrap_or(0), y: ys().max().unwrap_or(0) };
-        Self { contour, low, high }
-    }
-
-    fn extent(&self) -> i64 {
-        self.low.distance2(self.high)
-    }
-
-    /// Whether `p` is inside (a point on the contour may count either way).
-    fn contains(&self, p: Point) -> bool {
-        let (low, high) = (self.low, self.high);
-        if p.x < low.x || p.x > high.x || p.y < low.y || p.y > high.y {
-            return false;
-        }
-        encloses(edges(self.contour), p)
-    }
-}
-
-/// The index of the smallest distance; of equal ones the first.
-fn nearest(distances: impl Iterator<Item = i64>) -> Option<usize> {
-    distances.enumerate().min_by_key(|&(k, d)| (d, k)).map(|(k, _)| k)
-}
-
 /// Sorts walls by depth as the settings ask, and nearest first within a depth.
-fn order_walls(mut walls: Vec<Path>, at: &mut Point, params: &PlanParams, out: &mut Vec<Path>) {
+fn order_walls(walls: Vec<Path>, at: &mut Point, params: &PlanParams, out: &mut Vec<Path>) {
     let depth = |wall: &Path| match wall.shape {
         Shape::Loop { depth } => depth,
         Shape::Open | Shape::InTurn { .. } => 0,
     };
-    while let Some(next) = {
-        let depths = walls.iter().map(depth);
-        if params.outer_first { depths.min() } else { depths.max() }
-    } {
-        let best = walls
-            .iter()
-            .enumerate()
-            .filter(|(_, wall)| depth(wall) == next)
-            .map(|(k, wall)| {
-                let from = seam(wall, *at, params);
-                (wall.points[from].at.distance2(*at), k, from)
-            })
-            .min();
-        let Some((_, k, from)) = best else { break };
-        let mut wall = walls.remove(k);
-        match wall.shape {
-            Shape::Loop { depth } => {
-                wall.begin_at(from);
-                // The next wall's seam is sought from here, so that a moved seam moves no other.
-                *at = wall.end();
-                if depth % 2 == 1 && params.stagger > 0 {
-                    seam::advance(&mut wall, params.stagger);
-                }
-                if params.seam_gap > 0 {
-                    seam::cut(&mut wall, params.seam_gap);
-                }
-            }
-            Shape::Open | Shape::InTurn { .. } => {
-                if from > 0 {
-                    wall.reverse();
-                }
-                *at = wall.end();
-            }
+    let mut walls: Vec<Option<Path>> = walls.into_iter().map(Some).collect();
+    let mut sorted: Vec<(u32, usize)> =
+        walls.iter().flatten().map(depth).enumerate().map(|(k, depth)| (depth, k)).collect();
+    sorted.sort_unstable_by_key(|&(depth, k)| {
+        (if params.outer_first { i64::from(depth) } else { -i64::from(depth) }, k)
+    });
+    for group in sorted.chunk_by(|a, b| a.0 == b.0) {
+        let of = |&(_, k): &(u32, usize)| walls[k].as_ref();
+        let entries: Vec<Vec<usize>> =
+            group.iter().map(|one| of(one).map_or_else(Vec::new, |w| entries(w, params))).collect();
+        let places = group.iter().zip(&entries).map(|(one, entries)| {
+            let at = |wall: &Path| entries.iter().map(|&k| wall.points[k].at).collect();
+            of(one).map_or_else(Vec::new, at)
+        });
+        let mut next = Next::new(places);
+        while let Some((one, entry)) = next.take(*at) {
+            let Some(wall) = walls[group[one].1].take() else { continue };
+            out.push(begun_wall(wall, entries[one][entry], at, params));
         }
-        out.push(wall);
     }
     *at = out.last().map_or(*at, Path::end);
+}
+
+/// `wall`, beginning at its point `from`, with its seam as the settings ask.
+fn begun_wall(mut wall: Path, from: usize, at: &mut Point, params: &PlanParams) -> Path {
+    match wall.shape {
+        Shape::Loop { depth } => {
+            wall.begin_at(from);
+            // The next wall's seam is sought from here, so that a moved seam moves no other.
+            *at = wall.end();
+            if depth % 2 == 1 && params.stagger > 0 {
+                seam::advance(&mut wall, params.stagger);
+            }
+            if params.seam_gap > 0 {
+                seam::cut(&mut wall, params.seam_gap);
+            }
+        }
+        Shape::Open | Shape::InTurn { .. } => {
+            if from > 0 {
+                wall.reverse();
+            }
+            *at = wall.end();
+        }
+    }
+    wall
 }
 
 /// `path`, beginning at its point nearest to the nozzle.
@@ -226,20 +204,18 @@ fn begun(mut path: Path, from: usize, at: &mut Point) -> Path {
     path
 }
 
-/// The index of the point where `wall` begins: its seam, or the nearer end of an open wall.
-fn seam(wall: &Path, at: Point, params: &PlanParams) -> usize {
-    let near = |k: usize| (wall.points[k].at.distance2(at), k);
+/// The points where `wall` may begin: its seam, or the ends of an open wall.
+fn entries(wall: &Path, params: &PlanParams) -> Vec<usize> {
     let last = wall.points.len() - 1;
     if wall.shape == Shape::Open {
-        return near(0).min(near(last)).1;
+        return vec![0, last];
     }
-    let rear = |k: usize| (-i64::from(wall.points[k].at.y), k);
-    let first = match params.seam {
-        Seam::Nearest => (0..last).map(near).min(),
-        Seam::Rear => (0..last).map(rear).min(),
-        Seam::Aligned | Seam::Random => None,
-    };
-    first.map(|(_, k)| k).unwrap_or_default()
+    let rear = |&k: &usize| (-i64::from(wall.points[k].at.y), k);
+    match params.seam {
+        Seam::Nearest => (0..last.max(1)).collect(),
+        Seam::Rear => vec![(0..last).min_by_key(rear).unwrap_or_default()],
+        Seam::Aligned | Seam::Random => vec![0],
+    }
 }
 
 /// Sorts open paths nearest first, entering each at its nearer end.
@@ -271,14 +247,12 @@ fn pick(paths: Vec<Path>, order: impl FnOnce(&[Ends]) -> Vec<Pick>) -> Vec<Path>
 
 /// The order that goes to the nearest end each time, from `at`.
 fn nearest_first(ends: &[Ends], mut at: Point) -> Vec<Pick> {
-    let mut left: Vec<(usize, Ends)> = ends.iter().copied().enumerate().collect();
-    let mut picks = Vec::with_capacity(left.len());
-    let far = |at: Point, (a, b): Ends| a.distance2(at).min(b.distance2(at));
-    while let Some(k) = nearest(left.iter().map(|(_, e)| far(at, *e))) {
-        let (index, (start, end)) = left.swap_remove(k);
-        let turned = end.distance2(at) < start.distance2(at);
-        at = if turned { start } else { end };
-        picks.push((index, turned));
+    let mut next = Next::new(ends.iter().map(|&(start, end)| [start, end]));
+    let mut picks = Vec::with_capacity(ends.len());
+    while let Some((k, end)) = next.swap_take(at) {
+        let turned = end == 1;
+        at = if turned { ends[k].0 } else { ends[k].1 };
+        picks.push((k, turned));
     }
     picks
 }

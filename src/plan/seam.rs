@@ -16,6 +16,7 @@
 //!    begins at the place nearest to a mark, or at the rear. Corners that hang over nothing do not count.
 //! 3. Inner walls begin at the place nearest to a mark of their island.
 
+use super::marks::Marks;
 use crate::fill::{Path, PathPoint, Shape};
 use crate::geom::nest::extent;
 use crate::geom::segment::{along, nearest_part, way};
@@ -60,7 +61,8 @@ struct Mark {
 pub struct Seams {
     /// Layers that are placed.
     layers: u64,
-    below: Vec<Mark>,
+    /// Marks of the layer below: of outer contours, and of holes.
+    below: [Marks; 2],
     marks: Vec<Mark>,
 }
 
@@ -77,7 +79,9 @@ impl Seams {
     /// The next walls are those of the layer above.
     pub(super) fn next_layer(&mut self) {
         self.layers += 1;
-        self.below = std::mem::take(&mut self.marks);
+        let marks = std::mem::take(&mut self.marks);
+        let of = |hole: bool| marks.iter().filter(move |mark| mark.hole == hole);
+        self.below = [false, true].map(|hole| Marks::new(of(hole).map(|mark| mark.at).collect()));
     }
 
     /// Lets the closed `walls` of an island begin at their seams, if `rule` needs no nozzle for that.
@@ -96,9 +100,9 @@ impl Seams {
             }
             self.marks.push(Mark { at: wall.start(), hole });
         }
-        let marks = &self.marks[first..];
+        let marks = Marks::new(self.marks[first..].iter().map(|mark| mark.at).collect());
         for wall in walls.iter_mut().filter(|wall| wall.shape != Shape::Open && !is_outer(wall)) {
-            if let Some(place) = nearest_of(wall, marks.iter().map(|mark| mark.at)) {
+            if let Some(place) = nearest_of(wall, &marks) {
                 begin_at(wall, place);
             }
         }
@@ -115,11 +119,10 @@ impl Seams {
 
     /// Lets an outer wall begin in the line of seams below it, or where a line begins best.
     fn align(&self, wall: &mut Path, hole: bool) {
-        let marks = self.below.iter().filter(|mark| mark.hole == hole);
-        let below: Vec<Point> = marks.map(|mark| mark.at).collect();
-        let place = followed(wall, &below)
-            .or_else(|| corner(wall, &below))
-            .or_else(|| nearest_of(wall, below.iter().copied()))
+        let below = &self.below[usize::from(hole)];
+        let place = followed(wall, below)
+            .or_else(|| corner(wall, below))
+            .or_else(|| nearest_of(wall, below))
             .unwrap_or_else(|| of_point(wall, rearmost(wall)));
         begin_at(wall, place);
     }
@@ -149,15 +152,11 @@ pub(super) fn cut(wall: &mut Path, gap: Coord) {
 }
 
 /// Where a wall goes on with the line of one of the marks `below`.
-fn followed(wall: &Path, below: &[Point]) -> Option<Place> {
-    let (low, high) = extent(wall.points.iter().map(|point| &point.at))?;
-    let reach = FOLLOWED as Coord;
-    let is_near = |mark: &Point| {
-        let beside = mark.x < low.x - reach || mark.x > high.x + reach;
-        !beside && mark.y >= low.y - reach && mark.y <= high.y + reach
-    };
-    let near = below.iter().copied().filter(is_near);
+fn followed(wall: &Path, below: &Marks) -> Option<Place> {
+    let area = extent(wall.points.iter().map(|point| &point.at))?;
+    let near = below.around(area, FOLLOWED as Coord);
     let (mark, place) = near
+        .into_iter()
         .filter_map(|mark| Some((mark, nearest_place(wall, mark)?)))
         .min_by(|a, b| a.1.far2.total_cmp(&b.1.far2))?;
     if place.far2 > FOLLOWED * FOLLOWED {
@@ -165,16 +164,21 @@ fn followed(wall: &Path, below: &[Point]) -> Option<Place> {
     }
     let reached = |&k: &usize| (wall.points[k].at.distance2(mark) as f64) < SNAP * SNAP;
     let close = (0..wall.points.len() - 1).filter(reached);
-    Some(best(wall, close, &[mark]).unwrap_or(place))
+    Some(best(wall, close, |at| Some(mark.distance2(at))).unwrap_or(place))
 }
 
 /// The best corner of a wall to begin a line at; `below` are the marks below.
-fn corner(wall: &Path, below: &[Point]) -> Option<Place> {
-    best(wall, 0..wall.points.len() - 1, below)
+fn corner(wall: &Path, below: &Marks) -> Option<Place> {
+    best(wall, 0..wall.points.len() - 1, |at| below.far2(at))
 }
 
-/// The best of the points `ks` of a wall that are corners: concave, sharp, near to a mark, at the rear.
-fn best(wall: &Path, ks: impl Iterator<Item = usize>, marks: &[Point]) -> Option<Place> {
+/// The best of the points `ks` of a wall that are corners: concave, sharp, near to a mark, at the
+/// rear. `far2` is the squared distance to the nearest mark.
+fn best(
+    wall: &Path,
+    ks: impl Iterator<Item = usize>,
+    far2: impl Fn(Point) -> Option<i64>,
+) -> Option<Place> {
     let hangs = |k: usize| wall.points[k].hang > 0 || wall.points[k + 1].hang > 0;
     let turned = |k: usize| Some((k, turn(wall, k)?)).filter(|(_, turn)| turn.abs() >= CORNER);
     let mut corners: Vec<(usize, f64)> = ks.filter(|&k| !hangs(k)).filter_map(turned).collect();
@@ -185,7 +189,7 @@ fn best(wall: &Path, ks: impl Iterator<Item = usize>, marks: &[Point]) -> Option
     let alike = corners.into_iter().filter(|(_, turn)| turn.abs() > sharpest - ALIKE);
     let key = |k: usize| {
         let at = wall.points[k].at;
-        (marks.iter().map(|mark| mark.distance2(at)).min(), -i64::from(at.y), at.x)
+        (far2(at), -i64::from(at.y), at.x)
     };
     alike.map(|(k, _)| k).min_by_key(|&k| key(k)).map(|k| of_point(wall, k))
 }
@@ -217,9 +221,12 @@ fn reached(mut points: impl Iterator<Item = [f64; 2]>) -> Option<[f64; 2]> {
 }
 
 /// The place of a closed wall that is nearest to one of the `marks`.
-fn nearest_of(wall: &Path, marks: impl Iterator<Item = Point>) -> Option<Place> {
-    let places = marks.filter_map(|mark| nearest_place(wall, mark));
-    places.min_by(|a, b| a.far2.total_cmp(&b.far2))
+fn nearest_of(wall: &Path, marks: &Marks) -> Option<Place> {
+    let area = extent(wall.points.iter().map(|point| &point.at))?;
+    marks.nearest(area, FOLLOWED as Coord, |some| {
+        let places = some.iter().filter_map(|mark| nearest_place(wall, *mark));
+        places.min_by(|a, b| a.far2.total_cmp(&b.far2)).map(|place| (place.far2, place))
+    })
 }
 
 /// The place of a closed wall that is nearest to `mark`.

@@ -45,6 +45,13 @@ pub struct Strand {
     pub whose: Whose,
 }
 
+impl Strand {
+    /// Whether it is a travel that goes up or down alone.
+    fn is_upright(&self) -> bool {
+        self.width == 0.0 && self.from == self.to
+    }
+}
+
 /// Which of two files have a strand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Whose {
@@ -84,13 +91,16 @@ pub fn drawing(
     if strands.iter().any(|strand| strand.width == 0.0) {
         keys.push((INK, "dashed: travels".to_owned()));
     }
+    if strands.iter().any(Strand::is_upright) {
+        keys.push((INK, "dots: up and down".to_owned()));
+    }
     let mut drawing = Page { size, frame, axes: ["x", "y"], heading, keys }.lay_out();
     let pixel = 1.0 / drawing.view.scale;
     for strand in strands {
         let Strand { from, to, width, whose } = *strand;
         let colour = whose.colour();
         // Up and down is a dot, and a dot has some length.
-        let is_upright = width == 0.0 && from == to;
+        let is_upright = strand.is_upright();
         let to = if is_upright { [to[0] + DOT_LENGTH * pixel, to[1]] } else { to };
         let (width, kind) = match (width > 0.0, whose) {
             (false, _) if is_upright => (DOT * pixel, Kind::Bead),

@@ -4,6 +4,7 @@ use super::facts::Facts;
 use super::packed;
 use crate::estimate::Estimate;
 use crate::reader::print::Print;
+use crate::text;
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
 use flate2::Compression;
@@ -67,7 +68,8 @@ fn next_place(text: &str) -> Option<(&str, &str, &str)> {
 
 /// As JSON that may stand in a script element: without `<` nothing can end it.
 fn write_facts(facts: &Facts, out: &mut dyn Write) -> io::Result<()> {
-    let json = serde_json::to_string(facts)?.replace('<', "\\u003c");
+    let json = serde_json::to_string(facts)?;
+    let json = text::harmless(&json).replace('<', "\\u003c");
     out.write_all(json.as_bytes())
 }
 
@@ -81,5 +83,9 @@ fn write_moves(print: &Print, out: &mut dyn Write) -> io::Result<()> {
 
 /// As text of an element or of an attribute in double quotes.
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    text::line(text)
+        .replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
 }

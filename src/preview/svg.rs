@@ -2,6 +2,7 @@
 
 use super::colours::{Colour, INK, PAPER};
 use super::drawing::{Anchor, Drawing, Kind, Mark, Stroke};
+use crate::text;
 use std::fmt::Write as _;
 
 /// Height of letters over height of lines of text.
@@ -169,7 +170,7 @@ fn short(number: f64, decimals: usize) -> String {
 
 /// As text of XML.
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    text::line(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

@@ -50,6 +50,7 @@ pub(super) fn together(settings: &Settings, origins: &BTreeMap<String, ValueOrig
     reach(settings, &blame)?;
     arcs(settings, &blame)?;
     brim(settings, &blame)?;
+    heat(settings, &blame)?;
     blocks(settings, &blame)
 }
 
@@ -137,6 +138,31 @@ fn reach(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
                 let conflict = Conflict::ReachInsideVolume { key, reach, volume };
                 return Err(blame.error(&[key], conflict));
             }
+        }
+    }
+    Ok(())
+}
+
+/// Temperatures that the printer bears and its firmware prints at. An Ultimaker 2 is told none.
+fn heat(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
+    let (machine, filament) = (&settings.machine, &settings.filament);
+    if machine.dialect == DialectName::Ultigcode {
+        return Ok(());
+    }
+    let nozzle = [machine.min_temperature, machine.max_temperature];
+    let nozzle = (nozzle, "machine.min_temperature", "machine.max_temperature");
+    let bed = ([0.0, machine.max_bed_temperature], "0", "machine.max_bed_temperature");
+    for (key, celsius, ([least, most], low, high)) in [
+        ("filament.temperature", Some(filament.temperature), nozzle),
+        ("filament.first_layer_temperature", filament.first_layer_temperature, nozzle),
+        ("filament.bed_temperature", Some(filament.bed_temperature), bed),
+        ("filament.first_layer_bed_temperature", filament.first_layer_bed_temperature, bed),
+    ] {
+        let Some(celsius) = celsius else { continue };
+        if !(least..=most).contains(&celsius) {
+            let limit = if celsius < least { low } else { high };
+            let conflict = Conflict::NotBorne { key, celsius, limit, least, most };
+            return Err(blame.error(&[key, limit], conflict));
         }
     }
     Ok(())

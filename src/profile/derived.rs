@@ -180,6 +180,20 @@ impl Settings {
         PI * self.filament.diameter * self.filament.diameter / 4.0
     }
 
+    /// Acceleration of the filament when it moves alone, mm/s². Where the key is 0, what Klipper takes
+    /// without `max_extrude_only_accel`: the nozzle's acceleration in its configuration, times the
+    /// largest line that it allows (`max_extrude_cross_section`, 4 nozzle²), over the filament's area
+    /// (klippy/kinematics/extruder.py). Commands in a file do not change it.
+    #[must_use]
+    pub fn retract_acceleration(&self) -> f64 {
+        let (limits, nozzle) = (&self.limits, self.machine.nozzle_diameter);
+        if limits.retract_acceleration > 0.0 {
+            return limits.retract_acceleration;
+        }
+        let configured = limits.acceleration_x.min(limits.acceleration_y);
+        configured * 4.0 * nozzle * nozzle / self.filament_area()
+    }
+
     /// The tallest line that dual injection may print, mm.
     #[must_use]
     pub fn max_bead_height(&self) -> f64 {

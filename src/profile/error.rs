@@ -14,13 +14,14 @@ use super::kind::ProfileKind;
 use super::origin::ValueOrigin;
 use super::shipped::DEFAULT;
 use super::{old, suggest};
+use crate::text;
 use std::io;
 
 /// A profile or a setting that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum ProfileError {
     /// No profile has this name.
-    #[error("unknown profile `{}`{}", name.escape_debug(), known_profiles(name, known))]
+    #[error("unknown profile `{}`{}", text::line(name), known_profiles(name, known))]
     UnknownProfile {
         /// The name asked for.
         name: String,
@@ -166,7 +167,7 @@ pub enum ValueError {
         key: &'static Key,
     },
     /// A word that the key does not know.
-    #[error("= `{}` is unknown{}; it must be {}", word.escape_debug(), near(word, words), key.allowed())]
+    #[error("= `{}` is unknown{}; it must be {}", text::line(word), near(word, words), key.allowed())]
     UnknownWord {
         /// The word.
         word: String,
@@ -307,6 +308,23 @@ pub enum Conflict {
         /// Height of a thick line, at most.
         most: f64,
     },
+    /// A temperature that the printer does not bear, or does not print at.
+    #[error(
+        "{key} = {celsius} °C, but this printer takes {least} to {most} °C; set another, or {limit} if \
+         it takes more or less"
+    )]
+    NotBorne {
+        /// The key of the temperature.
+        key: &'static str,
+        /// The temperature.
+        celsius: f64,
+        /// The key of the limit that it passes.
+        limit: &'static str,
+        /// The coldest that the printer takes, °C.
+        least: f64,
+        /// The hottest that it takes, °C.
+        most: f64,
+    },
     /// A bed temperature that nothing asks the printer for.
     #[error(
         "filament.bed_temperature = {celsius} °C would have no effect: machine.start_gcode does \
@@ -397,7 +415,7 @@ fn known_profiles(name: &str, known: &[String]) -> String {
     format!(
         "{hint} Known are {}; a file ends in .toml or is given as ./{}",
         known.join(", "),
-        name.escape_debug()
+        text::line(name)
     )
 }
 
@@ -410,7 +428,7 @@ fn unknown_key(key: &str) -> String {
     if let Some(name) = old::renamed(key) {
         return format!("`{key}` is called `{name}` now");
     }
-    let shown = key.escape_debug();
+    let shown = text::line(key);
     match foreign::meaning(key) {
         Some(Foreign::Key(ours)) => return format!("unknown key `{shown}`; here it is `{ours}`"),
         Some(Foreign::NotSupported(what)) => {

@@ -186,6 +186,8 @@ const KEYS: &[(&str, Names)] = &[
     ("machine.acceleration", [&["default_acceleration", "machine_max_acceleration_extruding"], &[], &["acceleration_print", "machine_acceleration"]]),
     ("machine.relative_e", [&["use_relative_e_distances"], &[], &["relative_extrusion"]]),
     ("machine.arc_segment", [&[], &[], &["arcwelder_mm_per_arc_segment"]]),
+    ("filament.min_temperature", [&[], &["nozzle_temperature_range_low"], &[]]),
+    ("filament.max_temperature", [&[], &["nozzle_temperature_range_high"], &[]]),
     ("machine.max_volumetric_speed", [&["max_volumetric_speed", "filament_max_volumetric_speed"], &[], &[]]),
     ("machine.thumbnails", [&["thumbnails"], &["thumbnail_size"], &[]]),
     ("machine.start_gcode", [&["start_gcode", "start_filament_gcode"], &[], &["machine_start_gcode"]]),

@@ -17,7 +17,9 @@ use super::kind::ProfileKind;
 use super::origin::{Source, ValueOrigin};
 use super::parse::{self, Entry};
 use super::shelf::{Found, Shelf};
-use std::path::Path;
+use crate::text;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 use toml::Value;
 
 /// A profile that a job asks for.
@@ -25,6 +27,8 @@ use toml::Value;
 pub struct Wanted {
     /// Its name or file.
     pub name: String,
+    /// The file itself, where its name is no UTF-8.
+    pub file: Option<PathBuf>,
     /// What it has to be, if that is asked for.
     pub kind: Option<ProfileKind>,
 }
@@ -32,12 +36,21 @@ pub struct Wanted {
 impl Wanted {
     /// Any profile of this name.
     pub fn any(name: impl Into<String>) -> Self {
-        Self { name: name.into(), kind: None }
+        Self { name: name.into(), file: None, kind: None }
     }
 
     /// The profile of this name, which is of this kind.
     pub fn of(kind: ProfileKind, name: impl Into<String>) -> Self {
-        Self { name: name.into(), kind: Some(kind) }
+        Self { name: name.into(), file: None, kind: Some(kind) }
+    }
+
+    /// As [`any`](Self::any) or [`of`](Self::of) by a word of the command line. One that is no UTF-8
+    /// is the name of a file, whatever it looks like.
+    #[must_use]
+    pub fn word(kind: Option<ProfileKind>, word: &OsStr) -> Self {
+        let file = word.to_str().is_none().then(|| PathBuf::from(word));
+        let name = word.to_str().map_or_else(|| text::name(word), str::to_owned);
+        Self { name, file, kind }
     }
 }
 
@@ -92,7 +105,10 @@ pub(super) fn layers(wanted: &[Wanted], shelf: &Shelf) -> Result<(Vec<Layer>, Ve
     let mut asked = Vec::new();
     let mut reading = Reading { shelf, chain: Vec::new(), layers: Vec::new() };
     for one in wanted {
-        let found = shelf.find(&one.name, None, |_| false)?;
+        let found = match &one.file {
+            Some(file) => Found::file(file.clone(), None),
+            None => shelf.find(&one.name, None, |_| false)?,
+        };
         asked.push(found.name.clone());
         reading.add(of_kind(found, one.kind)?)?;
     }

@@ -30,11 +30,11 @@ impl Entry {
 /// TOML syntax, as `FILE:LINE: …`.
 pub(super) fn document(file: &str, text: &str) -> Result<Vec<Entry>> {
     let table = DeTable::parse(text).map_err(|error| {
-        let line = error.span().map_or(1, |span| line_of(text, span.start));
+        let line = error.span().map_or(1, |span| Lines::new(text).of(span.start));
         ProfileError::Syntax { file: file.to_owned(), line, source: Box::new(error) }
     })?;
     let mut entries = Vec::new();
-    flatten(table.get_ref(), "", text, &mut entries);
+    flatten(table.get_ref(), "", &Lines::new(text), &mut entries);
     // The table is sorted by name; the first error to report is the first in the file.
     entries.sort_by(|a, b| a.line.cmp(&b.line).then_with(|| a.key.cmp(&b.key)));
     Ok(entries)
@@ -51,19 +51,19 @@ pub(super) fn number(value: &Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
 }
 
-fn flatten(table: &DeTable<'_>, prefix: &str, text: &str, entries: &mut Vec<Entry>) {
+fn flatten(table: &DeTable<'_>, prefix: &str, lines: &Lines, entries: &mut Vec<Entry>) {
     for (name, value) in table {
         let key = format!("{prefix}{}", name.get_ref());
         if let DeValue::Table(inner) = value.get_ref() {
             // An empty table of an unknown name must not pass unseen.
             if inner.is_empty() {
-                let line = line_of(text, name.span().start);
+                let line = lines.of(name.span().start);
                 entries.push(Entry { key, value: Value::Table(toml::Table::new()), line });
             } else {
-                flatten(inner, &format!("{key}."), text, entries);
+                flatten(inner, &format!("{key}."), lines, entries);
             }
         } else {
-            let line = line_of(text, name.span().start);
+            let line = lines.of(name.span().start);
             entries.push(Entry { key, value: scalar(value.get_ref()), line });
         }
     }
@@ -85,8 +85,18 @@ fn scalar(value: &DeValue<'_>) -> Value {
     }
 }
 
-fn line_of(text: &str, offset: usize) -> usize {
-    text.bytes().take(offset).filter(|byte| *byte == b'\n').count() + 1
+/// Where the lines of a text end.
+struct Lines(Vec<usize>);
+
+impl Lines {
+    fn new(text: &str) -> Self {
+        Self(text.match_indices('\n').map(|(at, _)| at).collect())
+    }
+
+    /// The line of a place in the text, from 1.
+    fn of(&self, offset: usize) -> usize {
+        self.0.partition_point(|end| *end < offset) + 1
+    }
 }
 
 #[cfg(test)]

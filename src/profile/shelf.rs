@@ -7,6 +7,7 @@
 use super::error::{ProfileError, Result};
 use super::kind::ProfileKind;
 use super::{parse, shipped};
+use crate::text;
 use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -44,15 +45,15 @@ pub struct Found {
 
 impl Found {
     /// A file that the user names by its path.
-    fn file(path: PathBuf, kind: Option<ProfileKind>) -> Self {
-        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    pub(super) fn file(path: PathBuf, kind: Option<ProfileKind>) -> Self {
+        let name = text::name(path.file_name().unwrap_or(path.as_os_str()));
         let identity = std::fs::canonicalize(&path).unwrap_or_else(|_| path.clone());
-        Self { name, shown: path.display().to_string(), kind, path: Some(path), identity }
+        Self { name, shown: text::name(&path), kind, path: Some(path), identity }
     }
 
     /// A file on a shelf, which goes by its name without the ending.
     fn shelved(path: PathBuf, kind: ProfileKind) -> Self {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let name = text::name(path.file_stem().unwrap_or_default());
         Self { name, ..Self::file(path, Some(kind)) }
     }
 

@@ -33,6 +33,7 @@ pub fn values(settings: &Settings, print: &PrintFacts) -> Vec<(&'static str, Str
         ("bed_width", number(machine.bed_width)),
         ("bed_depth", number(machine.bed_depth)),
         ("bed_height", number(machine.bed_height)),
+        ("travel_acceleration", number(settings.limits.travel_acceleration)),
         ("acceleration", number(machine.acceleration)),
         ("e_mode", if machine.relative_e { "M83" } else { "M82" }.to_owned()),
         ("nozzle_diameter", number(machine.nozzle_diameter)),

@@ -105,7 +105,7 @@ fn listed(text: &str) -> Vec<Value> {
 
 fn described(value: &Value) -> String {
     match value {
-        Value::String(text) => format!("the text `{}`", text.escape_debug()),
+        Value::String(text) => format!("the text `{}`", crate::text::line(text)),
         Value::Integer(number) => format!("the number {number}"),
         // With its point, so that 2.0 is not told to be no whole number as "2".
         Value::Float(number) => format!("the number {number:?}"),

@@ -18,7 +18,7 @@
 //!
 //! Nothing here grows with the number of moves or lines; what a file may have many of is bounded.
 
-use super::print::{Layer, Step};
+use super::step::{Layer, Step};
 use super::{Event, Heights, Motion, Role, Summary};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -33,6 +33,9 @@ const MOST_BYTES: usize = 1 << 22;
 
 /// Different commands that are kept: firmwares know some hundreds.
 const MOST_COMMANDS: usize = 10_000;
+
+/// Lines that a start block draws to prime the nozzle, at most.
+const MOST_PRIMING: usize = 8;
 
 /// Heights that differ by less are the same, mm.
 const SAME_HEIGHT: f64 = 1e-4;
@@ -159,8 +162,13 @@ pub(super) struct Gatherer {
     drawn: [f64; 2],
     /// Filament for each mm of the lines of each layer, mm.
     flows: Vec<f64>,
+    /// How many lines it has, and how many the first layer has.
+    lines: usize,
+    first_lines: usize,
     /// Height of the layer before, mm.
     below: f64,
+    /// Height of the lowest layer so far, mm.
+    lowest: Option<f64>,
     /// Whether the head has ended.
     past_head: bool,
     /// Bytes of comments that are kept.
@@ -172,7 +180,7 @@ impl Gatherer {
         match event {
             Event::Move(motion) => self.motion(line, motion),
             Event::Layer { marked } => self.begin(*marked),
-            Event::Command { letter, number } => {
+            Event::Command { letter, number, .. } => {
                 let commands = &mut self.facts.commands;
                 if commands.len() < MOST_COMMANDS {
                     commands.entry((*letter, *number)).or_insert(line);
@@ -190,13 +198,11 @@ impl Gatherer {
         facts.has_heights |= motion.height.is_some();
         facts.roles[motion.role as usize] = true;
         facts.move_count += 1;
-        if !(motion.filament > 0.0) {
-            return;
-        }
         let step = Step::of(line, motion);
         if step.is_line() {
             facts.last_line = facts.move_count;
             if self.segment.is_some() {
+                self.lines += 1;
                 self.heights.add([step.from[2], step.to[2]].map(f64::from), step.length());
                 self.drawn[0] += step.length();
                 self.drawn[1] += f64::from(step.filament);
@@ -217,6 +223,7 @@ impl Gatherer {
             (facts.layers, facts.begun) = (Vec::new(), 0);
             (self.heights, self.below) = (Heights::default(), 0.0);
             (self.drawn, self.flows) = ([0.0; 2], Vec::new());
+            (self.lines, self.lowest) = (0, None);
         }
         let facts = &mut self.facts;
         facts.marked |= marked;
@@ -236,13 +243,20 @@ impl Gatherer {
             }
             return;
         };
+        let lowest = self.lowest.unwrap_or(HIGHEST);
+        let lines = std::mem::take(&mut self.lines);
+        if last.is_none() {
+            self.first_lines = lines;
+        }
         let height = match (z - self.below, last) {
             (rise, _) if rise > SAME_HEIGHT => rise,
-            // At the height of the layer before, or the first layer of another part.
+            // The first layer of another part lies on the bed as well.
+            (rise, _) if rise < -SAME_HEIGHT && 0.0 < z && z <= lowest + SAME_HEIGHT => z,
+            // At the height of the layer before.
             (_, Some(last)) => last.height,
             (_, None) => SOME_HEIGHT,
         };
-        self.below = z;
+        (self.below, self.lowest) = (z, Some(lowest.min(z)));
         facts.layers.push(Layer { moves: first..end, z, height });
         self.flows.push(filament / length);
     }
@@ -267,9 +281,21 @@ impl Gatherer {
         }
     }
 
+    /// Whether the first layer of a file without marks is but the few lines with which a start block
+    /// primes the nozzle, higher than the part's first layer.
+    fn has_priming(&self) -> bool {
+        let [first, next, ..] = &self.facts.layers[..] else { return false };
+        let is_higher = next.z < first.z - SAME_HEIGHT;
+        !self.facts.marked && is_higher && self.first_lines <= MOST_PRIMING
+    }
+
     /// The facts, at the file's end. `diameter`, mm, is that of the filament if the file gives none.
     pub(super) fn facts(mut self, summary: Summary, diameter: f64) -> Facts {
         self.end();
+        if self.has_priming() {
+            self.facts.layers.remove(0);
+            self.facts.begun -= 1;
+        }
         let mut facts = self.facts;
         facts.summary = summary;
         let own = DIAMETER_KEYS.iter().find_map(|key| facts.value(key)?.parse().ok());

@@ -5,26 +5,38 @@
 //! rely on it as an independent witness.
 
 mod change;
+mod drive;
 mod error;
 mod facts;
+mod firmware;
 mod heat;
 mod height;
+mod known;
 mod layers;
+mod limit;
 mod lines;
 mod marks;
+mod pieces;
+mod places;
 pub mod print;
+mod recognise;
+mod retraction;
 mod role;
 mod source;
 mod state;
+mod step;
 pub mod stream;
 mod words;
 
 pub use change::Change;
 pub use error::{Cause, Error};
 pub use facts::Facts;
+pub use firmware::{Firmware, OwnFilament};
 pub use heat::{Heater, Heating};
 pub(crate) use height::Heights;
+pub use limit::{DEFAULT_MAX_MOVES, Limited, TooLong};
 pub use print::Print;
+pub use recognise::Reading;
 pub use role::Role;
 pub use source::Source;
 pub use stream::Stream;
@@ -61,6 +73,8 @@ pub enum Event {
         letter: u8,
         /// What follows the letter, without its fraction.
         number: u32,
+        /// The whole line of code.
+        code: Vec<u8>,
     },
     /// A comment without a mark, and without its `;`.
     Comment(Vec<u8>),
@@ -112,31 +126,13 @@ pub struct Summary {
     /// Cross-section of the filament by which volumes of E were taken for lengths, mm²; 0 where E is
     /// a length. The printer of such a file (`;FLAVOR:UltiGCode`) heats by itself.
     pub volumes_by: f64,
-}
-
-/// Whose rules a file is read by, where firmwares differ.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Firmware {
-    /// Filament is relative after M83 or G91: Klipper and most others.
-    #[default]
-    Other,
-    /// G90 and G91 say so of the filament as well, and the last of M82, M83, G90 and G91 counts:
-    /// Marlin 2.
-    Marlin,
-    /// As [`Self::Other`], and the printer is set up like this, which counts in files that leave it
-    /// to the printer (`;FLAVOR:UltiGCode`).
-    Ultimaker(OwnFilament),
-}
-
-/// What an Ultimaker 2 knows of its filament, and files for it do not say.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OwnFilament {
-    /// Its diameter, mm.
-    pub diameter: f64,
-    /// How far G10 pulls it back, mm.
-    pub retraction: f64,
-    /// How fast, and how fast G11 pushes it out again.
-    pub speed: MmPerS,
+    /// Arcs that would have needed more pieces than a file of this length may ask for, and were read
+    /// coarser, or with fewer turns.
+    pub coarse_arcs: u64,
+    /// The line of the first of them, from 1; 0 if there is none.
+    pub first_coarse_arc: u64,
+    /// By whose rules it was read.
+    pub firmware: Firmware,
 }
 
 /// Hands each line to `sink` as it is, as [`read()`] counts them.
@@ -147,16 +143,17 @@ pub(crate) fn lines(source: &mut dyn BufRead, sink: &mut dyn FnMut(&[u8])) -> io
     lines::each(source, lines::Place::default(), &mut |line, _| sink(line)).map(drop)
 }
 
-/// Reads G-code and hands each event to `sink` with its line, counted from 1, in the file's order.
+/// Reads G-code by a firmware's rules and hands each event to `sink` with its line, counted from 1, in
+/// the file's order. [`Reading::of`] tells which firmware a file is for.
 ///
 /// # Errors
 /// Only what reading the bytes gives: no content is an error.
 pub fn read(
     source: &mut dyn BufRead,
-    firmware: Firmware,
+    reading: impl Into<Reading>,
     sink: &mut dyn FnMut(u64, Event),
 ) -> io::Result<Summary> {
-    let mut state = state::State::new(firmware);
+    let mut state = state::State::new(reading.into());
     let mut layers = layers::Layers::default();
     let mut number = 0;
     lines::each(source, lines::Place::default(), &mut |line, _| {

@@ -14,14 +14,22 @@
 //! Who needs a layer at a time reads a [`Stream`](super::Stream) instead: it gives the same moves.
 
 use super::facts::Gatherer;
-use super::{Event, Facts, Firmware, Heating, Motion, Role};
-use std::f64::consts::FRAC_PI_4;
+pub use super::step::{Layer, Note, Order, Step, What};
+use super::{Event, Facts, Firmware, Reading};
 use std::io::{self, BufRead};
-use std::ops::{Deref, DerefMut, Range};
+use std::ops::{Deref, DerefMut};
 
 /// Lines of code that the reader does not know and that are kept, of a file: the first show what
 /// it is.
 pub(super) const MOST_UNKNOWN: u64 = 1000;
+
+/// Commands that stand between the lines of nearly every print, or are for heaters: no note of them
+/// as commands is kept.
+const EVERYDAY_G: &[u32] = &[4, 11, 17, 21, 90, 91];
+const EVERYDAY_M: &[u32] = &[
+    6, 73, 82, 83, 104, 105, 109, 110, 114, 115, 116, 117, 118, 133, 134, 140, 190, 201, 203, 204,
+    205, 400, 486, 566, 572, 900,
+];
 
 /// A whole G-code file: its moves, and the facts of it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -48,85 +56,6 @@ impl DerefMut for Print {
     }
 }
 
-/// One layer.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Layer {
-    /// Its part of [`Print::moves`].
-    pub moves: Range<usize>,
-    /// Height of the nozzle where most of its lines lie, mm.
-    pub z: f64,
-    /// How far it lies above the layer below, or the bed, mm.
-    pub height: f64,
-}
-
-/// A straight move.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step {
-    /// Where the nozzle is before it, mm.
-    pub from: [f32; 3],
-    /// Where the nozzle is after it, mm.
-    pub to: [f32; 3],
-    /// Filament pushed out, mm; below 0 it is pulled back.
-    pub filament: f32,
-    /// Feed asked for, mm/s.
-    pub feed: f32,
-    /// Width of the line, mm: by the file's comments, else by its plastic; 0 for what is no line.
-    pub width: f32,
-    /// Height of the line, mm: by the file's comments, else that of its layer; 0 for what is no line.
-    pub height: f32,
-    /// What it prints, if anything.
-    pub role: Role,
-    /// Line of the file, from 1.
-    pub line: u32,
-}
-
-/// Something that happens between two moves.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Note {
-    /// How many moves come before it.
-    pub at: usize,
-    /// Line of the file, from 1.
-    pub line: u64,
-    /// What.
-    pub what: What,
-}
-
-/// See [`Note`].
-#[derive(Debug, Clone, PartialEq)]
-pub enum What {
-    /// A command for a heater.
-    Heating(Heating),
-    /// G10 (back) or G11.
-    FirmwareRetraction {
-        /// Whether filament is pulled back.
-        back: bool,
-    },
-    /// Code that the reader does not know: the first thousand lines of it.
-    Unknown(String),
-}
-
-impl Step {
-    /// Way of the nozzle, mm.
-    #[must_use]
-    pub fn length(&self) -> f64 {
-        let way = |axis: usize| f64::from(self.to[axis]) - f64::from(self.from[axis]);
-        (way(0) * way(0) + way(1) * way(1) + way(2) * way(2)).sqrt()
-    }
-
-    /// Lowest and highest height of the nozzle, mm.
-    #[must_use]
-    pub fn heights(&self) -> [f64; 2] {
-        let [from, to] = [self.from[2], self.to[2]].map(f64::from);
-        if from < to { [from, to] } else { [to, from] }
-    }
-
-    /// Whether it lays down a line: it goes sideways and pushes filament.
-    #[must_use]
-    pub fn is_line(&self) -> bool {
-        self.filament > 0.0 && (self.from[0] != self.to[0] || self.from[1] != self.to[1])
-    }
-}
-
 impl Print {
     /// Reads a whole file. `filament_diameter`, in mm, gives the widths of lines without a comment,
     /// unless the file has a diameter of its own.
@@ -145,11 +74,11 @@ impl Print {
     /// As [`Self::read`].
     pub fn read_as(
         source: &mut dyn BufRead,
-        firmware: Firmware,
+        reading: impl Into<Reading>,
         filament_diameter: f64,
     ) -> io::Result<Self> {
         let (mut gatherer, mut moves) = (Gatherer::default(), Kept::default());
-        let summary = super::read(source, firmware, &mut |line, event| {
+        let summary = super::read(source, reading, &mut |line, event| {
             gatherer.event(line, &event);
             moves.event(line, event);
         })?;
@@ -178,6 +107,20 @@ impl Print {
     }
 }
 
+/// Whether no note is kept of a command. G92 is kept where it names an axis, or none at all, and G10
+/// where it is no retraction.
+fn is_everyday(letter: u8, number: u32, code: &[u8]) -> bool {
+    let bare = || code.iter().skip(1).all(|byte| !byte.is_ascii_alphabetic());
+    let names = |axes: &[u8]| code.iter().any(|byte| axes.contains(&byte.to_ascii_uppercase()));
+    match (letter, number) {
+        (b'G', 10) => !names(b"LXYZUVW"),
+        (b'G', 92) => !bare() && !names(b"XYZ"),
+        (b'G', number) => EVERYDAY_G.contains(&number),
+        (b'M', number) => EVERYDAY_M.contains(&number),
+        _ => false,
+    }
+}
+
 /// What of the events is kept: moves, not measured yet, and notes.
 #[derive(Default)]
 pub(super) struct Kept {
@@ -201,50 +144,19 @@ impl Kept {
                 }
                 What::Unknown(String::from_utf8_lossy(&code).into_owned())
             }
+            Event::Command { letter, number, code } if !is_everyday(letter, number, &code) => {
+                What::Command(Order::new(letter, number, &code))
+            }
             _ => return,
         };
         self.notes.push(Note { at, line, what });
     }
 }
 
-impl Step {
-    /// A move of this line, not measured yet.
-    pub(super) fn of(line: u64, motion: &Motion) -> Self {
-        let narrow = |at: [f64; 3]| at.map(|at| at as f32);
-        Self {
-            from: narrow(motion.from),
-            to: narrow(motion.to),
-            filament: motion.filament as f32,
-            feed: motion.feed.0 as f32,
-            width: motion.width.unwrap_or(0.0) as f32,
-            height: motion.height.unwrap_or(0.0) as f32,
-            role: motion.role,
-            line: u32::try_from(line).unwrap_or(u32::MAX),
-        }
-    }
-
-    /// Fills in the width and height that comments do not give; `layer` is the layer's height,
-    /// `area` the filament's cross-section.
-    pub(super) fn measure(&mut self, layer: f64, area: f64) {
-        if !self.is_line() {
-            (self.width, self.height) = (0.0, 0.0);
-            return;
-        }
-        if self.height == 0.0 {
-            self.height = layer as f32;
-        }
-        if self.width == 0.0 {
-            // A bead with round ends is as much wider than a box of the same height and volume.
-            let height = f64::from(self.height);
-            let boxed = f64::from(self.filament) * area / self.length() / height;
-            self.width = (boxed + (1.0 - FRAC_PI_4) * height) as f32;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reader::Role;
 
     fn print(text: &str) -> Print {
         Print::read(&mut text.as_bytes(), 1.75).unwrap()

@@ -14,21 +14,19 @@
 use super::facts::Gatherer;
 use super::layers::Layers;
 use super::lines::{self, Place};
-use super::print::{Kept, Layer, Note, Step};
+use super::print::Kept;
 use super::state::State;
-use super::{Event, Facts, Firmware, Source};
+use super::step::{Layer, Note, Step};
+use super::{Event, Facts, Reading, Source};
 use rayon::prelude::*;
 use std::collections::VecDeque;
-use std::io::{self, BufReader};
+use std::io;
 
 /// Bytes of a block: read in a millisecond or two, and its moves take half a megabyte.
 const BLOCK: u64 = 1 << 18;
 
 /// Blocks that are read side by side at most, so that memory does not grow with the machine.
 const MOST_BLOCKS: usize = 16;
-
-/// Bytes that the first pass reads at once.
-const BUFFER: usize = 1 << 18;
 
 /// A file that is read layer by layer.
 #[derive(Debug)]
@@ -69,15 +67,19 @@ impl Stream {
     ///
     /// # Errors
     /// Only what reading the bytes gives: no content is an error.
-    pub fn open(source: Source, firmware: Firmware, filament_diameter: f64) -> io::Result<Self> {
+    pub fn open(
+        source: Source,
+        reading: impl Into<Reading>,
+        filament_diameter: f64,
+    ) -> io::Result<Self> {
         let (mut gatherer, mut layers) = (Gatherer::default(), Layers::default());
-        let state = State::new(firmware);
+        let state = State::new(reading.into());
         let mut known = Known { place: Place::default(), line: 0, moves: 0, state };
         let mut places = vec![known.clone()];
         let mut next = BLOCK;
         let end = {
             let mut sink = |line: u64, event: Event| gatherer.event(line, &event);
-            let mut reader = BufReader::with_capacity(BUFFER, source.reader());
+            let mut reader = source.reader();
             let end = lines::each(&mut reader, known.place, &mut |line, place| {
                 known.line += 1;
                 let Known { state, moves, line: number, .. } = &mut known;
@@ -99,7 +101,7 @@ impl Stream {
         Ok(Self { source, facts, places })
     }
 
-    /// The bytes that it reads.
+    /// The file itself.
     #[must_use]
     pub fn source(&self) -> &Source {
         &self.source
@@ -253,7 +255,7 @@ mod tests {
             let text = text(layers, marked);
             let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
             let source = Source::of_bytes(text.into_bytes());
-            let stream = Stream::open(source, Firmware::default(), 1.75).unwrap();
+            let stream = Stream::open(source, Reading::default(), 1.75).unwrap();
             assert_eq!(stream.facts(), &print.facts);
             assert!(print.layers.len() >= layers && (!marked || print.layers.len() == layers));
             let sections: Vec<Section> = stream.sections().map(Result::unwrap).collect();
@@ -275,7 +277,7 @@ mod tests {
         let text = "x\n".repeat(100_000);
         let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
         assert_eq!((print.notes.len(), print.summary.unknown), (1000, 100_000));
-        let stream = Stream::open(Source::of_bytes(text.into()), Firmware::default(), 1.75);
+        let stream = Stream::open(Source::of_bytes(text.into()), Reading::default(), 1.75);
         let notes = stream.unwrap().sections().map(|one| one.unwrap().notes.len()).sum::<usize>();
         assert_eq!(notes, 1000);
     }

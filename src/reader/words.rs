@@ -34,9 +34,13 @@ pub(super) fn split(line: &[u8]) -> (&[u8], Option<&[u8]>) {
     (code, comment)
 }
 
-/// The command that `code` begins with, and the words after it.
+/// The command that `code` begins with, and the words after it. Firmwares read over blanks between a
+/// letter and its number.
 pub(super) fn command(code: &[u8]) -> Option<(Code, Words<'_>)> {
-    let (letter, rest) = code.split_first()?;
+    let (letter, mut rest) = code.split_first()?;
+    if rest.first() == Some(&b' ') && letter.is_ascii_alphabetic() {
+        rest = rest.trim_ascii_start();
+    }
     let digits = rest.iter().take_while(|byte| byte.is_ascii_digit()).count();
     if digits == 0 || digits > 6 {
         return None;
@@ -129,7 +133,12 @@ mod tests {
     #[test]
     fn words_come_in_any_shape() {
         let expected = vec![(b'X', Some(1.5)), (b'Y', Some(-0.25)), (b'E', None)];
-        for line in ["G1 X1.5 Y-.25 E", "g01x+1.5y-0.250E", "N12 G1 X1.5Y-.25 (a Z9) E*71"] {
+        for line in [
+            "G1 X1.5 Y-.25 E",
+            "g01x+1.5y-0.250E",
+            "N12 G1 X1.5Y-.25 (a Z9) E*71",
+            "G 1 X 1.5 Y -.25 E",
+        ] {
             let (code, words) = parsed(line);
             assert_eq!((code.letter, code.number), (b'G', 1));
             assert_eq!(words, expected, "{line}");

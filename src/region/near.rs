@@ -38,7 +38,8 @@ impl Area {
         [self.low, self.high]
     }
 
-    fn meets(&self, [p, q]: &Edge) -> bool {
+    /// Whether the box with these corners has a place in common with it.
+    pub(super) fn meets(&self, [p, q]: &Edge) -> bool {
         (0..2).all(|k| p[k].at_most(q[k]) <= self.high[k] && p[k].at_least(q[k]) >= self.low[k])
     }
 }

@@ -14,7 +14,7 @@ use super::{
     ApartReport, BlockReport, DualReport, FilamentReport, FlowReport, LayerTimeReport,
     LayersReport, ProfileReport, Report, RoleReport, SCHEMA, TimeReport, TravelReport,
 };
-use super::{reshaped, unused};
+use super::{doubtful, reshaped, unused};
 use crate::fill::Role;
 use crate::gcode::Sums;
 use crate::gcode::flow::{Flows, speed};
@@ -78,8 +78,8 @@ pub fn report(
         segments: reshaped::segments(usage, settings),
         dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits, lift.layers())),
         warnings: (placed.warnings.iter().cloned())
-            .chain(tally.warnings())
-            .chain(slow_speeds(settings))
+            .chain(tally.warnings(job.placement.copies))
+            .chain(doubtful::warnings(settings))
             .chain(motion::warnings(settings))
             .chain(unused::warnings(usage, settings))
             .chain(slowed_down(&usage.flows, settings))
@@ -138,16 +138,6 @@ fn time(times: &Times) -> TimeReport {
         layer_spread: if mean > 0.0 { variance.sqrt() / mean } else { 0.0 },
         layers: times.layers.iter().map(layer).collect(),
     }
-}
-
-/// Print speeds that are hardly meant.
-#[must_use]
-pub fn slow_speeds(settings: &Settings) -> Vec<Warning> {
-    let warning = |(setting, speed_mm_s): (&str, f64)| Warning::SlowSpeed {
-        setting: setting.to_owned(),
-        speed_mm_s,
-    };
-    settings.slow_speeds().into_iter().map(warning).collect()
 }
 
 /// Lines that are slowed down since the hot end cannot melt as fast. Where a material asks for less

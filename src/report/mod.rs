@@ -10,6 +10,8 @@
 //! meaning of a field never changes without a new [`SCHEMA`] number.
 
 mod cooling;
+pub mod doubtful;
+pub mod failure;
 pub mod make;
 pub mod motion;
 mod reshaped;
@@ -20,6 +22,7 @@ use crate::check::Verdict;
 use crate::mesh::MeshReport;
 use crate::profile::DualPart;
 use crate::warning::Warning;
+use failure::Failure;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::Serialize;
@@ -27,11 +30,22 @@ use serde::Serialize;
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
 pub const SCHEMA: u32 = 4;
 
-/// The JSON Schema of a report.
+/// What is written as a report.
+#[derive(Serialize, JsonSchema)]
+#[serde(untagged)]
+#[allow(dead_code, reason = "its schema is all that is asked of it")]
+enum Written {
+    /// The run is done.
+    Done(Box<Report>),
+    /// The run failed; what was made before is as it was.
+    Failed(Box<Failure>),
+}
+
+/// The JSON Schema of a report: that of a run that is done, or of one that failed.
 #[must_use]
 pub fn schema() -> serde_json::Value {
     let settings = SchemaSettings::draft2020_12().for_serialize();
-    settings.into_generator().into_root_schema_for::<Report>().to_value()
+    settings.into_generator().into_root_schema_for::<Written>().to_value()
 }
 
 /// What one run found and made.

@@ -5,8 +5,9 @@ use crate::fill::Role;
 use crate::gcode::dialect::Dialect;
 use crate::gcode::drive::{self, Asked};
 use crate::gcode::usage::Usage;
-use crate::profile::{Acceleration, DialectName, Jerk, Settings};
+use crate::profile::{Acceleration, DialectName, Jerk, JunctionRule, Settings};
 use crate::warning::Warning;
+use std::f64::consts::SQRT_2;
 
 /// Jerks that are held to others by a smaller part than this differ by rounding alone.
 const MUCH: f64 = 0.01;
@@ -49,6 +50,60 @@ pub(super) fn motion(usage: &Usage, settings: &Settings) -> Option<MotionReport>
 /// Keys of accelerations, jerks and pressure advance that do not what they say.
 #[must_use]
 pub fn warnings(settings: &Settings) -> Vec<Warning> {
+    own(settings).into_iter().chain(asked(settings)).collect()
+}
+
+/// The printer's own acceleration, where it is told another than is timed. Marlin and others keep each
+/// axis within its limit; Klipper does as it is told, or as it is set up if the start block says nothing.
+fn own(settings: &Settings) -> Vec<Warning> {
+    let (machine, limits) = (&settings.machine, &settings.limits);
+    let own = machine.acceleration;
+    if let Some(told) = told(&machine.start_gcode) {
+        let why = format!(
+            "machine.start_gcode sets {told} mm/s², while times count {own}; write {{acceleration}} there"
+        );
+        let differs = told != own;
+        return differs
+            .then(|| Warning::void(["machine.acceleration"], &why))
+            .into_iter()
+            .collect();
+    }
+    let is_told = machine.start_gcode.contains("{acceleration}");
+    let is_klipper = limits.junction == JunctionRule::SquareCorner;
+    if is_klipper && !is_told && own != limits.acceleration_x {
+        let why = "the start block does not tell it ({acceleration}), and the printer goes by \
+                   limits.acceleration_x; make them equal";
+        return vec![Warning::void(["machine.acceleration"], why)];
+    }
+    let given_mm_s2 = drive::most(settings);
+    // Askew, two axes together do more than each.
+    if is_klipper || !is_told || own <= given_mm_s2 * SQRT_2 {
+        return Vec::new();
+    }
+    let setting = "machine.acceleration".to_owned();
+    vec![Warning::AccelerationHeld { setting, asked_mm_s2: own, given_mm_s2 }]
+}
+
+/// The acceleration that a block sets by a number, mm/s²: M204 S or P, or Klipper's ACCEL.
+fn told(block: &str) -> Option<f64> {
+    let code = block.lines().filter_map(|line| line.split(';').next());
+    let number = |line: &str| {
+        let mut words = line.split_whitespace();
+        let prefixes: &[&str] = match words.next()?.to_ascii_uppercase().as_str() {
+            "M204" => &["S", "P"],
+            "SET_VELOCITY_LIMIT" => &["ACCEL="],
+            _ => return None,
+        };
+        words.find_map(|word| {
+            let word = word.to_ascii_uppercase();
+            prefixes.iter().find_map(|prefix| word.strip_prefix(prefix)?.parse().ok())
+        })
+    };
+    code.filter_map(number).last()
+}
+
+/// Those of `[acceleration]`, `[jerk]` and of the material.
+fn asked(settings: &Settings) -> Vec<Warning> {
     let dialect = settings.machine.dialect;
     let mut accelerations = Vec::new();
     if asks_acceleration(settings) {

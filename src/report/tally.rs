@@ -4,17 +4,17 @@ use crate::region::Region;
 use crate::units::{Coord, to_mm};
 use crate::warning::Warning;
 
-/// Thin places of a layer are counted from this area on, mm². Smaller ones are rounding and the
-/// tips of corners, not the shape of the part.
+/// Thin places of a layer are counted from this area on, mm², where every model is printed once.
+/// Smaller ones are rounding and the tips of corners, not the shape of the part.
 const LEAST_THIN_MM2: f64 = 1.0;
 
 /// What the layers of a print add up to.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Tally {
     open_layers: usize,
     longest_gap: Coord,
-    thin_layers: usize,
-    thin_mm2: f64,
+    /// Thin places of each layer that has some, mm².
+    thin_mm2: Vec<f64>,
     solid_mm3: f64,
 }
 
@@ -27,8 +27,7 @@ impl Tally {
         }
         self.solid_mm3 += region.layer.volume_mm3();
         if region.thin_mm2 > LEAST_THIN_MM2 {
-            self.thin_layers += 1;
-            self.thin_mm2 += region.thin_mm2;
+            self.thin_mm2.push(region.thin_mm2);
         }
     }
 
@@ -38,14 +37,37 @@ impl Tally {
         self.solid_mm3
     }
 
-    /// Warns of what the layers could not be printed as they are.
-    pub fn warnings(self) -> impl Iterator<Item = Warning> {
+    /// Warns of what the layers could not be printed as they are, if each model is printed so many times.
+    /// What is too little to tell of one copy is so of any number.
+    pub fn warnings(&self, copies: u32) -> impl Iterator<Item = Warning> {
         let open = (self.open_layers > 0).then(|| Warning::OpenContours {
             layers: self.open_layers,
             longest_gap_mm: to_mm(self.longest_gap),
         });
-        let thin = (self.thin_layers > 0)
-            .then_some(Warning::ThinPlaces { layers: self.thin_layers, area_mm2: self.thin_mm2 });
+        let least = LEAST_THIN_MM2 * f64::from(copies.max(1));
+        let (layers, area_mm2) = self
+            .thin_mm2
+            .iter()
+            .filter(|&&area| area > least)
+            .fold((0, 0.0), |(layers, sum), area| (layers + 1, sum + area));
+        let thin = (layers > 0).then_some(Warning::ThinPlaces { layers, area_mm2 });
         open.into_iter().chain(thin)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thin_places_are_judged_as_of_one_copy() {
+        let warned = |one: f64, copies: u32| {
+            let thin_mm2 = vec![one * f64::from(copies)];
+            Tally { thin_mm2, ..Tally::default() }.warnings(copies).count()
+        };
+        for copies in [1, 2, 7, 100] {
+            assert_eq!(warned(0.6, copies), 0, "{copies}");
+            assert_eq!(warned(1.5, copies), 1, "{copies}");
+        }
     }
 }

@@ -16,9 +16,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("units", &[]),
     ("warning", &[]),
     ("progress", &[]),
+    ("text", &[]),
     // Composes what the stages report of their failures.
     ("geom", &["units"]),
-    ("mesh", &["geom", "units", "warning"]),
+    ("mesh", &["geom", "text", "units", "warning"]),
     ("slice", &["geom", "mesh", "units"]),
     ("render", &["mesh", "units"]),
     ("pattern", &["geom", "profile", "units"]),
@@ -28,8 +29,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("plan", &["fill", "geom", "slice", "profile", "units"]),
     // The program's name comes from the job.
     ("gcode", &["geom", "fill", "plan", "motion", "profile", "units", "job"]),
-    ("job", &["mesh", "profile"]),
-    ("profile", &[]),
+    ("job", &["mesh", "profile", "text"]),
+    ("profile", &["text"]),
     ("motion", &["profile", "units"]),
     // A witness of its own: it shares nothing with the code that slices, plans or writes, but for what
     // an arc is: see WITNESSES.
@@ -38,7 +39,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // Independent witnesses: nothing of slice, region, plan or gcode. Of `geom` they use only what
     // knows no contour, raster or offset: see WITNESSES.
     ("check", &["reader", "mesh", "profile", "units", "geom"]),
-    ("preview", &["reader", "estimate", "units"]),
+    ("preview", &["reader", "estimate", "text", "units"]),
     ("diff", &["reader", "estimate", "geom"]),
     // Composed of the stages' own errors: no stage uses it.
     ("error", &["gcode", "mesh", "profile", "progress", "reader", "warning"]),

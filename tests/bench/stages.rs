@@ -244,7 +244,7 @@ fn gcode(bench: &Bench, model: &Model) {
 /// From the file to G-code that nobody keeps, on all cores and on one.
 fn whole(bench: &Bench, model: &Model) {
     let job = Job {
-        models: vec![slicer::Model::path(model.file.to_string_lossy())],
+        models: vec![slicer::Model::path(model.file.clone())],
         placement: placement(),
         settings: model.settings.clone(),
         sources: slicer::profile::Sources::default(),

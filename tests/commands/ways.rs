@@ -50,8 +50,11 @@ fn end(text: &str) -> usize {
     text.rfind(";TYPE:Custom").unwrap()
 }
 
+/// Where travels differ: layer, place, lines of both files.
+type Elsewhere = (Option<Both<usize>>, [f64; 3], Both<u32>);
+
 /// The travels that differ, the worst first.
-fn travels(found: &Difference) -> Vec<(Option<Both<usize>>, [f64; 3], Both<u32>)> {
+fn travels(found: &Difference) -> Vec<Elsewhere> {
     let travels = found.findings.iter().filter_map(|one| match one {
         Finding::Travels { layer, farthest, .. } => Some((*layer, farthest.at_mm, farthest.line)),
         _ => None,

@@ -71,7 +71,23 @@ pub(crate) fn judge(text: &str, stl: &str, placement: &Placement) -> Verdict {
     let print = reader::Print::read(&mut text.as_bytes(), 1.75).unwrap();
     let recorded = profile::recorded(&print.values).unwrap();
     let settings = &recorded.unwrap().settings;
-    let terms = Terms::new(Some(settings), Some(settings), &print);
+    against(&print, (settings, Some(settings)), stl, placement)
+}
+
+/// As [`judge`], of a file that tells nothing of its settings, by a profile.
+pub(crate) fn judge_bare(text: &str, profile: &str, stl: &str) -> Verdict {
+    let print = reader::Print::read(&mut text.as_bytes(), 1.75).unwrap();
+    let settings = profile::load([profile], &[]).unwrap().settings;
+    against(&print, (&settings, None), stl, &as_it_is())
+}
+
+fn against(
+    print: &reader::Print,
+    (settings, own): (&profile::Settings, Option<&profile::Settings>),
+    stl: &str,
+    placement: &Placement,
+) -> Verdict {
+    let terms = Terms::new(Some(settings), own, print);
     let path = fixtures().join(stl).to_str().unwrap().to_owned();
     let placed = slicer::place(
         &[slicer::Model::path(path)],
@@ -80,7 +96,7 @@ pub(crate) fn judge(text: &str, stl: &str, placement: &Placement) -> Verdict {
         &Default::default(),
     )
     .unwrap();
-    check::check(&print, &terms, Some(Model { mesh: &placed.mesh, offset: placed.offset }))
+    check::check(print, &terms, Some(Model { mesh: &placed.mesh, offset: placed.offset }))
 }
 
 /// The kinds of errors, in their order.

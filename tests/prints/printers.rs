@@ -50,12 +50,14 @@ fn slice(stl: &[u8], settings: &Settings) -> String {
 fn firmware(settings: &Settings) -> Firmware {
     match settings.machine.dialect {
         DialectName::Marlin => Firmware::Marlin,
+        DialectName::Klipper => Firmware::Klipper,
+        DialectName::Reprapfirmware => Firmware::RepRap,
+        DialectName::Makerbot => Firmware::Sailfish,
         DialectName::Ultigcode => Firmware::Ultimaker(OwnFilament {
             diameter: settings.filament.diameter,
             retraction: settings.retraction.length,
             speed: MmPerS(settings.retraction.speed),
         }),
-        _ => Firmware::Other,
     }
 }
 
@@ -139,6 +141,7 @@ fn in_dialect(dialect: &str) -> (String, Print, Estimate) {
         filament_diameter: settings.filament.diameter,
         fixed_limits: true,
         firmware: firmware(&settings),
+        volumes: None,
     };
     let time = estimate(&mut text.as_bytes(), "a", &Limits::new(&settings), options).unwrap();
     (text, print, time)

@@ -197,6 +197,17 @@ fn an_estimate_of_the_file_agrees() {
     }
 }
 
+/// What the start block tells the machine is what is timed, whatever the accelerations are.
+#[test]
+fn an_estimate_agrees_where_accelerations_are_not_the_profiles() {
+    for profile in ["generic-marlin", "generic-klipper", "generic-reprapfirmware"] {
+        for (own, travel) in [("5000", "300"), ("200", "3000")] {
+            let set = [("machine.acceleration", own), ("limits.travel_acceleration", travel)];
+            agrees(&slice(&fixture("overhang.stl"), profile, &set), &format!("{profile} {own}"));
+        }
+    }
+}
+
 #[test]
 fn an_estimate_of_a_file_with_arcs_agrees() {
     // 72 corners lie within the tolerance.

@@ -53,7 +53,7 @@ fn judge(text: &str) -> Verdict {
     let path = crate::common::fixtures().join("bracket.stl").to_str().unwrap().to_owned();
     let placement = Placement { scale: 0.2, ..Placement::default() };
     let placed = slicer::place(
-        &[slicer::Model::Path(path)],
+        &[slicer::Model::path(path)],
         &placement,
         &slicer::bed(&settings.machine),
         &Default::default(),
@@ -205,6 +205,7 @@ fn both_forms_are_compared_layer_by_layer() {
         assert!(
             text.contains("commands")
                 || text.contains(r#""a":1"#)
+                || text.contains(r#""layer":{"a":0,"b":0}"#)
                 || text.contains(r#""layers":[0]"#),
             "{text}"
         );

@@ -6,6 +6,8 @@ mod common;
 mod bent;
 mod check;
 mod dual;
+mod firmware;
+mod harm;
 mod laws;
 mod mend;
 mod motion;

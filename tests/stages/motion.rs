@@ -4,7 +4,9 @@
 
 use proptest::prelude::*;
 use slicer::motion::{Clock, Junction, Limits, Move};
+use slicer::profile::{Override, Settings, ValueOrigin, load};
 use slicer::units::MmPerS;
+use std::sync::LazyLock;
 
 /// 100 mm/s, 1000 mm/s² and no corner above rest, unless a test says otherwise.
 fn limits() -> Limits {
@@ -48,6 +50,43 @@ fn x(mm: f64) -> [f64; 4] {
 
 fn y(mm: f64) -> [f64; 4] {
     [0.0, mm, 0.0, 0.0]
+}
+
+/// Settings of a shipped printer, with these values.
+fn settings(printer: &str, set: &[(&str, f64)]) -> Settings {
+    let given = |(key, value): &(&str, f64)| Override {
+        key: (*key).to_owned(),
+        value: value.to_string(),
+        origin: ValueOrigin::Set,
+    };
+    let overrides: Vec<Override> = set.iter().map(given).collect();
+    load([printer], &overrides).unwrap().settings
+}
+
+#[test]
+fn klipper_does_as_the_file_says_and_x_and_y_have_no_limit_of_their_own() {
+    let told = Limits::new(&settings("generic-klipper", &[("machine.acceleration", 5000.0)]));
+    // 0.02 s up, 0.02 s down, 98 mm between them at 100 mm/s.
+    near(total(&told, &[([100.0, 0.0, 0.0, 3.0], 100.0)]), 1.02);
+    near(total(&told, &[(x(100.0), 100.0)]), 1.02);
+    // Marlin keeps x within 1000 mm/s².
+    let held = Limits {
+        junction: Junction::Jerk([0.0; 4]),
+        minimum_speed: 0.0,
+        ..Limits::new(&settings("generic-marlin", &[("machine.acceleration", 5000.0)]))
+    };
+    near(total(&held, &[([100.0, 0.0, 0.0, 3.0], 100.0)]), 1.1);
+}
+
+#[test]
+fn klipper_moves_the_filament_alone_by_what_its_configuration_gives() {
+    // 1000 · 4 · 0.4² / 2.405 mm².
+    let own = Limits::new(&settings("generic-klipper", &[]));
+    assert!((own.retract_acceleration - 266.08).abs() < 0.01, "{own:?}");
+    near(
+        total(&own, &[([0.0, 0.0, 0.0, -1.0], 100.0)]),
+        2.0 * (1.0 / own.retract_acceleration).sqrt(),
+    );
 }
 
 #[test]
@@ -316,6 +355,27 @@ proptest! {
         let part = |share: f64| ([0.6 * d * share, 0.8 * d * share, 0.0, 0.05 * d * share], 100.0);
         let halves = total(&limits, &[part(at), part(1.0 - at)]);
         prop_assert!((whole - halves).abs() < 1e-6 * whole, "{whole} {halves}");
+    }
+
+    #[test]
+    fn klippers_own_acceleration_of_the_filament_follows_its_configuration(
+        a in 100.0..20_000.0_f64,
+        told in 100.0..20_000.0_f64,
+        nozzle in 0.3..1.0_f64,
+        diameter in prop::sample::select(vec![1.75, 2.85]),
+    ) {
+        static KLIPPER: LazyLock<Settings> = LazyLock::new(|| settings("generic-klipper", &[]));
+        let mut settings = KLIPPER.clone();
+        (settings.limits.acceleration_x, settings.limits.acceleration_y) = (a, a);
+        (settings.machine.acceleration, settings.limits.minimum_cruise_ratio) = (told, 0.0);
+        (settings.machine.nozzle_diameter, settings.filament.diameter) = (nozzle, diameter);
+        let limits = Limits::new(&settings);
+        let area = std::f64::consts::FRAC_PI_4 * diameter * diameter;
+        // Never what the start block sets, but no more than that either.
+        prop_assert!((limits.retract_acceleration - a * 4.0 * nozzle * nozzle / area).abs() < 1e-6);
+        let least = limits.retract_acceleration.min(told);
+        let seconds = total(&limits, &[([0.0, 0.0, 0.0, 0.001], 100.0)]);
+        prop_assert!((seconds - 2.0 * (0.001 / least).sqrt()).abs() < 1e-9);
     }
 
     #[test]

@@ -46,7 +46,7 @@ fn positions_are_absolute_or_relative_in_inches_or_not() {
         [[1.0, 2.0, 0.0], [2.0, 2.0, 0.0], [1.0, 2.0, 3.0]]
     );
     assert_eq!(ends("G20\nG1 X1\nG21\ng01y1"), [[25.4, 0.0, 0.0], [25.4, 1.0, 0.0]]);
-    assert_eq!(ends("G1 X5\nG92 X0\nG1 X1"), [[5.0, 0.0, 0.0], [1.0, 0.0, 0.0]]);
+    assert_eq!(ends("G1 X5\nG92 X0\nG1 X1"), [[5.0, 0.0, 0.0], [6.0, 0.0, 0.0]]);
     let moved = moves("G20\nG1 X1 F60");
     assert!((moved[0].feed.0 - 25.4).abs() < 1e-9);
     assert_eq!(moves("M220 S50\nG1 X1 F60")[0].feed.0, 0.5);

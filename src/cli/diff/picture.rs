@@ -1,8 +1,9 @@
 //! Difference -> a picture of the worst layer, or a page with the worst ones and what is said of them.
 
 use super::text;
-use crate::cli::output::{self, Sink};
-use crate::cli::{failure, usage};
+use crate::cli::failure::{self, writing};
+use crate::cli::output::Sink;
+use crate::cli::usage;
 use anyhow::{Context as _, Result};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -10,6 +11,7 @@ use slicer::diff::{Both, Difference, File, Finding, Strand};
 use slicer::preview::both::{self, Whose};
 use slicer::preview::drawing::Drawing;
 use slicer::preview::{png, svg};
+use std::ffi::OsStr;
 use std::io::Write as _;
 use std::path::Path;
 
@@ -51,7 +53,7 @@ pub(super) type Views<'a> = &'a dyn Fn(&[Both<Option<usize>>], bool) -> Result<V
 ///
 /// # Errors
 /// [`failure::Usage`] for any other ending, or if it would replace one of the files.
-pub(super) fn format(out: &Path, files: [&str; 2]) -> Result<Format> {
+pub(super) fn format(out: &Path, files: [&OsStr; 2]) -> Result<Format> {
     for file in files {
         usage::replaces(out, file)?;
     }
@@ -62,7 +64,7 @@ pub(super) fn format(out: &Path, files: [&str; 2]) -> Result<Format> {
         Some("html") => Ok(Format::Html),
         _ => Err(failure::usage(format!(
             "-o {}: the ending tells no format; use .html, .svg or .png",
-            out.display()
+            slicer::text::name(out)
         ))),
     }
 }
@@ -95,7 +97,7 @@ pub(super) fn write(
         let drawing = draw(sight, found, strands);
         match format {
             Format::Svg => bytes = svg::write(&drawing).into_bytes(),
-            Format::Png => bytes = png::write(&drawing).with_context(|| output::writing(out))?,
+            Format::Png => bytes = png::write(&drawing).with_context(|| writing(out))?,
             Format::Html => pictures.push_str(&figure(&drawing, &sight.said)),
         }
     }
@@ -103,7 +105,7 @@ pub(super) fn write(
         bytes = page(names, text, &pictures).into_bytes();
     }
     let done = sink.write_all(&bytes).and_then(|()| sink.flush());
-    done.with_context(|| output::writing(out))?;
+    done.with_context(|| writing(out))?;
     sink.commit()
 }
 

@@ -87,12 +87,21 @@ pub(super) fn loose(
         return Vec::new();
     }
     let rises = rise(contours);
+    // How hard each foot's body pulls at all of its feet.
+    let mut by_body: Vec<(usize, usize)> =
+        (0..feet.len()).filter_map(|at| Some((rises.get(feet[at].0)?.body, at))).collect();
+    by_body.sort_unstable();
+    let mut pulls = vec![0.0; feet.len()];
+    for body in by_body.chunk_by(|a, b| a.0 == b.0) {
+        let moments = body.iter().map(|&(_, at)| &feet[at].1);
+        let all = moments.fold(Moments::default(), |a, b| a.and(b));
+        let pull = all.pull(rises[feet[body[0].1].0].whole);
+        body.iter().for_each(|&(_, at)| pulls[at] = pull);
+    }
     let mut found = Vec::new();
-    for (k, moments, is_sharp) in &feet {
-        let Some(Rise { alone, whole, body }) = rises.get(*k).copied() else { continue };
-        let together = feet.iter().filter(|(other, ..)| rises[*other].body == body);
-        let all = together.map(|(_, moments, _)| moments).fold(Moments::default(), |a, b| a.and(b));
-        let why = if all.pull(whole) > MOST_PULL {
+    for ((k, moments, is_sharp), pull) in feet.iter().zip(pulls) {
+        let Some(Rise { alone, .. }) = rises.get(*k).copied() else { continue };
+        let why = if pull > MOST_PULL {
             Loose::Tall
         } else if moments.pull(alone) > MOST_PULL {
             Loose::ThinFoot

@@ -14,6 +14,7 @@ pub mod raft;
 mod skirt;
 
 use super::{Path, PathPoint, Place, Role, Shape};
+use crate::geom::boxes::Boxes;
 use crate::geom::nest::{Nest, extent};
 use crate::geom::{Contour, Point, edges, encloses, polygon};
 use crate::profile::{BrimPlace, Settings};
@@ -179,13 +180,15 @@ impl AdhesionParams {
 /// nothing to hold it.
 fn printed(base: &Base<'_>) -> Vec<bool> {
     let of_part = base.paths.iter().filter(|path| path.role.facts().place.is_of_part());
-    let starts: Vec<Point> = of_part.map(Path::start).collect();
-    let holds = |contour: &Contour| {
-        let Some((low, high)) = extent(contour) else { return false };
-        let near = |p: &&Point| p.x >= low.x && p.y >= low.y && p.x <= high.x && p.y <= high.y;
-        starts.iter().filter(near).any(|p| encloses(edges(contour), *p))
-    };
-    base.contours.iter().map(holds).collect()
+    let boxes = base.contours.iter().map(|contour| extent(contour).unwrap_or_default());
+    let boxes = Boxes::new(boxes.collect());
+    let mut printed = vec![false; base.contours.len()];
+    for start in of_part.map(Path::start) {
+        for k in boxes.around(start) {
+            printed[k] = printed[k] || encloses(edges(&base.contours[k]), start);
+        }
+    }
+    printed
 }
 
 /// Whether a contour fits the bed with `reach` around it.

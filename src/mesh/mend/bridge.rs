@@ -20,6 +20,7 @@ use super::rim::Rim;
 use crate::mesh::geometry::bounds::Bounds;
 use crate::mesh::geometry::vector::{Corner, distance2};
 use nalgebra::Vector3;
+use std::ops::Range;
 
 /// The largest distance of two rims of a pair, as a share of the smaller diameter. A larger value
 /// joins neighbouring holes of a body, a smaller one leaves wide gaps to be filled on both sides.
@@ -29,9 +30,9 @@ const MOST_APART: f64 = 0.25;
 /// diameter: above zero for rims in one plane, as those of the end face of a tube.
 const MOST_BEHIND: f64 = 0.01;
 
-/// Comparisons of a corner with a side, for all pairs together: about a second. Pairs after that
+/// Comparisons of two rims, or of a corner with a side, for all together: about a second. Pairs after that
 /// are not found, and their holes filled instead.
-const MOST_LOOKS: u64 = 1 << 29;
+const MOST_LOOKS: u64 = 1 << 28;
 
 /// Two rims that face each other.
 pub(super) struct Pair {
@@ -57,6 +58,10 @@ pub(super) fn pairs(vertices: &[Corner], rims: &[Rim]) -> Vec<Pair> {
             {
                 break;
             }
+            looks = looks.saturating_sub(1);
+            if looks == 0 {
+                break;
+            }
             let Some(apart) = measured[a].apart(&measured[b], most, &mut looks) else { continue };
             for (one, other) in [(a, b), (b, a)] {
                 if nearest[one].is_none_or(|(known, _)| apart < known) {
@@ -77,6 +82,7 @@ pub(super) fn pairs(vertices: &[Corner], rims: &[Rim]) -> Vec<Pair> {
 /// A rim with the measures by which rims are compared.
 struct Measured {
     corners: Vec<Corner>,
+    blocks: Blocks,
     bounds: Bounds,
     /// The mean of its corners.
     middle: Vector3<f64>,
@@ -93,7 +99,8 @@ impl Measured {
         let middle = middle / corners.len() as f64;
         let normal = newell(&corners);
         let normal = normal / normal.norm().max(1.0);
-        Self { bounds, middle, normal, size: rim.size, corners }
+        let blocks = Blocks::new(&corners);
+        Self { bounds, blocks, middle, normal, size: rim.size, corners }
     }
 
     /// The distance of this rim and another, if they face each other and it is at most `most`.
@@ -120,16 +127,64 @@ impl Measured {
     fn reach(&self, other: &Self, most: f64, looks: &mut u64) -> Option<f64> {
         let count = other.corners.len();
         let mut largest = 0.0_f64;
+        let mut last = 0;
         for &corner in &self.corners {
-            *looks = looks.checked_sub(count as u64)?;
             let to = |k: usize| to_side(corner, other.corners[k], other.corners[(k + 1) % count]);
-            largest = largest.max((0..count).map(to).fold(f64::INFINITY, f64::min));
+            // The block that had the nearest side of the corner before mostly has this one's.
+            let first = other.blocks.ends(last, count);
+            let mut least = first.clone().map(to).fold(f64::INFINITY, f64::min);
+            let mut seen = first.len() + other.blocks.bounds.len();
+            for (block, bounds) in other.blocks.bounds.iter().enumerate() {
+                // Rounding must not leave out what is as near.
+                if block != last && far2(corner, *bounds) as f64 <= least * (1.0 + 1e-9) + 1.0 {
+                    let sides = other.blocks.ends(block, count);
+                    seen += sides.len();
+                    let found = sides.map(to).fold(f64::INFINITY, f64::min);
+                    if found < least {
+                        (least, last) = (found, block);
+                    }
+                }
+            }
+            *looks = looks.checked_sub(seen as u64)?;
+            largest = largest.max(least);
             if largest > most * most {
                 return None;
             }
         }
         Some(largest.sqrt())
     }
+}
+
+/// Corners of a rim in a row that have a box. It affects speed only.
+const BLOCK: usize = 32;
+
+/// The boxes around every few sides of a rim.
+struct Blocks {
+    bounds: Vec<Bounds>,
+}
+
+impl Blocks {
+    fn new(corners: &[Corner]) -> Self {
+        let count = corners.len();
+        let around = |first: usize| {
+            // With the end of the last side.
+            let ends = (first..=count.min(first + BLOCK)).map(|k| corners[k % count]);
+            Bounds::of(ends)
+        };
+        Self { bounds: (0..count).step_by(BLOCK).map(around).collect() }
+    }
+
+    /// The first corners of the sides of a block, of so many corners of the rim.
+    fn ends(&self, block: usize, count: usize) -> Range<usize> {
+        block * BLOCK..count.min((block + 1) * BLOCK)
+    }
+}
+
+/// The squared distance from a corner to a box.
+fn far2(corner: Corner, bounds: Bounds) -> i64 {
+    let inside =
+        std::array::from_fn(|axis| corner[axis].clamp(bounds.low[axis], bounds.high[axis]));
+    distance2(corner, inside)
 }
 
 /// A corner as a vector of floats.
@@ -170,10 +225,18 @@ pub(super) fn band(vertices: &[Corner], one: &[u32], other: &[u32]) -> Vec<[u32;
 /// The places on two rims of the two corners that are closest to each other.
 fn closest(vertices: &[Corner], one: &[u32], other: &[u32]) -> [usize; 2] {
     let at = |vertex: u32| vertices[vertex as usize];
-    let all = (0..one.len()).flat_map(|i| (0..other.len()).map(move |j| [i, j]));
-    let key =
-        |&[i, j]: &[usize; 2]| (distance2(at(one[i]), at(other[j])), at(one[i]), at(other[j]));
-    all.min_by_key(key).unwrap_or([0, 0])
+    let blocks = Blocks::new(&other.iter().map(|&vertex| at(vertex)).collect::<Vec<_>>());
+    let key = |[i, j]: [usize; 2]| (distance2(at(one[i]), at(other[j])), at(one[i]), at(other[j]));
+    let mut best = [0, 0];
+    for i in 0..one.len() {
+        for (block, bounds) in blocks.bounds.iter().enumerate() {
+            if far2(at(one[i]), *bounds) <= key(best).0 {
+                let all = blocks.ends(block, other.len()).map(|j| [i, j]).chain([best]);
+                best = all.min_by_key(|&pair| (key(pair), pair)).unwrap_or(best);
+            }
+        }
+    }
+    best
 }
 
 #[cfg(test)]

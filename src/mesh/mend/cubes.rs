@@ -42,26 +42,6 @@ impl Cubes {
             }
         }
     }
-
-    /// Calls `visit` with the points in the cubes within `reach` of the line from `a` to `b`, some of
-    /// them twice.
-    pub(super) fn along(&self, a: Corner, b: Corner, reach: i32, mut visit: impl FnMut(u32)) {
-        // The box around a piece as long as a cube touches few cubes.
-        let extent = (0..3).map(|axis| (i64::from(b[axis]) - i64::from(a[axis])).abs()).max();
-        let pieces = extent.unwrap_or(0) / self.size + 1;
-        let at = |k: i64| -> Corner {
-            std::array::from_fn(|axis| {
-                let run = i64::from(b[axis]) - i64::from(a[axis]);
-                a[axis] + i32::try_from(run * k / pieces).unwrap_or(0)
-            })
-        };
-        for k in 0..pieces {
-            let (from, to) = (at(k), at(k + 1));
-            let low = std::array::from_fn(|axis| from[axis].min(to[axis]) - reach);
-            let high = std::array::from_fn(|axis| from[axis].max(to[axis]) + reach);
-            self.near(low, high, &mut visit);
-        }
-    }
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "a quotient of an i32")]

@@ -6,16 +6,19 @@
 //!
 //! 1. Put all corners into a queue, the shortest cut first: that gives well-shaped triangles.
 //! 2. Take the first that is an ear, and cut it off. Its two neighbours have new cuts, and enter
-//!    the queue again; older entries of theirs are skipped.
+//!    the queue again; older entries of theirs are skipped. What is no ear since a corner lies in it
+//!    waits until that corner is cut off.
 //! 3. If no corner is an ear the rim crosses itself in the projection. Cut off the first corner, and
 //!    mark the filling as crooked.
 //!
 //! Every corner is used, and each side of the rim once. So the filled mesh is closed even where
 //! corners lie on one line or a rim touches itself.
 //!
-//! Only hollow corners, those that were not convex at first, can lie in an ear. They are sorted by
-//! x, so that a test looks at few of them.
+//! Only hollow corners, those that were not convex at first, can lie in an ear. They are kept in a
+//! tree, so that a test looks at few of them.
 
+use crate::geom::Point;
+use crate::geom::nearest::Nearest;
 use crate::mesh::geometry::vector::{Corner, cross, distance2, minus};
 use nalgebra::Vector3;
 use std::cmp::Reverse;
@@ -88,8 +91,14 @@ struct Ears<'a> {
     before: Vec<usize>,
     after: Vec<usize>,
     is_cut: Vec<bool>,
-    /// The hollow corners, by x.
+    /// The hollow corners that are not cut off; and where each corner stands there, if it does.
     hollow: Vec<usize>,
+    tree: Nearest,
+    places: Vec<usize>,
+    /// What waits for each hollow corner to be cut off.
+    waiting: Vec<Vec<Candidate>>,
+    /// Candidates that were no ears when they were tried, the shortest cut first.
+    refused: BinaryHeap<Reverse<Candidate>>,
     /// Candidates, the shortest cut first; some are out of date.
     queue: BinaryHeap<Reverse<Candidate>>,
     left: usize,
@@ -103,12 +112,25 @@ impl<'a> Ears<'a> {
         let count = corners.len();
         let before: Vec<usize> = (0..count).map(|k| (k + count - 1) % count).collect();
         let after: Vec<usize> = (0..count).map(|k| (k + 1) % count).collect();
-        let mut hollow: Vec<usize> =
+        let hollow: Vec<usize> =
             (0..count).filter(|&k| turn(flat[before[k]], flat[k], flat[after[k]]) <= 0).collect();
-        hollow.sort_unstable_by_key(|&k| (flat[k], k));
-        let queue = BinaryHeap::with_capacity(count);
-        let is_cut = vec![false; count];
-        let mut ears = Self { corners, flat, before, after, is_cut, hollow, queue, left: count };
+        let mut places = vec![usize::MAX; count];
+        hollow.iter().enumerate().for_each(|(place, &k)| places[k] = place);
+        let tree = Nearest::new(hollow.iter().map(|&k| place_of(flat[k])).collect());
+        let mut ears = Self {
+            corners,
+            flat,
+            before,
+            after,
+            is_cut: vec![false; count],
+            waiting: vec![Vec::new(); hollow.len()],
+            hollow,
+            tree,
+            places,
+            refused: BinaryHeap::new(),
+            queue: BinaryHeap::with_capacity(count),
+            left: count,
+        };
         (0..count).for_each(|k| ears.offer(k));
         ears
     }
@@ -126,29 +148,34 @@ impl<'a> Ears<'a> {
         if self.left < 3 {
             return None;
         }
-        // Corners that are no ears now.
-        let mut refused = Vec::new();
         let mut found = None;
         while let Some(Reverse(candidate)) = self.queue.pop() {
-            let [k, a, b] = candidate.2;
-            if self.is_cut[k] || self.before[k] != a || self.after[k] != b {
+            let k = candidate.2[0];
+            if !self.is_current(&candidate) {
                 continue;
             }
-            if self.left == 3 || self.is_ear(k) {
+            let blocking = if self.left == 3 { None } else { self.blocking(k) };
+            let Some(blocking) = blocking else {
                 found = Some(k);
                 break;
+            };
+            if let Blocking::Corner(hollow) = blocking {
+                self.waiting[hollow].push(candidate);
             }
-            refused.push(candidate);
+            self.refused.push(Reverse(candidate));
         }
         // The last triangle of a rim that crosses itself may be turned over.
         let is_last = self.left == 3;
         let is_crooked = found.is_none_or(|k| is_last && self.turn_at(k) < 0);
-        let k = found.or_else(|| refused.first().map(|candidate| candidate.2[0]))?;
-        self.queue.extend(refused.into_iter().map(Reverse));
+        let k = found.or_else(|| self.first_refused())?;
         let (a, b) = (self.before[k], self.after[k]);
         self.is_cut[k] = true;
         self.left -= 1;
         (self.after[a], self.before[b]) = (b, a);
+        if let Some(waiting) = self.waiting.get_mut(self.places[k]) {
+            self.queue.extend(std::mem::take(waiting).into_iter().map(Reverse));
+            self.tree.take(self.places[k]);
+        }
         self.offer(a);
         self.offer(b);
         Some(([a, k, b], is_crooked))
@@ -158,21 +185,62 @@ impl<'a> Ears<'a> {
         turn(self.flat[self.before[k]], self.flat[k], self.flat[self.after[k]])
     }
 
-    fn is_ear(&self, k: usize) -> bool {
+    /// Whether a candidate's corner is there, between the same neighbours.
+    fn is_current(&self, &(.., [k, a, b]): &Candidate) -> bool {
+        !self.is_cut[k] && self.before[k] == a && self.after[k] == b
+    }
+
+    /// The corner with the shortest cut among those that are no ears.
+    fn first_refused(&mut self) -> Option<usize> {
+        while let Some(Reverse(candidate)) = self.refused.pop() {
+            if self.is_current(&candidate) {
+                return Some(candidate.2[0]);
+            }
+        }
+        None
+    }
+
+    /// Why corner `k` is no ear; `None` if it is one.
+    fn blocking(&self, k: usize) -> Option<Blocking> {
         let ear = [self.flat[self.before[k]], self.flat[k], self.flat[self.after[k]]];
         if self.turn_at(k) < 0 {
-            return false;
+            return Some(Blocking::Turn);
         }
-        let low = ear[0][0].min(ear[1][0]).min(ear[2][0]);
-        let high = ear[0][0].max(ear[1][0]).max(ear[2][0]);
-        let from = self.hollow.partition_point(|&h| self.flat[h][0] < low);
-        let within = self.hollow[from..].iter().take_while(|&&h| self.flat[h][0] <= high);
-        within.copied().filter(|&h| !self.is_cut[h]).all(|h| {
-            let p = self.flat[h];
+        let beside = |p: [i64; 2]| (0..3).any(|side| turn(ear[side], ear[(side + 1) % 3], p) < 0);
+        let wide = [0, 1, 2].map(|k| ear[k][0]);
+        let (from, to) = (wide[0].min(wide[1]).min(wide[2]), wide[0].max(wide[1]).max(wide[2]));
+        let meets = |(first, last): (Point, Point)| {
+            let ([left, low], [right, top]) = (coordinates(first), coordinates(last));
+            let corners = [[left, low], [right, low], [right, top], [left, top]];
+            let is_beyond =
+                |side: usize| corners.iter().all(|&p| turn(ear[side], ear[(side + 1) % 3], p) < 0);
+            left <= to && right >= from && !(0..3).any(is_beyond)
+        };
+        let is_in = |place: usize| {
+            let p = self.flat[self.hollow[place]];
             // A corner at one of the ear's corners is the rim touching itself.
-            ear.contains(&p) || (0..3).any(|side| turn(ear[side], ear[(side + 1) % 3], p) < 0)
-        })
+            (from..=to).contains(&p[0]) && !ear.contains(&p) && !beside(p)
+        };
+        self.tree.find(meets, is_in).map(Blocking::Corner)
     }
+}
+
+/// Why a corner is no ear.
+enum Blocking {
+    /// It is not convex.
+    Turn,
+    /// A hollow corner lies in it.
+    Corner(usize),
+}
+
+/// A corner of the projection, which has the coordinates of a corner of the mesh.
+fn place_of([x, y]: [i64; 2]) -> Point {
+    let side = |side: i64| i32::try_from(side).unwrap_or(0);
+    Point { x: side(x), y: side(y) }
+}
+
+fn coordinates(p: Point) -> [i64; 2] {
+    [i64::from(p.x), i64::from(p.y)]
 }
 
 /// Twice the signed area of a triangle: positive if it turns left.
@@ -226,6 +294,19 @@ mod tests {
     fn a_rim_that_crosses_itself_is_told() {
         let bow = [[0, 0, 0], [200, 100, 0], [200, 0, 0], [0, 40, 0]];
         assert!(filled(&bow).is_crooked);
+    }
+
+    #[test]
+    fn a_long_spiral_is_filled_soon() {
+        // 20 turns of a strip, 6000 corners: nearly every corner has others near its cut.
+        let at = |k: i32, out: f64| {
+            let (sin, cos) = crate::units::sin_cos(f64::from(k) * 2.4);
+            let radius = 20_000.0 + 100.0 * f64::from(k) + out;
+            [(cos * radius) as i32, (sin * radius) as i32, 0]
+        };
+        let mut corners: Vec<Corner> = (0..3000).map(|k| at(k, 6000.0)).collect();
+        corners.extend((0..3000).rev().map(|k| at(k, 0.0)));
+        assert!(!filled(&corners).is_crooked);
     }
 
     #[test]

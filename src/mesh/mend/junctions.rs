@@ -1,7 +1,7 @@
 //! Corners on edges -> split triangles: gives an open edge the corners that the triangles beside it have there.
 
 use super::Work;
-use super::cubes::Cubes;
+use super::beside::Beside;
 use super::near::open_edges;
 use crate::mesh::faults::{Fault, Mending};
 use crate::mesh::geometry::vector::{Corner, distance2, dot, length, minus};
@@ -11,6 +11,12 @@ use hashbrown::HashMap;
 /// within the tolerance. In small triangles it is a corner of the next triangle, and a larger
 /// value would split there.
 const MOST_OFF: f64 = 0.05;
+
+/// Looks at a corner beside an edge, for all edges together, and more for each of them. Where very
+/// many edges lie on one line each would be split at all corners of the others: then the rest stays
+/// open, and is reported as such.
+const MOST_LOOKS: usize = 1 << 22;
+const MOST_LOOKS_OF_EDGE: usize = 64;
 
 /// An open side of a triangle and the vertices along it.
 type Split = (usize, Vec<u32>);
@@ -52,13 +58,15 @@ fn splits(work: &Work, tolerance: i32) -> HashMap<usize, Split> {
     let mut ends: Vec<u32> = edges.iter().flat_map(|&edge| ends_of(edge)).collect();
     ends.sort_unstable();
     ends.dedup();
-    // With cubes as long as the mean edge, an edge touches few cubes and a cube holds few corners.
-    let lengths = edges.iter().map(|&edge| line_of(edge)).map(|[from, to]| length(minus(to, from)));
-    let mean = lengths.sum::<f64>() / edges.len().max(1) as f64;
-    let cubes = Cubes::new(work.vertices, &ends, (mean as i64).max(i64::from(tolerance)));
+    let mut looks = MOST_LOOKS + MOST_LOOKS_OF_EDGE * edges.len();
+    let corners = Beside::new(work.vertices, ends);
     let mut splits: HashMap<usize, Split> = HashMap::default();
     for (t, side) in edges {
-        let between = between(work, &cubes, (work.triangles[t], line_of((t, side))), tolerance);
+        let line = line_of((t, side));
+        let between = between(work, &corners, (work.triangles[t], line), (tolerance, &mut looks));
+        if looks == 0 {
+            break;
+        }
         if between.is_empty() {
             continue;
         }
@@ -76,13 +84,14 @@ fn splits(work: &Work, tolerance: i32) -> HashMap<usize, Split> {
 /// The open corners on a side of a triangle, in their order along it.
 fn between(
     work: &Work,
-    cubes: &Cubes,
+    corners: &Beside<'_>,
     (triangle, [from, to]): ([u32; 3], [Corner; 2]),
-    tolerance: i32,
+    (tolerance, looks): (i32, &mut usize),
 ) -> Vec<u32> {
     let mut on_it: Vec<(i128, Corner, u32)> = Vec::new();
-    cubes.along(from, to, tolerance, |v| {
-        if !triangle.contains(&v) {
+    corners.along(from, to, tolerance, |v| {
+        *looks = looks.saturating_sub(1);
+        if *looks > 0 && !triangle.contains(&v) {
             let at = work.vertices[v as usize];
             let place = place_on([from, to], at, f64::from(tolerance));
             on_it.extend(place.map(|place| (place, at, v)));

@@ -18,6 +18,7 @@
 //!
 //! Shells that overlap stay as they are: the winding rule of slicing makes one solid of them.
 
+mod beside;
 mod bridge;
 mod columns;
 mod cubes;

@@ -23,6 +23,11 @@ pub(super) const TOLERANCES: [i32; 2] =
 /// from rounding. A smaller value leaves slivers open that welding should collapse.
 const ROUNDING: f64 = 20.0;
 
+/// Looks at a corner near another one, for all corners together, and more for each of them. Where very
+/// many corners lie within the tolerance of each other, the rest is not welded, and is reported as open.
+const MOST_LOOKS: u64 = 1 << 26;
+const MOST_LOOKS_OF_CORNER: u64 = 64;
+
 /// Welds, and drops the triangles that have two equal corners afterwards.
 ///
 /// A corner moves by no more than half of the shortest edge at it, so that no triangle larger
@@ -33,11 +38,16 @@ pub(super) fn weld(work: &mut Work, tolerance: i32) {
         (0_u32..).zip(&reach).filter(|(_, reach)| **reach >= 0.0).map(|(v, _)| v).collect();
     let cubes = Cubes::new(work.vertices, &open, i64::from(tolerance));
     let mut links = Links::new(work.vertices.len());
+    let mut looks = MOST_LOOKS + MOST_LOOKS_OF_CORNER * open.len() as u64;
     for &a in &open {
         let at = work.vertices[a as usize];
         let low = at.map(|side| side - tolerance);
         let high = at.map(|side| side + tolerance);
+        if looks == 0 {
+            break;
+        }
         cubes.near(low, high, |b| {
+            looks = looks.saturating_sub(1);
             let least = reach[a as usize].min(reach[b as usize]);
             let apart2 = distance2(at, work.vertices[b as usize]) as f64;
             if b > a && apart2 <= least * least {

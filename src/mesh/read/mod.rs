@@ -26,9 +26,11 @@ mod weld;
 
 use crate::mesh::edges::MAX_TRIANGLES;
 use crate::mesh::{Error, RawMesh, Result};
+use crate::text;
 use limit::Limit;
 use std::fs::File;
 use std::io::Read;
+use std::path::Path;
 
 pub use error::{Damaged, NotStl, Place, ReadError, Truncated};
 pub use number::MAX_NUMBER;
@@ -49,15 +51,17 @@ const HEAD: u64 = 1 << 16;
 ///
 /// # Errors
 /// [`Error::Read`] if it cannot be read or is no usable STL; see [`from_bytes`].
-pub fn from_path(path: &str, max_triangles: usize) -> Result<RawMesh> {
-    if path == "-" {
+pub fn from_path(path: impl AsRef<Path>, max_triangles: usize) -> Result<RawMesh> {
+    let path = path.as_ref();
+    if path.as_os_str() == "-" {
         return from_reader("<stdin>", &mut std::io::stdin(), max_triangles);
     }
-    if path.is_empty() {
+    if path.as_os_str().is_empty() {
         return Err(refused("''")(ReadError::NoName));
     }
-    let (mut file, length) = open(path).map_err(refused(path))?;
-    read(path, &mut file, length, max_triangles)
+    let name = text::name(path);
+    let (mut file, length) = open(path).map_err(refused(&name))?;
+    read(&name, &mut file, length, max_triangles)
 }
 
 /// Reads a model that is in memory; `name` stands in messages and in the report.
@@ -71,7 +75,7 @@ pub fn from_path(path: &str, max_triangles: usize) -> Result<RawMesh> {
 /// [`MAX_NUMBER`].
 pub fn from_bytes(name: &str, mut bytes: &[u8], max_triangles: usize) -> Result<RawMesh> {
     let length = Some(bytes.len() as u64);
-    read(name, &mut bytes, length, max_triangles)
+    read(&text::line(name), &mut bytes, length, max_triangles)
 }
 
 /// Reads a model from any source, such as a pipe, whose length is not known.
@@ -93,7 +97,7 @@ pub fn looks_like_stl(head: &[u8], length: u64) -> bool {
 }
 
 /// Opens a file; its length too, if it is a regular one.
-fn open(path: &str) -> std::result::Result<(File, Option<u64>), ReadError> {
+fn open(path: &Path) -> std::result::Result<(File, Option<u64>), ReadError> {
     let file = File::open(path)?;
     let data = file.metadata()?;
     if data.is_dir() {

@@ -23,10 +23,11 @@ pub struct MotionLimits {
     /// Highest speed of the filament.
     #[schemars(range(min = 0.1, max = 200), extend("unit" = "mm/s"))]
     pub speed_e: f64,
-    /// Highest acceleration in x.
+    /// Highest acceleration in x. Klipper has none for x and y alone: there it is max_accel of
+    /// printer.cfg, which a file may change.
     #[schemars(range(min = 1, max = 1_000_000), extend("unit" = "mm/s²"))]
     pub acceleration_x: f64,
-    /// Highest acceleration in y.
+    /// Highest acceleration in y; for Klipper as acceleration_x.
     #[schemars(range(min = 1, max = 1_000_000), extend("unit" = "mm/s²"))]
     pub acceleration_y: f64,
     /// Highest acceleration in z.
@@ -35,11 +36,13 @@ pub struct MotionLimits {
     /// Highest acceleration of the filament.
     #[schemars(range(min = 1, max = 1_000_000), extend("unit" = "mm/s²"))]
     pub acceleration_e: f64,
-    /// Acceleration of moves that print nothing.
+    /// Acceleration of moves that print nothing, which {travel_acceleration} in the start block stands
+    /// for. Klipper has one for all moves, machine.acceleration, unless acceleration.travel is set.
     #[schemars(range(min = 1, max = 1_000_000), extend("unit" = "mm/s²"))]
     pub travel_acceleration: f64,
-    /// Acceleration of the filament when it moves alone.
-    #[schemars(range(min = 1, max = 1_000_000), extend("unit" = "mm/s²"))]
+    /// Acceleration of the filament when it moves alone; 0 is what Klipper takes by itself: the lesser
+    /// of acceleration_x and _y, times 4 nozzle², over the area of the filament.
+    #[schemars(range(min = 0, max = 1_000_000), extend("unit" = "mm/s²"))]
     pub retract_acceleration: f64,
     /// Rule for the speed at corners: Marlin's jerk, Marlin's jerk before 1.1, Sailfish's
     /// speed change, Marlin's junction deviation, Klipper's square corner velocity.

@@ -55,6 +55,15 @@ pub struct Machine {
     /// unset if only their length counts.
     #[schemars(range(min = 0.001, max = 1), extend("unit" = "mm"))]
     pub arc_deviation: Option<f64>,
+    /// Hottest that the hot end and its firmware bear.
+    #[schemars(range(min = 100, max = 500), extend("unit" = "°C", "default" = 300))]
+    pub max_temperature: f64,
+    /// Coldest at which the firmware pushes filament.
+    #[schemars(range(min = 0, max = 500), extend("unit" = "°C", "default" = 170))]
+    pub min_temperature: f64,
+    /// Hottest that the bed and its firmware bear.
+    #[schemars(range(min = 0, max = 200), extend("unit" = "°C", "default" = 120))]
+    pub max_bed_temperature: f64,
     /// Plastic that the hot end can melt; lines that need more are printed slower.
     #[schemars(range(min = 0.1, max = 1_000), extend("unit" = "mm³/s"))]
     pub max_volumetric_speed: f64,

@@ -29,6 +29,12 @@ pub struct Filament {
     /// Temperature of the bed on the first layer; unset means bed_temperature.
     #[schemars(range(min = 0, max = 200), extend("unit" = "°C"))]
     pub first_layer_bed_temperature: Option<f64>,
+    /// Coldest that the material is printed at; below it there is a warning.
+    #[schemars(range(min = 0, max = 500), extend("unit" = "°C"))]
+    pub min_temperature: Option<f64>,
+    /// Hottest that the material is printed at; above it there is a warning.
+    #[schemars(range(min = 0, max = 500), extend("unit" = "°C"))]
+    pub max_temperature: Option<f64>,
     /// Power of the part cooling fan; at most, where cooling.min_fan lowers it.
     #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 100))]
     pub fan: f64,

@@ -3,7 +3,8 @@
 //! An island thinner than the thinnest bead is not printed. What stands on it hangs, and support may
 //! stand where it would have been.
 
-use crate::geom::{Contour, Point, double_area, edges, encloses, polygon};
+use crate::geom::boxes::Around;
+use crate::geom::{Contour, double_area, edges, polygon};
 use crate::units::Coord;
 use std::borrow::Cow;
 
@@ -20,7 +21,7 @@ pub(super) fn printed(contours: &[Contour], [line, least]: [Coord; 2]) -> Cow<'_
     if outer().count() == 1 && is_roomy(contours, line) {
         return Cow::Borrowed(contours);
     }
-    let islands: Vec<Vec<Contour>> = outer().map(|outer| island(outer, contours)).collect();
+    let islands = islands(contours);
     let holds = |island: &Vec<Contour>, disc: Coord| {
         is_roomy(island, disc) || !polygon::inset(island, (disc / 2).max(1)).is_empty()
     };
@@ -47,18 +48,24 @@ fn is_long(contour: &Contour, line: Coord) -> bool {
     around >= 2.0 * LEAST_LONG * f64::from(line)
 }
 
-/// An outer contour with the holes in it. Those of islands inside a hole are in it as well, which
+/// Each outer contour with the holes in it. Those of islands inside a hole are in it as well, which
 /// makes it seem smaller than it is: then the exact test decides.
-fn island(outer: &Contour, contours: &[Contour]) -> Vec<Contour> {
-    let holds = |p: Point| encloses(edges(outer), p);
-    let holes = contours.iter().filter(|c| double_area(c) < 0);
-    let inside = holes.filter(|hole| hole.first().is_some_and(|&p| holds(p)));
-    std::iter::once(outer).chain(inside).cloned().collect()
+fn islands(contours: &[Contour]) -> Vec<Vec<Contour>> {
+    let outer: Vec<&Contour> = contours.iter().filter(|c| double_area(c) > 0).collect();
+    let around = Around::new(outer.iter().copied().enumerate());
+    let mut islands: Vec<Vec<Contour>> = outer.iter().map(|&one| vec![one.clone()]).collect();
+    for hole in contours.iter().filter(|c| double_area(c) < 0) {
+        for k in hole.first().into_iter().flat_map(|&p| around.of(p)) {
+            islands[k].push(hole.clone());
+        }
+    }
+    islands
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::Point;
 
     #[test]
     fn an_island_thinner_than_a_bead_is_not_printed() {

@@ -9,7 +9,8 @@
 
 use super::Wall;
 use super::thin::{LIMIT, ONE_MORE};
-use crate::geom::{Contour, double_area, edges, encloses, polygon};
+use crate::geom::boxes::Around;
+use crate::geom::{Contour, double_area, edges, polygon};
 use crate::region::params::WallParams;
 use crate::units::{Coord, nearest};
 use std::f64::consts::PI;
@@ -24,10 +25,14 @@ const HALVINGS: usize = 7;
 
 /// The loops of the dots among `contours`, and the other contours. `None` if there are no dots.
 pub(super) fn dots(contours: &[Contour], params: &WallParams) -> Option<(Vec<Wall>, Vec<Contour>)> {
-    let holes: Vec<&Contour> = contours.iter().filter(|c| double_area(c) < 0).collect();
-    let has_hole = |contour| holes.iter().any(|hole| encloses(edges(contour), hole[0]));
-    let found = |contour| radius(contour, params).filter(|_| !has_hole(contour));
-    let radii: Vec<Option<f64>> = contours.iter().map(found).collect();
+    let mut radii: Vec<Option<f64>> = contours.iter().map(|c| radius(c, params)).collect();
+    if radii.iter().any(Option::is_some) {
+        // What has a hole is no dot.
+        let around = Around::new(contours.iter().enumerate().filter(|(k, _)| radii[*k].is_some()));
+        let holes = contours.iter().filter(|c| double_area(c) < 0);
+        let with_hole: Vec<usize> = holes.flat_map(|hole| around.of(hole[0])).collect();
+        with_hole.into_iter().for_each(|k| radii[k] = None);
+    }
     if radii.iter().all(Option::is_none) {
         return None;
     }

@@ -6,7 +6,7 @@
 use super::Layout;
 use super::middle::{Arc, is_ring};
 use crate::geom::segment::{along, dot, way};
-use crate::region::near::Near;
+use crate::region::near::{Area, Edge, Near};
 use crate::region::taper::distance;
 
 /// How far from its end the direction of a bead is measured, in line widths: its last place may lie
@@ -28,22 +28,31 @@ const LONGEST: f64 = 2.0;
 
 /// Lets the ends of `arcs` run on.
 pub(super) fn run_on(arcs: &mut [Arc], layout: &Layout<'_>) {
+    let around = |arc: &Arc| Area::around(arc.iter().map(|s| s.place.at), 0.0).corners();
+    let mut boxes: Vec<Edge> = arcs.iter().map(around).collect();
     for k in 0..arcs.len() {
         for _ in 0..2 {
-            if let Some(at) = end(&arcs[k], arcs, k, layout)
+            if let Some(at) = end(&arcs[k], (arcs, &boxes), k, layout)
                 && let Some(last) = arcs[k].last().copied()
             {
                 let mut further = last;
                 further.place.at = at;
                 arcs[k].push(further);
+                boxes[k] = around(&arcs[k]);
             }
             arcs[k].reverse();
         }
     }
 }
 
-/// Where arc `k` ends when it runs on from its last place. `None` if there is no room.
-fn end(arc: &Arc, all: &[Arc], k: usize, layout: &Layout<'_>) -> Option<[f64; 2]> {
+/// Where arc `k` of `all` ends when it runs on from its last place. `None` if there is no room. Each has a
+/// box around it.
+fn end(
+    arc: &Arc,
+    (all, boxes): (&[Arc], &[Edge]),
+    k: usize,
+    layout: &Layout<'_>,
+) -> Option<[f64; 2]> {
     let last = arc.last().filter(|_| !is_ring(arc))?;
     let (w, width) = (layout.line_width, last.place.width);
     let before = arc.iter().rev().find(|s| distance(s.place.at, last.place.at) >= BACK * w)?;
@@ -57,10 +66,11 @@ fn end(arc: &Arc, all: &[Arc], k: usize, layout: &Layout<'_>) -> Option<[f64; 2]
     if !inside(at(2)) {
         return None;
     }
-    let others =
-        all.iter().enumerate().filter(|(j, _)| *j != k).flat_map(|(_, arc)| arc.windows(2));
-    let others = Near::of_edges(others.map(|s| [s[0].place.at, s[1].place.at]).collect(), 2.0 * w);
     let most = LONGEST * f64::from(2 * last.loops + 1) * width / (STEP * w);
+    let reached = Area::around([at(0), at(most as usize)].into_iter(), BESIDE * width);
+    let is_other = |j: &usize| *j != k && reached.meets(&boxes[*j]);
+    let others = (0..all.len()).filter(is_other).flat_map(|j| all[j].windows(2));
+    let others = Near::of_edges(others.map(|s| [s[0].place.at, s[1].place.at]).collect(), 2.0 * w);
     let free = |&step: &usize| inside(at(step)) && others.is_free([at(step)], BESIDE * width);
     (1..most as usize).take_while(free).last().map(at)
 }

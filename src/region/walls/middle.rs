@@ -15,11 +15,12 @@
 //!    (`junctions`).
 
 use super::{Layout, Share, Wall};
+use crate::geom::nearest::Nearest;
 use crate::geom::segment::{along, dot, way};
 use crate::geom::{Contour, Point, edges, side};
 use crate::region::near::Near;
 use crate::region::taper::{Place, distance, tapered};
-use crate::units::Bounded as _;
+use crate::units::{Bounded as _, Coord, nearest as nearest_unit};
 
 /// Distance of samples along the contour, in line widths. A larger value cuts corners; a smaller
 /// one costs time.
@@ -219,22 +220,32 @@ fn arcs(lap: &[Option<Sample>], w: f64, wanted: impl Fn(&Sample) -> bool) -> Vec
 
 /// Joins arcs whose ends are neighbours, the nearest first for each arc in turn.
 fn join(arcs: &mut Vec<Arc>, w: f64) {
-    let mut k = 0;
-    while k < arcs.len() {
-        let Some((other, turn)) = nearest(arcs, k, NEIGHBOURS * w) else {
-            k += 1;
+    let most = NEIGHBOURS * w;
+    let mut ends = Nearest::new(arcs.iter().flat_map(ends_of).map(rounded).collect());
+    let mut gone = vec![false; arcs.len()];
+    for k in 0..arcs.len() {
+        if gone[k] {
             continue;
-        };
-        let mut more = arcs.remove(other);
-        if turn.1 {
-            more.reverse();
         }
-        let arc = &mut arcs[k];
-        if turn.0 {
-            arc.reverse();
+        ends.take(2 * k);
+        ends.take(2 * k + 1);
+        // Of those before it none is near; those after it are as they were.
+        while let Some((other, turn)) = nearest(arcs, k, (&ends, most)) {
+            let mut more = std::mem::take(&mut arcs[other]);
+            gone[other] = true;
+            ends.take(2 * other);
+            ends.take(2 * other + 1);
+            if turn.1 {
+                more.reverse();
+            }
+            let arc = &mut arcs[k];
+            if turn.0 {
+                arc.reverse();
+            }
+            arc.append(&mut more);
         }
-        arc.append(&mut more);
     }
+    arcs.retain(|arc| !arc.is_empty());
     for arc in arcs.iter_mut() {
         let ends = arc.first().zip(arc.last());
         let gap = ends.map_or(f64::MAX, |(a, b)| distance(a.place.at, b.place.at));
@@ -247,14 +258,31 @@ fn join(arcs: &mut Vec<Arc>, w: f64) {
     }
 }
 
+/// The ends of an arc, which has places.
+fn ends_of(arc: &Arc) -> [[f64; 2]; 2] {
+    let at = |sample: Option<&Sample>| sample.map_or([0.0; 2], |sample| sample.place.at);
+    [at(arc.first()), at(arc.last())]
+}
+
+/// The point of the grid at a place.
+fn rounded([x, y]: [f64; 2]) -> Point {
+    Point { x: nearest_unit(x) as Coord, y: nearest_unit(y) as Coord }
+}
+
 /// The arc after `k` with the end nearest to an end of arc `k`, and which of the two to reverse so
-/// that the second continues the first.
-fn nearest(arcs: &[Arc], k: usize, most: f64) -> Option<(usize, (bool, bool))> {
-    let ends = |arc: &Arc| Some([arc.first()?.place.at, arc.last()?.place.at]);
-    let here = ends(&arcs[k])?;
+/// that the second continues the first. `ends` are those of the arcs after `k`, two of each.
+fn nearest(arcs: &[Arc], k: usize, (ends, most): (&Nearest, f64)) -> Option<(usize, (bool, bool))> {
+    let here = ends_of(&arcs[k]);
+    // A grid unit more for rounding, on both sides.
+    let reach = most.ceil() as Coord + 2;
+    let by = |p: Point, by: Coord| Point { x: p.x + by, y: p.y + by };
+    let near = |at: [f64; 2]| ends.within((by(rounded(at), -reach), by(rounded(at), reach)));
+    let mut others: Vec<usize> = here.into_iter().flat_map(near).map(|end| end / 2).collect();
+    others.sort_unstable();
+    others.dedup();
     let mut best: Option<(f64, usize, (bool, bool))> = None;
-    for (j, arc) in arcs.iter().enumerate().skip(k + 1) {
-        let Some(there) = ends(arc) else { continue };
+    for j in others {
+        let there = ends_of(&arcs[j]);
         for turn in [(false, false), (false, true), (true, false), (true, true)] {
             let gap = distance(here[usize::from(!turn.0)], there[usize::from(turn.1)]);
             if gap <= best.map_or(most, |(least, ..)| least) && best.is_none_or(|b| gap < b.0) {

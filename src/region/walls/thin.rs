@@ -4,10 +4,12 @@
 //! beads in the room of one, up to twice the plastic. There the loop is cut off, and the room gets
 //! one bead (`super::middle`).
 
+use crate::geom::boxes::Around;
 use crate::geom::spans::{Rows, Span};
-use crate::geom::{Contour, double_area, edges, encloses, polygon};
+use crate::geom::{Contour, double_area, edges, polygon};
 use crate::region::params::WallParams;
 use crate::units::{Coord, nearest};
+use std::cell::LazyCell;
 
 /// Shorter thin places stay in a loop, in line widths: they are corners. With a smaller value
 /// corners lose their wall; with a larger one the strokes of small letters get both passes. A wedge
@@ -74,15 +76,19 @@ pub fn open(
     }
     let shrunk = polygon::inset(&rest, half);
     // Of a loop without anything left inside it, all is thin: a strip, a bulge of one, or a dot.
-    let vanishes = |path: &Contour| {
+    let outers = outers(&rest);
+    let mut holds = vec![false; rest.len()];
+    shrunk.iter().flat_map(|inner| outers.of(inner[0])).for_each(|k| holds[k] = true);
+    let dots = LazyCell::new(|| Around::new(outer.iter().enumerate()));
+    let vanishes = |(k, path): (usize, &Contour)| {
         double_area(path) > 0
-            && !shrunk.iter().any(|inner| encloses(edges(path), inner[0]))
-            && (perimeter(path) >= 2.0 * short || !is_dot(path, outer, distance))
+            && !holds[k]
+            && (perimeter(path) >= 2.0 * short || !is_dot(path, (outer, &dots), distance))
     };
-    let vanished: Vec<bool> = rest.iter().map(vanishes).collect();
+    let vanished: Vec<bool> = rest.iter().enumerate().map(vanishes).collect();
     let cut = vanished.contains(&true);
     if cut {
-        let left = (0..rest.len()).filter(|&k| !vanished[around(&rest, k)]);
+        let left = (0..rest.len()).filter(|&k| !vanished[around(&rest, &outers, k)]);
         rest = left.map(|k| rest[k].clone()).collect();
     }
     if rest.is_empty() {
@@ -106,7 +112,9 @@ fn sorted_out(
     loops: Vec<Contour>,
     good: impl Fn(&[Contour]) -> bool,
 ) -> (Vec<Contour>, Vec<Contour>) {
-    let mut order: Vec<(usize, usize)> = (0..loops.len()).map(|k| (around(&loops, k), k)).collect();
+    let outers = outers(&loops);
+    let mut order: Vec<(usize, usize)> =
+        (0..loops.len()).map(|k| (around(&loops, &outers, k), k)).collect();
     order.sort_unstable();
     let is_good = |group: &[(usize, usize)]| match group {
         [(_, only)] => good(std::slice::from_ref(&loops[*only])),
@@ -123,22 +131,25 @@ fn sorted_out(
     (loops_of(kept), loops_of(rest))
 }
 
-/// The index of the smallest loop around the hole `k`; an outer loop's own.
-fn around(loops: &[Contour], k: usize) -> usize {
+/// Those of `loops` that are no holes.
+fn outers(loops: &[Contour]) -> Around<'_> {
+    Around::new(loops.iter().enumerate().filter(|(_, path)| double_area(path) > 0))
+}
+
+/// The index of the smallest of the `outers` around the hole `k`; an outer loop's own.
+fn around(loops: &[Contour], outers: &Around<'_>, k: usize) -> usize {
     let path = &loops[k];
     if double_area(path) > 0 {
         return k;
     }
-    let outer = loops.iter().enumerate().filter(|(_, c)| double_area(c) > 0);
-    let holds = outer.filter(|(_, c)| encloses(edges(c), path[0]));
-    holds.min_by_key(|(j, c)| (double_area(c), *j)).map_or(k, |(j, _)| j)
+    outers.of(path[0]).min_by_key(|&j| (double_area(&loops[j]), j)).unwrap_or(k)
 }
 
 /// Whether a short loop is all there is inside a contour of `outer`, and not a bulge of a strip. Around
 /// a convex contour the way is longer by at most eight times the `distance`.
-fn is_dot(path: &Contour, outer: &[Contour], distance: Coord) -> bool {
+fn is_dot(path: &Contour, (outer, around): (&[Contour], &Around<'_>), distance: Coord) -> bool {
     let most = perimeter(path) + 10.0 * f64::from(distance);
-    outer.iter().any(|c| perimeter(c) <= most && encloses(edges(c), path[0]))
+    around.of(path[0]).any(|k| perimeter(&outer[k]) <= most)
 }
 
 fn perimeter(contour: &Contour) -> f64 {

@@ -1,0 +1,67 @@
+//! Error of a run -> the report of its failure, where the report of its success would have been.
+//!
+//! Whatever ends a run, no report of an earlier one is left that could be taken for its own: one that is
+//! there is replaced as the run begins, since a killed run cannot do it any more.
+
+use super::output::{self, Sink};
+use super::{failure, interrupt, say};
+use anyhow::{Context as _, Result};
+use slicer::report::failure::Failure;
+use std::fs;
+use std::io::Write as _;
+use std::path::Path;
+
+/// Exit code, as shells have it, of a program that the system kills: 128 + SIGKILL.
+const KILLED: u8 = 137;
+
+/// From now on, whatever ends this run is reported at `path`: see [`tell`] for what ends it in the
+/// usual way. A report that is there says from now on that the run has not ended.
+pub(super) fn promise(path: &Path) {
+    if fs::metadata(path).is_ok_and(|data| data.is_file()) && !path.starts_with("/dev") {
+        // If it cannot be written, that is told as soon as it is opened for the report itself.
+        let _ = write(path, None, &Failure::unfinished(KILLED));
+    }
+    let path = path.to_owned();
+    // The program ends with another message already.
+    interrupt::report_by(Box::new(move |failed| drop(write(&path, None, failed))));
+}
+
+/// Reports that the run failed, in place of what an earlier run reported. `sink` is that of its report,
+/// if nothing was written to it.
+pub(super) fn tell(path: &Path, sink: Option<Sink>, error: &anyhow::Error) {
+    let code = failure::exit_code(error);
+    let failed = Failure::new(code, failure::line(error), failure::details(error));
+    if let Err(second) = write(path, sink, &failed) {
+        let line = failure::line(&second);
+        // What keeps the report from being written may be why the run failed.
+        if line != failure::line(error) {
+            say(&format!("error: the report of this failure: {line}\n"));
+        }
+    }
+}
+
+/// # Errors
+/// [`failure::Output`].
+fn write(path: &Path, sink: Option<Sink>, failed: &Failure) -> Result<()> {
+    let text = output::json(failed, path)?;
+    let mut sink = match sink {
+        Some(sink) => sink,
+        // Its reader was there once, and may be gone: to open it again might wait for ever.
+        None if is_pipe(path) => return Ok(()),
+        None => Sink::open(path)?,
+    };
+    let written = sink.write_all(text.as_bytes()).and_then(|()| sink.flush());
+    written.with_context(|| failure::writing(path))?;
+    sink.commit_at_last()
+}
+
+#[cfg(unix)]
+fn is_pipe(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt as _;
+    fs::metadata(path).is_ok_and(|data| data.file_type().is_fifo())
+}
+
+#[cfg(not(unix))]
+fn is_pipe(_: &Path) -> bool {
+    false
+}

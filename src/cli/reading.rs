@@ -1,0 +1,66 @@
+//! G-code file and `--firmware`, `--max-moves`, `-p` -> the file, open, and by whose rules it is read.
+
+use super::input;
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use slicer::profile::Settings;
+use slicer::reader::{Cause, DEFAULT_MAX_MOVES, Error, Firmware, Reading, Source};
+use std::ffi::OsStr;
+
+/// How a G-code file is read.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Reading")]
+pub(crate) struct ReadingArgs {
+    /// Read G-code by this firmware's rules [default: the profile's, else what the file says it is for]
+    #[arg(hide_short_help = true, long, value_name = "NAME", value_parser = PossibleValuesParser::new(Firmware::NAMES))]
+    firmware: Option<String>,
+    /// Refuse a file with more moves; all lines count that are no comments
+    #[arg(hide_short_help = true, long, value_name = "N", default_value_t = DEFAULT_MAX_MOVES, value_parser = clap::value_parser!(u64).range(1..))]
+    max_moves: u64,
+}
+
+/// A G-code file that is open.
+pub(super) struct Opened {
+    /// For messages.
+    pub(super) name: String,
+    pub(super) source: Source,
+    /// What it says of how it is to be read.
+    pub(super) says: Reading,
+    /// The last of its comments.
+    pub(super) tail: Vec<u8>,
+}
+
+impl Opened {
+    /// The error of a file that cannot be read on.
+    pub(super) fn unreadable(&self, error: std::io::Error) -> Error {
+        Cause::Unreadable(error).of(&self.name)
+    }
+}
+
+impl ReadingArgs {
+    /// Opens a file, `-` being standard input.
+    ///
+    /// # Errors
+    /// [`Cause::Unreadable`], [`Cause::Device`], [`Cause::TooLong`] of standard input.
+    pub(super) fn open(&self, file: &OsStr) -> Result<Opened, Error> {
+        let (name, source) = input::open(file, self.max_moves)?;
+        let [head, tail] = source.ends().map_err(|error| Cause::Unreadable(error).of(&name))?;
+        let says = Reading::of_parts(&head, &tail);
+        let tail = if tail.is_empty() { head } else { tail };
+        Ok(Opened { name, source, says, tail })
+    }
+
+    /// By whose rules a file is read: those of the flag, else those of the machine that `-p` names, else
+    /// what the file `says`.
+    pub(super) fn of(&self, machine: Option<&Settings>, says: Reading) -> Reading {
+        let own = machine.map(input::firmware);
+        let told = self.firmware.as_deref().and_then(Firmware::named).map(|told| match own {
+            // The profile knows more of the same firmware.
+            Some(own) if own.name() == told.name() => own,
+            _ => told,
+        });
+        let by_machine = machine.map_or(0.0, |settings| settings.filament.diameter);
+        let volumes = says.volumes.map(|says| if says > 0.0 { says } else { by_machine });
+        Reading { firmware: told.or(own).unwrap_or(says.firmware), volumes }
+    }
+}

@@ -1,0 +1,124 @@
+//! Settings -> findings: values that are allowed and hardly meant, or more than printer and material bear.
+
+use crate::profile::Settings;
+use crate::warning::Warning;
+
+/// Multipliers of the flow that are used to calibrate an extruder; others are hardly meant.
+const FLOWS: [f64; 2] = [0.7, 1.4];
+
+/// No nozzle is hotter, °C.
+const MOST_CELSIUS: f64 = 500.0;
+
+/// Speeds, flow and temperatures to think about again.
+#[must_use]
+pub fn warnings(settings: &Settings) -> Vec<Warning> {
+    let mut found: Vec<Warning> = slow(settings).collect();
+    found.extend(fast(settings));
+    found.extend(heat(settings));
+    let flow = ("extrusion.multiplier", settings.extrusion.multiplier, "times");
+    found.extend(outside(flow, FLOWS, "what makes up for a filament or an extruder"));
+    found
+}
+
+/// Speeds that are hardly meant.
+fn slow(settings: &Settings) -> impl Iterator<Item = Warning> {
+    settings
+        .slow_speeds()
+        .into_iter()
+        .map(|(setting, speed_mm_s)| Warning::SlowSpeed { setting: setting.to_owned(), speed_mm_s })
+}
+
+/// Speeds that the printer goes below, whatever it is told.
+fn fast(settings: &Settings) -> impl Iterator<Item = Warning> {
+    let (speed, limits) = (&settings.speed, &settings.limits);
+    let flat = limits.speed_x.max(limits.speed_y);
+    [
+        ("speed.z", speed.z, limits.speed_z, "what limits.speed_z lets the printer do"),
+        ("speed.travel", speed.travel, flat, "what limits.speed_x and speed_y let the printer do"),
+        (
+            "retraction.speed",
+            settings.retraction.speed,
+            limits.speed_e,
+            "what limits.speed_e lets the printer do",
+        ),
+    ]
+    .into_iter()
+    .filter_map(|(key, asked, most, what)| outside((key, asked, "mm/s"), [0.0, most], what))
+}
+
+/// Temperatures that the material is not made for.
+fn heat(settings: &Settings) -> impl Iterator<Item = Warning> {
+    let filament = &settings.filament;
+    let least = filament.min_temperature.unwrap_or(0.0);
+    let range = [least, filament.max_temperature.unwrap_or(MOST_CELSIUS)];
+    let what = format!(
+        "what {} is printed at (filament.min_temperature, filament.max_temperature)",
+        filament.name
+    );
+    let first = ("filament.first_layer_temperature", filament.first_layer_temperature);
+    let own = ("filament.temperature", Some(filament.temperature));
+    [own, first].into_iter().filter_map(move |(key, celsius)| {
+        celsius.and_then(|celsius| outside((key, celsius, "°C"), range, &what))
+    })
+}
+
+/// The finding that a value lies outside a range, if it does.
+fn outside(
+    (setting, value, unit): (&str, f64, &str),
+    [least, most]: [f64; 2],
+    what: &str,
+) -> Option<Warning> {
+    (value < least || value > most).then(|| Warning::OutsideRange {
+        setting: setting.to_owned(),
+        value,
+        unit: unit.to_owned(),
+        least,
+        most,
+        what: what.to_owned(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile::{Override, ValueOrigin, builtin_names, load};
+
+    /// What is said of these settings of generic-marlin.
+    fn told(set: &[(&str, &str)]) -> Vec<String> {
+        let given = |(key, value): &(&str, &str)| Override {
+            key: (*key).to_owned(),
+            value: (*value).to_owned(),
+            origin: ValueOrigin::Set,
+        };
+        let overrides: Vec<Override> = set.iter().map(given).collect();
+        let settings = load(["generic-marlin"], &overrides).unwrap().settings;
+        warnings(&settings).iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn nothing_shipped_is_doubtful() {
+        for name in builtin_names() {
+            let settings = load([name], &[]).unwrap().settings;
+            assert_eq!(warnings(&settings), [], "{name}");
+        }
+    }
+
+    #[test]
+    fn each_value_is_told_with_its_range() {
+        for (key, value, expected) in [
+            ("extrusion.multiplier", "5", "extrusion.multiplier = 5 times lies outside 0.7 to 1.4"),
+            (
+                "filament.temperature",
+                "290",
+                "filament.temperature = 290 °C lies outside 180 to 235",
+            ),
+            ("speed.z", "100", "speed.z = 100 mm/s lies outside 0 to 16.667"),
+            ("speed.travel", "400", "speed.travel = 400 mm/s lies outside 0 to 300"),
+            ("speed.skin", "1", "speed.skin = 1 is very slow"),
+        ] {
+            let told = told(&[(key, value)]);
+            assert!(told.len() == 1 && told[0].starts_with(expected), "{told:?}");
+        }
+        assert!(told(&[]).is_empty());
+    }
+}
