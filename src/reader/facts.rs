@@ -294,6 +294,7 @@ impl Gatherer {
         self.end();
         if self.has_priming() {
             self.facts.layers.remove(0);
+            self.flows.remove(0);
             self.facts.begun -= 1;
         }
         let mut facts = self.facts;
