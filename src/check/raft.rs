@@ -8,7 +8,7 @@
 use super::part::Part;
 use super::survey::{Extent, Survey};
 use crate::mesh::Mesh;
-use crate::reader::Facts;
+use crate::reader::{Facts, Role};
 use crate::units::to_mm;
 
 /// Share of a raft's height by which the print must be higher than the part. What of the part's tip is too
@@ -18,6 +18,16 @@ const LEAST: f64 = 0.5;
 /// No raft is higher, mm; and how far it reaches beyond the part at least.
 const HIGHEST: f64 = 5.0;
 const WIDER: f64 = 0.8;
+
+/// Keys under which slicers write that there is support, or of how many layers a raft is.
+pub(super) const SUPPORT: &str = "support_material";
+pub(super) const RAFT: &str = "raft_layers";
+
+/// Whether a file has something by one of its settings, and does not tell which lines it is.
+pub(super) fn is_untold(facts: &Facts, key: &str) -> bool {
+    let is_set = facts.value(key).is_some_and(|value| !matches!(value, "" | "0"));
+    is_set && !facts.has(Role::OuterWall)
+}
 
 /// From the bed to the part's bottom, mm; 0 without a raft.
 pub(super) fn lift((facts, survey): (&Facts, &Survey), mesh: &Mesh) -> f64 {

@@ -25,6 +25,7 @@ use super::ground::{Carrier, Ground};
 use super::laid::{Laid, SUPPORT_GAP};
 use super::lay::{Judge, Judged, Measured, Patch, chains_of, is_ironing};
 use super::part::Part;
+use super::raft;
 use super::survey::Survey;
 use super::window::Window;
 use crate::reader::print::Step;
@@ -34,15 +35,6 @@ use std::ops::Range;
 
 /// How far below the lower side of a line something may stand that carries it, mm.
 const MOST_BELOW: f64 = SUPPORT_GAP + 1e-3;
-
-/// Keys under which slicers write that there is support or a raft.
-const SUPPORT_KEYS: &[&str] = &["support_material", "raft_layers"];
-
-/// Whether a file by its settings has support or a raft, and does not tell which lines those are.
-fn has_untold_support(facts: &Facts) -> bool {
-    let is_set = |key: &&str| facts.value(key).is_some_and(|value| !matches!(value, "" | "0"));
-    !facts.has(Role::OuterWall) && SUPPORT_KEYS.iter().any(is_set)
-}
 
 /// All layers so far, and what stands of them.
 pub(super) struct Stack<'a> {
@@ -65,7 +57,9 @@ impl<'a> Stack<'a> {
     pub(super) fn new(facts: &Facts, part: Option<&'a Part>) -> Self {
         Self {
             part,
-            untold_support: has_untold_support(facts),
+            untold_support: [raft::SUPPORT, raft::RAFT]
+                .iter()
+                .any(|key| raft::is_untold(facts, key)),
             measured: Measured::default(),
             bodies: Bodies::default(),
             firsts: Vec::new(),

@@ -11,6 +11,9 @@
 //! ```sh
 //! UPDATE_WITNESS=1 HOSTILE_CASES=1000 cargo test --release --test hostile witness
 //! ```
+//!
+//! `WITNESS_ONLY=bridge` tries the kinds with that word alone; `WITNESS_KEEP=folder` writes what
+//! `check` did not see there, to look at.
 
 use super::common;
 use super::edits::{self, What};
