@@ -68,7 +68,7 @@ pub(super) fn place(
     has_roles: bool,
     (found, notes): (&mut Findings, &mut Vec<String>),
 ) -> Option<Part> {
-    if raft::is_untold(facts, raft::SUPPORT) {
+    if [raft::SUPPORT, raft::RAFT].iter().any(|key| raft::is_untold(facts, key)) {
         notes.push("the part: the file has support, and does not tell which lines it is".into());
         return None;
     }

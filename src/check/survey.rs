@@ -197,9 +197,7 @@ impl Survey {
             if is_of_part(step, true) {
                 bottom = bottom.min(low);
             }
-            if !has_roles {
-                lines = lines.max(f64::from(step.height));
-            }
+            lines = lines.max(if has_roles { 0.0 } else { f64::from(step.height) });
             if step.role == Role::OuterWall {
                 walls = walls.max(f64::from(step.height));
                 of_walls = both(of_walls, Some(covered));
