@@ -68,12 +68,15 @@ pub(super) fn place(
     has_roles: bool,
     (found, notes): (&mut Findings, &mut Vec<String>),
 ) -> Option<Part> {
+    if [raft::SUPPORT, raft::RAFT].iter().any(|key| raft::is_untold(facts, key)) {
+        notes.push("the part: the file has support, and does not tell which lines it is".into());
+        return None;
+    }
     // A layer above a gap is no higher than its lines.
     let layers = facts.layers.iter().zip(&survey.heights);
     let heights: Vec<(f64, f64)> = layers.map(|(layer, height)| (layer.z, *height)).collect();
-    let seen = || if has_roles { raft::lift(survey, model.mesh) } else { 0.0 };
-    let lift = terms.lift.unwrap_or_else(seen);
-    let mut part = match Part::new(model.mesh, (model.offset, lift), &heights) {
+    let (made, lift) = lifted((facts, survey), (model, terms), has_roles, &heights);
+    let mut part = match made {
         Ok(part) => part,
         Err(layer) => {
             notes.push(format!(
@@ -119,6 +122,26 @@ pub(super) fn place(
     Some(part)
 }
 
+/// The model cut at layers of these tops and heights, as high as a raft lifts it, and how far that is, mm.
+fn lifted(
+    (facts, survey): (&Facts, &Survey),
+    (model, terms): (Model<'_>, &Terms),
+    has_roles: bool,
+    heights: &[(f64, f64)],
+) -> (Result<Part, usize>, f64) {
+    let seen = || if has_roles { raft::lift((facts, survey), model.mesh) } else { 0.0 };
+    let lift = terms.lift.unwrap_or_else(seen);
+    let made = Part::new(model.mesh, (model.offset, lift), heights);
+    let untold = match &made {
+        Ok(part) if !has_roles && terms.lift.is_none() => raft::untold_lift((facts, survey), part),
+        _ => 0.0,
+    };
+    if untold > 0.0 {
+        return (Part::new(model.mesh, (model.offset, untold), heights), untold);
+    }
+    (made, lift)
+}
+
 /// What part of the outer walls lies along the model's outline, or of the outline along outer walls:
 /// whichever is more. Files call inner walls that hang the same as outer ones, and leave thin places
 /// without walls.
@@ -127,6 +150,10 @@ fn fit(survey: &Survey, part: &Part, has_roles: bool) -> f64 {
     let lattice = Lattice::new(ROWS.0, high[1] - low[1], ROWS.1);
     let mut shares = [[0.0; 2]; 2];
     for (index, moves) in &survey.looked_at {
+        // A raft that nobody calls so.
+        if !has_roles && part.extent_of(*index).is_none() {
+            continue;
+        }
         let cut = part.section(*index, lattice);
         let near = cut.along(lattice, BAND[0]);
         let mut band = cut.inside.or(&near);

@@ -177,7 +177,7 @@ impl<'a> Judge<'a> {
             has_roles,
             is_absurd: false,
             moves: Moves::new(facts, terms),
-            stack: Stack::new(part),
+            stack: Stack::new(facts, part),
             surfaces: part.and_then(|part| Surfaces::new(part, (survey, terms), has_roles)),
             field: Field::over(survey).filter(|_| has_roles),
             contacts: Contacts::default(),

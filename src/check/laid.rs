@@ -206,6 +206,13 @@ struct Field {
 }
 
 impl Laid {
+    /// All of it may carry with the gap of support.
+    pub(super) fn as_support(mut self) -> Self {
+        self.beads.iter_mut().for_each(|bead| bead.is_support = true);
+        self.top = self.beads.iter().map(Bead::top).fold(self.top, f64::max);
+        self
+    }
+
     /// Of the chains of a layer, by its moves.
     pub(super) fn new(moves: &[Step], chains: impl Iterator<Item = Range<usize>>) -> Self {
         let mut laid = Self::default();

@@ -191,6 +191,12 @@ fn is_numbered(word: &str) -> bool {
     (1..=MOST_DIGITS).contains(&digits)
 }
 
+/// Whether the printer heats before it reads the file: an Ultimaker 2, which takes E for volumes, by its
+/// menu, an Ultimaker 3 by the file's head.
+fn heats_by_itself(facts: &Facts) -> bool {
+    facts.summary.volumes_by > 0.0 || facts.head.iter().any(|text| text == "FLAVOR:Griffin")
+}
+
 /// What is known after the moves so far.
 struct Walk<'a> {
     facts: &'a Facts,
@@ -235,7 +241,7 @@ impl<'a> Walk<'a> {
             at: [0.0; 3],
             layer: None,
             printing: facts.start.end..facts.last_line.max(facts.start.end),
-            heat: if facts.summary.volumes_by > 0.0 { Heat::by_printer() } else { Heat::default() },
+            heat: if heats_by_itself(facts) { Heat::by_printer() } else { Heat::default() },
             stranger: None,
             heated_by_macro: None,
             is_cold_reported: false,

@@ -25,10 +25,11 @@ use super::ground::{Carrier, Ground};
 use super::laid::{Laid, SUPPORT_GAP};
 use super::lay::{Judge, Judged, Measured, Patch, chains_of, is_ironing};
 use super::part::Part;
+use super::raft;
 use super::survey::Survey;
 use super::window::Window;
-use crate::reader::Role;
 use crate::reader::print::Step;
+use crate::reader::{Facts, Role};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -38,6 +39,8 @@ const MOST_BELOW: f64 = SUPPORT_GAP + 1e-3;
 /// All layers so far, and what stands of them.
 pub(super) struct Stack<'a> {
     part: Option<&'a Part>,
+    /// Whether any line may be support: the file has some, and does not tell which.
+    untold_support: bool,
     measured: Measured,
     bodies: Bodies,
     /// The first chain of each layer.
@@ -51,9 +54,12 @@ pub(super) struct Stack<'a> {
 
 impl<'a> Stack<'a> {
     /// Nothing yet. Where `part` itself has nothing below, a hanging line is no missing layer.
-    pub(super) fn new(part: Option<&'a Part>) -> Self {
+    pub(super) fn new(facts: &Facts, part: Option<&'a Part>) -> Self {
         Self {
             part,
+            untold_support: [raft::SUPPORT, raft::RAFT]
+                .iter()
+                .any(|key| raft::is_untold(facts, key)),
             measured: Measured::default(),
             bodies: Bodies::default(),
             firsts: Vec::new(),
@@ -68,7 +74,8 @@ impl<'a> Stack<'a> {
         let laid = batch.clone().into_par_iter().map(|layer| {
             let moves = window.moves(layer);
             let chains = chains_of(moves).filter(|chain| !is_ironing(&moves[chain.start]));
-            Some(Laid::new(moves, chains))
+            let laid = Laid::new(moves, chains);
+            Some(if self.untold_support { laid.as_support() } else { laid })
         });
         self.kept.extend(laid.collect::<Vec<_>>());
         for layer in batch {

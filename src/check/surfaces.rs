@@ -99,6 +99,9 @@ impl<'a> Surfaces<'a> {
         let judged = layers.clone().into_par_iter().map(|index| {
             let k = index - layers.start;
             let three = &cuts[k..k + 3];
+            if survey.between[index] {
+                return Verdict::default();
+            }
             let is_sure = three.iter().all(|cut| cut.closes)
                 && (terms.is_own
                     || !(index.saturating_sub(1)..=index + 1)

@@ -26,6 +26,12 @@ const LAYERS_LOOKED_AT: usize = 16;
 /// a missing layer is a whole height.
 const LEAST_GAP: f64 = 0.4;
 
+/// How far heights of lines and layers may be rounded apart, mm.
+const ROUNDED: f64 = 0.02;
+
+/// The least distance of two cuts, mm.
+const APART: f64 = 1e-3;
+
 /// Lowest and highest x and y, mm.
 pub(super) type Extent = Option<([f64; 2], [f64; 2])>;
 
@@ -34,13 +40,17 @@ pub(super) type Extent = Option<([f64; 2], [f64; 2])>;
 pub(super) struct Survey {
     /// How high outer walls are at most, mm; 0 without one.
     walls: Vec<f64>,
-    /// How high its lines are, mm.
+    /// How high its lines are where no comment tells what they are for, mm; else 0.
+    lines: Vec<f64>,
+    /// How high it is for the part, mm.
     pub(super) heights: Vec<f64>,
     /// See the words of this file, mm.
     pub(super) gaps: Vec<f64>,
     pub(super) floors: Vec<f64>,
     /// How low lines of the part reach, mm; endless without one.
     pub(super) bottoms: Vec<f64>,
+    /// Whether it is support alone, between two layers of the part that lie on one another.
+    pub(super) between: Vec<bool>,
     /// What outer walls cover, or else lines of the part.
     pub(super) outlines: Vec<Extent>,
     /// Lines of other layers that lie at its height.
@@ -105,13 +115,7 @@ impl Survey {
             floor = floor.min(*own);
             *own = floor;
         }
-        for (layer, walls) in facts.layers.iter().zip(&survey.walls) {
-            let missing = layer.height - walls;
-            let is_gap = facts.has_heights && *walls > 0.0 && missing > LEAST_GAP * walls;
-            let gap = if is_gap { missing } else { 0.0 };
-            survey.gaps.push(gap);
-            survey.heights.push(layer.height - gap);
-        }
+        survey.set_heights(facts);
         survey.line_width = widths.median().unwrap_or(SOME_WIDTH);
         survey.usual = plastic.map(|[ratio, thick]| {
             let enough = ratio.count >= beads::LEAST_LINES;
@@ -119,6 +123,35 @@ impl Survey {
             ratio.median().filter(|_| enough).and_then(usual)
         });
         Ok(survey)
+    }
+
+    /// How high layers are for the part: where layers of support alone lie between two of its own, as high
+    /// as they lie above the part's one below. A layer above a gap is no higher than its lines.
+    fn set_heights(&mut self, facts: &Facts) {
+        self.between = between(facts, &self.bottoms);
+        let mut below = 0.0;
+        for (k, (layer, walls)) in facts.layers.iter().zip(&self.walls).enumerate() {
+            let is_above = k > 0 && self.between[k - 1] && !self.between[k];
+            let own = if self.lines[k] > layer.height { self.lines[k] } else { layer.height };
+            let rise = if is_above { layer.z - below } else { own };
+            let missing = rise - walls;
+            let is_gap = facts.has_heights && *walls > 0.0 && missing > LEAST_GAP * walls;
+            let gap = if is_gap { missing } else { 0.0 };
+            self.gaps.push(gap);
+            self.heights.push(rise - gap);
+            if !self.between[k] {
+                below = layer.z;
+            }
+        }
+        // Cuts rise: that of support alone lies below the next one of the part.
+        let mut above = f64::INFINITY;
+        for (k, layer) in facts.layers.iter().enumerate().rev() {
+            let cut = layer.z - self.heights[k] / 2.0;
+            if self.between[k] && cut >= above - APART {
+                self.heights[k] = 2.0 * (layer.z - (above - APART));
+            }
+            above = layer.z - self.heights[k] / 2.0;
+        }
     }
 
     /// Whether a layer has an outer wall.
@@ -129,6 +162,7 @@ impl Survey {
     fn page(&mut self, facts: &Facts, page: &Page<'_>) {
         let has_roles = facts.has(Role::OuterWall);
         let (mut walls, mut floor, mut bottom) = (0.0_f64, f64::INFINITY, f64::INFINITY);
+        let mut lines = 0.0_f64;
         let (mut of_walls, mut of_part) = (None, None);
         for (index, step) in (page.first..).zip(page.moves.iter()) {
             if index < facts.last_line {
@@ -163,6 +197,7 @@ impl Survey {
             if is_of_part(step, true) {
                 bottom = bottom.min(low);
             }
+            lines = lines.max(if has_roles { 0.0 } else { f64::from(step.height) });
             if step.role == Role::OuterWall {
                 walls = walls.max(f64::from(step.height));
                 of_walls = both(of_walls, Some(covered));
@@ -177,6 +212,7 @@ impl Survey {
         }
         if page.layer.is_some() {
             self.walls.push(walls);
+            self.lines.push(lines);
             self.floors.push(floor);
             self.bottoms.push(bottom);
             self.outlines.push(of_walls.or(of_part));
@@ -186,6 +222,24 @@ impl Survey {
 
 fn flat(at: [f32; 3]) -> [f64; 2] {
     [f64::from(at[0]), f64::from(at[1])]
+}
+
+/// Which layers are support alone between two of the part, the upper of which lies on the lower.
+fn between(facts: &Facts, bottoms: &[f64]) -> Vec<bool> {
+    let mut between = vec![false; bottoms.len()];
+    let mut below = None;
+    for (k, layer) in facts.layers.iter().enumerate() {
+        let Some(last) = below.filter(|last| last + 1 < k && bottoms[k].is_finite()) else {
+            below = if bottoms[k].is_finite() { Some(k) } else { below };
+            continue;
+        };
+        let top = facts.layers[last].z;
+        if bottoms[k] <= top + ROUNDED && layer.z > top {
+            between[last + 1..k].fill(true);
+        }
+        below = Some(k);
+    }
+    between
 }
 
 /// What either covers.

@@ -9,6 +9,8 @@
 //!    often have their lines in the same or in the opposite order, then by a grid.
 //! 2. Each covers a part of the line. What no part covers is far; what only parts with another amount
 //!    of filament cover is unlike. Both are summed up exactly.
+//!    Of lines with the same ends each has one counterpart: a line that is drawn twice where the other file
+//!    draws it once is unlike.
 //! 3. The farthest place of all is searched in the gaps by branch and bound: the gap with the
 //!    highest ceiling is halved and measured in the middle, until no ceiling exceeds the farthest
 //!    place known. A ceiling follows from the ends: a distance grows no faster than the way, and to a
@@ -113,6 +115,8 @@ struct Search<'a> {
     grid: OnceCell<Grid<'a>>,
     /// The last of the others that was a counterpart.
     last: usize,
+    /// Which of the others are counterparts of lines with the same ends already.
+    taken: Vec<bool>,
     /// Others that may be near a line.
     near: Vec<usize>,
     /// Gaps in which the farthest place is searched.
@@ -147,6 +151,7 @@ impl<'a> Search<'a> {
             share,
             grid: OnceCell::new(),
             last: usize::MAX,
+            taken: vec![false; others.len()],
             near: Vec::new(),
             open: Vec::new(),
             marks: Vec::new(),
@@ -168,7 +173,8 @@ impl<'a> Search<'a> {
     fn line(&mut self, line: &'a Line) {
         // Lines often follow in the same order in both files, or in the opposite one.
         for guess in [self.last.wrapping_add(1), self.last.wrapping_sub(1)] {
-            if self.covered(line, guess).is_some_and(|covered| covered.is_all()) {
+            let covered = self.covered(line, guess);
+            if covered.is_some_and(|covered| covered.is_all()) && self.take(line, guess) {
                 self.last = guess;
                 return;
             }
@@ -178,18 +184,38 @@ impl<'a> Search<'a> {
         self.grid().near(line, self.reach, &mut |index| near.push(index));
         near.sort_unstable();
         near.dedup();
-        let mut covered = Vec::new();
+        let (mut covered, mut taken) = (Vec::new(), None);
         for &index in &near {
             let Some(one) = self.covered(line, index) else { continue };
-            if one.is_all() {
+            if one.is_all() && self.take(line, index) {
                 self.last = index;
                 self.near = near;
                 return;
             }
+            taken = taken.or(one.is_all().then_some(index));
             covered.push(one);
         }
         self.near = near;
-        self.judge(line, &covered);
+        match taken {
+            Some(index) => self.twice(line, index),
+            None => self.judge(line, &covered),
+        }
+    }
+
+    /// Whether another line may be a counterpart: not if it has the same ends and is one already.
+    fn take(&mut self, line: &Line, by: usize) -> bool {
+        // Ways without plastic may be gone again.
+        let is_twin = line.flow > 0.0 && line.has_ends_of(&self.others[by], self.reach);
+        !is_twin || !std::mem::replace(&mut self.taken[by], true)
+    }
+
+    /// The other file draws a line once which this one draws again: with it there is twice the plastic.
+    fn twice(&mut self, line: &Line, by: usize) {
+        self.marks.push(line.mark([0.0, 1.0]));
+        self.found.unlike += line.length;
+        let double = Line { flow: 2.0 * line.flow, ..*line };
+        let all = Covered { part: [0.0, 1.0], by, as_thick: false };
+        self.offer_unlike(&double, &all);
     }
 
     /// Adds up what is not covered, or not by lines as thick.
@@ -374,6 +400,19 @@ mod tests {
         assert_eq!(found.most_unlike.unwrap().share(), 0.5);
         // With a thin one there, too, it has its counterpart.
         assert_eq!(apart(&[thin], &[thick, thin], 0.01, 0.001).unlike, 0.0);
+    }
+
+    #[test]
+    fn a_line_that_is_drawn_again_has_no_counterpart() {
+        let [one, other] = [line([0.0, 0.0], [10.0, 0.0]), line([0.0, 1.0], [10.0, 1.0])];
+        let back = line([10.0, 0.0], [0.0, 0.0]);
+        for again in [one, back] {
+            let found = apart(&[one, other, again], &[one, other], 0.01, 0.001);
+            assert_eq!((found.far, found.unlike), (0.0, 10.0));
+            assert_eq!(found.most_unlike.unwrap().share(), 0.5);
+            let twice = [other, again, one];
+            assert_eq!(apart(&[one, other, again], &twice, 0.01, 0.001).unlike, 0.0);
+        }
     }
 
     #[test]

@@ -27,6 +27,9 @@ const FILAMENT_ROUNDING: f64 = 2e-5;
 /// Rounding of a coordinate with three decimals, mm; two of them make a difference.
 const PLACE_ROUNDING: f64 = 1e-3;
 
+/// A line has to be so many times as long as places may be apart to be known by its ends.
+const SHORT: f64 = 10.0;
+
 /// A straight line of plastic, or a way without. Places are seen from an origin: heights are above the
 /// layer, and a print that moved as a whole lies where it was.
 #[derive(Debug, Clone, Copy)]
@@ -88,6 +91,15 @@ impl Line {
         let w = way(other.from, self.from);
         let ends = joined(within(w, u, reach), within(way(v, w), u, reach));
         joined(ends, part_beside(w, u, v, reach))
+    }
+
+    /// Whether both begin and end at the same places, in this or the other order. Lines that are not much
+    /// longer than `reach` are not told apart so.
+    pub(super) fn has_ends_of(&self, other: &Self, reach: f64) -> bool {
+        let near = |a: Point, b: Point| dot(way(a, b), way(a, b)) <= reach * reach;
+        let same = near(self.from, other.from) && near(self.to, other.to);
+        let turned = near(self.from, other.to) && near(self.to, other.from);
+        self.length > SHORT * reach && (same || turned)
     }
 
     /// Whether already the boxes around both are too far from each other.

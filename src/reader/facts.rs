@@ -11,6 +11,11 @@
 //! - a layer lies where most of its lines do (see `height`), and is as high as it lies above the
 //!   layer before.
 //!
+//! A line without a comment is as high as its layer rises, with an exception. Where layers of support lie
+//! between those of the part, and on rafts, a layer's lines are higher or lower than it rises. They
+//! show it by their plastic: the layer's takes as many times the usual room as its rise is less than
+//! the usual one.
+//!
 //! Nothing here grows with the number of moves or lines; what a file may have many of is bounded.
 
 use super::step::{Layer, Step};
@@ -48,6 +53,13 @@ const SOME_HEIGHT: f64 = 0.2;
 /// above the one before, or above the bed, hangs.
 const HIGHEST: f64 = 2.0;
 
+/// How many times the usual room the lines of a layer take, at least or as a share at most, to be
+/// higher or lower than the layer rises.
+const OTHER_ROOM: f64 = 1.6;
+
+/// How near that has to bring the layer's rise to the usual one, as a share.
+const NEAR_USUAL: f64 = 0.25;
+
 /// What is known of a file as a whole.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Facts {
@@ -78,6 +90,9 @@ pub struct Facts {
     pub has_heights: bool,
     /// Diameter of the filament, mm: the file's own, else what the caller gave.
     pub filament_diameter: f64,
+    /// How high lines of each layer are that no comment tells, mm; empty if all are as high as their
+    /// layer rises.
+    line_heights: Vec<f64>,
     /// By how much filament is multiplied that was read before the file said its diameter.
     scale: Option<f32>,
     /// What was read besides the moves.
@@ -97,6 +112,13 @@ impl Facts {
         self.roles[role as usize]
     }
 
+    /// How high layers are by the file's settings or head, mm.
+    fn told_height(&self) -> Option<f64> {
+        let in_head = || self.head.iter().find_map(|text| text.strip_prefix("Layer height:"));
+        let told = self.value("layer_height").or_else(in_head)?;
+        told.trim().parse().ok().filter(|height| (0.01..HIGHEST).contains(height))
+    }
+
     /// Cross-section of the filament, mm².
     fn area(&self) -> f64 {
         PI * self.filament_diameter * self.filament_diameter / 4.0
@@ -114,11 +136,9 @@ impl Facts {
         while !rest.is_empty() {
             let (height, end) = match self.layers.get(next) {
                 Some(layer) if layer.moves.start <= index => {
+                    let own = self.line_heights.get(next).copied().unwrap_or(layer.height);
                     next += 1;
-                    (
-                        if layer.height > HIGHEST { SOME_HEIGHT } else { layer.height },
-                        layer.moves.end,
-                    )
+                    (if own > HIGHEST { SOME_HEIGHT } else { own }, layer.moves.end)
                 }
                 Some(layer) => (SOME_HEIGHT, layer.moves.start),
                 None => (SOME_HEIGHT, usize::MAX),
@@ -137,8 +157,11 @@ pub(super) struct Gatherer {
     facts: Facts,
     /// Where the segment begins that goes on; `None` before the first.
     segment: Option<usize>,
-    /// Heights of its lines.
+    /// Heights of its lines, and their length and filament, mm.
     heights: Heights,
+    drawn: [f64; 2],
+    /// Filament for each mm of the lines of each layer, mm.
+    flows: Vec<f64>,
     /// How many lines it has, and how many the first layer has.
     lines: usize,
     first_lines: usize,
@@ -181,6 +204,8 @@ impl Gatherer {
             if self.segment.is_some() {
                 self.lines += 1;
                 self.heights.add([step.from[2], step.to[2]].map(f64::from), step.length());
+                self.drawn[0] += step.length();
+                self.drawn[1] += f64::from(step.filament);
             }
         }
     }
@@ -197,6 +222,7 @@ impl Gatherer {
             // The first mark: what heights told is part of the start.
             (facts.layers, facts.begun) = (Vec::new(), 0);
             (self.heights, self.below) = (Heights::default(), 0.0);
+            (self.drawn, self.flows) = ([0.0; 2], Vec::new());
             (self.lines, self.lowest) = (0, None);
         }
         let facts = &mut self.facts;
@@ -210,6 +236,7 @@ impl Gatherer {
         let Some(first) = self.segment else { return };
         let facts = &mut self.facts;
         let (end, last) = (facts.move_count, facts.layers.last_mut());
+        let [length, filament] = std::mem::take(&mut self.drawn);
         let Some(z) = std::mem::take(&mut self.heights).height() else {
             if let Some(last) = last {
                 last.moves.end = end;
@@ -231,6 +258,7 @@ impl Gatherer {
         };
         (self.below, self.lowest) = (z, Some(lowest.min(z)));
         facts.layers.push(Layer { moves: first..end, z, height });
+        self.flows.push(filament / length);
     }
 
     fn comment(&mut self, comment: &[u8]) {
@@ -266,6 +294,7 @@ impl Gatherer {
         self.end();
         if self.has_priming() {
             self.facts.layers.remove(0);
+            self.flows.remove(0);
             self.facts.begun -= 1;
         }
         let mut facts = self.facts;
@@ -278,8 +307,45 @@ impl Gatherer {
             facts.scale = Some((summary.volumes_by / area) as f32);
             facts.summary.volumes_by = area;
         }
+        if !facts.has_widths && !facts.has_heights {
+            facts.line_heights = line_heights(
+                (&facts.layers, &self.flows),
+                facts.told_height(),
+                facts.has(Role::OuterWall),
+            );
+        }
         let first = facts.layers.first();
         facts.start = 0..first.map_or(facts.move_count, |layer| layer.moves.start);
         facts
     }
+}
+
+/// How high lines of each layer are by their plastic, mm; empty if all are as high as their layer rises.
+/// `told` is what the file says of it, mm.
+fn line_heights(
+    (layers, flows): (&[Layer], &[f64]),
+    told: Option<f64>,
+    has_roles: bool,
+) -> Vec<f64> {
+    let usual = told.unwrap_or_else(|| median(layers.iter().map(|layer| layer.height).collect()));
+    let widths =
+        || layers.iter().zip(flows).map(|(layer, flow)| (layer.height, flow / layer.height));
+    let is_usual = |rise: f64| (rise - usual).abs() <= NEAR_USUAL * usual;
+    let usual_width =
+        median(widths().filter(|(rise, _)| is_usual(*rise)).map(|two| two.1).collect());
+    let own = |(rise, width): (f64, f64)| {
+        let times = width / usual_width;
+        // Where nobody knows which lines are a raft, the first on it are taken to reach down to it.
+        let is_other = times > OTHER_ROOM || (has_roles && times < 1.0 / OTHER_ROOM);
+        if is_other && is_usual(rise * times) { usual } else { rise }
+    };
+    let heights: Vec<f64> = widths().map(own).collect();
+    let all_rise = heights.iter().zip(layers).all(|(height, layer)| *height == layer.height);
+    if all_rise { Vec::new() } else { heights }
+}
+
+/// The middle one by their order; 0 of none.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or_default()
 }

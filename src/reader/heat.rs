@@ -2,6 +2,9 @@
 
 use super::words;
 
+/// The least temperature that a P tells, °C.
+const LEAST_BY_P: f64 = 50.0;
+
 /// Something that gets hot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Heater {
@@ -38,6 +41,8 @@ pub(super) fn heating(code: &[u8]) -> Option<Heating> {
     for (letter, value) in words {
         match letter {
             b'S' | b'R' => celsius = value,
+            // Machinekit's and Mach's; a smaller number is no temperature.
+            b'P' if celsius.is_none() => celsius = value.filter(|value| *value >= LEAST_BY_P),
             b'T' => tool = value.filter(|value| *value >= 0.0).map(|value| value as u32),
             _ => {}
         }

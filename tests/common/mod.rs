@@ -132,7 +132,8 @@ pub(crate) fn fixture(name: &str) -> Vec<u8> {
     std::fs::read(fixtures().join(name)).unwrap()
 }
 
-/// The folder `fixtures/`.
+/// The folder `fixtures/`, of this package or, in `tests/fuzz`, of the one above.
 pub(crate) fn fixtures() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures")
+    let folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    folders.map(|folder| folder.join("fixtures")).find(|folder| folder.is_dir()).unwrap()
 }

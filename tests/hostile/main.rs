@@ -4,13 +4,20 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+#[path = "../common/mod.rs"]
+mod common;
+mod edits;
 mod properties;
+mod sound;
+mod witness;
 
 use proptest::prelude::*;
 use proptest::sample::Index;
+use slicer::profile::keys::{self, Key, Kind};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).to_path_buf()
@@ -28,6 +35,20 @@ fn config(cases: u32) -> ProptestConfig {
         failure_persistence: None,
         max_shrink_iters: 200,
         ..ProptestConfig::default()
+    }
+}
+
+/// No case takes longer; in a release build most take milliseconds.
+const LONGEST: Duration = Duration::from_secs(60);
+
+/// Runs a case, which has to end in time. `--nocapture` shows those that take more than two seconds.
+fn in_time(name: &str, case: impl FnOnce()) {
+    let start = Instant::now();
+    case();
+    let took = start.elapsed();
+    assert!(took < LONGEST, "{name}: {took:?}");
+    if took > Duration::from_secs(2) {
+        println!("{name}: a case of {took:?}");
     }
 }
 
@@ -170,7 +191,8 @@ fn damaged_models_are_refused_or_sliced() {
     let models: Vec<Vec<u8>> = models().into_iter().map(low).collect();
     models.iter().for_each(|model| properties::stl(model));
     proptest!(config(60), |(which in 0..models.len(), damages in damage())| {
-        properties::stl(&damaged(&models[which], &damages, &models));
+        let file = damaged(&models[which], &damages, &models);
+        in_time("a model", || properties::stl(&file));
     });
 }
 
@@ -182,7 +204,45 @@ fn damaged_profiles_are_refused_or_give_settings() {
     let profiles: Vec<Vec<u8>> = names.iter().map(read).collect();
     profiles.iter().for_each(|text| properties::profile(text));
     proptest!(config(100), |(which in 0..profiles.len(), damages in damage())| {
-        properties::profile(&damaged(&profiles[which], &damages, &profiles));
+        let file = damaged(&profiles[which], &damages, &profiles);
+        in_time("a profile", || properties::profile(&file));
+    });
+}
+
+/// A value for a key: an edge of what it may hold, something between, or nonsense.
+fn value(kind: &Kind, chance: f64, which: u8) -> String {
+    let between = |min: f64, max: f64| match which % 8 {
+        0 => min.to_string(),
+        1 => max.to_string(),
+        2 => (min + (max - min) * chance * 1e-3).to_string(),
+        3 => (min + (max - min) * chance).to_string(),
+        4 => format!("{:.2}", min.max(1e-3) * (max / min.max(1e-3)).powf(chance)),
+        5 => "auto".to_owned(),
+        6 => WORDS[usize::from(which) / 8 % WORDS.len()].to_owned(),
+        _ => format!("{:.1}", min + 10.0 * chance),
+    };
+    match kind {
+        Kind::Number { min, max } | Kind::NumberOrAuto { min, max } => between(*min, *max),
+        Kind::Count { min, max } | Kind::CountOrAuto { min, max } => {
+            between(f64::from(*min), f64::from(*max)).replace(".0", "")
+        }
+        Kind::Word(words) | Kind::Words(words) => words[usize::from(which) % words.len()].clone(),
+        Kind::Switch => (which % 2 == 0).to_string(),
+        _ => WORDS[usize::from(which) % WORDS.len()].to_owned(),
+    }
+}
+
+#[test]
+fn any_settings_are_refused_or_slice_a_part() {
+    let keys: Vec<&Key> = keys::KEYS.iter().collect();
+    let one = (any::<Index>(), 0.0..1.0_f64, any::<u8>());
+    proptest!(config(60), |(set in prop::collection::vec(one, 1..5))| {
+        let pair = |(key, chance, which): &(Index, f64, u8)| {
+            let key = keys[key.index(keys.len())];
+            (key.name.clone(), value(&key.kind, *chance, *which))
+        };
+        let set: Vec<(String, String)> = set.iter().map(pair).collect();
+        in_time("settings", || properties::set(&set));
     });
 }
 
@@ -200,7 +260,8 @@ fn damaged_gcode_is_read_timed_checked_compared_and_drawn() {
     let files = [clock[..clock.len().min(20_000)].to_vec(), text.into_bytes()];
     files.iter().for_each(|file| properties::gcode(file));
     proptest!(config(60), |(which in 0..files.len(), damages in damage())| {
-        properties::gcode(&damaged(&files[which], &damages, &files));
+        let file = damaged(&files[which], &damages, &files);
+        in_time("G-code", || properties::gcode(&file));
     });
 }
 

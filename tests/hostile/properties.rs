@@ -105,6 +105,57 @@ pub(crate) fn profile(text: &[u8]) {
     }
 }
 
+/// Settings are refused in a line, or give settings that their own dump gives again, and a small part
+/// is sliced by them, or refused.
+pub(crate) fn set(pairs: &[(String, String)]) {
+    let with = |(key, value): &(String, String)| Override {
+        key: key.clone(),
+        value: value.clone(),
+        origin: ValueOrigin::Set,
+    };
+    let overrides: Vec<Override> = pairs.iter().map(with).collect();
+    let settings = match profile::load(["generic-marlin"], &overrides) {
+        Ok(loaded) => loaded.settings,
+        Err(error) => return is_good_refusal(&error.into(), 2, ""),
+    };
+    let dumped = profile::dump(&settings);
+    let again = profile::recorded(&dumped).unwrap().unwrap();
+    assert_eq!(profile::dump(&again.settings), dumped);
+    let job = Job {
+        models: vec![slicer::Model::Bytes { name: "x.stl".to_owned(), bytes: small().into() }],
+        placement: Placement::default(),
+        settings,
+        sources: slicer::profile::Sources::default(),
+    };
+    let mut out = std::io::Cursor::new(Vec::new());
+    match slicer::slice(&job, &mut out, &Progress::default()) {
+        Ok(report) => assert!(report.filament.length_mm.is_finite()),
+        Err(error) => return assert!(!error.to_string().contains('\n'), "{error}"),
+    }
+    let text = String::from_utf8(out.into_inner()).unwrap();
+    let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
+    assert!(print.lines().next().is_some(), "no line is printed");
+}
+
+/// A block of 3 by 3 by 1 mm, as an STL file.
+fn small() -> Vec<u8> {
+    let corner = |k: usize| [k & 1, k >> 1 & 1, k >> 2].map(|one| one as f32);
+    let faces =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let mut bytes = vec![0; 80];
+    bytes.extend(12_u32.to_le_bytes());
+    for [a, b, c, d] in faces {
+        for triangle in [[a, b, c], [a, c, d]] {
+            bytes.extend([0; 12]);
+            for [x, y, z] in triangle.map(corner) {
+                bytes.extend([3.0 * x, 3.0 * y, z].map(f32::to_le_bytes).concat());
+            }
+            bytes.extend([0; 2]);
+        }
+    }
+    bytes
+}
+
 /// Bytes are read as G-code, timed, checked, compared with themselves and drawn.
 pub(crate) fn gcode(bytes: &[u8]) {
     let settings = settings(&[]);
