@@ -50,8 +50,8 @@ pub(super) fn refused(words: &[OsString], code: u8, line: &str) {
         Ok(there) => is_report(&there),
         Err(_) => !path.exists(),
     };
-    let others = words.iter().skip(1).filter(|word| path.as_os_str() != word.as_os_str());
-    if is_free && !others.into_iter().any(|word| usage::is_same_file(&path, Path::new(word))) {
+    let mut others = words.iter().skip(1).filter(|word| path.as_os_str() != word.as_os_str());
+    if is_free && !others.any(|word| usage::is_same_file(&path, Path::new(word))) {
         let details = Details::of("usage");
         // The program ends with another message already.
         let _ = write(&path, None, &Failure::new(code, line.to_owned(), details));

@@ -123,7 +123,7 @@ fn a_file_takes_as_long_by_its_own_settings_as_by_its_printer() {
         let words = ["fixtures/cube_20.stl", "--scale", "0.2", "-q", "-o", "-", "-p", printer];
         let text = slicer(&words).assert().success().get_output().stdout.clone();
         let seconds = |by: &[&str]| {
-            let words = [&["estimate", "-", "--json"], by].concat();
+            let words = [&["estimate", "-", "--json"][..], by].concat();
             let told = slicer(&words).write_stdin(text.clone()).assert().success();
             let json: serde_json::Value =
                 serde_json::from_slice(&told.get_output().stdout).unwrap();
