@@ -82,10 +82,12 @@ const ROWS: &[Row] = &[
     g(&[12, 27], [Fine, Warning, Fine], "leaves the print to clean or park the nozzle"),
     g(&[18, 19], [Fine, Warning, Fine], "turns the plane of arcs"),
     g(
-        &[29, 30, 32, 33, 34, 38, 80, 425],
+        &[29, 30, 32, 33, 34, 35, 38, 80, 425],
         [Fine, Error, Error],
         "probes a bed that the part stands on",
     ),
+    g(&[5, 6], [Error; 3], "moves the nozzle along a curve or by steps, which is not followed"),
+    m(&[401], [Fine, Error, Warning], "lowers the probe below the nozzle"),
     only(
         &[DialectName::Marlin, DialectName::Klipper, DialectName::Reprapfirmware],
         g(&[55, 56, 57, 58, 59], [Warning, Error, Fine], "chooses another place for 0"),
@@ -157,7 +159,9 @@ fn of_phase(verdicts: [Verdict; 3], phase: Phase) -> Verdict {
 
 /// What a command does; `None` if it harms nothing. Tools and G92 are judged elsewhere.
 pub(super) fn blame(order: &Order, dialect: Option<DialectName>, phase: Phase) -> Option<Blame> {
-    if order.has_part {
+    // G5.1 is a curve as well, and G38.2 probes.
+    let is_move = order.letter == b'G' && matches!(order.number, 5 | 38);
+    if order.has_part && !is_move {
         return None;
     }
     let blame = match (order.letter, order.number) {

@@ -4,12 +4,14 @@
 //! there is replaced as the run begins, since a killed run cannot do it any more.
 
 use super::output::{self, Sink};
-use super::{failure, interrupt, say};
+use super::{failure, interrupt, say, usage};
 use anyhow::{Context as _, Result};
+use slicer::error::details::Details;
 use slicer::report::failure::Failure;
+use std::ffi::OsString;
 use std::fs;
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Exit code, as shells have it, of a program that the system kills: 128 + SIGKILL.
 const KILLED: u8 = 137;
@@ -38,6 +40,40 @@ pub(super) fn tell(path: &Path, sink: Option<Sink>, error: &anyhow::Error) {
             say(&format!("error: the report of this failure: {line}\n"));
         }
     }
+}
+
+/// Reports that the command line was not understood, where it names a report. What it names may be
+/// meant otherwise: a file that is there is replaced only if it is a report.
+pub(super) fn refused(words: &[OsString], code: u8, line: &str) {
+    let Some(path) = named(words) else { return };
+    let is_free = match fs::read(&path) {
+        Ok(there) => is_report(&there),
+        Err(_) => !path.exists(),
+    };
+    let mut others = words.iter().skip(1).filter(|word| path.as_os_str() != word.as_os_str());
+    if is_free && !others.any(|word| usage::is_same_file(&path, Path::new(word))) {
+        let details = Details::of("usage");
+        // The program ends with another message already.
+        let _ = write(&path, None, &Failure::new(code, line.to_owned(), details));
+    }
+}
+
+/// The last file that the words name for the report.
+fn named(words: &[OsString]) -> Option<PathBuf> {
+    let mut path = None;
+    for (k, word) in words.iter().enumerate() {
+        if word == "--report" {
+            path = words.get(k + 1).cloned();
+        } else if let Some(value) = word.to_str().and_then(|word| word.strip_prefix("--report=")) {
+            path = Some(OsString::from(value));
+        }
+    }
+    path.filter(|path| path != "-" && !path.is_empty()).map(PathBuf::from)
+}
+
+fn is_report(text: &[u8]) -> bool {
+    let start = &text[..text.len().min(64)];
+    start.starts_with(b"{") && start.windows(8).any(|word| word == b"\"schema\"")
 }
 
 /// # Errors

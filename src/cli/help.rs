@@ -86,7 +86,9 @@ pub(super) fn manual(words: &[String]) -> Result<String> {
         })?;
     }
     let mut text = Vec::new();
-    clap_mangen::Man::new(page.clone())
+    // What `-h` leaves out is told here.
+    let page = page.clone().mut_args(|arg| arg.hide_short_help(false));
+    clap_mangen::Man::new(page)
         .source(concat!("slicer ", env!("CARGO_PKG_VERSION")))
         .render(&mut text)
         .with_context(|| super::failure::writing(Path::new("-")))?;

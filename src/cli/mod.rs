@@ -74,7 +74,7 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
     let matches = help::command().try_get_matches_from(&words);
     let arguments = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => arguments,
-        Err(error) => return refused(&error, words.get(1).and_then(|word| word.to_str())),
+        Err(error) => return refused(&error, &words),
     };
     let done = match &arguments.command {
         None => threads::with(arguments.slice.threads, || slice::run(&arguments.slice)),
@@ -94,8 +94,9 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
 }
 
 /// Prints the help or the version, which are products, or one line of error.
-/// `first` is the first argument, which may be a mistyped command.
-fn refused(error: &clap::Error, first: Option<&str>) -> u8 {
+/// `words` are the program's name and the arguments, the first of which may be a mistyped command.
+fn refused(error: &clap::Error, words: &[OsString]) -> u8 {
+    let first = words.get(1).and_then(|word| word.to_str());
     use clap::error::ErrorKind::{
         DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion,
         MissingRequiredArgument, UnknownArgument,
@@ -120,6 +121,9 @@ fn refused(error: &clap::Error, first: Option<&str>) -> u8 {
                 _ => None,
             };
             let line = line.unwrap_or_else(|| usage::one_line(&text.to_string()));
+            if first.is_none_or(|word| help::command().find_subcommand(word).is_none()) {
+                failed::refused(words, 2, &line);
+            }
             say_line("error", line);
             2
         }

@@ -3,8 +3,8 @@
 use super::input;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use slicer::profile::Settings;
-use slicer::reader::{Cause, DEFAULT_MAX_MOVES, Error, Firmware, Reading, Source};
+use slicer::profile::{self, Settings};
+use slicer::reader::{Cause, DEFAULT_MAX_MOVES, Error, Firmware, Print, Reading, Source};
 use std::ffi::OsStr;
 
 /// How a G-code file is read.
@@ -47,6 +47,7 @@ impl ReadingArgs {
         let [head, tail] = source.ends().map_err(|error| Cause::Unreadable(error).of(&name))?;
         let says = Reading::of_parts(&head, &tail);
         let tail = if tail.is_empty() { head } else { tail };
+        let says = told(says, &tail);
         Ok(Opened { name, source, says, tail })
     }
 
@@ -63,4 +64,17 @@ impl ReadingArgs {
         let volumes = says.volumes.map(|says| if says > 0.0 { says } else { by_machine });
         Reading { firmware: told.or(own).unwrap_or(says.firmware), volumes }
     }
+}
+
+/// What a file `says`, with what its own settings at its end know of its firmware: how far and how fast
+/// an Ultimaker 2 retracts.
+fn told(says: Reading, tail: &[u8]) -> Reading {
+    if !matches!(says.firmware, Firmware::Ultimaker(_)) {
+        return says;
+    }
+    let values = Print::read(&mut &tail[..], 1.0).map(|end| profile::renewed(&end.values));
+    let own = values.ok().and_then(|values| profile::recorded(&values).ok().flatten());
+    let own = own.map(|own| input::firmware(&own.settings));
+    let own = own.filter(|own| own.name() == says.firmware.name());
+    Reading { firmware: own.unwrap_or(says.firmware), ..says }
 }

@@ -8,13 +8,15 @@
 //! height lies above the range of the layer before, or with one that returns to the bed: the next
 //! of several parts. All other runs belong to the layer that is there already, however their height
 //! varies: a skin that follows a surface goes up and down within its layer's range or widens it,
-//! but most of it is never at one new height.
+//! but most of it is never at one new height. A run that rises round after round is a spiral, and each
+//! of its rounds is a layer (see `spiral`).
 //!
 //! What a run's height is shows only at its end, so that a run which leaves the range is held back
 //! until then. Runs within the range, which all are in flat layers but the first of each, are
 //! handed on at once. After the first mark in the file everything is.
 
 use super::height::Heights;
+use super::spiral::Spiral;
 use super::{Event, Motion};
 use nalgebra::Vector3;
 
@@ -57,6 +59,11 @@ pub(super) struct Layers {
 struct Run {
     range: Range,
     heights: Heights,
+    spiral: Spiral,
+    /// Whether it is known to be a spiral.
+    is_spiral: bool,
+    /// Where in what is held back its second round begins.
+    second: Option<usize>,
     /// Whether it may begin a layer, and is held back.
     is_open: bool,
 }
@@ -75,7 +82,7 @@ impl Layers {
                 self.end_run(sink);
                 self.marked = true;
             }
-            Event::Move(motion) if is_line(motion) => self.line(motion),
+            Event::Move(motion) if is_line(motion) => self.line(line, motion, sink),
             Event::Move(_) => self.end_run(sink),
             _ => {}
         }
@@ -94,19 +101,50 @@ impl Layers {
         self.end_run(sink);
     }
 
-    fn line(&mut self, motion: &Motion) {
+    fn line(&mut self, number: u64, motion: &Motion, sink: Sink<'_>) {
         let ends = [motion.from[2], motion.to[2]];
         let own = Range { low: ends[0].min(ends[1]), high: ends[0].max(ends[1]) };
         let leaves = self.leaves(own);
         let run = self.run.get_or_insert_with(|| Run {
             range: own,
             heights: Heights::default(),
+            spiral: Spiral::default(),
+            is_spiral: false,
+            second: None,
             is_open: false,
         });
         run.range = run.range.and(own);
-        run.is_open |= leaves && self.held.is_empty();
+        run.is_open |= leaves && self.held.is_empty() && !run.is_spiral;
+        let begins = run.spiral.line([motion.from, motion.to]);
+        if run.is_spiral {
+            self.layer = Some(run.range);
+            if begins {
+                sink(number, Event::Layer { marked: false });
+            }
+            return;
+        }
+        if begins && run.is_open && run.second.is_none() {
+            run.second = Some(self.held.len());
+        }
         let way = Vector3::from(motion.to) - Vector3::from(motion.from);
         run.heights.add(ends, way.norm());
+        if run.is_open && run.second.is_some() && run.spiral.is_one() {
+            self.begin_spiral(sink);
+        }
+    }
+
+    /// The run is a spiral: hands on what was held back of it, as its first rounds.
+    fn begin_spiral(&mut self, sink: Sink<'_>) {
+        let Some(run) = &mut self.run else { return };
+        (run.is_open, run.is_spiral) = (false, true);
+        self.lowest = self.layer.map_or(run.range.low, |_| self.lowest.min(run.range.low));
+        self.layer = Some(run.range);
+        for (k, (line, event)) in self.held.drain(..).enumerate() {
+            if k == 0 || run.second == Some(k) {
+                sink(line, Event::Layer { marked: false });
+            }
+            sink(line, event);
+        }
     }
 
     /// Whether a line at these heights may belong to a new layer.

@@ -23,6 +23,7 @@ mod recognise;
 mod retraction;
 mod role;
 mod source;
+mod spiral;
 mod state;
 mod step;
 pub mod stream;

@@ -289,6 +289,21 @@ fn exit_codes_text_and_json() {
 }
 
 #[test]
+fn a_layer_that_lacks_a_role_is_drawn_beside_the_other_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let mut hollow = model(4);
+    hollow[2].truncate(4);
+    std::fs::write(path("a.gcode"), gcode(&model(4))).unwrap();
+    std::fs::write(path("b.gcode"), gcode(&hollow)).unwrap();
+    slicer(&["diff", &path("a.gcode"), &path("b.gcode"), "-q", "-o", &path("d.svg")])
+        .assert()
+        .code(1);
+    let drawn = std::fs::read_to_string(path("d.svg")).unwrap();
+    assert!(drawn.contains("A: layer 3, z 0.6") && drawn.contains("B: layer 3, z 0.6"), "{drawn}");
+}
+
+#[test]
 fn errors_name_the_file_the_cause_and_what_to_do() {
     for (words, code, part) in [
         (&["diff", TILE, "no.gcode"][..], 3, "error: no.gcode: cannot read: "),

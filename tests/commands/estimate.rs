@@ -159,6 +159,23 @@ fn pauses_are_counted_and_not_timed() {
 }
 
 #[test]
+fn a_file_takes_as_long_by_its_own_settings_as_by_its_printer() {
+    // The last one retracts by itself, as far and as fast as its profile says.
+    for printer in ["generic-klipper", "ultimaker-2"] {
+        let words = ["fixtures/cube_20.stl", "--scale", "0.2", "-q", "-o", "-", "-p", printer];
+        let text = slicer(&words).assert().success().get_output().stdout.clone();
+        let seconds = |by: &[&str]| {
+            let words = [&["estimate", "-", "--json"][..], by].concat();
+            let told = slicer(&words).write_stdin(text.clone()).assert().success();
+            let json: serde_json::Value =
+                serde_json::from_slice(&told.get_output().stdout).unwrap();
+            json["seconds"].as_f64().unwrap()
+        };
+        near(seconds(&[]), seconds(&["-p", printer]));
+    }
+}
+
+#[test]
 fn errors_name_the_file_the_cause_and_what_to_do() {
     for (words, code, part) in [
         (&["estimate", "no.gcode"][..], 3, "error: no.gcode: cannot read: "),

@@ -130,6 +130,23 @@ fn a_failure_is_reported_by_code_file_and_place() {
 }
 
 #[test]
+fn a_command_line_that_is_not_understood_is_reported_where_it_names_a_report() {
+    let folder = folder();
+    let path = folder.path().join("a.json");
+    let wrong = ["cube.stl", "-o", "a.gcode", "--report", "a.json", "--foo"];
+    for there in [None, Some("{\n  \"schema\": 4,\n  \"exit_code\": 0\n}\n")] {
+        there.into_iter().for_each(|text| fs::write(&path, text).unwrap());
+        slicer(&folder).args(wrong).assert().code(2);
+        let told = report(&folder);
+        assert_eq!((&told["exit_code"], &told["error"]["code"]), (&2.into(), &"usage".into()));
+    }
+    // A model may stand where the report's name was left out.
+    let model = fs::read(folder.path().join("cube.stl")).unwrap();
+    slicer(&folder).args(["--report", "cube.stl", "-o", "a.gcode"]).assert().code(2);
+    assert_eq!(fs::read(folder.path().join("cube.stl")).unwrap(), model);
+}
+
+#[test]
 fn the_readme_lists_every_code_of_a_failure() {
     let readme = fs::read_to_string("README.md").unwrap();
     for (code, exit, _) in CODES {

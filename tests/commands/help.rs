@@ -58,6 +58,12 @@ fn long_help_and_the_manual_have_every_flag() {
     }
 }
 
+/// Whether a paragraph of a manual page names a flag and does not explain it.
+fn is_bare(paragraph: &str) -> bool {
+    let text = paragraph.split(".SH").next().unwrap_or_default();
+    text.starts_with("\\fB") && text.lines().nth(1).is_none_or(|line| line.trim().is_empty())
+}
+
 #[test]
 fn every_command_has_a_manual_page() {
     for command in COMMANDS {
@@ -67,6 +73,9 @@ fn every_command_has_a_manual_page() {
         assert!(title.is_some_and(|title| title.starts_with(&format!("{name} 1"))), "{page}");
         let named = format!("{} \\- ", name.replace('-', "\\-"));
         assert!(page.contains(&named), "{name}:\n{page}");
+        // A flag, and at once the next paragraph: nothing is said of it.
+        let bare: Vec<&str> = page.split(".TP\n").filter(|flag| is_bare(flag)).collect();
+        assert!(bare.is_empty(), "{name}: {bare:#?}");
     }
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
     let known = "error: man: there is no command shw; there are: list, show, check";

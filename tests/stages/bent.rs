@@ -125,6 +125,30 @@ fn a_spiral_without_comments_is_no_pile_of_layers() {
 }
 
 #[test]
+fn each_round_of_a_spiral_without_comments_is_a_layer() {
+    // A spiral on its own, and on two flat layers.
+    for bottom in ["", "G1 X9 E1\nG1 Y9 E1\nG1 X0 Y0 Z0.4\nG1 X9 E1\nG1 Y9 E1\n"] {
+        let flat = bottom.matches("G1 X9 E").count();
+        let mut text = format!("M83\nG1 Z0.2 F1200\n{bottom}G1 E-1\nG1 X20 Y10 Z0.4\nG1 E1\n");
+        for k in 1..=720 {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 72.0).sin_cos();
+            let z = 0.4 + 0.2 * f64::from(k) / 72.0;
+            text.push_str(&format!(
+                "G1 X{:.3} Y{:.3} Z{z:.4} E.06\n",
+                10.0 + 10.0 * cos,
+                10.0 + 10.0 * sin
+            ));
+        }
+        let print = read(&text);
+        assert_eq!(print.layers.len(), flat + 10, "{:?}", print.layers);
+        for (k, layer) in print.layers[flat..].iter().enumerate() {
+            assert!((layer.z - (0.5 + 0.2 * k as f64)).abs() < 0.02, "{layer:?}");
+        }
+        assert_eq!(times(&text).layers.len(), flat + 10);
+    }
+}
+
+#[test]
 fn a_layer_whose_lines_begin_with_a_ramp_is_one() {
     // A seam that rises along its first millimetres, as some slicers print it.
     let wall = |z: f64| {

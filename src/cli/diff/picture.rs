@@ -123,6 +123,13 @@ fn sights(found: &Difference) -> Vec<Sight> {
             if layer == (Both { a: Some(0), b: Some(0) }) {
                 layer = Both { a: Some(1), b: Some(1) };
             }
+            // What only one file has of a layer is shown beside what the other has there.
+            let is_it = |pair: &Both<Option<usize>>| match layer {
+                Both { a: None, b } => pair.b == b,
+                Both { a, b: None } => pair.a == a,
+                both => *pair == both,
+            };
+            layer = found.pairs.iter().map(|pair| pair.layer).find(is_it).unwrap_or(layer);
             let said = text::line(finding, found.tolerance_mm);
             let ring = finding.at_mm().filter(|_| found.moved_mm.is_none());
             let ring = ring.map(|[x, y, _]| [x, y]);
