@@ -10,10 +10,6 @@ use std::ops::Range;
 /// cells hold more edges each, and look-ups get slower.
 const MOST_CELLS: f64 = 256.0;
 
-/// Of very many edges there may be more cells: this many for each, but for rounding. So a plate full
-/// of holes has no more edges in a cell than a small one. It affects speed and memory only.
-const CELLS_PER_EDGE: f64 = 16.0;
-
 /// An edge of a wall, grid units: its two ends.
 pub(super) type Edge = [[f64; 2]; 2];
 
@@ -69,13 +65,8 @@ pub(super) struct Grid {
 impl Grid {
     /// Square cells of side `side` over `area`; larger ones if there would be too many.
     pub(super) fn new(area: Area, side: f64) -> Self {
-        Self::of_most(area, side, MOST_CELLS)
-    }
-
-    /// As [`Self::new`], with at most about `most` cells along each side.
-    fn of_most(area: Area, side: f64, most: f64) -> Self {
         let extent = [0, 1].map(|k| (area.high[k] - area.low[k]).max(0.0));
-        let side = side.max(extent[0].max(extent[1]) / most);
+        let side = side.max(extent[0].max(extent[1]) / MOST_CELLS);
         let size = extent.map(|x| (x / side) as usize + 1);
         Self { low: area.low, scale: 1.0 / side, size }
     }
@@ -127,8 +118,7 @@ impl Near {
     }
 
     fn sorted(edges: Vec<Edge>, area: Area, side: f64) -> Self {
-        let most = MOST_CELLS.max((CELLS_PER_EDGE * edges.len() as f64).sqrt());
-        let grid = Grid::of_most(area, side, most);
+        let grid = Grid::new(area, side);
         let reach = |edge: Edge| grid.cells(edge).flatten();
         let cells = Cells::new(grid.count(), || edges.iter().copied(), reach);
         Self { grid, cells }
