@@ -14,7 +14,7 @@
 //!
 //! Both ways give the same contours in the same order, from the same first vertex. Tests compare them.
 
-use super::nest::{extent, meet};
+use super::boxes::{Boxes, extent};
 use super::parallel::{parallel, parallel_and_lost};
 use super::simple::windings;
 use super::{Contour, Point, double_area, side};
@@ -112,10 +112,13 @@ pub fn difference(contours: &[Contour], others: &[Contour], tolerance: Coord) ->
 #[must_use]
 pub fn cut(loops: Vec<Contour>, areas: &[Contour]) -> Cut {
     let mut cut = Cut::default();
-    let (areas, boxes) = (to_library(areas), areas.iter().filter_map(extent).collect::<Vec<_>>());
+    let (areas, boxes): (Vec<&Contour>, Vec<_>) =
+        areas.iter().filter_map(|area| Some((area, extent(area)?))).unzip();
+    let boxes = Boxes::new(boxes);
     for one in loops {
-        let near = extent(&one).is_some_and(|own| boxes.iter().any(|other| meet(own, *other)));
-        if !near {
+        // What is far from a loop says nothing of it, and the library looks at all it is given.
+        let near = extent(&one).map_or_else(Vec::new, |own| boxes.meeting(own));
+        if near.is_empty() {
             cut.whole.push(one);
             continue;
         }
@@ -123,7 +126,7 @@ pub fn cut(loops: Vec<Contour>, areas: &[Contour]) -> Cut {
         closed.extend(closed.first().copied());
         let mut clipper = Clipper64::new();
         clipper.add_open_subject(&vec![closed.clone()]);
-        clipper.add_clip(&areas);
+        clipper.add_clip(&near.iter().map(|&k| path(areas[k])).collect());
         let (mut none, mut left) = (Paths64::new(), Paths64::new());
         clipper.execute(ClipType::Difference, FillRule::NonZero, &mut none, Some(&mut left));
         let pieces: Vec<Vec<Point>> =
@@ -309,6 +312,34 @@ mod tests {
 
     fn area(contours: &[Contour]) -> f64 {
         contours.iter().map(|c| double_area(c) as f64 / 2.0).sum()
+    }
+
+    #[test]
+    fn loops_are_cut_by_the_areas_near_them_and_those_around_them() {
+        let square = |(x, y): (Coord, Coord), side: Coord| -> Contour {
+            let corners = [(0, 0), (side, 0), (side, side), (0, side)];
+            corners.map(|(right, up)| Point { x: x + right, y: y + up }).to_vec()
+        };
+        // A frame with a hole in it, and so many squares far away that they are sorted into cells.
+        let mut hole = square((40_000, 40_000), 20_000);
+        hole.reverse();
+        let mut areas = vec![square((0, 0), 100_000), hole];
+        areas.extend((0..60).map(|k| square((200_000 + 30_000 * k, 0), 10_000)));
+        let in_hole = square((45_000, 45_000), 5_000);
+        let far = square((0, -50_000), 5_000);
+        let loops = vec![
+            in_hole.clone(),
+            square((10_000, 10_000), 5_000),
+            square((55_000, 45_000), 10_000),
+            far.clone(),
+            square((205_000, -5_000), 10_000),
+        ];
+        let Cut { whole, pieces } = cut(loops, &areas);
+        assert_eq!(whole, [in_hole, far]);
+        let length =
+            |piece: &Vec<Point>| -> f64 { piece.windows(2).map(|p| p[0].distance(p[1])).sum() };
+        // Of a loop halfway in the hole half is left; of one over the corner of a square 3/4.
+        assert_eq!(pieces.iter().map(length).collect::<Vec<_>>(), [20_000.0, 30_000.0]);
     }
 
     #[test]

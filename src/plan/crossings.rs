@@ -59,8 +59,12 @@ impl Crossings {
         let size = ((wide >> shifts.0) as usize + 1, (deep >> shifts.1) as usize + 1);
         let blank = Self { low, shifts, size, cells: Cells::new(0, std::iter::empty, |_| 0..0) };
         let edges = || (0..).zip(contours).flat_map(|(c, contour)| numbered(c, contour));
-        let reach = |edge: Edge| blank.near(edge.ends.0, edge.ends.1, 0).flatten();
-        let cells = Cells::new(size.0 * size.1, edges, reach);
+        let cells = if size.0 == 1 {
+            Cells::new(size.1, edges, |edge: Edge| blank.bands(edge.ends.0, edge.ends.1, 0))
+        } else {
+            let reach = |edge: Edge| blank.near(edge.ends.0, edge.ends.1, 0).flatten();
+            Cells::new(size.0 * size.1, edges, reach)
+        };
         Self { cells, ..blank }
     }
 
@@ -68,7 +72,7 @@ impl Crossings {
     /// it goes from support to support.
     pub(super) fn leaves(&self, a: Point, b: Point) -> bool {
         let meets = |edge: &Edge| meet(a, b, edge.ends.0, edge.ends.1);
-        self.near(a, b, 0).any(|cells| self.cells.of(cells).iter().any(meets))
+        self.has(a, b, 0, meets)
     }
 
     /// The edges that the travel from `a` to `b` touches or crosses, some of them several times.
@@ -87,7 +91,23 @@ impl Crossings {
             let over = p.y.max(q.y) < low || p.y.min(q.y) > high;
             !beside && !over && (meet(a, b, p, q) || apart2([a, b], [p, q]) < square)
         };
-        self.near(a, b, clearance).any(|cells| self.cells.of(cells).iter().any(is_near))
+        self.has(a, b, clearance, is_near)
+    }
+
+    /// Whether some edge in the cells within `clearance` of a–b is what is looked for.
+    fn has(&self, a: Point, b: Point, clearance: Coord, is: impl Fn(&Edge) -> bool) -> bool {
+        if self.size.0 == 1 {
+            return self.cells.of(self.bands(a, b, clearance)).iter().any(is);
+        }
+        self.near(a, b, clearance).any(|cells| self.cells.of(cells).iter().any(&is))
+    }
+
+    /// The bands within `clearance` of a–b, if each is one cell: as [`Self::near`], which most layers
+    /// need not be asked with all its care.
+    fn bands(&self, a: Point, b: Point, clearance: Coord) -> Range<usize> {
+        let row =
+            |y: Coord| (((y - self.low.y).max(0) >> self.shifts.1) as usize).min(self.size.1 - 1);
+        row(a.y.min(b.y) - clearance)..row(a.y.max(b.y) + clearance) + 1
     }
 
     /// The cells, band by band, that hold all edges nearer to a–b than `clearance`.
@@ -104,12 +124,10 @@ impl Crossings {
         };
         let (lower, upper) = if a.y <= b.y { (a, b) } else { (b, a) };
         let row = |y: Coord| cell(y, low.y, up, rows);
-        // With one cell in each band, the bands are one range.
         let (first, last) = (row(lower.y - clearance), row(upper.y + clearance));
-        let step = if columns == 1 { last + 1 - first } else { 1 };
-        (first..last + 1).step_by(step).map(move |band| {
+        (first..last + 1).map(move |band| {
             if columns == 1 {
-                return first..last + 1;
+                return band..band + 1;
             }
             // Where the travel passes the band, and a grid unit beyond for rounding.
             let (bottom, top) =

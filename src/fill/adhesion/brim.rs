@@ -17,9 +17,10 @@
 //! that it holds.
 
 use super::Bead;
+use crate::geom::boxes::Around;
 use crate::geom::nest::{Nest, extent, turned};
 use crate::geom::polygon::{self, Cut};
-use crate::geom::{Contour, Point, edges, encloses};
+use crate::geom::{Contour, Point};
 use crate::profile::{BrimPlace, Settings};
 use crate::units::{Coord, nearest, to_units};
 
@@ -128,20 +129,18 @@ impl<'a> Space<'a> {
         // What belongs together: all that lies in one loop of the outermost ring.
         let together = self.together();
         let least = f64::from(LEAST_LENGTH * self.params.width);
+        let around = Around::new(together.iter().enumerate());
+        let group = |at: Point| around.of(at).min().unwrap_or(together.len());
         let mut beads = Vec::new();
-        for group in 0..=together.len() {
-            let here = |at: Point| {
-                let holds = |one: &Contour| encloses(edges(one), at);
-                together.iter().position(holds).unwrap_or(together.len()) == group
-            };
-            for (ring, Cut { whole, pieces }) in (0..self.params.rings).rev().zip(&rings) {
-                let loops = whole.iter().map(|points| Bead::closed(points.clone(), ring as u32));
-                let pieces = pieces.iter().map(|points| Bead::open(points.clone()));
-                let all = loops.chain(pieces);
-                beads.extend(all.filter(|one| here(one.points[0]) && one.length() >= least));
-            }
+        for (ring, Cut { whole, pieces }) in (0..self.params.rings).rev().zip(rings) {
+            let loops = whole.into_iter().map(|points| Bead::closed(points, ring as u32));
+            let all = loops.chain(pieces.into_iter().map(Bead::open));
+            let long = all.filter(|one| one.length() >= least);
+            beads.extend(long.map(|one| (group(one.points[0]), one)));
         }
-        beads
+        // Within a group they keep their order.
+        beads.sort_by_key(|(group, _)| *group);
+        beads.into_iter().map(|(_, bead)| bead).collect()
     }
 
     /// The outlines of what the outermost ring encloses.
@@ -178,4 +177,32 @@ fn frame(bodies: &[Contour], around: &Contour, reach: Coord) -> Option<Contour> 
     let (x1, x2) = (low.x - 2 * reach, high.x + 2 * reach);
     let (y1, y2) = (low.y - 2 * reach, high.y + 2 * reach);
     Some([(x1, y1), (x2, y1), (x2, y2), (x1, y2)].map(|(x, y)| Point { x, y }).to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_stands_apart_gets_its_rings_together_from_outside_inwards() {
+        let square = |k: Coord| -> Contour {
+            let corners = [(0, 0), (20_000, 0), (20_000, 20_000), (0, 20_000)];
+            corners.map(|(x, y)| Point { x: x + 60_000 * k, y }).to_vec()
+        };
+        let contours: Vec<Contour> = (0..40).map(square).collect();
+        let nest = Nest::new(&contours);
+        let ground = Ground { contours: &contours, nest: &nest, support: &[] };
+        let params =
+            BrimParams { outside: true, inside: false, rings: 2, width: 4_000, first: 2_000 };
+        let beads = brim(&ground, &[true; 40], &params);
+        let around = |bead: &Bead| (bead.points[0].x + 20_000).div_euclid(60_000);
+        let mut seen: Vec<Coord> = Vec::new();
+        for pair in beads.chunks(2) {
+            let rings: Vec<_> = pair.iter().map(|bead| (around(bead), bead.ring)).collect();
+            assert_eq!(rings, [(rings[0].0, Some(1)), (rings[0].0, Some(0))]);
+            seen.push(rings[0].0);
+        }
+        seen.sort_unstable();
+        assert_eq!(seen, (0..40).collect::<Vec<_>>());
+    }
 }

@@ -213,18 +213,18 @@ pub(in crate::mesh) fn around(
     // The shells that wind around a place, once for each place.
     let mut outer: Vec<u32> = Vec::new();
     for place in probes.places() {
-        let mut windings: Vec<(u32, i32)> = Vec::new();
+        let mut crossed: Vec<(u32, i32)> = Vec::new();
         tree.above(place, |t, sign| {
             let shell = of[t as usize];
-            if shell as usize == k || flat[shell as usize] {
-                return;
-            }
-            match windings.iter_mut().find(|(known, _)| *known == shell) {
-                Some((_, winding)) => *winding += sign,
-                None => windings.push((shell, sign)),
+            if shell as usize != k && !flat[shell as usize] {
+                crossed.push((shell, sign));
             }
         });
-        outer.extend(windings.iter().filter(|(_, winding)| *winding != 0).map(|(shell, _)| shell));
+        // A place may lie in very many shells: none is looked for among the others.
+        crossed.sort_unstable_by_key(|(shell, _)| *shell);
+        let own = crossed.chunk_by(|a, b| a.0 == b.0);
+        let around = own.filter(|own| own.iter().map(|(_, sign)| sign).sum::<i32>() != 0);
+        outer.extend(around.map(|own| own[0].0));
     }
     outer.sort_unstable();
     let most = outer.chunk_by(|a, b| a == b).filter(|same| same.len() >= MOST_INSIDE);
