@@ -50,16 +50,21 @@ fn fast(settings: &Settings) -> impl Iterator<Item = Warning> {
 fn heat(settings: &Settings) -> impl Iterator<Item = Warning> {
     let filament = &settings.filament;
     let least = filament.min_temperature.unwrap_or(0.0);
-    let range = [least, filament.max_temperature.unwrap_or(MOST_CELSIUS)];
-    let what = format!(
-        "what {} is printed at (filament.min_temperature, filament.max_temperature)",
-        filament.name
-    );
-    let first = ("filament.first_layer_temperature", filament.first_layer_temperature);
-    let own = ("filament.temperature", Some(filament.temperature));
-    [own, first].into_iter().filter_map(move |(key, celsius)| {
-        celsius.and_then(|celsius| outside((key, celsius, "°C"), range, &what))
-    })
+    let nozzle = [least, filament.max_temperature.unwrap_or(MOST_CELSIUS)];
+    let bed = [0.0, filament.max_bed_temperature.unwrap_or(MOST_CELSIUS)];
+    let what = |keys: &str| format!("what {} is printed at ({keys})", filament.name);
+    let of_nozzle = what("filament.min_temperature, filament.max_temperature");
+    let of_bed = what("filament.max_bed_temperature");
+    let (own, first) = (filament.temperature, filament.first_layer_temperature);
+    let (own_bed, first_bed) = (filament.bed_temperature, filament.first_layer_bed_temperature);
+    [
+        ("filament.temperature", Some(own), nozzle, of_nozzle.clone()),
+        ("filament.first_layer_temperature", first, nozzle, of_nozzle),
+        ("filament.bed_temperature", Some(own_bed), bed, of_bed.clone()),
+        ("filament.first_layer_bed_temperature", first_bed, bed, of_bed),
+    ]
+    .into_iter()
+    .filter_map(|(key, celsius, range, what)| outside((key, celsius?, "°C"), range, &what))
 }
 
 /// The finding that a value lies outside a range, if it does.
@@ -111,6 +116,11 @@ mod tests {
                 "filament.temperature",
                 "290",
                 "filament.temperature = 290 °C lies outside 180 to 235",
+            ),
+            (
+                "filament.bed_temperature",
+                "100",
+                "filament.bed_temperature = 100 °C lies outside 0 to 80",
             ),
             ("speed.z", "100", "speed.z = 100 mm/s lies outside 0 to 16.667"),
             ("speed.travel", "400", "speed.travel = 400 mm/s lies outside 0 to 300"),

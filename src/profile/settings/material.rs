@@ -35,6 +35,9 @@ pub struct Filament {
     /// Hottest that the material is printed at; above it there is a warning.
     #[schemars(range(min = 0, max = 500), extend("unit" = "°C"))]
     pub max_temperature: Option<f64>,
+    /// Hottest bed that the material is printed on; above it there is a warning.
+    #[schemars(range(min = 0, max = 200), extend("unit" = "°C"))]
+    pub max_bed_temperature: Option<f64>,
     /// Power of the part cooling fan; at most, where cooling.min_fan lowers it.
     #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 100))]
     pub fan: f64,
