@@ -2,17 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+use super::run::slicer;
 use assert_cmd::Command;
 use predicates::prelude::*;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
-
-fn slicer(folder: &TempDir) -> Command {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
-    command.current_dir(folder.path());
-    command
-}
 
 fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+use super::run::{folder, slicer};
 use assert_cmd::Command;
 use boon::{Compiler, Schemas};
 use serde_json::Value;
@@ -9,19 +10,6 @@ use slicer::error::details::CODES;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
-
-fn slicer(folder: &TempDir) -> Command {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
-    command.current_dir(folder.path());
-    command
-}
-
-/// A folder with a cube in it that is sliced in no time.
-fn folder() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::copy("fixtures/cube_20.stl", folder.path().join("cube.stl")).unwrap();
-    folder
-}
 
 /// Arguments of a quick run.
 const CUBE: [&str; 6] = ["cube.stl", "-q", "-p", "generic-marlin", "--scale", "0.2"];

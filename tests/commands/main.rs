@@ -15,6 +15,7 @@ mod names;
 mod preview;
 mod profiles;
 mod reading;
+mod run;
 mod schema;
 mod viewer;
 mod ways;

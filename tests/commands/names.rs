@@ -5,21 +5,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+use super::run::{folder, slicer};
 use assert_cmd::Command;
 use std::fs;
-use tempfile::TempDir;
-
-fn slicer(folder: &TempDir) -> Command {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
-    command.current_dir(folder.path());
-    command
-}
-
-fn folder() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    fs::copy("fixtures/cube_20.stl", folder.path().join("cube.stl")).unwrap();
-    folder
-}
 
 /// Two layers that print lines, with what does harm to a terminal in a comment, an unknown line and a
 /// message; ESC, CSI as one character, a mark that turns the direction of text, and DEL.
