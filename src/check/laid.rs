@@ -207,7 +207,7 @@ struct Field {
 
 impl Laid {
     /// All of it may carry with the gap of support.
-    pub(super) fn as_support(mut self) -> Self {
+    pub(super) fn into_support(mut self) -> Self {
         self.beads.iter_mut().for_each(|bead| bead.is_support = true);
         self.top = self.beads.iter().map(Bead::top).fold(self.top, f64::max);
         self

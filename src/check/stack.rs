@@ -75,7 +75,7 @@ impl<'a> Stack<'a> {
             let moves = window.moves(layer);
             let chains = chains_of(moves).filter(|chain| !is_ironing(&moves[chain.start]));
             let laid = Laid::new(moves, chains);
-            Some(if self.untold_support { laid.as_support() } else { laid })
+            Some(if self.untold_support { laid.into_support() } else { laid })
         });
         self.kept.extend(laid.collect::<Vec<_>>());
         for layer in batch {

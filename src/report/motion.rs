@@ -99,7 +99,7 @@ fn told(block: &str) -> Option<f64> {
             prefixes.iter().find_map(|prefix| word.strip_prefix(prefix)?.parse().ok())
         })
     };
-    code.filter_map(number).last()
+    code.filter_map(number).next_back()
 }
 
 /// Those of `[acceleration]`, `[jerk]` and of the material.

@@ -43,9 +43,12 @@ const LEAST: f64 = 0.99;
 /// Kinds of which less is seen, how much at least, and why.
 const UNSEEN: &[(&str, f64, &str)] = &[];
 
+/// A fixture, how deep it is sunk (mm), and settings.
+type Job = (&'static str, f64, &'static [(&'static str, &'static str)]);
+
 /// The sound files: fixture, profile, how deep it is sunk (mm), settings. The parts are cut low so
 /// that a case is quick.
-const FILES_OF: [(&str, f64, &[(&str, &str)]); 4] = [
+const FILES_OF: [Job; 4] = [
     ("cube_20.stl", 14.0, &[("machine.thumbnails", "[]")]),
     (
         "cube_20.stl",
@@ -224,10 +227,10 @@ fn write_down(table: &str) {
 /// For `tests/fuzz`: the edit that these bytes stand for is seen, if it counts.
 #[allow(dead_code, reason = "only the fuzzer's")]
 pub(crate) fn is_seen(bytes: &[u8]) {
-    static FILES: OnceLock<(Vec<File>, Vec<(String, What)>)> = OnceLock::new();
+    static FILES: OnceLock<Vec<File>> = OnceLock::new();
     let &[file, kind, high, low, ..] = bytes else { return };
-    let (files, kinds) =
-        FILES.get_or_init(|| (FILES_OF.iter().map(File::new).collect(), edits::kinds()));
+    let files = FILES.get_or_init(|| FILES_OF.iter().map(File::new).collect());
+    let kinds = edits::kinds();
     let file = &files[usize::from(file) % files.len()];
     let (name, what) = &kinds[usize::from(kind) % kinds.len()];
     let seed = u64::from(u16::from_be_bytes([high, low]));

@@ -228,9 +228,9 @@ fn closest(vertices: &[Corner], one: &[u32], other: &[u32]) -> [usize; 2] {
     let blocks = Blocks::new(&other.iter().map(|&vertex| at(vertex)).collect::<Vec<_>>());
     let key = |[i, j]: [usize; 2]| (distance2(at(one[i]), at(other[j])), at(one[i]), at(other[j]));
     let mut best = [0, 0];
-    for i in 0..one.len() {
+    for (i, &corner) in one.iter().enumerate() {
         for (block, bounds) in blocks.bounds.iter().enumerate() {
-            if far2(at(one[i]), *bounds) <= key(best).0 {
+            if far2(at(corner), *bounds) <= key(best).0 {
                 let all = blocks.ends(block, other.len()).map(|j| [i, j]).chain([best]);
                 best = all.min_by_key(|&pair| (key(pair), pair)).unwrap_or(best);
             }
