@@ -12,13 +12,14 @@
 //! - *turns*: whether P of an arc adds whole turns;
 //! - *places*: whether G54 to G59 choose among the zero points that G10 L2 and L20 set.
 //!
-//! Where each row is from (sources looked at, with their version):
+//! Where each row is from, with the version where one was read; the names of files say where to look for
+//! the rest:
 //! - marlin: MarlinFirmware/Marlin 2.0 and 2.1, `gcode.h` (`set_relative_mode` clears what M82 and M83
 //!   have set, and they override it), `G4.cpp` (S is read last), `fwretract.cpp` (a second G10 does
 //!   nothing, the hop is undone before the filament is pushed), `M200-M205.cpp`, `G2_G3.cpp` (P);
 //! - marlin-1: Marlin 1.0 and 1.1, `Marlin_main.cpp` (`axis_relative_modes[i] || relative_mode`);
 //! - klipper: Klipper3d/klipper, `gcode_move.py` (`not absolute_coord or not absolute_extrude`),
-//!   `firmware_retraction.py` (no M207: SET_RETRACTION), `gcode.py` (G4 has P alone; no M200);
+//!   `firmware_retraction.py` (no M207: SET_RETRACTION), `toolhead.py` (G4 has P alone; no M200);
 //! - reprapfirmware: Duet3D/RepRapFirmware fc1cd16c, `GCodes.cpp` (`drivesRelative` is M82's and M83's
 //!   alone; S of G4 before P; `applyM220M221` for printing moves alone), `GCodes2.cpp` (G10, G54, M200),
 //!   `Tool.cpp` (M207 has the feed and the surplus of both ways; M208 is the axes' limits);
