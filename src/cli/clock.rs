@@ -5,11 +5,13 @@
 
 use super::output;
 use super::profiles::ProfileArgs;
-use super::reading::Opened;
+use super::reading::{Opened, ReadingArgs};
 use anyhow::Result;
 use serde::Serialize;
+use slicer::estimate::{Estimate, Options};
+use slicer::motion::Limits;
 use slicer::profile::{self, Profile};
-use slicer::reader::Print;
+use slicer::reader::Reading;
 use std::path::Path;
 
 /// Settings of a file, and what they are called.
@@ -41,13 +43,42 @@ pub(super) fn of(profiles: &ProfileArgs, files: &[Own<'_>]) -> Result<(Profile, 
     Ok((asked, by_profile))
 }
 
-/// As [`of`], of a file that is open: its settings stand at its end.
+/// A file that is timed.
+pub(super) struct Timed {
+    pub(super) estimate: Estimate,
+    /// By whose rules it was read.
+    pub(super) reading: Reading,
+    /// Diameter of the filament by the settings that time it, mm.
+    pub(super) diameter: f64,
+    /// Where the limits are from.
+    pub(super) limits: String,
+}
+
+/// Times a file by the limits that [`of`] gives. `fixed_limits` leaves out what it sets itself.
 ///
 /// # Errors
-/// As [`of`].
-pub(super) fn of_file(profiles: &ProfileArgs, file: &Opened) -> Result<(Profile, String)> {
-    let end = Print::read(&mut &file.tail[..], 1.0).map_err(|error| file.unreadable(error))?;
-    of(profiles, &[(&end.values, "the file's own settings")])
+/// As [`of`], a file that cannot be read or holds no move.
+pub(super) fn estimate(
+    file: &Opened,
+    profiles: &ProfileArgs,
+    args: &ReadingArgs,
+    fixed_limits: bool,
+) -> Result<Timed> {
+    let own = file.values().map_err(|error| file.unreadable(error))?;
+    let (clock, limits) = of(profiles, &[(&own, "the file's own settings")])?;
+    let settings = &clock.settings;
+    let reading = args.of(profiles.any().then_some(settings), file.says);
+    let diameter = settings.filament.diameter;
+    let options = Options {
+        filament_diameter: diameter,
+        fixed_limits,
+        firmware: reading.firmware,
+        volumes: reading.volumes,
+    };
+    let mut source = file.source.reader();
+    let estimate =
+        slicer::estimate::estimate(&mut source, &file.name, &Limits::new(settings), options)?;
+    Ok(Timed { estimate, reading, diameter, limits })
 }
 
 /// A product in JSON, with where the limits are from.

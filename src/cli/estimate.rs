@@ -3,8 +3,7 @@
 use super::args::EstimateArgs;
 use super::clock;
 use anyhow::Result;
-use slicer::estimate::{self, Estimate, LayerTime, NotCounted, Options};
-use slicer::motion::Limits;
+use slicer::estimate::{Estimate, LayerTime, NotCounted};
 use slicer::warning::plural;
 
 /// What standard output gets.
@@ -13,18 +12,8 @@ use slicer::warning::plural;
 /// A profile or setting that is wrong, a file that cannot be read or holds no move.
 pub(super) fn run(args: &EstimateArgs) -> Result<String> {
     let opened = args.reading.open(&args.file)?;
-    let (clock, limits) = clock::of_file(&args.profiles, &opened)?;
-    let settings = &clock.settings;
-    let machine = args.profiles.any().then_some(settings);
-    let reading = args.reading.of(machine, opened.says);
-    let options = Options {
-        filament_diameter: settings.filament.diameter,
-        fixed_limits: args.fixed_limits,
-        firmware: reading.firmware,
-        volumes: reading.volumes,
-    };
-    let mut source = opened.source.reader();
-    let found = estimate::estimate(&mut source, &opened.name, &Limits::new(settings), options)?;
+    let timed = clock::estimate(&opened, &args.profiles, &args.reading, args.fixed_limits)?;
+    let (found, limits) = (timed.estimate, timed.limits);
     if args.json {
         return clock::json(&found, &limits);
     }

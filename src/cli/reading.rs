@@ -6,6 +6,7 @@ use clap::builder::PossibleValuesParser;
 use slicer::profile::{self, Settings};
 use slicer::reader::{Cause, DEFAULT_MAX_MOVES, Error, Firmware, Print, Reading, Source};
 use std::ffi::OsStr;
+use std::io;
 
 /// How a G-code file is read.
 #[derive(Debug, Args)]
@@ -26,13 +27,21 @@ pub(super) struct Opened {
     pub(super) source: Source,
     /// What it says of how it is to be read.
     pub(super) says: Reading,
-    /// The last of its comments.
-    pub(super) tail: Vec<u8>,
+    /// Its end, where settings stand.
+    tail: Vec<u8>,
 }
 
 impl Opened {
+    /// The settings at its end.
+    ///
+    /// # Errors
+    /// What reading bytes in memory gives, which is nothing.
+    pub(super) fn values(&self) -> io::Result<Vec<(String, String)>> {
+        values(&self.tail)
+    }
+
     /// The error of a file that cannot be read on.
-    pub(super) fn unreadable(&self, error: std::io::Error) -> Error {
+    pub(super) fn unreadable(&self, error: io::Error) -> Error {
         Cause::Unreadable(error).of(&self.name)
     }
 }
@@ -66,13 +75,18 @@ impl ReadingArgs {
     }
 }
 
+/// The settings in comments at a file's end.
+fn values(tail: &[u8]) -> io::Result<Vec<(String, String)>> {
+    Print::read(&mut &tail[..], 1.0).map(|end| end.facts.values)
+}
+
 /// What a file `says`, with what its own settings at its end know of its firmware: how far and how fast
 /// an Ultimaker 2 retracts.
 fn told(says: Reading, tail: &[u8]) -> Reading {
     if !matches!(says.firmware, Firmware::Ultimaker(_)) {
         return says;
     }
-    let values = Print::read(&mut &tail[..], 1.0).map(|end| profile::renewed(&end.values));
+    let values = values(tail).map(|values| profile::renewed(&values));
     let own = values.ok().and_then(|values| profile::recorded(&values).ok().flatten());
     let own = own.map(|own| input::firmware(&own.settings));
     let own = own.filter(|own| own.name() == says.firmware.name());

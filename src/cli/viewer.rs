@@ -6,8 +6,6 @@ use super::output::Sink;
 use super::profiles::ProfileArgs;
 use super::reading::ReadingArgs;
 use anyhow::{Context as _, Result};
-use slicer::estimate::{self, Options};
-use slicer::motion::Limits;
 use slicer::preview::html;
 use slicer::reader::Print;
 use slicer::warning::plural;
@@ -28,18 +26,13 @@ pub(super) fn write(
 ) -> Result<String> {
     let mut sink = Sink::open(out)?;
     let opened = reading.open(file)?;
-    let (clock, limits) = clock::of_file(profiles, &opened)?;
-    let settings = &clock.settings;
-    let diameter = settings.filament.diameter;
-    let reading = reading.of(profiles.any().then_some(settings), opened.says);
-    let (firmware, volumes) = (reading.firmware, reading.volumes);
-    let options = Options { filament_diameter: diameter, firmware, volumes, ..Options::default() };
-    let (source, name) = (&opened.source, opened.name.as_str());
-    let estimate = estimate::estimate(&mut source.reader(), name, &Limits::new(settings), options)?;
-    let print = Print::read_as(&mut source.reader(), reading, diameter)
+    let timed = clock::estimate(&opened, profiles, reading, false)?;
+    let (estimate, diameter, limits) = (&timed.estimate, timed.diameter, &timed.limits);
+    let print = Print::read_as(&mut opened.source.reader(), timed.reading, diameter)
         .map_err(|error| opened.unreadable(error))?;
+    let name = opened.name.as_str();
     let base = Path::new(name).file_name().map_or(name.into(), OsStr::to_string_lossy);
-    html::write(&print, &estimate, &base, diameter, &mut sink)
+    html::write(&print, estimate, &base, diameter, &mut sink)
         .and_then(|()| sink.flush())
         .with_context(|| writing(out))?;
     sink.commit()?;

@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+use super::run::with as slicer;
 use crate::common::{fixture, settings, slice};
-use assert_cmd::Command;
 use proptest::prelude::*;
 use slicer::diff::{Both, Difference, File, Finding, Quantity, Side, Tolerances, diff};
 use slicer::estimate::{Options, estimate};
@@ -247,12 +247,6 @@ proptest! {
         let told = place.distance_mm;
         prop_assert!((told - expected).abs() < 2e-3 * expected + 2e-4, "{} {}", told, expected);
     }
-}
-
-fn slicer(words: &[&str]) -> Command {
-    let mut command = Command::cargo_bin("slicer").unwrap();
-    command.args(words);
-    command
 }
 
 const TILE: &str = "fixtures/golden/tile@generic-marlin.gcode";

@@ -2,18 +2,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use assert_cmd::Command;
+use super::run::with as slicer;
 use slicer::estimate::{Estimate, Options, estimate};
 use slicer::motion::{Junction, Limits};
 use slicer::reader::Role;
 
 const CLOCK: &str = "fixtures/clock.gcode";
-
-fn slicer(words: &[&str]) -> Command {
-    let mut command = Command::cargo_bin("slicer").unwrap();
-    command.args(words);
-    command
-}
 
 fn limits() -> Limits {
     Limits {

@@ -3,17 +3,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use assert_cmd::Command;
+use super::run::with as slicer;
 
 /// Relative moves with E made absolute (M82): 2.8 mm of filament in Marlin 2, 7.0 mm in Klipper.
 const SQUARE: &str = "M104 S210\nG28\nM109 S210\nG21\nG91\nM82\nG92 E0\nG1 Z0.2 F1000\nG1 X20 Y20 F5400\n\
     G1 X20 E0.7 F1200\nG1 Y20 E1.4\nG1 X-20 E2.1\nG1 Y-20 E2.8\n";
-
-fn slicer(words: &[&str]) -> Command {
-    let mut command = Command::cargo_bin("slicer").unwrap();
-    command.args(words);
-    command
-}
 
 fn filament(words: &[&str], text: &str) -> f64 {
     let words = [&["estimate", "--json"], words].concat();

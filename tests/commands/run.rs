@@ -11,6 +11,13 @@ pub(crate) fn slicer(folder: &TempDir) -> Command {
     command
 }
 
+/// The program with these words, run where the tests run.
+pub(crate) fn with(words: &[&str]) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
+    command.args(words);
+    command
+}
+
 /// A folder with a cube in it that is sliced in no time.
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 pub(crate) fn folder() -> TempDir {

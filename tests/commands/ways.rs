@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+use super::run::with as slicer;
 use crate::common::{as_it_is, fixture, slice, slice_placed};
 use crate::diff::side;
-use assert_cmd::Command;
 use slicer::diff::{Both, Difference, Finding, Ordered, Tolerances, diff};
 use slicer::mesh::Placement;
 use slicer::reader::Role;
@@ -288,12 +288,6 @@ fn what_is_found_does_not_depend_on_threads_or_windows() {
     assert_eq!(one.pairs.len(), 601);
     let numbers = one.pairs.iter().map(|pair| pair.layer.a.unwrap());
     assert!(numbers.eq(0..=600));
-}
-
-fn slicer(words: &[&str]) -> Command {
-    let mut command = Command::cargo_bin("slicer").unwrap();
-    command.args(words);
-    command
 }
 
 const TILE: &str = "fixtures/golden/tile@generic-marlin.gcode";
