@@ -32,6 +32,8 @@ pub enum Role {
     TopSkin,
     /// The nozzle goes over such skin once more, with little plastic.
     Ironing,
+    /// Skin that follows a slope, laid when all under it is whole.
+    NonPlanar,
     /// Support.
     Support,
     /// Dense support next to the part.
@@ -109,7 +111,7 @@ pub struct RoleFacts {
 
 impl Role {
     /// All roles, in the order of reports and of what lies inside an island.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::OuterWall,
         Self::InnerWall,
         Self::Overhang,
@@ -119,6 +121,7 @@ impl Role {
         Self::Gap,
         Self::TopSkin,
         Self::Ironing,
+        Self::NonPlanar,
         Self::Support,
         Self::SupportInterface,
         Self::Skirt,
@@ -158,6 +161,7 @@ impl Role {
             Self::Infill => INFILL,
             Self::TopSkin => TOP_SKIN,
             Self::Ironing => IRONING,
+            Self::NonPlanar => NON_PLANAR,
             Self::Gap => GAP,
             Self::Support => SUPPORT,
             Self::SupportInterface => SUPPORT_INTERFACE,
@@ -242,6 +246,17 @@ const IRONING: RoleFacts = RoleFacts {
     jerk: |j| j.top_skin.or(j.skin),
     slows: Slows::Last,
     ..SKIN
+};
+
+// Viewers draw it as what it is seen as.
+const NON_PLANAR: RoleFacts = RoleFacts {
+    name: "non-planar skin",
+    annotation: TOP_SKIN.annotation,
+    place: Place::Last,
+    speed_keys: |_| Both::same("speed.nonplanar"),
+    speed: |speed| Both::same(speed.nonplanar),
+    slows: Slows::Last,
+    ..TOP_SKIN
 };
 
 const GAP: RoleFacts = RoleFacts {

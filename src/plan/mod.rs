@@ -40,6 +40,10 @@ pub struct PrintMove {
     pub wipe: Vec<Point>,
     /// The travel goes over these points.
     pub via: Vec<Point>,
+    /// The travel goes at least so high above the bed, grid units; 0 where nothing is in its way.
+    pub over: Coord,
+    /// The path is one of this patch of non-planar skin.
+    pub patch: Option<u32>,
     /// The path.
     pub path: Path,
 }
@@ -48,7 +52,7 @@ impl PrintMove {
     /// A path with a straight travel to it that does not retract.
     #[must_use]
     pub fn to(path: Path) -> Self {
-        Self { retract: false, wipe: Vec::new(), via: Vec::new(), path }
+        Self { retract: false, wipe: Vec::new(), via: Vec::new(), over: 0, patch: None, path }
     }
 }
 

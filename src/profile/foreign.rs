@@ -162,6 +162,8 @@ const KEYS: &[(&str, Names)] = &[
     ("ironing.flow", [&["ironing_flowrate"], &[], &["ironing_flow"]]),
     ("ironing.spacing", [&["ironing_spacing"], &[], &["ironing_line_spacing"]]),
     ("ironing.inset", [&[], &[], &["ironing_inset"]]),
+    ("nonplanar.enabled", [&[], &["zaa_enabled"], &[]]),
+    ("nonplanar.min_height", [&[], &["zaa_min_z"], &[]]),
     ("filament.fan_from_layer", [&["disable_fan_first_layers"], &["close_fan_the_first_x_layers"], &[]]),
     ("filament.shrinkage", [&["filament_shrinkage_compensation_xy"], &["filament_shrink"], &["material_shrinkage_percentage", "material_shrinkage_percentage_xy"]]),
     ("filament.shrinkage_z", [&["filament_shrinkage_compensation_z"], &[], &["material_shrinkage_percentage_z"]]),

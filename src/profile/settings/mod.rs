@@ -32,6 +32,7 @@ mod jerk;
 mod limits;
 mod machine;
 mod material;
+mod nonplanar;
 mod output;
 mod speed;
 mod support;
@@ -48,6 +49,7 @@ pub use jerk::Jerk;
 pub use limits::MotionLimits;
 pub use machine::{Machine, Reach};
 pub use material::Filament;
+pub use nonplanar::NonPlanar;
 pub use output::Output;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -206,6 +208,8 @@ pub struct Settings {
     pub bridge: Bridge,
     /// The hot nozzle goes over tops a second time.
     pub ironing: Ironing,
+    /// Top skins that follow the surface.
+    pub nonplanar: NonPlanar,
     /// Loops around everything.
     pub skirt: Skirt,
     /// Lines beside the first layer.

@@ -42,6 +42,9 @@ pub struct Speed {
     /// Speed at which tops are ironed.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 15))]
     pub ironing: f64,
+    /// Speed of skin that follows a slope, at most: the z axis may allow less.
+    #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 20))]
+    pub nonplanar: f64,
     /// Speed of sparse infill that is one layer high.
     #[schemars(range(min = 0.1, max = 999), extend("unit" = "mm/s", "default" = 60))]
     pub infill: f64,
