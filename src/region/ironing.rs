@@ -26,10 +26,9 @@ pub struct Ironing {
     pub rows: Rows,
 }
 
-/// What is ironed of `layer`; `None` if nothing is. `above` is the next layer, if there is one.
+/// What is ironed of `layer`; `None` if nothing is. `above` is what lies on it.
 #[must_use]
-pub fn ironing(layer: &Layer, above: Option<&Layer>, params: &IroningParams) -> Option<Ironing> {
-    let above = above.map_or(&[] as &[Contour], |above| above.contours.as_slice());
+pub fn ironing(layer: &Layer, above: &[Contour], params: &IroningParams) -> Option<Ironing> {
     let chosen;
     let contours = if params.topmost {
         chosen = topmost(&layer.contours, above, &params.bodies);
@@ -105,9 +104,8 @@ mod tests {
 
     /// Ironed area, mm².
     fn area(below: &[[Coord; 3]], above: Option<&[[Coord; 3]]>, params: &IroningParams) -> f64 {
-        let above = above.map(layer);
-        let Some(Ironing { raster, rows }) = ironing(&layer(below), above.as_deref(), params)
-        else {
+        let above = above.map_or_else(Vec::new, |above| layer(above).contours.clone());
+        let Some(Ironing { raster, rows }) = ironing(&layer(below), &above, params) else {
             return 0.0;
         };
         rows.total() as f64 * f64::from(raster.pitch) / 1e8

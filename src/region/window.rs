@@ -14,6 +14,7 @@
 //! once, when its region is handed on. So memory holds a batch and a few layers, whatever the
 //! height of the print.
 
+use super::curved::{self, CurvedTops};
 use super::divide::{Divided, Examined, LayerAreas, Lower, divide, examine};
 use super::dual;
 use super::dual::audit::Audit;
@@ -21,9 +22,9 @@ use super::dual::groups::{Block, Grouping};
 use super::dual::inner_skin::{self, Skins, without_threads};
 use super::first_skin::{self, Turn};
 use super::ironing::{self, Ironing};
+use super::joined::{self, Filling, Laid};
 use super::landing::{self, Floor};
 use super::one_wall::{self, Opened};
-use super::overhang::Hanging;
 use super::params::RegionParams;
 use super::per_raster::skin_turn;
 use super::prepare::{LayerRows, Own, prepare};
@@ -32,12 +33,14 @@ use super::support::{SupportLayer, SupportPatterns};
 use super::walls::{self, Wall};
 use super::{Region, Skin, Sparse, SupportLines, tops};
 use crate::geom::frame::Frame;
-use crate::geom::polyline::Polyline;
 use crate::geom::spans::Rows;
+use crate::geom::{Contour, polygon};
 use crate::profile::DualPart;
 use crate::slice::{Layer, Slicer};
+use crate::units::Coord;
 use rayon::prelude::*;
 use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Makes the regions of a print in batches, from the bed upwards.
@@ -47,6 +50,8 @@ pub struct Window<'a> {
     params: &'a RegionParams,
     grouping: &'a Grouping,
     support: Option<Support>,
+    /// Tops that are laid along the surface.
+    curved: Option<&'a dyn CurvedTops>,
     /// The next batch to be sliced.
     batch: usize,
     /// The last layer that is prepared, where that above decides about its walls.
@@ -75,26 +80,6 @@ pub struct Support {
     pub layers: Vec<SupportLayer>,
 }
 
-/// What is laid on a layer, whatever its block is.
-#[derive(Debug)]
-struct Laid {
-    beads: Vec<Polyline>,
-    room_beads: Vec<Polyline>,
-    filling: Vec<usize>,
-    bridges: Vec<Skin>,
-    hanging: Option<Vec<Hanging>>,
-}
-
-/// What is decided for one layer of a block, before its walls and beads are added.
-struct Filling {
-    skins: Vec<Skin>,
-    infill: Vec<Sparse>,
-    support: SupportLines,
-    /// How many layers each wall is printed for.
-    walls: Vec<u32>,
-    ironing: Option<Ironing>,
-}
-
 impl<'a> Window<'a> {
     /// A window that begins at the bed.
     #[must_use]
@@ -109,6 +94,7 @@ impl<'a> Window<'a> {
             params,
             grouping,
             support,
+            curved: None,
             batch: 0,
             held: None,
             own: Queue::default(),
@@ -119,6 +105,12 @@ impl<'a> Window<'a> {
             areas: Queue::default(),
             audits: Vec::new(),
         }
+    }
+
+    /// The same under tops that are laid along the surface.
+    #[must_use]
+    pub fn under(self, curved: Option<&'a dyn CurvedTops>) -> Self {
+        Self { curved, ..self }
     }
 
     /// Takes the audits of dual injection, block by block.
@@ -141,8 +133,9 @@ impl<'a> Window<'a> {
     fn load(&mut self) {
         let layers = self.slicer.block(self.batch);
         self.batch += 1;
+        let cut = |layer: Layer| self.curved.map_or(layer.clone(), |curved| curved.cut(layer));
         let prepared: Vec<(Own, LayerRows)> =
-            layers.into_par_iter().map(|layer| prepare(layer, self.params)).collect();
+            layers.into_par_iter().map(|layer| prepare(cut(layer), self.params)).collect();
         let prepared = if self.params.one_wall.is_some() { self.open(prepared) } else { prepared };
         let (own, rows): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
         self.layers.extend(own.iter().map(|own| own.layer.clone()));
@@ -221,14 +214,11 @@ impl<'a> Window<'a> {
     /// Fills the layers of a block.
     fn fill(&self, block: &Block) -> (Vec<Filling>, Vec<Audit>) {
         let layers = block.layers.clone();
-        let line_width = self.params.walls.line_width;
         let ironed: Vec<Option<Ironing>> =
             layers.clone().into_par_iter().map(|k| self.ironing(k)).collect();
         let (skins, areas): (Vec<_>, Vec<_>) =
             layers.into_par_iter().filter_map(|k| self.skins(k)).unzip();
-        let areas: Vec<&LayerAreas> = areas.iter().map(Cow::as_ref).collect();
-        let (infill, audit) =
-            dual::infill(block, &areas, self.grouping, &self.params.sparse, line_width);
+        let (infill, audit) = self.infill(block, areas);
         let (support, support_audit) = self.share_support(block);
         let lines = infill.into_iter().zip(support).zip(self.share_walls(block)).zip(ironed);
         let fillings =
@@ -238,6 +228,43 @@ impl<'a> Window<'a> {
         (fillings.collect(), audit.into_iter().chain(support_audit).collect())
     }
 
+    /// The infill of a block of these areas. Near a curved top it is printed layer by layer.
+    fn infill(
+        &self,
+        block: &Block,
+        areas: Vec<Cow<'_, LayerAreas>>,
+    ) -> (Vec<Vec<Sparse>>, Option<Audit>) {
+        let (turns, line_width) = (&self.params.sparse, self.params.walls.line_width);
+        let shared =
+            |areas: Vec<&LayerAreas>| dual::infill(block, &areas, self.grouping, turns, line_width);
+        let places = self.thin_places(block.layers.clone());
+        if places.is_empty() || !self.grouping.shares(DualPart::Infill) {
+            return shared(areas.iter().map(Cow::as_ref).collect());
+        }
+        let divided = areas.iter().map(|areas| curved::divide(areas, &places));
+        let (others, thin): (Vec<_>, Vec<_>) = divided.map(|[others, thin]| (others, thin)).unzip();
+        let (mut infill, audit) = shared(others.iter().collect());
+        let thin = curved::thin_infill(block, &thin, self.grouping, turns, line_width);
+        infill.iter_mut().zip(thin).for_each(|(infill, thin)| infill.extend(thin));
+        (infill, audit)
+    }
+
+    /// Where none of these layers may print a line for several: near a curved top.
+    fn thin_places(&self, layers: Range<usize>) -> Vec<Contour> {
+        if self.curved.is_none() || layers.is_empty() {
+            return Vec::new();
+        }
+        let heights = self.slicer.heights();
+        let near = (self.params.skins.top + 1) as Coord * heights.height(layers.end - 1);
+        let ends = (heights.top(layers.start), heights.top(layers.end - 1));
+        curved::thin_places(self.curved, ends, near)
+    }
+
+    /// Whether all skins and walls of layer `k` are for it alone: a curved top lies near above it.
+    fn is_thin(&self, k: usize) -> bool {
+        !self.thin_places(k..k + 1).is_empty()
+    }
+
     /// What of layer `k` is ironed.
     fn ironing(&self, k: usize) -> Option<Ironing> {
         let params = self.params.ironing.as_ref().filter(|_| self.params.skins.top > 0)?;
@@ -245,8 +272,22 @@ impl<'a> Window<'a> {
         // Most layers leave nothing bare.
         let leaves = |above: &Rows| Some(!cover(k)?.minus(above).is_empty());
         cover(k + 1).is_none_or(|above| leaves(above).unwrap_or(true)).then_some(())?;
-        let above = self.own.get(k + 1).map(|above| &*above.layer);
+        let above = self.own.get(k + 1).map_or(&[] as &[Contour], |above| &above.layer.contours);
+        let curved = self.curved_above(k);
+        let all;
+        let above = if curved.is_empty() {
+            above
+        } else {
+            all = polygon::union(&[above, &curved].concat());
+            &all
+        };
         ironing::ironing(&self.own.get(k)?.layer, above, params)
+    }
+
+    /// Where a curved top lies right on layer `k`.
+    fn curved_above(&self, k: usize) -> Vec<Contour> {
+        let (top, height) = (self.slicer.heights().top(k), self.slicer.heights().height(k));
+        self.curved.map(|tops| tops.over(top - height, top + height)).unwrap_or_default()
     }
 
     /// The number of layers that each wall of each layer of a block is printed for.
@@ -254,7 +295,8 @@ impl<'a> Window<'a> {
         let walls = |k| self.own.get(k).map_or(&[] as &[Wall], |own| &own.walls);
         let layers: Vec<&[Wall]> = block.layers.clone().map(walls).collect();
         if self.grouping.shares(DualPart::InnerWalls) {
-            walls::share(block, &layers, self.grouping, &self.params.walls)
+            let thin = |k: usize| self.is_thin(k);
+            walls::share(block, &layers, self.grouping, &thin, &self.params.walls)
         } else {
             layers.iter().map(|walls| vec![1; walls.len()]).collect()
         }
@@ -392,6 +434,7 @@ impl<'a> Window<'a> {
             layers: |k| self.rows.get(k),
             skins: move |k| self.areas.get(k).map(|areas| &*areas.skin(r).skin),
             raster: self.params.rasters.skin(r),
+            thin: |k| self.is_thin(k),
             ratio: self.grouping.ratio(),
             params: &self.params.skins,
         };
@@ -401,40 +444,12 @@ impl<'a> Window<'a> {
     /// Joins `fillings` with what belongs to their layers, and drops what no layer needs any more.
     fn hand_on(&mut self, fillings: Vec<Filling>) -> Vec<Region> {
         let own = std::iter::from_fn(|| self.own.take().zip(self.beads.take()));
-        let regions = fillings.into_iter().zip(own).map(
-            |(laid, (own, Laid { beads, room_beads, filling, bridges, hanging }))| {
-                let Filling { mut skins, infill, support, walls: printed, ironing } = laid;
-                // Wall beads are for this layer alone.
-                let k = own.layer.index;
-                let above = self.rows.get(k + 1).map(|rows| &rows.skin(skin_turn(k).0).cover);
-                let beads = if self.params.tops && self.params.skins.top > 0 {
-                    tops::add_seen(&mut skins, beads, above)
-                } else {
-                    beads
-                };
-                if let Some(skin) = skins.first_mut() {
-                    skin.beads.extend(beads);
-                    skin.room_beads = room_beads;
-                }
-                skins.extend(bridges);
-                let Own { layer, walls, thin_mm2, .. } = own;
-                let (mut walls, hangs): (Vec<Wall>, Vec<Vec<u8>>) = match hanging {
-                    Some(hanging) => hanging.into_iter().map(|h| (h.wall, h.hangs)).unzip(),
-                    None => (walls, Vec::new()),
-                };
-                filling.into_iter().for_each(|index| walls[index].fills = true);
-                // A wall that is printed for several layers lies on the lowest of them.
-                let of = |(hangs, layers): (Vec<u8>, &u32)| match layers {
-                    0 => None,
-                    1 => Some(hangs),
-                    _ => Some(Vec::new()),
-                };
-                let hangs = hangs.into_iter().zip(&printed).filter_map(of).collect();
-                let printed = walls.into_iter().zip(printed).filter(|(_, layers)| *layers > 0);
-                let walls = printed.map(|(wall, layers)| Wall { layers, ..wall }).collect();
-                Region { layer, walls, hangs, skins, infill, ironing, support, thin_mm2 }
-            },
-        );
+        let regions = fillings.into_iter().zip(own).map(|(filling, (own, laid))| {
+            let k = own.layer.index;
+            let above = self.rows.get(k + 1).map(|rows| &rows.skin(skin_turn(k).0).cover);
+            let seen = self.params.tops && self.params.skins.top > 0;
+            joined::region(filling, own, laid, seen.then_some(above))
+        });
         let regions: Vec<Region> = regions.collect();
         let done = self.own.start();
         let below = self.skin_reach();

@@ -222,6 +222,7 @@ proptest! {
             layers: |k| rows.get(k),
             skins: move |k: usize| Some(&*areas.get(k)?.skin(raster).skin),
             raster: params.rasters.skin(raster),
+            thin: |_| false,
             ratio: ratio as usize,
             params: &params.skins,
         });

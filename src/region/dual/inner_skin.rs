@@ -35,10 +35,11 @@ const LEAST_WIDE: Coord = 6;
 /// What layer `k` prints for itself and layers below, and the skin that it prints for itself alone,
 /// on two rasters of which the second is turned by +90°. Layers above print the rest.
 #[must_use]
-pub fn share<'a, L, S>(skins: &[Skins<'a, L, S>; 2], k: usize) -> [(Printed, Rows); 2]
+pub fn share<'a, L, S, T>(skins: &[Skins<'a, L, S, T>; 2], k: usize) -> [(Printed, Rows); 2]
 where
     L: Fn(usize) -> Option<&'a LayerRows>,
     S: Fn(usize) -> Option<&'a Rows>,
+    T: Fn(usize) -> bool,
 {
     let thick = agreed(skins, k);
     let mut thin = [0, 1].map(|r| (skins[r].skins)(k).cloned().unwrap_or_default());
@@ -55,11 +56,15 @@ where
 }
 
 /// What layer `k` prints for several layers: what both rasters have, but for their edges.
-fn agreed<'a, L, S>(skins: &[Skins<'a, L, S>; 2], k: usize) -> [Printed; 2]
+fn agreed<'a, L, S, T>(skins: &[Skins<'a, L, S, T>; 2], k: usize) -> [Printed; 2]
 where
     L: Fn(usize) -> Option<&'a LayerRows>,
     S: Fn(usize) -> Option<&'a Rows>,
+    T: Fn(usize) -> bool,
 {
+    if (skins[0].thin)(k) {
+        return [Printed::new(), Printed::new()];
+    }
     let both = [skins[0].thick(k), skins[1].thick(k)];
     let least = i64::from(skins[0].params.line_width);
     [0, 1].map(|r| {
@@ -77,11 +82,13 @@ where
 }
 
 /// The layers on one raster.
-pub struct Skins<'a, L, S> {
+pub struct Skins<'a, L, S, T> {
     /// Layers, `None` outside the part.
     pub layers: L,
     /// Their skins; a layer with `None` shares nothing.
     pub skins: S,
+    /// Whether a layer prints nothing for others.
+    pub thin: T,
     /// The raster.
     pub raster: Raster,
     /// Layers of a group.
@@ -123,10 +130,11 @@ struct Depths {
     count: usize,
 }
 
-impl<'a, L, S> Skins<'a, L, S>
+impl<'a, L, S, T> Skins<'a, L, S, T>
 where
     L: Fn(usize) -> Option<&'a LayerRows>,
     S: Fn(usize) -> Option<&'a Rows>,
+    T: Fn(usize) -> bool,
 {
     /// What layer `k` prints for several layers: at most one entry for each number of layers.
     fn thick(&self, k: usize) -> Printed {

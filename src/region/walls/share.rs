@@ -12,18 +12,22 @@ const ALIKE: i32 = 10;
 
 /// For each wall of each layer of `block`, the number of layers it is printed for: 0 if a layer
 /// above prints it. The outer wall is always for its own layer. An inner one continues in a wall
-/// of the next layer that runs along it.
+/// of the next layer that runs along it. Layers that have to be `thin` print nothing for others.
 #[must_use]
 pub fn share(
     block: &Block,
     layers: &[&[Wall]],
     grouping: &Grouping,
+    thin: &dyn Fn(usize) -> bool,
     params: &WallParams,
 ) -> Vec<Vec<u32>> {
     let tolerance = params.line_width / ALIKE;
     let mut out: Vec<Vec<u32>> = layers.iter().map(|walls| vec![1; walls.len()]).collect();
     for n in 1..layers.len() {
         let k = block.layers.start + n;
+        if thin(k) {
+            continue;
+        }
         for (i, wall) in layers[n].iter().enumerate().filter(|(_, w)| w.depth > 0 && w.closed) {
             if grouping.ends(grouping.wall_phase(wall.depth), k - 1, block) {
                 continue;

@@ -1,0 +1,74 @@
+//! Tops that something else lays, along the surface: what layers leave out for them, and keep thin below.
+//!
+//! Such a top stands on the layers below it as it would on a bed: they are solid for as many layers as any
+//! top, and none of their lines is printed for several layers near it. A thick line that ends there would
+//! lie lower or higher than what the top was reckoned on.
+
+use super::Sparse;
+use super::classify::Areas;
+use super::divide::LayerAreas;
+use super::dual::groups::{Block, Grouping};
+use super::dual::plain;
+use super::scan::Scan;
+use crate::geom::Contour;
+use crate::geom::raster::Raster;
+use crate::geom::spans::Rows;
+use crate::pattern::Turns;
+use crate::slice::Layer;
+use crate::units::Coord;
+use std::fmt::Debug;
+
+/// Tops that are laid along the surface.
+pub trait CurvedTops: Sync + Debug {
+    /// `layer` without what these tops take the place of.
+    fn cut(&self, layer: Layer) -> Layer;
+
+    /// Where the underside of one lies at `from` or higher, and lower than `below`, in plan; both above
+    /// the bed, grid units.
+    fn over(&self, from: Coord, below: Coord) -> Vec<Contour>;
+}
+
+/// Where no line of some layers may be printed for several: those from `from` to `to` above the bed. A
+/// curved top lies less than `near` above.
+#[must_use]
+pub fn thin_places(
+    tops: Option<&dyn CurvedTops>,
+    (from, to): (Coord, Coord),
+    near: Coord,
+) -> Vec<Contour> {
+    tops.map(|tops| tops.over(from, to.saturating_add(near))).unwrap_or_default()
+}
+
+/// These areas without the infill within `places`, and with no other infill than that.
+#[must_use]
+pub fn divide(areas: &LayerAreas, places: &[Contour]) -> [LayerAreas; 2] {
+    let on = |raster: Raster| Scan::new(places, raster).inside().clone();
+    let keep = |of: &Rows, rows: &Rows, inside: bool| {
+        if inside { of.and(rows) } else { of.minus(rows) }
+    };
+    [false, true].map(|inside| {
+        areas.clone().map_on(|raster, its| {
+            let rows = on(raster);
+            let infill = keep(&its.infill, &rows, inside);
+            let dense = keep(&its.dense, &rows, inside);
+            Areas { infill, dense, ..its }
+        })
+    })
+}
+
+/// The infill of each layer of a block that is printed layer by layer whatever the others do.
+#[must_use]
+pub fn thin_infill(
+    block: &Block,
+    layers: &[LayerAreas],
+    grouping: &Grouping,
+    turns: &Turns,
+    line_width: Coord,
+) -> Vec<Vec<Sparse>> {
+    let of = |(k, areas): (usize, &LayerAreas)| {
+        let turn = if grouping.shorter { k } else { block.turn };
+        let patterns: Vec<_> = turns.of(turn).iter().chain(turns.dense(turn)).cloned().collect();
+        plain(&patterns, areas, line_width)
+    };
+    block.layers.clone().zip(layers).map(of).collect()
+}

@@ -1,0 +1,76 @@
+//! What is decided for a layer, and what belongs to it alone -> its Region.
+
+use super::ironing::Ironing;
+use super::overhang::Hanging;
+use super::prepare::Own;
+use super::walls::Wall;
+use super::{Region, Skin, Sparse, SupportLines, tops};
+use crate::geom::polyline::Polyline;
+use crate::geom::spans::Rows;
+
+/// What is laid on a layer, whatever its block is.
+#[derive(Debug)]
+pub(super) struct Laid {
+    /// Beads along walls where skin is narrow.
+    pub(super) beads: Vec<Polyline>,
+    /// The same in narrow rooms.
+    pub(super) room_beads: Vec<Polyline>,
+    /// Which walls fill a room.
+    pub(super) filling: Vec<usize>,
+    /// Bridges.
+    pub(super) bridges: Vec<Skin>,
+    /// Walls with their overhangs, if there are any.
+    pub(super) hanging: Option<Vec<Hanging>>,
+}
+
+/// What is decided for one layer of a block, before its walls and beads are added.
+pub(super) struct Filling {
+    /// Its skins, the first on the raster of the layer's beads.
+    pub(super) skins: Vec<Skin>,
+    /// Its sparse lines.
+    pub(super) infill: Vec<Sparse>,
+    /// Its support.
+    pub(super) support: SupportLines,
+    /// How many layers each wall is printed for.
+    pub(super) walls: Vec<u32>,
+    /// What is ironed.
+    pub(super) ironing: Option<Ironing>,
+}
+
+/// The region of a layer. `seen` tells tops apart: it is the cover of the layer above on the raster of this
+/// one's beads, if there is a layer above.
+pub(super) fn region(
+    filling: Filling,
+    own: Own,
+    laid: Laid,
+    seen: Option<Option<&Rows>>,
+) -> Region {
+    let Filling { mut skins, infill, support, walls: printed, ironing } = filling;
+    let Laid { beads, room_beads, filling, bridges, hanging } = laid;
+    // Wall beads are for this layer alone.
+    let beads = match seen {
+        Some(above) => tops::add_seen(&mut skins, beads, above),
+        None => beads,
+    };
+    if let Some(skin) = skins.first_mut() {
+        skin.beads.extend(beads);
+        skin.room_beads = room_beads;
+    }
+    skins.extend(bridges);
+    let Own { layer, walls, thin_mm2, .. } = own;
+    let (mut walls, hangs): (Vec<Wall>, Vec<Vec<u8>>) = match hanging {
+        Some(hanging) => hanging.into_iter().map(|h| (h.wall, h.hangs)).unzip(),
+        None => (walls, Vec::new()),
+    };
+    filling.into_iter().for_each(|index| walls[index].fills = true);
+    // A wall that is printed for several layers lies on the lowest of them.
+    let of = |(hangs, layers): (Vec<u8>, &u32)| match layers {
+        0 => None,
+        1 => Some(hangs),
+        _ => Some(Vec::new()),
+    };
+    let hangs = hangs.into_iter().zip(&printed).filter_map(of).collect();
+    let printed = walls.into_iter().zip(printed).filter(|(_, layers)| *layers > 0);
+    let walls = printed.map(|(wall, layers)| Wall { layers, ..wall }).collect();
+    Region { layer, walls, hangs, skins, infill, ironing, support, thin_mm2 }
+}
