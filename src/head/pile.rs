@@ -1,10 +1,47 @@
 //! Pile: how high plastic stands on a grid, and where a head would touch it.
+//!
+//! - A *cell* is a square of the grid. It holds a whole number of grid units, rounded up: a pile is never
+//!   lower than what stands.
+//! - The *pyramid* above the cells: each square of a level is as high as the highest of the four below it,
+//!   up to one square over all. Heights only rise, so a cell that is raised raises the squares above
+//!   it, until one is as high already: on the whole that is one more step in three.
+//! - *Branch and bound*: a square is left out with all its cells if its height, less the lowest place of
+//!   the head over it, is not deeper than the deepest touch so far. Where nothing is touched, few squares
+//!   are looked at.
+//! - A touch of less than a micrometre is none: a file's own numbers are no finer.
+//!
+//! Of touches equally deep the first one counts, by rows and in them by columns.
 
+use super::shape::Shape;
 use super::{Head, Part};
+use crate::units::{Coord, UNITS_PER_MM, to_mm};
+use std::ops::Range;
+
+/// Touches less deep are none, mm.
+pub const LEAST_TOUCH: f64 = 0.001;
+
+/// Nothing stands there.
+const EMPTY: Coord = Coord::MIN;
+
+/// Rounding of decimals must not raise a cell by a unit.
+const SLACK_UNITS: f64 = 1e-3;
 
 /// How high plastic stands on a grid of square cells; a cell is -infinity where nothing stands.
 #[derive(Debug, Clone)]
-pub struct Pile {}
+pub struct Pile {
+    low: [f64; 2],
+    cell: f64,
+    /// The cells, then each level of the pyramid up to a single square.
+    levels: Vec<Level>,
+}
+
+#[derive(Debug, Clone)]
+struct Level {
+    columns: usize,
+    rows: usize,
+    /// Row by row.
+    heights: Vec<Coord>,
+}
 
 /// What a head touches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,53 +54,201 @@ pub struct Hit {
     pub at: [f64; 2],
     /// How high that cell stands, mm.
     pub height: f64,
+    /// Where the tip was, mm.
+    pub tip: [f64; 3],
 }
 
 impl Pile {
     /// An empty pile over the rectangle from `low` to `high`, with cells of this side, mm.
     #[must_use]
-    pub fn new(_low: [f64; 2], _high: [f64; 2], _cell: f64) -> Self {
-        todo!()
+    pub fn new(low: [f64; 2], high: [f64; 2], cell: f64) -> Self {
+        let count = |axis: usize| ((high[axis] - low[axis]) / cell - 1e-6).ceil().max(1.0) as usize;
+        let mut levels = vec![Level::new(count(0), count(1))];
+        while let Some(last) = levels.last().filter(|last| last.columns * last.rows > 1) {
+            levels.push(Level::new(last.columns.div_ceil(2), last.rows.div_ceil(2)));
+        }
+        Self { low, cell, levels }
     }
 
     /// Columns and rows of its cells.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
-        todo!()
+        [self.cells().columns, self.cells().rows]
     }
 
-    /// The middle of a cell, mm.
+    /// The side of a cell, mm.
     #[must_use]
-    pub fn middle(&self, _cell: [usize; 2]) -> [f64; 2] {
-        todo!()
+    pub fn side(&self) -> f64 {
+        self.cell
+    }
+
+    /// The middle of a cell, column and row, mm.
+    #[must_use]
+    pub fn middle(&self, [column, row]: [usize; 2]) -> [f64; 2] {
+        let [x, y] = self.corner([column, row]);
+        [x + self.cell / 2.0, y + self.cell / 2.0]
     }
 
     /// The cell around a place; `None` beside the grid.
     #[must_use]
-    pub fn cell(&self, _at: [f64; 2]) -> Option<[usize; 2]> {
-        todo!()
+    pub fn cell(&self, at: [f64; 2]) -> Option<[usize; 2]> {
+        let along = |axis: usize| ((at[axis] - self.low[axis]) / self.cell).floor();
+        let (column, row, [columns, rows]) = (along(0), along(1), self.size());
+        let inside = column >= 0.0 && row >= 0.0 && column < columns as f64 && row < rows as f64;
+        inside.then_some([column as usize, row as usize])
     }
 
     /// How high a cell stands, mm.
     #[must_use]
-    pub fn height(&self, _cell: [usize; 2]) -> f64 {
-        todo!()
+    pub fn height(&self, [column, row]: [usize; 2]) -> f64 {
+        let cells = self.cells();
+        let known = column < cells.columns && row < cells.rows;
+        if known { mm(cells.at([column, row])) } else { f64::NEG_INFINITY }
     }
 
-    /// A cell stands at least so high, mm.
-    pub fn raise(&mut self, _cell: [usize; 2], _z: f64) {
-        todo!()
+    /// How high the highest cell stands, mm.
+    #[must_use]
+    pub fn highest(&self) -> f64 {
+        self.levels.last().map_or(f64::NEG_INFINITY, |top| mm(top.at([0, 0])))
+    }
+
+    /// A cell stands at least so high, mm. What lies beside the grid is left out.
+    pub fn raise(&mut self, [column, row]: [usize; 2], z: f64) {
+        self.raise_row(row, column..column + 1, z);
     }
 
     /// The cells from `columns.start` on of a row stand at least so high, mm.
-    pub fn raise_row(&mut self, _row: usize, _columns: std::ops::Range<usize>, _z: f64) {
-        todo!()
+    pub fn raise_row(&mut self, row: usize, columns: Range<usize>, z: f64) {
+        let [all, rows] = self.size();
+        let (mut from, mut to, mut row) = (columns.start, columns.end.min(all), row);
+        if row >= rows || from >= to || z.is_nan() || z == f64::NEG_INFINITY {
+            return;
+        }
+        let z = (z * UNITS_PER_MM - SLACK_UNITS).ceil() as Coord;
+        for level in &mut self.levels {
+            let start = row * level.columns;
+            let mut rises = false;
+            for height in &mut level.heights[start + from..start + to] {
+                rises |= *height < z;
+                *height = (*height).max(z);
+            }
+            if !rises {
+                // All above them are as high already.
+                return;
+            }
+            (from, to, row) = (from / 2, to.div_ceil(2), row / 2);
+        }
     }
 
     /// The deepest touch of `head` with its tip at `tip` (mm) among those that `spare` does not allow. A
     /// cell's whole square counts.
     #[must_use]
-    pub fn hit(&self, _head: &Head, _tip: [f64; 3], _spare: &dyn Fn(&Hit) -> bool) -> Option<Hit> {
-        todo!()
+    pub fn hit(&self, head: &Head, tip: [f64; 3], spare: &dyn Fn(&Hit) -> bool) -> Option<Hit> {
+        let mut search = Search { pile: self, shape: Shape::of(head), tip, spare, best: None };
+        search.down(self.levels.len() - 1, [0, 0]);
+        search.best.map(|(hit, _)| hit)
+    }
+
+    /// Whether `head` touches nothing, press neither, wherever its tip is in the box from `low` to `high`,
+    /// mm. It may say no where that is so.
+    #[must_use]
+    pub fn is_clear(&self, head: &Head, low: [f64; 3], high: [f64; 3]) -> bool {
+        let shape = Shape::of(head);
+        let mut open = vec![(self.levels.len() - 1, [0, 0])];
+        while let Some((level, square)) = open.pop() {
+            let height = mm(self.levels[level].at(square));
+            let [from, to] = self.bounds(level, square);
+            let by = [[from[0] - high[0], from[1] - high[1]], [to[0] - low[0], to[1] - low[1]]];
+            if height - low[2] - shape.lowest(by[0], by[1]).0 <= LEAST_TOUCH {
+                continue;
+            }
+            if level == 0 {
+                return false;
+            }
+            open.extend(self.below(level, square).map(|square| (level - 1, square)));
+        }
+        true
+    }
+
+    fn cells(&self) -> &Level {
+        // There always is one.
+        &self.levels[0]
+    }
+
+    /// The low corner of a cell.
+    fn corner(&self, cell: [usize; 2]) -> [f64; 2] {
+        [0, 1].map(|axis| self.low[axis] + cell[axis] as f64 * self.cell)
+    }
+
+    /// The corners of a square of the pyramid.
+    fn bounds(&self, level: usize, [column, row]: [usize; 2]) -> [[f64; 2]; 2] {
+        let corner = |by: usize| self.corner([(column + by) << level, (row + by) << level]);
+        [corner(0), corner(1)]
+    }
+
+    /// The squares below one that is no cell.
+    fn below(&self, level: usize, [column, row]: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
+        let Level { columns, rows, .. } = self.levels[level - 1];
+        let all = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| [2 * column + x, 2 * row + y]);
+        all.into_iter().filter(move |[column, row]| *column < columns && *row < rows)
+    }
+}
+
+impl Level {
+    fn new(columns: usize, rows: usize) -> Self {
+        Self { columns, rows, heights: vec![EMPTY; columns * rows] }
+    }
+
+    fn at(&self, [column, row]: [usize; 2]) -> Coord {
+        self.heights[row * self.columns + column]
+    }
+}
+
+fn mm(height: Coord) -> f64 {
+    if height == EMPTY { f64::NEG_INFINITY } else { to_mm(height) }
+}
+
+/// The way down a pyramid to the deepest touch.
+struct Search<'a> {
+    pile: &'a Pile,
+    shape: Shape<'a>,
+    tip: [f64; 3],
+    spare: &'a dyn Fn(&Hit) -> bool,
+    /// The deepest touch so far, and its row and column.
+    best: Option<(Hit, [usize; 2])>,
+}
+
+impl Search<'_> {
+    fn down(&mut self, level: usize, square: [usize; 2]) {
+        let height = self.pile.levels[level].at(square);
+        if height == EMPTY {
+            return;
+        }
+        let [low, high] =
+            self.pile.bounds(level, square).map(|[x, y]| [x - self.tip[0], y - self.tip[1]]);
+        let (over, part) = self.shape.lowest(low, high);
+        let height = to_mm(height);
+        let depth = height - self.tip[2] - over;
+        // The row and the column of its first cell.
+        let first = [square[1] << level, square[0] << level];
+        let deepest = self
+            .best
+            .is_none_or(|(best, at)| depth > best.depth || depth == best.depth && first < at);
+        let Some(part) = part.filter(|_| depth > LEAST_TOUCH && deepest) else { return };
+        if level > 0 {
+            // No iterator here: this is where the time goes.
+            let Level { columns, rows, .. } = self.pile.levels[level - 1];
+            let [column, row] = [2 * square[0], 2 * square[1]];
+            for row in row..(row + 2).min(rows) {
+                for column in column..(column + 2).min(columns) {
+                    self.down(level - 1, [column, row]);
+                }
+            }
+            return;
+        }
+        let hit = Hit { part, depth, at: self.pile.middle(square), height, tip: self.tip };
+        if !(self.spare)(&hit) {
+            self.best = Some((hit, first));
+        }
     }
 }

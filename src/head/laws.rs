@@ -1,0 +1,113 @@
+//! Laws of pile and sweep: what they tell is what a look at every cell tells.
+
+use super::pile::{Hit, LEAST_TOUCH, Pile};
+use super::sweep::{SAMPLE, sweep};
+use super::tests::any_head;
+use super::{Head, Part};
+use proptest::prelude::*;
+
+/// The deepest touch by a look at every cell.
+fn brute(pile: &Pile, head: &Head, tip: [f64; 3], spare: &dyn Fn(&Hit) -> bool) -> Option<Hit> {
+    let [columns, rows] = pile.size();
+    let mut best: Option<Hit> = None;
+    for row in 0..rows {
+        for column in 0..columns {
+            let at = pile.middle([column, row]);
+            let half = pile.side() / 2.0;
+            let edge = |sign: f64| [at[0] + sign * half - tip[0], at[1] + sign * half - tip[1]];
+            let (low, high) = (edge(-1.0), edge(1.0));
+            let over = head.over(low, high);
+            let height = pile.height([column, row]);
+            let hit = Hit { part: Part::Flat, depth: height - tip[2] - over, at, height, tip };
+            let deeper = best.is_none_or(|best| hit.depth > best.depth);
+            if hit.depth > LEAST_TOUCH && deeper && !spare(&hit) {
+                best = Some(hit);
+            }
+        }
+    }
+    best
+}
+
+fn any_pile() -> impl Strategy<Value = Pile> {
+    let rise = (0usize..40, 0usize..30, 1usize..20, 0.0..12.0);
+    (prop::collection::vec(rise, 0..40), -3.0..3.0, 0.3..1.5).prop_map(
+        |(rises, low, cell): (Vec<_>, f64, f64)| {
+            let mut pile = Pile::new([low, low], [low + 40.0 * cell, low + 30.0 * cell], cell);
+            for (column, row, count, z) in rises {
+                pile.raise_row(row, column..column + count, z);
+            }
+            pile
+        },
+    )
+}
+
+proptest! {
+    #[test]
+    fn a_hit_is_the_deepest_of_all_cells(
+        head in any_head(), pile in any_pile(), x in -5.0..45.0, y in -5.0..35.0, z in -1.0..12.0,
+        spared in 0.0..3.0,
+    ) {
+        let tip = [x, y, z];
+        let spare = |hit: &Hit| hit.depth < spared;
+        let (hit, right) = (pile.hit(&head, tip, &spare), brute(&pile, &head, tip, &spare));
+        prop_assert_eq!(hit.is_some(), right.is_some());
+        if let (Some(hit), Some(right)) = (hit, right) {
+            // A cell's edge is rounded in another way here.
+            prop_assert!((hit.depth - right.depth).abs() < 1e-6, "{:?} {:?}", hit, right);
+            prop_assert_eq!(hit.height, pile.height(pile.cell(hit.at).unwrap()));
+        }
+    }
+
+    #[test]
+    fn a_square_is_as_high_as_its_highest_cell(pile in any_pile()) {
+        let [columns, rows] = pile.size();
+        let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
+        let highest = cells.map(|cell| pile.height(cell)).fold(f64::NEG_INFINITY, f64::max);
+        prop_assert_eq!(pile.highest(), highest);
+    }
+
+    #[test]
+    fn a_sweep_is_the_deepest_of_its_samples(
+        head in any_head(), pile in any_pile(), from in prop::array::uniform3(-2.0_f64..30.0),
+        to in prop::array::uniform3(-2.0_f64..30.0),
+    ) {
+        let length = (0..3).map(|axis| (to[axis] - from[axis]).powi(2)).sum::<f64>().sqrt();
+        let steps = (length / SAMPLE).ceil().max(1.0);
+        let at = |step: f64| [0, 1, 2].map(|axis| from[axis] + step / steps * (to[axis] - from[axis]));
+        let none = |_: &Hit| false;
+        let right = (0..=steps as usize)
+            .filter_map(|step| pile.hit(&head, at(step as f64), &none))
+            .map(|hit| hit.depth)
+            .fold(0.0, f64::max);
+        let depth = sweep(&pile, &head, from, to, &none).map_or(0.0, |hit| hit.depth);
+        prop_assert!((depth - right).abs() < 1e-6, "{} {}", depth, right);
+    }
+}
+
+#[test]
+fn of_equal_touches_the_first_one_counts() {
+    let mut pile = Pile::new([0.0, 0.0], [8.0, 8.0], 1.0);
+    (0..8).for_each(|row| pile.raise_row(row, 0..8, 2.0));
+    let plate = Head { flat: 20.0, cone: 90.0, cone_length: 0.0, discs: vec![], boxes: vec![] };
+    let hit = pile.hit(&plate, [4.0, 4.0, 1.5], &|_| false).unwrap();
+    assert_eq!((hit.at, hit.part, hit.depth), ([0.5, 0.5], Part::Flat, 0.5));
+    // A level move over a top of the same height touches nothing.
+    assert_eq!(sweep(&pile, &plate, [0.0, 0.0, 2.0], [8.0, 8.0, 2.0], &|_| false), None);
+}
+
+#[test]
+fn a_height_is_never_rounded_down() {
+    let mut pile = Pile::new([0.0, 0.0], [1.0, 1.0], 0.1);
+    assert_eq!((pile.size(), pile.height([3, 3])), ([10, 10], f64::NEG_INFINITY));
+    for z in [0.1, 0.3, 10.2, 199.9999] {
+        pile.raise([3, 3], z);
+        assert!((pile.height([3, 3]) - z).abs() < 1e-9, "{z}");
+    }
+    pile.raise([3, 3], 200.00001);
+    assert!((pile.height([3, 3]) - 200.0001).abs() < 1e-9);
+    // Lower values and places beside the grid change nothing.
+    pile.raise([3, 3], 1.0);
+    pile.raise([3, 30], 300.0);
+    assert!((pile.highest() - 200.0001).abs() < 1e-9);
+    assert_eq!((pile.cell([0.35, 0.3501]), pile.cell([1.01, 0.5])), (Some([3, 3]), None));
+}
