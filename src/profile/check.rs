@@ -9,6 +9,7 @@
 
 use super::error::{Conflict, ProfileError, Result};
 use super::origin::ValueOrigin;
+use super::skins;
 use super::template::{self, PrintFacts};
 use super::{BrimPlace, DialectName, DualMode, IroningPlace, Settings};
 use std::collections::BTreeMap;
@@ -51,17 +52,18 @@ pub(super) fn together(settings: &Settings, origins: &BTreeMap<String, ValueOrig
     arcs(settings, &blame)?;
     brim(settings, &blame)?;
     heat(settings, &blame)?;
+    skins::check(settings, &blame)?;
     blocks(settings, &blame)
 }
 
 /// Makes the errors.
-struct Blame<'a> {
+pub(super) struct Blame<'a> {
     origins: &'a BTreeMap<String, ValueOrigin>,
 }
 
 impl Blame<'_> {
     /// An error about these keys.
-    fn error(&self, keys: &[&str], source: Conflict) -> ProfileError {
+    pub(super) fn error(&self, keys: &[&str], source: Conflict) -> ProfileError {
         ProfileError::Conflict { origin: self.origin(keys), source }
     }
 

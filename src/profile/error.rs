@@ -266,6 +266,48 @@ pub enum Conflict {
          top_layers = 1"
     )]
     NothingToIron,
+    /// Skins that follow the surface, without a top.
+    #[error(
+        "nonplanar.enabled: tops follow the surface, and there are none without a skin at the top; leave it \
+         out, or set top_layers = 1"
+    )]
+    NothingToFollow,
+    /// Lines that fall within their layer, to more than its height.
+    #[error(
+        "nonplanar.min_height = {least} mm is more than layer_height = {height} mm; make it smaller, or set \
+         nonplanar.contour = false"
+    )]
+    ContourTooHigh {
+        /// Least height of a line, mm.
+        least: f64,
+        /// Height of a layer, mm.
+        height: f64,
+    },
+    /// Slopes that are too steep for skins before they are steep enough.
+    #[error(
+        "nonplanar.min_slope = {least} degrees is more than the {most:.1} degrees that {by}; make it smaller, \
+         or {remedy}"
+    )]
+    NoSlope {
+        /// The least slope, degrees.
+        least: f64,
+        /// The steepest one that skins can follow, degrees.
+        most: f64,
+        /// What limits it.
+        by: &'static str,
+        /// What else would help.
+        remedy: &'static str,
+    },
+    /// A part of the head that there cannot be.
+    #[error("{key}, number {number} of them: {why}")]
+    NoSuchPart {
+        /// The key of the list.
+        key: &'static str,
+        /// Which one of it, from 1.
+        number: usize,
+        /// What is wrong with it.
+        why: &'static str,
+    },
     /// Wide lines for a first layer without a skin.
     #[error(
         "first_layer_width widens the skin at the bottom, and there is none; leave it out, or set \

@@ -3,7 +3,7 @@
 use super::error::ValueError;
 use super::keys::{Key, Kind};
 use super::settings::MAX_TEXT;
-use super::sizes;
+use super::{lists, sizes};
 use toml::Value;
 
 impl Key {
@@ -31,6 +31,10 @@ impl Key {
             (Kind::NumberOrAuto { .. } | Kind::CountOrAuto { .. }, Value::String(word)) => {
                 self.one_of(&["auto".to_owned()], word)
             }
+            (Kind::NumbersOrAuto(limits), value) => lists::numbers(self, limits, value),
+            (Kind::Rows { columns, limits }, Value::Array(rows)) => {
+                lists::rows(self, *columns, limits, rows)
+            }
             (
                 &(Kind::Count { min, max } | Kind::CountOrAuto { min, max }),
                 Value::Integer(whole),
@@ -55,7 +59,12 @@ impl Key {
         }
     }
 
-    fn within(&'static self, number: f64, min: f64, max: f64) -> Result<Value, ValueError> {
+    pub(super) fn within(
+        &'static self,
+        number: f64,
+        min: f64,
+        max: f64,
+    ) -> Result<Value, ValueError> {
         // NaN is in no range, so it is refused here too.
         if (min..=max).contains(&number) {
             Ok(Value::Float(number))
@@ -64,7 +73,11 @@ impl Key {
         }
     }
 
-    fn one_of(&'static self, words: &[String], word: String) -> Result<Value, ValueError> {
+    pub(super) fn one_of(
+        &'static self,
+        words: &[String],
+        word: String,
+    ) -> Result<Value, ValueError> {
         if words.contains(&word) {
             return Ok(Value::String(word));
         }
@@ -103,7 +116,7 @@ fn listed(text: &str) -> Vec<Value> {
     words.map(|word| Value::String(word.to_owned())).collect()
 }
 
-fn described(value: &Value) -> String {
+pub(super) fn described(value: &Value) -> String {
     match value {
         Value::String(text) => format!("the text `{}`", crate::text::line(text)),
         Value::Integer(number) => format!("the number {number}"),
