@@ -79,6 +79,7 @@ pub use pipeline::spool::slice_to;
 
 use error::{Error, Refusal, Result};
 use pipeline::batches::{self, Setup};
+use pipeline::curved::{self, Curved};
 use pipeline::footing::Footing;
 use pipeline::lift::Lift;
 use pipeline::place::{bed_corners, print_facts};
@@ -135,7 +136,10 @@ pub fn slice_placed(
     let corners = bed_corners(&bed(&settings.machine), placed.offset);
     let footing = Footing::new(&settings, placed.offset);
     let sticking = Sticking::new(&settings, placed, &heights, corners);
-    let mut planner = setup.planner(&slicer, corners, footing, sticking);
+    let support = setup.supports(&slicer, corners);
+    let found = curved::find(&settings, placed, &slicer, support.as_ref());
+    let curved = found.as_ref().map(|found| Curved::new(found, &settings));
+    let mut planner = setup.planner(&slicer, support, curved.as_ref(), footing, sticking);
     let (pictures, planned) = rayon::join(|| thumbnails(&settings, placed), || planner.ahead());
 
     // Toolpaths -> text, one batch while the next is planned.
@@ -156,5 +160,6 @@ pub fn slice_placed(
     report.warnings.extend(stuck.warning);
     report.brim = stuck.brim;
     report.raft = stuck.raft;
+    report.nonplanar = found.map(|found| found.report(&lift));
     Ok(report)
 }

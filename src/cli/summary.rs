@@ -5,11 +5,13 @@
 //! 3. The filament, and how it is shared out among roles.
 //! 4. How long it prints, and what dual injection did.
 //! 5. Which layers are printed slower to take their least time, if any are.
+//! 6. How much of the tops has skins that follow the surface, if that was asked for.
 //!
 //! Notes, such as of what was mended or of a brim that nobody asked for, stand before it.
 
 use slicer::mesh::{MeshReport, faults};
 use slicer::profile::{Profile, dump};
+use slicer::report::nonplanar::{FlatReport, NonPlanarReport};
 use slicer::report::{BrimReport, CoolingReport, DriveReport, MotionReport, Report};
 use std::time::Duration;
 
@@ -57,6 +59,27 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
         duration(report.time.total_s),
         took.as_secs_f64(),
         report.cooling.as_ref().map_or_else(String::new, slower),
+    ) + &report.nonplanar.as_ref().map_or_else(String::new, nonplanar)
+}
+
+/// How much of the tops follows the surface, and why the rest does not.
+fn nonplanar(report: &NonPlanarReport) -> String {
+    let areas = &report.areas;
+    let mut flat: Vec<&FlatReport> = areas.flat.iter().filter(|flat| flat.mm2 >= 0.5).collect();
+    flat.sort_by(|a, b| b.mm2.total_cmp(&a.mm2));
+    let reasons: Vec<String> =
+        flat.iter().map(|flat| format!("{} {:.0}", flat.reason, flat.mm2)).collect();
+    let why = if reasons.is_empty() { String::new() } else { format!(": {}", reasons.join(", ")) };
+    let contour = if areas.contour_mm2 < 0.5 {
+        String::new()
+    } else {
+        format!(", {:.0} rise and fall within their layer", areas.contour_mm2)
+    };
+    format!(
+        "non-planar skin on {:.0} of {:.0} mm² of sloped tops{contour}, {:.0} flat{why}\n",
+        areas.skin_mm2,
+        areas.top_mm2 - areas.level_mm2,
+        areas.flat_mm2,
     )
 }
 

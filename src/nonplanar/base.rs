@@ -14,6 +14,7 @@
 use super::surface::Surface;
 use crate::geom::boxes::{extent, meet};
 use crate::geom::{Contour, polygon};
+use crate::region::curved::CurvedTops;
 use crate::slice::Layer;
 use crate::units::Coord;
 
@@ -80,7 +81,34 @@ impl<'a> Base<'a> {
     }
 }
 
+impl CurvedTops for Base<'_> {
+    fn cut(&self, layer: Layer) -> Layer {
+        Base::cut(self, layer)
+    }
+
+    fn over(&self, from: Coord, below: Coord) -> Vec<Contour> {
+        let over = |patch: &Lowered<'_>| patch.over(from, below);
+        let all: Vec<Contour> = self.patches.iter().flat_map(over).collect();
+        if all.is_empty() { all } else { polygon::union(&all) }
+    }
+}
+
 impl Lowered<'_> {
+    /// Where the underside of the skins lies at `from` or higher and lower than `below`; may overlap.
+    fn over(&self, from: Coord, below: Coord) -> Vec<Contour> {
+        let [low, high] = self.surface.bounds();
+        let most = self.up(0);
+        if low.saturating_sub(most) >= below || high < from {
+            return Vec::new();
+        }
+        let of = |(k, area): (usize, &Vec<Contour>)| {
+            let up = self.up(k);
+            let band = self.surface.between(from.saturating_add(up), below.saturating_add(up));
+            if band.is_empty() { band } else { polygon::intersection(&band, area) }
+        };
+        self.areas.iter().enumerate().flat_map(of).collect()
+    }
+
     /// How far below the surface the base ends where skin `k`, counted from 0 at the lowest, is the lowest.
     fn up(&self, k: usize) -> Coord {
         let skins = Coord::try_from(self.areas.len() - k.min(self.areas.len())).unwrap_or(0);

@@ -8,5 +8,7 @@ pub mod surface;
 
 mod facets;
 mod index;
+pub mod patch;
 mod rim;
 mod sheets;
+pub mod tally;

@@ -13,6 +13,7 @@
 //! - The *setup* is what the settings mean for the three stages, and what heights and bodies add to it.
 //! - The *planner* makes regions of a batch while the *orderer* fills and orders those of the one before.
 
+use super::curved::Curved;
 use super::footing::Footing;
 use super::footprint::{Footprint, Rules, footprint};
 use super::lift::Lift;
@@ -28,7 +29,7 @@ use crate::progress::Progress;
 use crate::region::dual::audit::Audit;
 use crate::region::dual::groups::Grouping;
 use crate::region::support::{SupportParams, supports};
-use crate::region::window::{self, Window};
+use crate::region::window::{Support, Window};
 use crate::region::{Region, RegionParams, foot};
 use crate::report::tally::Tally;
 use crate::slice::{Heights, Slicer};
@@ -73,19 +74,28 @@ impl Setup {
         }
     }
 
-    /// Ready to plan the layers of `slicer`; support stands within these corners of the bed.
+    /// The support of the layers of `slicer`, if there is any; it stands within these corners of the bed.
+    #[must_use]
+    pub fn supports(&self, slicer: &Slicer<'_>, bed: (Point, Point)) -> Option<Support> {
+        let of = |s: SupportParams| Support {
+            patterns: s.patterns(),
+            layers: supports(slicer, &s, bed),
+        };
+        self.support.map(of)
+    }
+
+    /// Ready to plan the layers of `slicer`, with their support and under these curved tops.
     #[must_use]
     pub fn planner<'a>(
         &'a self,
         slicer: &'a Slicer<'a>,
-        bed: (Point, Point),
+        support: Option<Support>,
+        curved: Option<&'a Curved<'a>>,
         footing: Footing,
         sticking: Sticking<'a>,
     ) -> Planner<'a> {
-        let supports = self
-            .support
-            .map(|s| window::Support { patterns: s.patterns(), layers: supports(slicer, &s, bed) });
-        let window = Window::new(slicer, &self.region, &self.grouping, supports);
+        let window = Window::new(slicer, &self.region, &self.grouping, support);
+        let window = window.under(curved.map(Curved::tops));
         let window = Regions { window, first: self.first.as_ref().map(|(region, _)| region) };
         let orderer = Orderer {
             rules: self.rules,
@@ -98,6 +108,7 @@ impl Setup {
             tally: Tally::default(),
             footing,
             sticking,
+            curved,
         };
         Planner { window, regions: None, orderer }
     }
@@ -194,6 +205,7 @@ struct Orderer<'a> {
     tally: Tally,
     footing: Footing,
     sticking: Sticking<'a>,
+    curved: Option<&'a Curved<'a>>,
 }
 
 impl Orderer<'_> {
@@ -218,14 +230,18 @@ impl Orderer<'_> {
         for (region, (footprint, paths)) in regions.iter().zip(unordered) {
             let at = self.head.at.unwrap_or_default();
             let paths = order::order(paths, at, &mut self.seams, plan);
-            let next = self.head.after(&region.layer, &paths);
-            ordered.push((region, std::mem::replace(&mut self.head, next), paths));
+            let skins = self.curved.map(|c| c.after(region.layer.index)).unwrap_or_default();
+            let next = self.head.after(&region.layer, &paths).after_moves(&region.layer, &skins);
+            ordered.push((region, std::mem::replace(&mut self.head, next), paths, skins));
             self.tally.layer(region);
             self.footing.layer(footprint, region);
         }
         let toolpaths = ordered.into_par_iter();
-        let toolpaths =
-            toolpaths.map(|(r, from, paths)| travel::toolpath(&r.layer, paths, from, plan));
+        let toolpaths = toolpaths.map(|(region, from, paths, skins)| {
+            let mut toolpath = travel::toolpath(&region.layer, paths, from, plan);
+            toolpath.moves.extend(skins);
+            toolpath
+        });
         self.lifted(toolpaths.collect())
     }
 

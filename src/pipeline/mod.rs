@@ -2,10 +2,11 @@
 //!
 //! Here is all code that names several stages at once: reading and placing ([`place`]), planning
 //! in batches ([`batches`]), what begins in the air ([`footing`]), skirt, brim and raft
-//! ([`sticking`]), how far a raft lifts all the rest ([`lift`]), the thumbnails ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs that
+//! ([`sticking`]), skins that follow the surface ([`curved`]), how far a raft lifts all the rest ([`lift`]), the thumbnails ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs that
 //! cannot seek ([`spool`]).
 
 pub mod batches;
+pub mod curved;
 pub mod footing;
 pub mod footprint;
 pub mod lift;

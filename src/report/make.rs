@@ -87,6 +87,7 @@ pub fn report(
             .collect(),
         brim: None,
         raft: None,
+        nonplanar: None,
         check: None,
     }
 }

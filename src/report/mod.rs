@@ -14,6 +14,7 @@ pub mod doubtful;
 pub mod failure;
 pub mod make;
 pub mod motion;
+pub mod nonplanar;
 mod reshaped;
 pub mod tally;
 mod unused;
@@ -23,6 +24,7 @@ use crate::mesh::MeshReport;
 use crate::profile::DualPart;
 use crate::warning::Warning;
 use failure::Failure;
+use nonplanar::NonPlanarReport;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::Serialize;
@@ -100,6 +102,9 @@ pub struct Report {
     /// The raft; absent without one. What it takes of time and filament stands in `roles`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub raft: Option<RaftReport>,
+    /// Skins that follow the surface; absent without `nonplanar.enabled`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nonplanar: Option<NonPlanarReport>,
     /// Findings.
     pub warnings: Vec<Warning>,
     /// The verdict of `--check`; absent without it.
