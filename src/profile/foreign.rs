@@ -163,7 +163,7 @@ const KEYS: &[(&str, Names)] = &[
     ("ironing.spacing", [&["ironing_spacing"], &[], &["ironing_line_spacing"]]),
     ("ironing.inset", [&[], &[], &["ironing_inset"]]),
     ("nonplanar.enabled", [&["nonplanar_layers"], &["zaa_enabled"], &[]]),
-    ("nonplanar.min_area", [&["nonplanar_minimal_area", "nonplanar_layers_minimal_area"], &[], &[]]),
+    ("nonplanar.min_area", [&["nonplanar_minimal_area"], &[], &[]]),
     ("nonplanar.min_height", [&[], &["zaa_min_z"], &[]]),
     ("head.flat", [&[], &[], &["machine_nozzle_tip_outer_diameter"]]),
     ("head.cone", [&["nonplanar_layers_angle", "nonplanar_layers_collision_angle"], &[], &["machine_nozzle_expansion_angle"]]),
@@ -242,7 +242,7 @@ const NOT_SUPPORTED: &[(&str, &[&str])] = &[
     ("printing one model after the other", &["complete_objects", "print_sequence"]),
     ("labelling of models", &["label_objects", "gcode_label_objects", "exclude_object"]),
     ("post-processing", &["post_process"]),
-    ("leaving out small collisions", &["nonplanar_layers_ignore_collision_size", "nonplanar_ignore_collision_size"]),
+    ("leaving out small collisions", &["nonplanar_layers_ignore_collision_size"]),
 ];
 
 #[cfg(test)]
