@@ -59,6 +59,16 @@ proptest! {
     }
 
     #[test]
+    fn what_is_only_pressed_is_left_out(
+        head in any_head(), pile in any_pile(), x in -5.0..45.0, y in -5.0..35.0, z in 5.0..12.0,
+        flat in 0.5..12.0, layer_height in 0.1..2.0,
+    ) {
+        let (tip, head) = ([x, y, z], Head { flat, ..head });
+        let right = pile.hit(&head, tip, &|hit| head.presses(hit, layer_height));
+        prop_assert_eq!(pile.hit_printing(&head, tip, layer_height), right);
+    }
+
+    #[test]
     fn a_square_is_as_high_as_its_highest_cell(pile in any_pile()) {
         let [columns, rows] = pile.size();
         let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));

@@ -13,8 +13,8 @@
 //! Of touches equally deep the first one counts, by rows and in them by columns.
 
 use super::shape::Shape;
-use super::{Head, Part};
-use crate::units::{Coord, UNITS_PER_MM, to_mm};
+use super::{DEEPEST_PRESS, Head, Part};
+use crate::units::{Bounded as _, Coord, UNITS_PER_MM, to_mm};
 use std::ops::Range;
 
 /// Touches less deep are none, mm.
@@ -144,8 +144,30 @@ impl Pile {
     /// cell's whole square counts.
     #[must_use]
     pub fn hit(&self, head: &Head, tip: [f64; 3], spare: &dyn Fn(&Hit) -> bool) -> Option<Hit> {
-        let mut search = Search { pile: self, shape: Shape::of(head), tip, spare, best: None };
-        search.down(self.levels.len() - 1, [0, 0]);
+        self.search(head, tip, None, spare)
+    }
+
+    /// As [`Self::hit`] with [`Head::presses`] for `spare`, while a layer of this height is printed, mm: but
+    /// several times as fast, since squares that are only pressed are left out as a whole.
+    #[must_use]
+    pub fn hit_printing(&self, head: &Head, tip: [f64; 3], layer_height: f64) -> Option<Hit> {
+        let press = [head.press_radius().powi(2), DEEPEST_PRESS * layer_height];
+        self.search(head, tip, Some(press), &|hit| head.presses(hit, layer_height))
+    }
+
+    fn search(
+        &self,
+        head: &Head,
+        tip: [f64; 3],
+        press: Option<[f64; 2]>,
+        spare: &dyn Fn(&Hit) -> bool,
+    ) -> Option<Hit> {
+        let shape = Shape::of(head);
+        let mut search = Search { pile: self, shape, tip, press, spare, best: None };
+        let top = self.levels.len() - 1;
+        if let Some(depth) = search.depth(top, [0, 0]) {
+            search.down(top, [0, 0], depth);
+        }
         search.best.map(|(hit, _)| hit)
     }
 
@@ -213,42 +235,82 @@ struct Search<'a> {
     pile: &'a Pile,
     shape: Shape<'a>,
     tip: [f64; 3],
+    /// Squares that lie as near as this all over, squared, and are not touched deeper than this are left out.
+    press: Option<[f64; 2]>,
     spare: &'a dyn Fn(&Hit) -> bool,
     /// The deepest touch so far, and its row and column.
     best: Option<(Hit, [usize; 2])>,
 }
 
 impl Search<'_> {
-    fn down(&mut self, level: usize, square: [usize; 2]) {
-        let height = self.pile.levels[level].at(square);
-        if height == EMPTY {
-            return;
-        }
-        let [low, high] =
-            self.pile.bounds(level, square).map(|[x, y]| [x - self.tip[0], y - self.tip[1]]);
-        let (over, part) = self.shape.lowest(low, high);
-        let height = to_mm(height);
-        let depth = height - self.tip[2] - over;
+    /// Looks at a square that may be touched so deep, and at what lies below it, the deepest first.
+    fn down(&mut self, level: usize, square: [usize; 2], depth: f64) {
         // The row and the column of its first cell.
         let first = [square[1] << level, square[0] << level];
-        let deepest = self
-            .best
-            .is_none_or(|(best, at)| depth > best.depth || depth == best.depth && first < at);
-        let Some(part) = part.filter(|_| depth > LEAST_TOUCH && deepest) else { return };
-        if level > 0 {
-            // No iterator here: this is where the time goes.
-            let Level { columns, rows, .. } = self.pile.levels[level - 1];
-            let [column, row] = [2 * square[0], 2 * square[1]];
-            for row in row..(row + 2).min(rows) {
-                for column in column..(column + 2).min(columns) {
-                    self.down(level - 1, [column, row]);
-                }
-            }
+        let is_deepest =
+            |(best, at): (Hit, [usize; 2])| depth > best.depth || depth == best.depth && first < at;
+        if !self.best.is_none_or(is_deepest) {
             return;
         }
-        let hit = Hit { part, depth, at: self.pile.middle(square), height, tip: self.tip };
-        if !(self.spare)(&hit) {
-            self.best = Some((hit, first));
+        if level == 0 {
+            return self.touch(square, depth);
         }
+        let Level { columns, rows, .. } = self.pile.levels[level - 1];
+        let [column, row] = [2 * square[0], 2 * square[1]];
+        let mut open = [(f64::NEG_INFINITY, [0, 0]); 4];
+        let mut count = 0;
+        // No iterators here: this is where the time goes.
+        for row in row..(row + 2).min(rows) {
+            for column in column..(column + 2).min(columns) {
+                if let Some(depth) = self.depth(level - 1, [column, row]) {
+                    let mut at = count;
+                    while at > 0 && open[at - 1].0 < depth {
+                        open[at] = open[at - 1];
+                        at -= 1;
+                    }
+                    open[at] = (depth, [column, row]);
+                    count += 1;
+                }
+            }
+        }
+        for (depth, square) in open.into_iter().take(count) {
+            self.down(level - 1, square, depth);
+        }
+    }
+
+    /// How deep a square may be touched; `None` if it is not, or only pressed.
+    fn depth(&self, level: usize, square: [usize; 2]) -> Option<f64> {
+        let height = self.pile.levels[level].at(square);
+        // Most of what is looked at lies below the tip, or is empty: EMPTY is lower than any tip.
+        let above = to_mm(height) - self.tip[2];
+        if above <= LEAST_TOUCH {
+            return None;
+        }
+        let [low, high] = self.beside(level, square);
+        let depth = above - self.shape.lowest(low, high).0;
+        (depth > LEAST_TOUCH && !self.is_press(depth, low, high)).then_some(depth)
+    }
+
+    /// The corners of a square, seen from the tip.
+    fn beside(&self, level: usize, square: [usize; 2]) -> [[f64; 2]; 2] {
+        self.pile.bounds(level, square).map(|[x, y]| [x - self.tip[0], y - self.tip[1]])
+    }
+
+    /// A cell that is touched deeper than any other so far.
+    fn touch(&mut self, square: [usize; 2], depth: f64) {
+        let [low, high] = self.beside(0, square);
+        let Some(part) = self.shape.lowest(low, high).1 else { return };
+        let (at, height) = (self.pile.middle(square), self.pile.height(square));
+        let hit = Hit { part, depth, at, height, tip: self.tip };
+        if !(self.spare)(&hit) {
+            self.best = Some((hit, [square[1], square[0]]));
+        }
+    }
+
+    /// Whether a square is only pressed.
+    fn is_press(&self, depth: f64, low: [f64; 2], high: [f64; 2]) -> bool {
+        let Some([near, most]) = self.press else { return false };
+        let furthest = [0, 1].map(|axis| low[axis].abs().at_least(high[axis].abs()));
+        depth <= most && furthest[0] * furthest[0] + furthest[1] * furthest[1] <= near
     }
 }

@@ -20,6 +20,27 @@ pub fn sweep(
     to: [f64; 3],
     spare: &dyn Fn(&Hit) -> bool,
 ) -> Option<Hit> {
+    deepest(pile, head, [from, to], &|tip| pile.hit(head, tip, spare))
+}
+
+/// As [`sweep`], while a layer of this height is printed, mm: what [`Head::presses`] allows is no touch.
+#[must_use]
+pub fn sweep_printing(
+    pile: &Pile,
+    head: &Head,
+    from: [f64; 3],
+    to: [f64; 3],
+    layer_height: f64,
+) -> Option<Hit> {
+    deepest(pile, head, [from, to], &|tip| pile.hit_printing(head, tip, layer_height))
+}
+
+fn deepest(
+    pile: &Pile,
+    head: &Head,
+    [from, to]: [[f64; 3]; 2],
+    hit: &dyn Fn([f64; 3]) -> Option<Hit>,
+) -> Option<Hit> {
     let by = [0, 1, 2].map(|axis| to[axis] - from[axis]);
     let length = by.iter().map(|by| by * by).sum::<f64>().sqrt();
     let steps = ((length / SAMPLE - 1e-9).ceil().max(1.0)) as usize;
@@ -43,7 +64,7 @@ pub fn sweep(
             continue;
         }
         for step in first..=last {
-            let hit = pile.hit(head, at(step), spare);
+            let hit = hit(at(step));
             best = match (best, hit) {
                 (Some(best), Some(hit)) if hit.depth > best.depth => Some(hit),
                 (best, hit) => best.or(hit),

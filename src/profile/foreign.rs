@@ -162,8 +162,14 @@ const KEYS: &[(&str, Names)] = &[
     ("ironing.flow", [&["ironing_flowrate"], &[], &["ironing_flow"]]),
     ("ironing.spacing", [&["ironing_spacing"], &[], &["ironing_line_spacing"]]),
     ("ironing.inset", [&[], &[], &["ironing_inset"]]),
-    ("nonplanar.enabled", [&[], &["zaa_enabled"], &[]]),
+    ("nonplanar.enabled", [&["nonplanar_layers"], &["zaa_enabled"], &[]]),
+    ("nonplanar.min_area", [&["nonplanar_minimal_area"], &[], &[]]),
     ("nonplanar.min_height", [&[], &["zaa_min_z"], &[]]),
+    ("head.flat", [&[], &[], &["machine_nozzle_tip_outer_diameter"]]),
+    ("head.cone", [&["nonplanar_layers_angle", "nonplanar_layers_collision_angle"], &[], &["machine_nozzle_expansion_angle"]]),
+    ("head.cone_length", [&["nonplanar_layers_height"], &["nozzle_height"], &["machine_nozzle_head_distance"]]),
+    ("head.discs", [&["extruder_clearance_radius", "extruder_clearance_height"], &["extruder_clearance_height_to_rod", "extruder_clearance_height_to_lid"], &[]]),
+    ("head.boxes", [&[], &["head_wrap_detect_zone"], &["machine_head_with_fans_polygon", "machine_head_polygon", "gantry_height"]]),
     ("filament.fan_from_layer", [&["disable_fan_first_layers"], &["close_fan_the_first_x_layers"], &[]]),
     ("filament.shrinkage", [&["filament_shrinkage_compensation_xy"], &["filament_shrink"], &["material_shrinkage_percentage", "material_shrinkage_percentage_xy"]]),
     ("filament.shrinkage_z", [&["filament_shrinkage_compensation_z"], &[], &["material_shrinkage_percentage_z"]]),
@@ -236,6 +242,7 @@ const NOT_SUPPORTED: &[(&str, &[&str])] = &[
     ("printing one model after the other", &["complete_objects", "print_sequence"]),
     ("labelling of models", &["label_objects", "gcode_label_objects", "exclude_object"]),
     ("post-processing", &["post_process"]),
+    ("leaving out small collisions", &["nonplanar_layers_ignore_collision_size"]),
 ];
 
 #[cfg(test)]

@@ -6,7 +6,6 @@
 use super::error::ValueError;
 use super::keys::{Key, Limits};
 use super::parse;
-use super::value::described;
 use toml::Value;
 
 /// Numbers in lists are whole multiples of 1 over this: a tenth of a micrometre.
@@ -71,6 +70,20 @@ fn row(key: &'static Key, limits: &Limits, list: Vec<Value>) -> Result<Value, Va
 
 fn wrong_item(key: &'static Key, found: &str) -> ValueError {
     ValueError::WrongItem { found: found.to_owned(), key }
+}
+
+/// What a value is, in words.
+pub(super) fn described(value: &Value) -> String {
+    match value {
+        Value::String(text) => format!("the text `{}`", crate::text::line(text)),
+        Value::Integer(number) => format!("the number {number}"),
+        // With its point, so that 2.0 is not told to be no whole number as "2".
+        Value::Float(number) => format!("the number {number:?}"),
+        Value::Boolean(on) => on.to_string(),
+        Value::Datetime(_) => "a date".to_owned(),
+        Value::Array(_) => "a list".to_owned(),
+        Value::Table(_) => "a table".to_owned(),
+    }
 }
 
 #[cfg(test)]

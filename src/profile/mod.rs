@@ -1,8 +1,10 @@
 //! Profile names, files and overrides -> Settings, each value with its origin.
 
+mod blame;
 mod builder;
 mod check;
 mod choices;
+mod conflict;
 mod derived;
 pub mod error;
 pub mod foreign;

@@ -1,7 +1,7 @@
 //! Settings -> verdict: whether skins that follow the surface, and the head over them, can be as they are set.
 
 use super::Settings;
-use super::check::Blame;
+use super::blame::Blame;
 use super::error::{Conflict, Result};
 
 /// Slack for comparing lengths and angles that were written as decimals.

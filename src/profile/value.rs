@@ -2,6 +2,7 @@
 
 use super::error::ValueError;
 use super::keys::{Key, Kind};
+use super::lists::described;
 use super::settings::MAX_TEXT;
 use super::{lists, sizes};
 use toml::Value;
@@ -114,19 +115,6 @@ impl Key {
 fn listed(text: &str) -> Vec<Value> {
     let words = text.split(',').map(str::trim).filter(|word| !word.is_empty());
     words.map(|word| Value::String(word.to_owned())).collect()
-}
-
-pub(super) fn described(value: &Value) -> String {
-    match value {
-        Value::String(text) => format!("the text `{}`", crate::text::line(text)),
-        Value::Integer(number) => format!("the number {number}"),
-        // With its point, so that 2.0 is not told to be no whole number as "2".
-        Value::Float(number) => format!("the number {number:?}"),
-        Value::Boolean(on) => on.to_string(),
-        Value::Datetime(_) => "a date".to_owned(),
-        Value::Array(_) => "a list".to_owned(),
-        Value::Table(_) => "a table".to_owned(),
-    }
 }
 
 #[cfg(test)]
