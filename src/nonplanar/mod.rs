@@ -8,5 +8,7 @@ pub mod surface;
 
 mod facets;
 mod index;
+#[cfg(test)]
+mod laws;
 mod rim;
 mod sheets;
