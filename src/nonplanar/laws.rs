@@ -1,4 +1,12 @@
 //! Laws of surfaces and of the base below them, on bodies whose tops are known.
+//!
+//! A *body* stands on a grid of places, with a given height over each: a wedge, a dome, an arc, a ramp
+//! that ends at a plateau. So areas, heights and slopes are known by formula.
+//!
+//! - Areas of all classes add up to those of all tops.
+//! - Where the whole top is a patch, the cut layers are those of the body lowered by its skins: the slicer
+//!   itself says what is right, layer by layer.
+//! - What no patch reaches stays as it is: layers below, a roof above.
 
 use super::base::{Base, Lowered};
 use super::find::{Surfaces, surfaces};
