@@ -9,7 +9,8 @@
 //! lowered by so much, whose corners at zp count as above it. The lower bound leaves the roof that stands
 //! higher above the patch. The section ends where S = zp, well within what is taken away, so that rounding
 //! leaves nothing there. Where the patch ends at an upright side of the part, the section was simplified
-//! and the patch's outline was not: what is left there, thinner than 0.02 mm, is no shape to print and goes.
+//! and the patch's outline was not: what is left there is thin. Of what is left and of what is taken, places
+//! thinner than a tenth of a usual line go: no bead fits into them, and walls would bend around them.
 
 use super::surface::Surface;
 use crate::geom::boxes::{extent, meet};
@@ -21,8 +22,8 @@ use crate::units::Coord;
 /// Nothing of the part stands above an accepted patch so near: so many skin heights are taken with it.
 const ABOVE: Coord = 2;
 
-/// Half the width of what is too thin to be left, grid units: 0.01 mm.
-const THIN: Coord = 100;
+/// Half the width of what is too thin to be left or taken, grid units: 0.02 mm.
+const THIN: Coord = 200;
 
 /// Contours are simplified within this, grid units: 2 µm.
 const TOLERANCE: Coord = 20;
@@ -60,7 +61,7 @@ impl<'a> Base<'a> {
             return layer;
         }
         let left = polygon::difference(&layer.contours, &taken, TOLERANCE);
-        Layer { contours: without_thin(&left), ..layer }
+        Layer { contours: without_thin(left), ..layer }
     }
 
     /// The room of all skins at a height, as far as it may meet some contours.
@@ -77,7 +78,7 @@ impl<'a> Base<'a> {
         let beside = |patch: &&Lowered<'_>| meet(patch.surface.extent(), around);
         let rooms: Vec<Contour> =
             patches.filter(beside).flat_map(|patch| patch.room(plane)).collect();
-        if rooms.is_empty() { rooms } else { polygon::union(&rooms) }
+        if rooms.is_empty() { rooms } else { without_thin(polygon::union(&rooms)) }
     }
 }
 
@@ -132,10 +133,10 @@ impl Lowered<'_> {
 }
 
 /// What is left of contours without places thinner than twice [`THIN`].
-fn without_thin(contours: &[Contour]) -> Vec<Contour> {
-    let cores = polygon::inset(contours, THIN);
+fn without_thin(contours: Vec<Contour>) -> Vec<Contour> {
+    let cores = polygon::inset(&contours, THIN);
     // Further out than they were moved in, so that all but thin places keeps its outline, sharp corners too.
     let around = polygon::outset(&cores, 4 * THIN);
-    let thin = polygon::difference(contours, &around, 1);
-    if thin.is_empty() { contours.to_vec() } else { polygon::intersection(contours, &around) }
+    let thin = polygon::difference(&contours, &around, 1);
+    if thin.is_empty() { contours } else { polygon::intersection(&contours, &around) }
 }

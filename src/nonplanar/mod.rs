@@ -8,7 +8,7 @@ pub mod surface;
 
 mod facets;
 mod index;
-pub mod patch;
+#[cfg(test)]
+mod laws;
 mod rim;
 mod sheets;
-pub mod tally;

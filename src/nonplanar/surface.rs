@@ -100,20 +100,20 @@ impl Surface {
     /// Its height over a place, grid units; `None` beside it.
     #[must_use]
     pub fn z(&self, at: Point) -> Option<f64> {
-        self.over_place(at).map(|(facet, _)| height(facet, at))
+        self.facet_at(at).map(|facet| height(facet, at))
     }
 
     /// How it rises along x and along y at a place; `None` beside it.
     #[must_use]
     pub fn slope(&self, at: Point) -> Option<[f64; 2]> {
-        self.over_place(at).map(|(facet, _)| {
+        self.facet_at(at).map(|facet| {
             let [x, y, z] = across(facet);
             [-x / z, -y / z]
         })
     }
 
-    /// The facet over a place, the one that is highest there, and its number.
-    fn over_place(&self, at: Point) -> Option<(&[[Coord; 3]; 3], u32)> {
+    /// The facet over a place, the one that is highest there.
+    fn facet_at(&self, at: Point) -> Option<&[[Coord; 3]; 3]> {
         let near = self.index.at(at);
         let highest = |least: &dyn Fn(Point, Point) -> f64| {
             let holds = |facet: &[[Coord; 3]; 3]| {
@@ -131,7 +131,7 @@ impl Surface {
             best
         };
         let (k, _) = highest(&|_, _| 0.0).or_else(|| highest(&|a, b| -NEAR * a.distance(b)))?;
-        Some((&self.facets[k as usize], k))
+        Some(&self.facets[k as usize])
     }
 
     /// Where it is lower than `below` and not lower than `from`, in plan, as from a union.
@@ -192,6 +192,9 @@ impl Surface {
     /// common.
     #[must_use]
     pub fn over(&self, area: &[Contour]) -> Option<[f64; 2]> {
+        if area == self.outline && !area.is_empty() {
+            return Some(self.bounds.map(f64::from));
+        }
         let mut bounds: Option<[f64; 2]> = None;
         let mut meet = |z: f64| {
             let [low, high] = bounds.unwrap_or([z, z]);
