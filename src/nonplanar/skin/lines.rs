@@ -5,16 +5,21 @@
 //!
 //! 1. A line ends half a line within the edge. At a shallow edge it runs on, until the edge leaves it
 //!    too little room.
-//! 2. Where it lies beside the next row's line, its band ends half way to it. Where it is open for long,
-//!    its band ends at the edge. So a row that begins or ends in a triangle shares its room with the
-//!    row beside it, and no hair line stays open. Short open places are at the ends of rows: the turns
-//!    of the zigzag fill them.
+//! 2. Where it lies beside the next row's line, its band ends half way to it. Where it is open, its band
+//!    ends at the edge. So a row that begins or ends in a triangle shares its room with the row beside
+//!    it, and no hair line stays open. Turns fill what is open for short stretches at
+//!    the ends that they join: a turn lies half within its lines, and has twice the room beyond their ends.
 //! 3. The line follows the middle of its band and is as wide as the band. Corners are kept only where
 //!    that bends.
 
 use super::piece::Piece;
 use crate::geom::decimate::{decimate, most_missed};
 use crate::geom::spans::{Span, subtract};
+use crate::units::Coord;
+
+/// Rows end so far from the edge, in line widths: half a line, but for rounding. The first and the last
+/// row of a piece lie half a line from it.
+const FROM_EDGE: f64 = 0.49;
 
 /// Rows end half a line from the edge, and at shallow edges this share of a line. A smaller share makes
 /// threads in the tips of triangles; a larger one makes the line beside them wider.
@@ -24,10 +29,12 @@ const NEAREST: f64 = 0.2;
 /// an edge of less than 14° to the lines.
 const SHALLOW: f64 = 1.2;
 
-/// Open stretches up to this long, in line widths, are filled by the turns. Turns run as far along the
-/// lines at most: then every edge has one or the other. Also the least length of a line that lies
-/// between others' ends.
+/// Turns run so far along the lines at most, in line widths: then they fill the open stretches at the
+/// ends that they join. Also the least length of a line that lies between others' ends.
 pub(super) const LONGEST_RUN: f64 = 4.0;
+
+/// Shorter open stretches, in line widths, stay as they are: the round ends of lines fill them.
+const LEAST_OPEN: f64 = 1.25;
 
 /// A line's band is at most so wide, in line widths, as for lines of flat skins: the flat face of a
 /// nozzle still smooths a bead of this width.
@@ -50,34 +57,35 @@ pub(super) struct Spot {
     pub(super) width: f64,
 }
 
-/// A line of a skin in plan.
-#[derive(Debug)]
-pub(super) struct Line {
-    /// Where it runs on its row.
-    pub(super) span: Span,
-    /// Its middle, from the lesser u on; at least two places.
-    pub(super) spots: Vec<Spot>,
-}
+/// Whether a turn begins or ends at the end of a line with the lesser u, and with the greater.
+pub(super) type Joined = [bool; 2];
 
-/// The lines of each row of `piece`, with the number of the row.
-pub(super) fn lines(piece: &Piece) -> Vec<(i32, Vec<Line>)> {
-    let rows = rows(piece);
-    let row = |k: usize| rows.get(k).map_or(&[] as &[Span], |(_, spans)| spans);
-    let number = |k: usize| rows[k].0;
-    let line = |k: usize, span: Span| {
-        let before = k.checked_sub(1).map_or(&[] as &[Span], row);
-        let beside = [open(piece, span, before), open(piece, span, row(k + 1))];
-        Line { span, spots: spots(piece, number(k), span, &beside) }
+/// The middle of the line `span` on row `j`, from the lesser u on, at least two places. `beside` are the
+/// spans of the rows below and above.
+pub(super) fn spots(
+    piece: &Piece,
+    (j, span): (i32, Span),
+    beside: [&[Span]; 2],
+    joined: Joined,
+    shortest: Coord,
+) -> Vec<Spot> {
+    let open = [0, 1].map(|side| open(piece, span, beside[side], joined));
+    let all = sampled(piece, (j, span), &open, f64::from(shortest));
+    let miss = |a: &Spot, b: &Spot, s: &Spot| {
+        let part = (s.u - a.u) / (b.u - a.u);
+        let off = |from: f64, to: f64, is: f64| (from + (to - from) * part - is).abs();
+        off(a.v, b.v, s.v).max(off(a.width, b.width, s.width))
     };
-    let of_row = |k: usize| (number(k), row(k).iter().map(|&span| line(k, span)).collect());
-    (0..rows.len()).map(of_row).collect()
+    let split =
+        |a: usize, b: usize| most_missed(a, b, LEAST_BEND, |k| miss(&all[a], &all[b], &all[k]));
+    decimate(all.len(), split).into_iter().map(|k| all[k]).collect()
 }
 
 /// Where the lines run, row by row without a gap.
-fn rows(piece: &Piece) -> Vec<(i32, Vec<Span>)> {
+pub(super) fn rows(piece: &Piece) -> Vec<(i32, Vec<Span>)> {
     let pitch = f64::from(piece.pitch);
-    let inner = piece.scan.inset(piece.pitch / 2);
-    let outer = piece.scan.inset((NEAREST * pitch) as i32);
+    let inner = piece.scan.inset((FROM_EDGE * pitch) as Coord);
+    let outer = piece.scan.inset((NEAREST * pitch) as Coord);
     let of_row = |(j, spans): (i32, &[Span])| {
         let mut out = Vec::new();
         spans.iter().for_each(|&span| within(span, inner.row(j), pitch, &mut out));
@@ -89,7 +97,7 @@ fn rows(piece: &Piece) -> Vec<(i32, Vec<Span>)> {
 /// Appends the lines within `outer`, where the edge may be near: `inner` are those of the row where it
 /// is half a line away.
 fn within(outer: Span, inner: &[Span], pitch: f64, out: &mut Vec<Span>) {
-    let (shallow, long) = ((SHALLOW * pitch) as i32, (LONGEST_RUN * pitch) as i32);
+    let long = (LONGEST_RUN * pitch) as Coord;
     let own = inner.iter().filter(|s| s.overlaps(outer) && s.len() as f64 >= SHORTEST * pitch);
     let first = out.len();
     for &span in own {
@@ -100,35 +108,51 @@ fn within(outer: Span, inner: &[Span], pitch: f64, out: &mut Vec<Span>) {
         }
     }
     match &mut out[first..] {
-        [] => out.extend(Some(outer).filter(|outer| outer.len() >= i64::from(long))),
-        [only] => stretch(only, [true, true], outer, shallow),
+        [] => {
+            let less = ((FROM_EDGE - NEAREST) * pitch) as Coord;
+            let short = Span::new(outer.start + less, outer.end - less);
+            out.extend(short.filter(|span| span.len() >= i64::from(long)));
+        }
+        [only] => stretch(only, [true, true], outer, pitch),
         [start, .., end] => {
-            stretch(start, [true, false], outer, shallow);
-            stretch(end, [false, true], outer, shallow);
+            stretch(start, [true, false], outer, pitch);
+            stretch(end, [false, true], outer, pitch);
         }
     }
 }
 
-/// Lets a line's ends run on to those of `outer`, where that is further than `shallow`.
-fn stretch(span: &mut Span, [start, end]: [bool; 2], outer: Span, shallow: i32) {
+/// Lets a line's ends run on towards those of `outer`, where that is far.
+fn stretch(span: &mut Span, [start, end]: [bool; 2], outer: Span, pitch: f64) {
+    // The end of the row may be at a steep edge, which is not to be nearer than elsewhere.
+    let [less, shallow] = [FROM_EDGE - NEAREST, SHALLOW].map(|part| (part * pitch) as Coord);
     if start && span.start - outer.start > shallow {
-        span.start = outer.start;
+        span.start = outer.start + less;
     }
     if end && outer.end - span.end > shallow {
-        span.end = outer.end;
+        span.end = outer.end - less;
     }
 }
 
-/// Where a line is open for long towards a row with these lines.
-fn open(piece: &Piece, span: Span, row: &[Span]) -> Vec<Span> {
+/// Where a line is open towards a row with these lines, but for what the turns at its ends fill.
+fn open(piece: &Piece, span: Span, row: &[Span], joined: Joined) -> Vec<Span> {
+    let pitch = f64::from(piece.pitch);
     let mut open = Vec::new();
     subtract(&[span], row, &mut open);
-    open.retain(|s| s.len() as f64 > LONGEST_RUN * f64::from(piece.pitch));
+    open.retain(|s| {
+        let at_turn = joined[0] && s.start == span.start || joined[1] && s.end == span.end;
+        s.len() as f64 > pitch * if at_turn { LONGEST_RUN } else { LEAST_OPEN }
+    });
     open
 }
 
-/// The middle of the line on row `j`, open in the stretches below and above.
-fn spots(piece: &Piece, j: i32, span: Span, open: &[Vec<Span>; 2]) -> Vec<Spot> {
+/// The middle of the line on row `j` at places half a line apart, or `shortest`; open in the stretches
+/// below and above.
+fn sampled(
+    piece: &Piece,
+    (j, span): (i32, Span),
+    open: &[Vec<Span>; 2],
+    shortest: f64,
+) -> Vec<Spot> {
     let (pitch, half) = (f64::from(piece.pitch), f64::from(piece.pitch) / 2.0);
     let v = f64::from(piece.v(j));
     let ends = [f64::from(span.start), f64::from(span.end)];
@@ -147,15 +171,7 @@ fn spots(piece: &Piece, j: i32, span: Span, open: &[Vec<Span>; 2]) -> Vec<Spot> 
     if open.iter().all(Vec::is_empty) {
         return ends.map(spot).to_vec();
     }
-    let count = ((ends[1] - ends[0]) / half).ceil().max(1.0);
+    let count = ((ends[1] - ends[0]) / half.max(shortest)).floor().max(1.0);
     let at = |k: usize| ends[0] + (ends[1] - ends[0]) * k as f64 / count;
-    let all: Vec<Spot> = (0..=count as usize).map(|k| spot(at(k))).collect();
-    let miss = |a: &Spot, b: &Spot, s: &Spot| {
-        let part = (s.u - a.u) / (b.u - a.u);
-        let off = |from: f64, to: f64, is: f64| (from + (to - from) * part - is).abs();
-        off(a.v, b.v, s.v).max(off(a.width, b.width, s.width))
-    };
-    let split =
-        |a: usize, b: usize| most_missed(a, b, LEAST_BEND, |k| miss(&all[a], &all[b], &all[k]));
-    decimate(all.len(), split).into_iter().map(|k| all[k]).collect()
+    (0..=count as usize).map(|k| spot(at(k))).collect()
 }

@@ -85,7 +85,7 @@ pub fn paths(skin: &Skin<'_>, base: &dyn Base, params: &NonPlanarParams) -> Laid
     let (walls, rest) = walls::walls(skin.area, params);
     let pieces = piece::pieces(&rest, skin.direction, params.line_width);
     let mut beads = walls;
-    beads.extend(runs::beads(&pieces, skin.surface));
+    beads.extend(runs::beads(&pieces, skin.surface, params.shortest));
     let layer = Layer { skin, base, params };
     let laid: Vec<(Vec<PathPoint>, Vec<Outside>)> =
         beads.par_iter().map(|bead| layer.bead(bead)).collect();

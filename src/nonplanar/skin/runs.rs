@@ -11,10 +11,11 @@
 //! 3. A run that climbs waits for those that end below its first line. Of the runs that wait for none the
 //!    one that begins nearest to the end of the last is next.
 
-use super::lines::{LONGEST_RUN, Line, lines};
+use super::lines::{Joined, LONGEST_RUN, rows, spots};
 use super::piece::Piece;
 use super::relief::Relief;
 use crate::geom::Point;
+use crate::geom::spans::Span;
 use crate::pattern::zigzag::{Link, Side, link};
 use crate::units::Coord;
 
@@ -59,26 +60,24 @@ struct Run {
 }
 
 /// The beads of `pieces` on `surface`, in the order of printing.
-pub(super) fn beads(pieces: &[Piece], surface: &dyn Relief) -> Vec<Bead> {
-    let of_piece = |(k, piece): (usize, &Piece)| runs(piece, k, surface);
+pub(super) fn beads(pieces: &[Piece], surface: &dyn Relief, shortest: Coord) -> Vec<Bead> {
+    let of_piece = |(k, piece): (usize, &Piece)| runs(piece, k, surface, shortest);
     in_order(pieces.iter().enumerate().flat_map(of_piece).collect())
 }
 
 /// The runs of one piece.
-fn runs(piece: &Piece, number: usize, surface: &dyn Relief) -> Vec<Run> {
-    let rows = lines(piece);
+fn runs(piece: &Piece, number: usize, surface: &dyn Relief, shortest: Coord) -> Vec<Run> {
+    let rows = rows(piece);
     let pitch = f64::from(piece.pitch);
-    let spans = rows.iter().map(|(j, lines)| (*j, lines.iter().map(|line| Some(line.span))));
+    let spans = rows.iter().map(|(j, row)| (*j, row.iter().map(|&span| Some(span))));
     let join = |from: (Coord, i32), to: (Coord, i32), _: Side| {
         let ends = [from, to].map(|(u, j)| Point { x: u, y: piece.v(j) });
         let is_short = f64::from((from.0 - to.0).abs()) <= LONGEST_RUN * pitch;
         (is_short && piece.is_clear(from.1, ends, CLEAR * pitch)).then(Vec::new)
     };
-    let first = rows.first().map_or(0, |(j, _)| *j);
-    let line = |link: &Link| &rows[(link.row - first) as usize].1[link.index];
     let mut out = Vec::new();
     for zigzag in link(spans, 1, piece.pitch, join) {
-        let ups = ups(zigzag.iter().map(|link| up(piece, line(link), surface)).collect());
+        let ups = ups(zigzag.iter().map(|link| up(piece, link, surface)).collect());
         let mut rest = zigzag.into_iter().zip(ups).peekable();
         while let Some((link, up)) = rest.next() {
             let mut links = vec![link];
@@ -91,20 +90,18 @@ fn runs(piece: &Piece, number: usize, surface: &dyn Relief) -> Vec<Run> {
             }
             let at = |link: &Link| (link.row, [link.span.start, link.span.end]);
             let ends = [at(&links[0]), at(&links[links.len() - 1])];
-            let lines: Vec<(&Line, Side)> = links.iter().map(|l| (line(l), l.from)).collect();
-            out.push(Run { bead: bead(piece, &lines), ends, up, piece: number });
+            let bead = bead(piece, &rows, &links, shortest);
+            out.push(Run { bead, ends, up, piece: number });
         }
     }
     out
 }
 
 /// The side to which `surface` rises across a line, if it does so to one side.
-fn up(piece: &Piece, line: &Line, surface: &dyn Relief) -> i32 {
-    let [Some(a), Some(b)] = [line.spots.first(), line.spots.last()] else { return 0 };
-    let at = |k: i32| {
-        let part = (f64::from(k) + 0.5) / f64::from(ASKED);
-        piece.leave(a.u + (b.u - a.u) * part, a.v + (b.v - a.v) * part)
-    };
+fn up(piece: &Piece, link: &Link, surface: &dyn Relief) -> i32 {
+    let [a, b] = [link.span.start, link.span.end].map(f64::from);
+    let v = f64::from(piece.v(link.row));
+    let at = |k: i32| piece.leave(a + (b - a) * (f64::from(k) + 0.5) / f64::from(ASKED), v);
     let slopes = (0..ASKED).filter_map(|k| surface.slope(at(k)));
     let (mut sum, mut all, mut count) = (0.0, 0.0, 0.0);
     for across in slopes.map(|slope| piece.across(slope)) {
@@ -129,18 +126,26 @@ fn ups(ups: Vec<i32>) -> Vec<i32> {
     out
 }
 
-/// The bead along lines, each entered at its side.
-fn bead(piece: &Piece, lines: &[(&Line, Side)]) -> Bead {
+/// The bead along the lines of a run.
+fn bead(piece: &Piece, rows: &[(i32, Vec<Span>)], links: &[Link], shortest: Coord) -> Bead {
     let pitch = f64::from(piece.pitch);
-    let mut legs: Bead = Vec::with_capacity(2 * lines.len());
-    for (line, from) in lines {
-        let mut spots = line.spots.clone();
-        if *from == Side::Right {
+    let first = rows.first().map_or(0, |(j, _)| *j);
+    let row = |j: i32| usize::try_from(j - first).ok().and_then(|k| rows.get(k));
+    let spans = |j: i32| row(j).map_or(&[] as &[Span], |(_, spans)| spans);
+    let mut legs: Bead = Vec::with_capacity(2 * links.len());
+    for (k, link) in links.iter().enumerate() {
+        let mut joined = Joined::default();
+        let end = |side: Side| usize::from(side == Side::Right);
+        joined[end(link.from)] |= k > 0;
+        joined[end(link.from.other())] |= k + 1 < links.len();
+        let beside = [spans(link.row - 1), spans(link.row + 1)];
+        let mut spots = spots(piece, (link.row, link.span), beside, joined, shortest);
+        if link.from == Side::Right {
             spots.reverse();
         }
         let places: Vec<Point> = spots.iter().map(|s| piece.leave(s.u, s.v)).collect();
-        if let Some(last) = legs.last() {
-            legs.push(Leg { from: last.to, to: places[0], widths: [pitch; 2] });
+        if let (Some(last), Some(&to)) = (legs.last(), places.first()) {
+            legs.push(Leg { from: last.to, to, widths: [pitch; 2] });
         }
         let leg = |k: usize| Leg {
             from: places[k - 1],
