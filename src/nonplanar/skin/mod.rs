@@ -132,7 +132,7 @@ impl Layer<'_> {
             cell: f64::from(params.line_width),
         };
         let lowered = f64::from(self.skin.lowered);
-        let room = Room::new(leg, |s| heights.at(s) - lowered, self.base);
+        let room = Room::new(leg, |s| heights.at(s) - lowered, self.base, params.height);
         let length = leg.from.distance(leg.to);
         let cuts = points::cuts(length, &heights, &room, &limits);
         let point = |s: f64, width: f64, height: f64| PathPoint {

@@ -4,7 +4,7 @@
 //! in plan. Neither the slope nor the length in space has a part in it (a leg that rises is longer, and
 //! thinner at right angles to itself by the same share).
 //!
-//! The base is asked for its height on a grid of a tenth of a millimetre over the leg's width. Sums along
+//! The base is asked for its height at places all along the leg, and across it. Sums along
 //! the leg then tell the room of any part of it, and no plastic is lost or counted twice where it is cut.
 
 use super::relief::Base;
@@ -13,9 +13,22 @@ use crate::geom::Point;
 use crate::geom::segment::along;
 use crate::units::{Coord, nearest};
 
-/// The base is asked at places so far apart at most (0.1 mm): steps of a staircase are wider than that
-/// on all slopes that skins may have.
-const STEP: f64 = 1_000.0;
+/// The base is asked at places so far apart along a leg at most (0.05 mm): all lines along a slope meet
+/// the steps of a staircase at the same places, so that what is missed there adds up.
+const STEP: f64 = 500.0;
+
+/// Bases that leave a plane by less than this (1 µm) between the sides of a leg are one there. Others are
+/// asked at places a `STEP` apart.
+const PLANE: f64 = 10.0;
+
+/// Three places across a leg tell whether the base is a plane: the middle, and two so far from it, in
+/// widths. At a half they would lie on the edge of the skin.
+const SIDE: f64 = 0.45;
+
+/// A base that lies lower beside a leg's middle by more than so many heights of a skin ends there: that is
+/// the edge of the part, beside which there is nothing to fill. Steps of a staircase are one layer high,
+/// and on the steepest slope there are two of them under half a line.
+const CLIFF: f64 = 2.0;
 
 /// Sums along a leg: the area in plan and the room, grid units² and ³.
 #[derive(Debug)]
@@ -26,8 +39,9 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Over `base`, of a leg whose top is at `z` after a way along it.
-    pub(super) fn new(leg: &Leg, z: impl Fn(f64) -> f64, base: &dyn Base) -> Self {
+    /// Over `base`, of a leg whose top is at `z` after a way along it, in a skin of this height.
+    pub(super) fn new(leg: &Leg, z: impl Fn(f64) -> f64, base: &dyn Base, skin: Coord) -> Self {
+        let cliff = CLIFF * f64::from(skin);
         let length = leg.from.distance(leg.to);
         let count = (length / STEP).ceil().max(1.0);
         let step = length / count;
@@ -41,10 +55,7 @@ impl Room {
             let s = (k as f64 + 0.5) * step;
             let width = leg.widths[0] + (leg.widths[1] - leg.widths[0]) * s / length;
             let middle = along(a, s, way);
-            let asked = (width / STEP).ceil().max(1.0);
-            let off = |m: usize| ((m as f64 + 0.5) / asked - 0.5) * width;
-            let heights = (0..asked as usize).map(|m| below(base, along(middle, off(m), across)));
-            let free = z(s) - heights.sum::<f64>() / asked;
+            let free = z(s) - mean(|off| below(base, along(middle, off, across)), width, cliff);
             sum = [sum[0] + width * step, sum[1] + width * step * free.max(0.0)];
             sums.push(sum);
         }
@@ -71,6 +82,19 @@ impl Room {
         let [area, room] = self.of(part);
         if area > 0.0 { room / area } else { 0.0 }
     }
+}
+
+/// The mean height across a leg of this width; `height` is that beside its middle.
+fn mean(height: impl Fn(f64) -> f64, width: f64, cliff: f64) -> f64 {
+    let middle = height(0.0);
+    let beside = |off: f64| Some(height(off)).filter(|h| *h > middle - cliff).unwrap_or(middle);
+    let [left, right] = [-SIDE, SIDE].map(|side| beside(side * width));
+    if (left + right - 2.0 * middle).abs() <= PLANE {
+        return middle;
+    }
+    let count = (width / STEP).ceil().max(1.0);
+    let heights = (0..count as usize).map(|k| beside(((k as f64 + 0.5) / count - 0.5) * width));
+    heights.sum::<f64>() / count
 }
 
 /// How high the base stands at a place; the bed's height where nothing stands.

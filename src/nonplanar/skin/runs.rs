@@ -108,7 +108,13 @@ fn up(piece: &Piece, link: &Link, surface: &dyn Relief) -> i32 {
         (sum, all, count) = (sum + across, all + across.abs(), count + 1.0);
     }
     let rises = all > LEAST_SLOPE * count && f64::abs(sum) >= ONE_SIDED * all;
-    if !rises { 0 } else if sum > 0.0 { 1 } else { -1 }
+    if !rises {
+        0
+    } else if sum > 0.0 {
+        1
+    } else {
+        -1
+    }
 }
 
 /// The sides to which the lines of a zigzag climb, without changes for few lines: those go with the lines
