@@ -1,0 +1,69 @@
+//! What the pass gives: patches with their paths, and how much of the top they cover.
+
+use super::base::{Base, Lowered};
+use super::find::Surfaces;
+use super::tally::Areas;
+use crate::fill::Path;
+use crate::geom::{Contour, Point};
+use crate::units::Coord;
+
+/// A path of a skin, and how high the travel to it goes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stroke {
+    /// The path; z relative to the top of the patch's layer.
+    pub path: Path,
+    /// The travel to it goes at least so high above the bed; 0 where the straight way is clear.
+    pub over: Coord,
+}
+
+/// A piece of a surface that is printed as skins. Grid units.
+#[derive(Debug, Clone)]
+pub struct Patch {
+    /// Its number in the order of printing, counted from 1.
+    pub number: u32,
+    /// Its surface, by the order of [`Surfaces::surfaces`].
+    pub surface: usize,
+    /// It is printed after the paths of this layer.
+    pub layer: usize,
+    /// Where each skin lies in plan, from the lowest up; each within the next.
+    pub areas: Vec<Vec<Contour>>,
+    /// Its paths in the order of printing.
+    pub strokes: Vec<Stroke>,
+    /// Its lowest and its highest corner in plan.
+    pub extent: [Point; 2],
+    /// Its lowest and its highest z above the bed.
+    pub bounds: [Coord; 2],
+    /// Its steepest slope, degrees.
+    pub steepest: f64,
+    /// Direction of the lines of each skin, from the lowest up, degrees.
+    pub directions: Vec<f64>,
+    /// What of the piece is skin, and why the rest is none.
+    pub mm2: Areas,
+}
+
+/// The patches of a print.
+#[derive(Debug, Clone, Default)]
+pub struct Patches {
+    /// In the order of printing.
+    pub patches: Vec<Patch>,
+    /// Of all tops: skin, level, and why the rest is flat.
+    pub mm2: Areas,
+}
+
+impl Patches {
+    /// The patches that are printed after layer `k`, in their order.
+    pub fn after(&self, k: usize) -> impl Iterator<Item = &Patch> {
+        let first = self.patches.partition_point(|patch| patch.layer < k);
+        self.patches[first..].iter().take_while(move |patch| patch.layer == k)
+    }
+
+    /// What is left of the layers under the patches; `height` is that of a skin.
+    #[must_use]
+    pub fn base<'a>(&self, surfaces: &'a Surfaces, height: Coord) -> Base<'a> {
+        let lowered = |patch: &Patch| {
+            let surface = surfaces.surfaces.get(patch.surface)?;
+            Some(Lowered { surface, areas: patch.areas.clone(), height })
+        };
+        Base::new(self.patches.iter().filter_map(lowered).collect())
+    }
+}
