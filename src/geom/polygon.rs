@@ -23,7 +23,7 @@ use clipper2_rust::core::{FillRule, Path64, Paths64, Point64};
 use clipper2_rust::engine::ClipType;
 use clipper2_rust::engine_public::Clipper64;
 use clipper2_rust::offset::{EndType, JoinType};
-use clipper2_rust::{difference_64, inflate_paths_64, union_subjects_64};
+use clipper2_rust::{difference_64, inflate_paths_64, intersect_64, union_subjects_64};
 use std::cmp::Reverse;
 
 /// Corners of an offset may reach this many distances from the contour; sharper ones are cut off. At 2
@@ -104,6 +104,13 @@ pub fn difference(contours: &[Contour], others: &[Contour], tolerance: Coord) ->
     let (contours, others) = (to_library(contours), to_library(others));
     let left = difference_64(&contours, &others, FillRule::NonZero);
     from_library(&clipper2_rust::simplify_paths(&left, f64::from(tolerance), true))
+}
+
+/// What `contours` and `others` have in common (both as from [`union`]).
+#[must_use]
+pub fn intersection(contours: &[Contour], others: &[Contour]) -> Vec<Contour> {
+    let (contours, others) = (to_library(contours), to_library(others));
+    from_library(&intersect_64(&contours, &others, FillRule::NonZero))
 }
 
 /// The stretches of `loops` that lie outside of `areas` (as from [`union`], or overlapping): open

@@ -4,5 +4,5 @@ pub mod crossings;
 pub mod tree;
 
 pub(super) mod bounds;
-pub(super) mod measure;
-pub(super) mod vector;
+pub(crate) mod measure;
+pub(crate) mod vector;
