@@ -198,6 +198,9 @@ pub(crate) struct CheckArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+    /// What hangs around the nozzle [default: what the file's settings or the profile say]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(words("head.name")))]
+    pub(crate) head: Option<String>,
     #[command(flatten)]
     pub(crate) reading: ReadingArgs,
     #[command(flatten)]
@@ -305,6 +308,12 @@ pub(crate) struct SettingArgs {
     /// Iron what is seen from above: `top`, all of it, or `topmost`, the highest layer of each model
     #[arg(long, value_name = "WHERE", default_missing_value = "top", num_args = 0..=1, require_equals = true, value_parser = PossibleValuesParser::new(words("ironing.where")))]
     ironing: Option<String>,
+    /// Let the skins of gentle slopes follow the surface, where the head touches nothing
+    #[arg(long)]
+    nonplanar: bool,
+    /// What hangs around the nozzle, for --nonplanar; a profile's `[head]` can say it in mm
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(words("head.name")))]
+    head: Option<String>,
     /// Print support under overhangs
     #[arg(long)]
     support: bool,
@@ -401,7 +410,7 @@ impl SettingArgs {
     }
 
     /// Each flag, the key it sets, and the value given.
-    fn all(&self) -> [(&'static str, &'static str, Option<String>); 24] {
+    fn all(&self) -> [(&'static str, &'static str, Option<String>); 26] {
         let switched = |on: bool, value: &str| on.then(|| value.to_owned());
         [
             ("--dual", "dual.mode", switched(self.dual, "pair")),
@@ -420,6 +429,8 @@ impl SettingArgs {
             ("--infill", "infill", self.infill.clone()),
             ("--pattern", "pattern", self.pattern.clone()),
             ("--ironing", "ironing.where", self.ironing.clone()),
+            ("--nonplanar", "nonplanar.enabled", switched(self.nonplanar, "true")),
+            ("--head", "head.name", self.head.clone()),
             ("--support", "support.enabled", switched(self.support, "true")),
             ("--arcs", "arcs", switched(self.arcs, "true")),
             ("--min-layer-time", "cooling.min_layer_time", self.min_layer_time.clone()),

@@ -8,7 +8,7 @@ use slicer::check::finding::{Code, Count};
 use slicer::check::terms::Terms;
 use slicer::check::{self, Measures, Model, Verdict};
 use slicer::mesh::Bed;
-use slicer::profile::{self, Profile};
+use slicer::profile::{self, Override, Profile, ValueOrigin};
 use slicer::progress::Progress;
 use slicer::reader::{Cause, Firmware, Stream};
 use slicer::text;
@@ -28,10 +28,13 @@ const MOST_SHOWN: usize = 5;
 /// A profile or setting that is wrong, a file or model that cannot be read, a file without a move.
 pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let profiles = &args.profiles;
-    if profiles.sets() && !profiles.any() {
+    let set = profiles.overrides()?;
+    // What hangs around the nozzle may be told of any file; all else belongs to a machine.
+    if set.iter().any(|given| !is_of_head(given)) && !profiles.any() {
         return Err(failure::usage("--set changes a profile; name one with -p, too"));
     }
-    let given = if profiles.any() { Some(profiles.load([])?) } else { None };
+    let named = named_head(args);
+    let given = if profiles.any() { Some(profiles.load(named.clone())?) } else { None };
     let machine = given.as_ref().map(|profile| &profile.settings);
     let Opened { name, source, says, .. } = args.reading.open(&args.file)?;
     let reading = args.reading.of(machine, says);
@@ -42,7 +45,8 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     if print.layers.is_empty() {
         return Err(Cause::NoLine.of(&name).into());
     }
-    let own = profile::recorded(&print.values)?;
+    let of_head: Vec<Override> = set.into_iter().filter(is_of_head).chain(named).collect();
+    let own = profile::recorded_with(&print.values, &of_head)?;
     let judge = given.as_ref().or(own.as_ref());
     let machine = judge.map(|profile| &profile.settings);
     let terms = Terms::new(machine, own.as_ref().map(|profile| &profile.settings), print);
@@ -69,6 +73,16 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
         format!("{name}: {headline}, {by}\n{findings}{}", notes(&verdict))
     };
     Ok(Outcome { text, code })
+}
+
+fn is_of_head(given: &Override) -> bool {
+    given.key.starts_with("head.")
+}
+
+/// The head that `--head` names.
+fn named_head(args: &CheckArgs) -> Option<Override> {
+    let (key, origin) = ("head.name".to_owned(), ValueOrigin::Flag("--head"));
+    args.head.clone().map(|value| Override { key, value, origin })
 }
 
 fn judged_by(

@@ -58,11 +58,6 @@ impl ProfileArgs {
         !self.wanted().is_empty()
     }
 
-    /// Whether a value is given by `--set`.
-    pub(crate) fn sets(&self) -> bool {
-        !self.set.is_empty()
-    }
-
     /// The files among them, and names that may be some.
     pub(crate) fn names(&self) -> impl Iterator<Item = &OsStr> {
         self.profile.iter().chain(&self.material).chain(&self.print).map(OsString::as_os_str)

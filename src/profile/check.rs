@@ -7,8 +7,10 @@
 //! An error names the origin of one of the values concerned: that of a flag before that of `--set`,
 //! before that of a file. Keys at their defaults are to blame last.
 
+use super::blame::Blame;
 use super::error::{Conflict, ProfileError, Result};
 use super::origin::ValueOrigin;
+use super::skins;
 use super::template::{self, PrintFacts};
 use super::{BrimPlace, DialectName, DualMode, IroningPlace, Settings};
 use std::collections::BTreeMap;
@@ -51,30 +53,8 @@ pub(super) fn together(settings: &Settings, origins: &BTreeMap<String, ValueOrig
     arcs(settings, &blame)?;
     brim(settings, &blame)?;
     heat(settings, &blame)?;
+    skins::check(settings, &blame)?;
     blocks(settings, &blame)
-}
-
-/// Makes the errors.
-struct Blame<'a> {
-    origins: &'a BTreeMap<String, ValueOrigin>,
-}
-
-impl Blame<'_> {
-    /// An error about these keys.
-    fn error(&self, keys: &[&str], source: Conflict) -> ProfileError {
-        ProfileError::Conflict { origin: self.origin(keys), source }
-    }
-
-    /// The origin that is most likely to blame: a flag before `--set` before a file.
-    fn origin(&self, keys: &[&str]) -> Option<ValueOrigin> {
-        let rank = |origin: &&ValueOrigin| match origin {
-            ValueOrigin::Flag(_) => 0,
-            ValueOrigin::Set | ValueOrigin::Program => 1,
-            ValueOrigin::File { .. } | ValueOrigin::Recorded => 2,
-            ValueOrigin::Default | ValueOrigin::Follows(_) => 3,
-        };
-        keys.iter().filter_map(|key| self.origins.get(*key)).min_by_key(rank).cloned()
-    }
 }
 
 fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {

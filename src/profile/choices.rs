@@ -9,6 +9,7 @@
 //! - Some keys take a number or `auto`: their enums have a variant for either, and are read and
 //!   written by hand below.
 
+use crate::head::{Head, named};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -116,6 +117,41 @@ impl Angle {
         match self {
             Self::Degrees(degrees) => degrees,
             Self::Auto(_) => 45.0,
+        }
+    }
+}
+
+/// See [`NonPlanar::directions`](super::NonPlanar::directions).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Directions {
+    /// So many degrees each.
+    Degrees(#[schemars(length(min = 1, max = 10), inner(range(min = -360, max = 360)))] Vec<f64>),
+    /// By the slope of each place.
+    Auto(Auto),
+}
+
+/// See [`HeadKeys::name`](super::HeadKeys::name).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum HeadName {
+    /// [`crate::head::named::cautious`]: of a head that nobody measured; slopes of 4.3 degrees at most.
+    Cautious,
+    /// [`crate::head::named::v6`]: an E3D V6 with its heater block.
+    V6,
+    /// [`crate::head::named::long`]: a long nozzle, made for skins.
+    #[serde(rename = "long-0.6")]
+    Long,
+}
+
+impl HeadName {
+    /// The head of this name.
+    #[must_use]
+    pub fn head(self) -> Head {
+        match self {
+            Self::Cautious => named::cautious(),
+            Self::V6 => named::v6(),
+            Self::Long => named::long(),
         }
     }
 }

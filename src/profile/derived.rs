@@ -3,11 +3,13 @@
 //! - An unset key that means another one is looked up here, and nowhere else.
 //! - The *volume* is where parts may lie, the *reach* where the nozzle may go.
 //! - The *stretch* is by how much models are printed larger, since the material shrinks.
+//! - The *head* is the named one, with what else its keys say.
 //! - The *ratio* is how many layers dual injection prints at once, with `auto` as many as pay.
 //!
 //! All of it depends on the settings alone, never on a model.
 
 use super::{BrimPlace, DualRatio, ExtrusionModel, Machine, Origin, Settings};
+use crate::head::Head;
 use std::f64::consts::PI;
 
 /// Slack for comparing lengths that were written as decimals, mm.
@@ -131,6 +133,27 @@ impl Settings {
         }
     }
 
+    /// The head: the named one, with what else is said of it.
+    #[must_use]
+    pub fn head(&self) -> Head {
+        let (keys, named) = (&self.head, self.head.name.head());
+        Head {
+            flat: keys.flat.unwrap_or(named.flat),
+            cone: keys.cone.unwrap_or(named.cone),
+            cone_length: keys.cone_length.unwrap_or(named.cone_length),
+            discs: keys.discs.clone().unwrap_or(named.discs),
+            boxes: keys.boxes.clone().unwrap_or(named.boxes),
+        }
+    }
+
+    /// The steepest slope that skins can follow, degrees: that of the head, or that on which the flat's uphill
+    /// edge presses one layer deep into the skin. Boxes may allow less where a surface reaches them.
+    #[must_use]
+    pub fn steepest_skin(&self) -> f64 {
+        let head = self.head();
+        head.steepest().min(head.steepest_press(self.layer_height))
+    }
+
     /// Print speeds that are so slow, in mm/s, that they are hardly meant: key and value.
     #[must_use]
     pub fn slow_speeds(&self) -> Vec<(&'static str, f64)> {
@@ -150,6 +173,9 @@ impl Settings {
             ("speed.gap", speed.gap),
         ];
         speeds.extend(own.into_iter().filter_map(|(key, speed)| Some((key, speed?))));
+        if self.nonplanar.enabled {
+            speeds.push(("speed.nonplanar", speed.nonplanar));
+        }
         if self.raft.enabled {
             speeds.push(("speed.raft_base", speed.raft_base));
             speeds.push(("speed.raft_interface", speed.raft_interface));

@@ -51,12 +51,32 @@ pub enum Kind {
     },
     /// Sizes of pictures in a list.
     Sizes,
+    /// Numbers within limits, both included, in a list that is not empty, or `auto`.
+    NumbersOrAuto(Limits),
+    /// Lists of so many numbers within limits, both included, in a list.
+    Rows {
+        /// Numbers in each of them.
+        columns: usize,
+        /// Of each number, and of the outer list.
+        limits: Limits,
+    },
     /// `true` or `false`.
     Switch,
     /// One line of text without control characters, at most [`MAX_TEXT`] characters.
     Text,
     /// Lines of G-code with `{placeholders}`.
     Block,
+}
+
+/// What a list of numbers may hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Lowest number allowed, in the key's unit.
+    pub min: f64,
+    /// Highest number allowed, in the key's unit.
+    pub max: f64,
+    /// Longest list allowed.
+    pub most: usize,
 }
 
 /// One key of a profile.
@@ -145,8 +165,9 @@ fn types(schema: &Json) -> impl Iterator<Item = &str> {
 
 fn kind(schema: &Json) -> Kind {
     if let Some(either) = schema["anyOf"].as_array() {
-        // A number or `auto`.
-        let number = either.iter().find(|one| one.get("maximum").is_some());
+        // A number, or some in a list, or `auto`.
+        let number =
+            either.iter().find(|one| ["maximum", "items"].iter().any(|of| one.get(of).is_some()));
         return match kind(number.unwrap_or(schema)) {
             Kind::Count { min, max } => Kind::CountOrAuto { min, max },
             Kind::Number { min, max } => Kind::NumberOrAuto { min, max },
@@ -165,8 +186,14 @@ fn kind(schema: &Json) -> Kind {
     } else if of_type("boolean") {
         Kind::Switch
     } else if of_type("array") {
+        let most = limit("maxItems") as usize;
         match kind(&schema["items"]) {
             Kind::Word(words) => Kind::Words(words),
+            Kind::Number { min, max } => Kind::NumbersOrAuto(Limits { min, max, most }),
+            // A list of as many numbers as it has to hold.
+            Kind::NumbersOrAuto(Limits { min, max, most: columns }) => {
+                Kind::Rows { columns, limits: Limits { min, max, most } }
+            }
             _ => Kind::Sizes,
         }
     } else if schema.get("maxLength").is_some() {
@@ -211,6 +238,12 @@ impl Key {
             Kind::Word(words) => words.join(" | "),
             Kind::Words(words) => format!("any of {}", words.join(", ")),
             Kind::Sizes => sizes::allowed(),
+            Kind::NumbersOrAuto(Limits { min, max, most }) => {
+                format!("1 to {most} numbers, {min} to {max} | auto")
+            }
+            Kind::Rows { columns, limits: Limits { min, max, most } } => {
+                format!("at most {most} lists of {columns} numbers, {min} to {max}")
+            }
             Kind::Switch => "true or false".to_owned(),
             Kind::Text => format!("one line of at most {MAX_TEXT} characters"),
             Kind::Block => "text".to_owned(),
@@ -227,7 +260,12 @@ impl Key {
             Kind::Count { .. } => format!("a whole number, {}", self.allowed()),
             Kind::NumberOrAuto { min, max } => format!("a number, {min} to {max}, or auto"),
             Kind::CountOrAuto { min, max } => format!("a whole number, {min} to {max}, or auto"),
-            Kind::Words(_) | Kind::Sizes => format!("a list of {}", self.allowed()),
+            Kind::NumbersOrAuto(Limits { min, max, most }) => {
+                format!("a list of 1 to {most} numbers, {min} to {max}, or auto")
+            }
+            Kind::Words(_) | Kind::Sizes | Kind::Rows { .. } => {
+                format!("a list of {}", self.allowed())
+            }
             Kind::Word(_) => format!("one of {}", self.allowed()),
             Kind::Switch | Kind::Text | Kind::Block => self.allowed(),
         }
@@ -256,6 +294,14 @@ mod tests {
             ("angle", Kind::NumberOrAuto { min: -360.0, max: 360.0 }),
             ("dual.ratio", Kind::CountOrAuto { min: 2, max: 50 }),
             ("machine.thumbnails", Kind::Sizes),
+            (
+                "nonplanar.directions",
+                Kind::NumbersOrAuto(Limits { min: -360.0, max: 360.0, most: 10 }),
+            ),
+            (
+                "head.boxes",
+                Kind::Rows { columns: 5, limits: Limits { min: -500.0, max: 500.0, most: 12 } },
+            ),
             ("machine.relative_e", Kind::Switch),
             ("machine.name", Kind::Text),
             ("machine.start_gcode", Kind::Block),
@@ -264,7 +310,7 @@ mod tests {
         for (name, kind) in kinds {
             let key = KEYS.iter().find(|key| key.name.ends_with(name)).unwrap();
             assert_eq!(key.kind, kind, "{name}");
-            assert_eq!(key.optional, name == "top_layers");
+            assert_eq!(key.optional, ["top_layers", "head.boxes"].contains(&name));
         }
         let key = find("speed.wall").unwrap();
         assert_eq!((key.unit.as_str(), key.doc.as_str()), ("mm/s", "Speed of walls."));

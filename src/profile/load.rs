@@ -45,21 +45,32 @@ pub fn load(
 /// type, out of range, a key without value, values that cannot print together, blocks that cannot
 /// be filled in.
 pub fn load_from(shelf: &Shelf, wanted: &[Wanted], overrides: &[Override]) -> Result<Profile> {
-    let profile = merge(shelf, wanted, overrides)?;
+    let profile = merge(shelf, wanted, &[overrides])?;
     check::together(&profile.settings, &profile.origins)?;
     Ok(profile)
 }
 
-/// As [`load_from`], each value checked, but not whether they can print together.
-pub(super) fn merge(shelf: &Shelf, wanted: &[Wanted], overrides: &[Override]) -> Result<Profile> {
+/// As [`load_from`], of several lists of overrides, each laid over those before it. Each value is checked, but
+/// not whether they can print together.
+pub(super) fn merge(
+    shelf: &Shelf,
+    wanted: &[Wanted],
+    overrides: &[&[Override]],
+) -> Result<Profile> {
     let mut merged = defaults();
     let (layers, asked) = layers(wanted, shelf)?;
     let sources = Sources { list: layers.iter().map(Layer::source).collect(), asked };
-    for (key, value, origin) in layers.into_iter().flat_map(Layer::settings) {
-        insert(&key, value, origin, &mut merged)?;
+    for layer in layers {
+        named_head(layer.entries.iter().map(|entry| entry.key.as_str()), &mut merged);
+        for (key, value, origin) in layer.settings() {
+            insert(&key, value, origin, &mut merged)?;
+        }
     }
-    for given in overrides {
-        merge_override(given, &mut merged)?;
+    for layer in overrides {
+        named_head(layer.iter().map(|given| given.key.as_str()), &mut merged);
+        for given in *layer {
+            merge_override(given, &mut merged)?;
+        }
     }
     counts_hold_alone(&mut merged);
     follow(&mut merged);
@@ -74,6 +85,9 @@ pub(super) fn merge(shelf: &Shelf, wanted: &[Wanted], overrides: &[Override]) ->
 /// Key -> value and origin.
 type Merged = BTreeMap<String, (Value, ValueOrigin)>;
 
+/// The key that names a head.
+const HEAD_NAME: &str = "head.name";
+
 /// What holds where no profile says otherwise.
 fn defaults() -> Merged {
     let row = |key: &'static keys::Key| {
@@ -82,6 +96,14 @@ fn defaults() -> Merged {
         Some((key.name.clone(), (value, ValueOrigin::Default)))
     };
     keys::KEYS.iter().filter_map(row).collect()
+}
+
+/// A layer with these `keys` comes next: if it names a head, what was said of the head before is of another one.
+/// What the layer itself says stays, wherever it stands in it.
+fn named_head<'a>(mut keys: impl Iterator<Item = &'a str>, merged: &mut Merged) {
+    if keys.any(|key| key == HEAD_NAME) {
+        merged.retain(|key, _| !key.starts_with("head.") || key == HEAD_NAME);
+    }
 }
 
 /// Sets the keys that nobody set and that follow another key.

@@ -1,14 +1,17 @@
 //! Profile names, files and overrides -> Settings, each value with its origin.
 
+mod blame;
 mod builder;
 mod check;
 mod choices;
+mod conflict;
 mod derived;
 pub mod error;
 pub mod foreign;
 pub mod keys;
 mod kind;
 mod layers;
+mod lists;
 mod load;
 mod old;
 mod origin;
@@ -20,6 +23,7 @@ mod shelf;
 mod shipped;
 mod show;
 mod sizes;
+mod skins;
 pub mod suggest;
 pub mod template;
 mod value;
@@ -32,7 +36,7 @@ pub use layers::Wanted;
 pub use load::{load, load_from};
 pub use old::{SETTINGS_FORMAT, renewed};
 pub use origin::{Override, Profile, Source, Sources, ValueOrigin};
-pub use recorded::recorded;
+pub use recorded::{recorded, recorded_with};
 pub use schema::schema;
 pub use settings::*;
 pub use shelf::{Found, Shelf};

@@ -17,6 +17,14 @@ use super::show::NOT_DUMPED;
 /// # Errors
 /// As [`load`](super::load()): a value that is out of range, such as of a file of another version.
 pub fn recorded(comments: &[(String, String)]) -> Result<Option<Profile>> {
+    recorded_with(comments, &[])
+}
+
+/// As [`recorded`], with `more` laid over what the file holds.
+///
+/// # Errors
+/// As [`recorded`].
+pub fn recorded_with(comments: &[(String, String)], more: &[Override]) -> Result<Option<Profile>> {
     if !is_ours(comments) {
         return Ok(None);
     }
@@ -29,7 +37,7 @@ pub fn recorded(comments: &[(String, String)]) -> Result<Option<Profile>> {
             Some(Override { key, value, origin: ValueOrigin::Recorded })
         })
         .collect();
-    merge(&Shelf::default(), &[Wanted::any(DEFAULT)], &overrides).map(Some)
+    merge(&Shelf::default(), &[Wanted::any(DEFAULT)], &[&overrides, more]).map(Some)
 }
 
 #[cfg(test)]

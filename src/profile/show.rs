@@ -83,6 +83,9 @@ fn one_line(value: &Value) -> String {
         // Rust's `Display` has no exponents and drops `.0`, which numbers here do without.
         Value::Float(number) => number.to_string(),
         Value::String(text) => quoted(text),
+        Value::Array(list) => {
+            format!("[{}]", list.iter().map(one_line).collect::<Vec<_>>().join(", "))
+        }
         other => other.to_string(),
     }
 }
@@ -153,6 +156,7 @@ mod tests {
             let most = match key.kind {
                 Kind::Number { max, .. } => Value::Float(max),
                 Kind::Count { max, .. } => Value::Integer(i64::from(max)),
+                Kind::Rows { .. } => Value::Array(Vec::new()),
                 _ => panic!("{}: give it a value here", key.name),
             };
             set(&mut root, &key.name, most);

@@ -2,8 +2,9 @@
 
 use super::error::ValueError;
 use super::keys::{Key, Kind};
+use super::lists::described;
 use super::settings::MAX_TEXT;
-use super::sizes;
+use super::{lists, sizes};
 use toml::Value;
 
 impl Key {
@@ -31,6 +32,10 @@ impl Key {
             (Kind::NumberOrAuto { .. } | Kind::CountOrAuto { .. }, Value::String(word)) => {
                 self.one_of(&["auto".to_owned()], word)
             }
+            (Kind::NumbersOrAuto(limits), value) => lists::numbers(self, limits, value),
+            (Kind::Rows { columns, limits }, Value::Array(rows)) => {
+                lists::rows(self, *columns, limits, rows)
+            }
             (
                 &(Kind::Count { min, max } | Kind::CountOrAuto { min, max }),
                 Value::Integer(whole),
@@ -55,7 +60,12 @@ impl Key {
         }
     }
 
-    fn within(&'static self, number: f64, min: f64, max: f64) -> Result<Value, ValueError> {
+    pub(super) fn within(
+        &'static self,
+        number: f64,
+        min: f64,
+        max: f64,
+    ) -> Result<Value, ValueError> {
         // NaN is in no range, so it is refused here too.
         if (min..=max).contains(&number) {
             Ok(Value::Float(number))
@@ -64,7 +74,11 @@ impl Key {
         }
     }
 
-    fn one_of(&'static self, words: &[String], word: String) -> Result<Value, ValueError> {
+    pub(super) fn one_of(
+        &'static self,
+        words: &[String],
+        word: String,
+    ) -> Result<Value, ValueError> {
         if words.contains(&word) {
             return Ok(Value::String(word));
         }
@@ -101,19 +115,6 @@ impl Key {
 fn listed(text: &str) -> Vec<Value> {
     let words = text.split(',').map(str::trim).filter(|word| !word.is_empty());
     words.map(|word| Value::String(word.to_owned())).collect()
-}
-
-fn described(value: &Value) -> String {
-    match value {
-        Value::String(text) => format!("the text `{}`", crate::text::line(text)),
-        Value::Integer(number) => format!("the number {number}"),
-        // With its point, so that 2.0 is not told to be no whole number as "2".
-        Value::Float(number) => format!("the number {number:?}"),
-        Value::Boolean(on) => on.to_string(),
-        Value::Datetime(_) => "a date".to_owned(),
-        Value::Array(_) => "a list".to_owned(),
-        Value::Table(_) => "a table".to_owned(),
-    }
 }
 
 #[cfg(test)]

@@ -30,7 +30,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // The program's name comes from the job.
     ("gcode", &["geom", "fill", "plan", "motion", "profile", "units", "job"]),
     ("job", &["mesh", "profile", "text"]),
-    ("profile", &["text"]),
+    // What hangs around the nozzle, and where it would touch a map of heights: no settings, no G-code.
+    ("head", &["units"]),
+    ("profile", &["text", "head"]),
     ("motion", &["profile", "units"]),
     // A witness of its own: it shares nothing with the code that slices, plans or writes, but for what
     // an arc is: see WITNESSES.

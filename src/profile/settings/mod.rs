@@ -27,6 +27,7 @@ mod adhesion;
 mod cooling;
 mod dual;
 mod extrusion;
+mod head;
 mod ironing;
 mod jerk;
 mod limits;
@@ -44,6 +45,7 @@ pub use adhesion::{Brim, Raft, Skirt};
 pub use cooling::Cooling;
 pub use dual::Dual;
 pub use extrusion::Extrusion;
+pub use head::HeadKeys;
 pub use ironing::Ironing;
 pub use jerk::Jerk;
 pub use limits::MotionLimits;
@@ -236,6 +238,8 @@ pub struct Settings {
     pub output: Output,
     /// The printer.
     pub machine: Machine,
+    /// What hangs around the nozzle's tip.
+    pub head: HeadKeys,
     /// What the printer's planner holds itself to. It changes estimates of time; only max_segment_rate,
     /// and what may be asked for by `[acceleration]`, change the file.
     pub limits: MotionLimits,

@@ -1,5 +1,6 @@
 //! `[nonplanar]`: top skins that follow the surface.
 
+use crate::profile::choices::Directions;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +15,10 @@ pub struct NonPlanar {
     /// Skins one above the other, each a layer high.
     #[schemars(range(min = 1, max = 10), extend("unit" = "skins", "default" = 2))]
     pub skins: u32,
+    /// Directions of their lines from the x axis, from the lowest skin upwards; the last one is seen. auto
+    /// takes the mean steepest slope for the last skin, and across it for those below by turns.
+    #[schemars(extend("unit" = "degrees", "default" = [0, 90]))]
+    pub directions: Directions,
     /// Flatter places stay level.
     #[schemars(range(min = 0.05, max = 45), extend("unit" = "degrees", "default" = 0.5))]
     pub min_slope: f64,
