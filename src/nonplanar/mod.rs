@@ -27,6 +27,9 @@ mod stack;
 mod touch;
 mod trial;
 
+#[cfg(test)]
+mod tests;
+
 pub use pass::patches;
 pub use patch::{Patch, Patches, Stroke};
 pub use scene::{Props, Scene};
