@@ -1,14 +1,36 @@
 //! Mesh and layers -> Patches: tops of gentle slopes whose skin follows the surface.
+//!
+//! [`find`] makes surfaces of the mesh; [`pass`] decides which places of them become skin, and has the
+//! [`skin`]s laid; [`base`] takes their room from the layers.
 
 pub mod base;
 pub mod find;
 pub mod params;
+pub mod pass;
+pub mod patch;
+pub mod scene;
 pub mod skin;
 pub mod surface;
+pub mod tally;
 
+mod candidate;
 mod facets;
+mod field;
+mod grid;
 mod index;
-#[cfg(test)]
-mod laws;
+mod lay;
+mod marks;
 mod rim;
 mod sheets;
+mod shrink;
+mod stack;
+mod touch;
+mod trial;
+
+#[cfg(test)]
+mod tests;
+
+pub use pass::patches;
+pub use patch::{Patch, Patches, Stroke};
+pub use scene::{Props, Scene};
+pub use tally::{Areas, Reason};

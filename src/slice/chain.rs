@@ -116,6 +116,12 @@ impl<'a> Slicer<'a> {
         self.cells.count()
     }
 
+    /// The block of layer `k`.
+    #[must_use]
+    pub fn block_of(&self, k: usize) -> usize {
+        k / self.block
+    }
+
     /// The layers of block `b`, from the lowest to the highest.
     #[must_use]
     pub fn block(&self, b: usize) -> Vec<Layer> {

@@ -1,0 +1,208 @@
+//! Scene -> Patches: the one upward pass over the layers that decides which places become skin.
+//!
+//! 1. Each surface is cut to pieces that may become skin, as far as it is known from the surface alone
+//!    ([`candidate`](super::candidate)). Each has a home layer.
+//! 2. Pieces come in the order of their homes; of those with one home, the one with the lower top first.
+//! 3. Layers are piled up to the home ([`stack`](super::stack)), without the room of skins.
+//! 4. The piece shrinks to what passes there ([`trial`](super::trial)), and is laid
+//!    ([`lay`](super::lay)). If its lines refuse places, both are done again, a few times.
+//! 5. What is left is a patch: its skins stand from now on.
+//!
+//! A piece that still has faults after the last round is printed flat as a whole.
+
+use super::candidate::{self, Ground, Piece};
+use super::field::Field;
+use super::grid::{self, STEP, Spot, cell_of};
+use super::lay::{Coat, lay, steepest, strokes};
+use super::patch::{Patch, Patches};
+use super::scene::Scene;
+use super::shrink::Refused;
+use super::stack::{Cut, Stack, heights_over};
+use super::surface::Surface;
+use super::tally::{Areas, Reason};
+use super::trial::Trial;
+use crate::geom::Contour;
+use crate::geom::boxes::extent;
+use crate::geom::spans::Rows;
+use crate::region::scan::Scan;
+use crate::units::{Coord, to_mm};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// A piece is laid at most so often.
+const ROUNDS: usize = 5;
+
+/// Decides which places of gentle slopes are printed as skins, and lays these.
+#[must_use]
+pub fn patches(scene: &Scene<'_>) -> Patches {
+    let surfaces = &scene.surfaces.surfaces;
+    let found: Vec<(Ground, Vec<Piece>)> = surfaces
+        .par_iter()
+        .enumerate()
+        .map(|(number, surface)| candidate::pieces(scene, number, surface))
+        .collect();
+    let (mut grounds, pieces): (Vec<Ground>, Vec<Vec<Piece>>) = found.into_iter().unzip();
+    let mut pieces: Vec<Piece> = pieces.into_iter().flatten().collect();
+    // Of equal ones the first surface's, from its first contour: as they come.
+    pieces.sort_by(|a, b| {
+        a.home.cmp(&b.home).then(a.bounds[1].total_cmp(&b.bounds[1])).then(a.surface.cmp(&b.surface))
+    });
+    let (mut out, mut from) = (Patches::default(), Vec::new());
+    if !pieces.is_empty() {
+        let mut stack = stack(scene, &grounds, &pieces);
+        for (k, piece) in pieces.iter().enumerate() {
+            stack.raise_to(piece.home);
+            let ground = &mut grounds[piece.surface];
+            if let Some(made) = patch(scene, (k, piece), ground, &mut stack) {
+                out.patches.push(made);
+                from.push(piece);
+            }
+        }
+        for (number, patch) in (1..).zip(&mut out.patches) {
+            patch.number = number;
+        }
+    }
+    out.mm2 = tally(scene, &grounds, &mut out.patches, &from);
+    out
+}
+
+/// What stands before the first piece is laid, with room for all of them.
+fn stack<'a>(scene: &'a Scene<'a>, grounds: &[Ground], pieces: &[Piece]) -> Stack<'a> {
+    let (heights, depth) = (scene.slicer.heights(), scene.depth());
+    let low = pieces.iter().map(|piece| piece.bounds[0]).fold(f64::MAX, f64::min);
+    // Two layers more, so that a base is seen.
+    let first = heights.planes_up_to((low - f64::from(depth)) as Coord).saturating_sub(2);
+    let reach = (scene.params.head.reach() / to_mm(grid::CELL)).ceil() as i32 + 2;
+    let corners = || pieces.iter().flat_map(|piece| piece.area.iter().flatten());
+    let (from, to) = extent(corners()).unwrap_or_default();
+    let around = |low: Coord, high: Coord| -> Range<i32> {
+        low.div_euclid(grid::CELL) - reach..high.div_euclid(grid::CELL) + reach
+    };
+    let mut stack = Stack::new(scene, first, (around(from.x, to.x), around(from.y, to.y)));
+    let cut = |piece: &Piece| {
+        let field = &grounds[piece.surface].field;
+        Cut::new(field, &piece.area, heights, (depth, scene.params.height), 0)
+    };
+    stack.cuts = pieces.par_iter().map(cut).collect();
+    stack
+}
+
+/// Tries a piece at its home. What stands afterwards is in the stack.
+fn patch(
+    scene: &Scene<'_>,
+    (k, piece): (usize, &Piece),
+    ground: &mut Ground,
+    stack: &mut Stack<'_>,
+) -> Option<Patch> {
+    let surface = scene.surfaces.surfaces.get(piece.surface)?;
+    let mut trial = Trial::new(scene, ground, piece, stack);
+    let mut coat = None;
+    for round in 1..=ROUNDS {
+        trial.settle(stack);
+        if trial.is_empty() {
+            break;
+        }
+        let Coat { skins, refused } = lay(&trial, surface, stack);
+        if refused.iter().all(Refused::is_empty) {
+            coat = Some(skins);
+            break;
+        }
+        if round < ROUNDS {
+            trial.cut(&refused, stack);
+        } else {
+            trial.give_up(&refused, stack);
+        }
+    }
+    let made = coat.map(|skins| {
+        let strokes = strokes(&trial, stack, skins);
+        let areas = std::mem::take(&mut trial.areas);
+        made(scene, (piece, surface), &trial.ground.field, (areas, strokes))
+    });
+    let field = &ground.field;
+    let (heights, depth) = (scene.slicer.heights(), scene.depth());
+    let area: &[Contour] = made.as_ref().and_then(|p: &Patch| p.areas.last()).map_or(&[], |a| a);
+    stack.cuts[k] = Cut::new(field, area, heights, (depth, scene.params.height), piece.home + 1);
+    for (cell, z) in heights_over(field, &grid::cells(area)) {
+        stack.raise(cell, z);
+    }
+    made
+}
+
+/// The patch of what is left of a piece.
+fn made(
+    scene: &Scene<'_>,
+    (piece, surface): (&Piece, &Surface),
+    field: &Field,
+    (areas, strokes): (Vec<Vec<Contour>>, Vec<super::patch::Stroke>),
+) -> Patch {
+    let last = areas.last().map_or(&[][..], |area| area);
+    let (low, high) = extent(last.iter().flatten()).unwrap_or_default();
+    let bounds = surface.over(last).unwrap_or(piece.bounds);
+    let directions = (0..areas.len()).map(|i| scene.direction(i, surface.direction())).collect();
+    Patch {
+        number: 0,
+        surface: piece.surface,
+        layer: piece.home,
+        strokes,
+        extent: [low, high],
+        bounds: [bounds[0].floor() as Coord, bounds[1].ceil() as Coord],
+        steepest: steepest(field, last),
+        directions,
+        mm2: Areas::default(),
+        areas,
+    }
+}
+
+/// Adds up what became of all tops, for each patch too, of the piece that it was made from.
+fn tally(scene: &Scene<'_>, grounds: &[Ground], patches: &mut [Patch], from: &[&Piece]) -> Areas {
+    let tops = &scene.surfaces.tops;
+    let mut all = Areas { level: tops.level, ..Areas::default() };
+    all.add(Reason::Slope, tops.slope);
+    all.add(Reason::Press, tops.press);
+    all.add(Reason::Area, tops.small);
+    for (number, (ground, surface)) in grounds.iter().zip(&scene.surfaces.surfaces).enumerate() {
+        let lists = patches.iter().filter(|patch| patch.surface == number);
+        let skins: Vec<Rows> = lists.filter_map(|patch| Some(rows(patch.areas.last()?))).collect();
+        let is_skin = |[x, y]: Spot| skins.iter().any(|rows| holds(rows, [x, y]));
+        let places: Vec<Spot> = ground.marks.places().collect();
+        let mut own = Areas::default();
+        for &place in &places {
+            count(&mut own, ground, place, is_skin(place));
+        }
+        // Places are counted; the surface's area is known.
+        let share = surface.area_mm2(surface.outline()) / own.total().max(f64::MIN_POSITIVE);
+        all.skin += own.skin * share;
+        for reason in Reason::ALL {
+            all.add(reason, own.of(reason) * share);
+        }
+        for (patch, piece) in patches.iter_mut().zip(from) {
+            let Some(area) = patch.areas.last().filter(|_| patch.surface == number) else { continue };
+            let skin = rows(area);
+            for place in grid::spots(&rows(&piece.area), STEP) {
+                count(&mut patch.mm2, ground, place, holds(&skin, place));
+            }
+            patch.mm2.skin *= share;
+            patch.mm2.flat.iter_mut().for_each(|mm2| *mm2 *= share);
+        }
+    }
+    all
+}
+
+/// Adds a place of a surface.
+fn count(areas: &mut Areas, ground: &Ground, place: Spot, is_skin: bool) {
+    let [x, y] = ground.field.rise(cell_of(place));
+    let mm2 = to_mm(STEP).powi(2) * (1.0 + x * x + y * y).sqrt();
+    match ground.marks.reason(place) {
+        _ if is_skin => areas.skin += mm2,
+        reason => areas.add(reason.unwrap_or(Reason::Thin), mm2),
+    }
+}
+
+/// The places of an area.
+fn rows(area: &[Contour]) -> Rows {
+    Scan::new(area, grid::raster(STEP)).inside().clone()
+}
+
+fn holds(rows: &Rows, [x, y]: Spot) -> bool {
+    rows.row(y).iter().any(|span| span.start <= x * STEP && x * STEP < span.end)
+}

@@ -1,0 +1,231 @@
+//! Layers -> Stack: what stands at a moment of the print, layer by layer from below.
+//!
+//! Words: a *section* is a layer's inside, on cells. A *cut* is the room of a patch's skins in the
+//! sections that it reaches into: there the base ends, or nothing stands until the skins lie.
+//!
+//! - Layers are sliced block by block, as they are asked for, and forgotten once they are piled up.
+//! - They are piled up from the highest down: a layer raises only cells that none above it covers.
+//!   Most layers cover what those below them do.
+//! - What a patch leaves to be printed flat is raised as a whole, see [`Stack::raise`].
+
+use super::field::Field;
+use super::grid::{CELL, Spot, cells, columns, middle, raster};
+use super::scene::Scene;
+use super::touch::mm;
+use crate::geom::Contour;
+use crate::geom::spans::{Rows, Span, merge};
+use crate::head::pile::Pile;
+use crate::region::scan::around;
+use crate::slice::{Heights, Layer};
+use crate::units::{Coord, to_mm};
+use rayon::prelude::*;
+use std::collections::VecDeque;
+use std::ops::Range;
+
+/// Nothing of a part stands above its surface so near: so many skin heights are taken with it, as
+/// [`super::base`] does.
+const ABOVE: Coord = 2;
+
+/// The inside of a layer.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Section {
+    /// The part, without anything taken from it.
+    pub solid: Rows,
+    /// Support.
+    pub support: Rows,
+}
+
+/// The room of a piece's skins.
+#[derive(Debug, Default)]
+pub(super) struct Cut {
+    first: usize,
+    layers: Vec<Rows>,
+}
+
+/// What stands.
+pub(super) struct Stack<'a> {
+    scene: &'a Scene<'a>,
+    /// How high it stands.
+    pub pile: Pile,
+    /// The first cell of the pile.
+    low: Spot,
+    /// Sections from layer `next` on.
+    sections: VecDeque<Section>,
+    /// The first layer that is not piled up yet.
+    next: usize,
+    /// The cuts, by the numbers of pieces.
+    pub cuts: Vec<Cut>,
+    /// Where support stands or stood.
+    supported: Rows,
+}
+
+impl<'a> Stack<'a> {
+    /// Nothing stands yet; layers below `first` do not matter. The pile covers the cells of `columns` and
+    /// `rows`.
+    pub(super) fn new(
+        scene: &'a Scene<'a>,
+        first: usize,
+        (columns, rows): (Range<i32>, Range<i32>),
+    ) -> Self {
+        let corner = |cell: Spot| middle(cell).map(|v| v - to_mm(CELL) / 2.0);
+        let low = [columns.start, rows.start];
+        let pile = Pile::new(corner(low), corner([columns.end, rows.end]), to_mm(CELL));
+        let (sections, supported) = (VecDeque::new(), Rows::default());
+        Self { scene, pile, low, sections, next: first, cuts: Vec::new(), supported }
+    }
+
+    /// The section of a layer that is not piled up; nothing above the last one.
+    pub(super) fn section(&mut self, k: usize) -> Option<&Section> {
+        let slicer = self.scene.slicer;
+        let at = k.checked_sub(self.next)?;
+        while self.sections.len() <= at {
+            let wanted = self.next + self.sections.len();
+            if wanted >= slicer.heights().count() {
+                return None;
+            }
+            let layers = slicer.block(slicer.block_of(wanted));
+            let made: Vec<Section> =
+                layers.par_iter().filter(|l| l.index >= wanted).map(|l| self.cross(l)).collect();
+            if made.is_empty() {
+                return None;
+            }
+            self.sections.extend(made);
+        }
+        self.sections.get(at)
+    }
+
+    fn cross(&self, layer: &Layer) -> Section {
+        let lines = self.scene.support.map(|props| ((props.lines)(layer.index), props.width / 2));
+        let support = lines.map(|(lines, radius)| {
+            let edges: Vec<_> = lines.into_iter().map(|[a, b]| (a, b, radius)).collect();
+            around(&edges, raster(CELL))
+        });
+        Section { solid: cells(&layer.contours), support: support.unwrap_or_default() }
+    }
+
+    /// Piles up all layers up to `k`.
+    pub(super) fn raise_to(&mut self, k: usize) {
+        // What is sliced in one go is piled up in one go.
+        while self.next <= k && self.section(self.next).is_some() {
+            let count = self.sections.len().min(k + 1 - self.next);
+            self.raise_some(count);
+        }
+    }
+
+    /// Piles up the first sections.
+    fn raise_some(&mut self, count: usize) {
+        let heights = self.scene.slicer.heights();
+        let mut covered = Rows::default();
+        let sections: Vec<Section> = self.sections.drain(..count).collect();
+        for (by, section) in sections.iter().enumerate().rev() {
+            let k = self.next + by;
+            let all = self.standing(k, section);
+            let new = if covered.is_empty() { all.clone() } else { all.minus(&covered) };
+            for (j, row) in new.iter() {
+                self.raise_row(j, row, to_mm(heights.top(k)));
+            }
+            covered = covered.or(&all);
+            if !section.support.is_empty() {
+                self.supported = self.supported.or(&section.support);
+            }
+        }
+        self.next += count;
+    }
+
+    /// What of a section is printed flat: the part without the room of skins, and support.
+    pub(super) fn standing(&self, k: usize, section: &Section) -> Rows {
+        let mut solid = section.solid.clone();
+        for cut in &self.cuts {
+            let rows = k.checked_sub(cut.first).and_then(|at| cut.layers.get(at));
+            if let Some(rows) = rows.filter(|rows| !rows.is_empty()) {
+                solid = solid.minus(rows);
+            }
+        }
+        if section.support.is_empty() { solid } else { solid.or(&section.support) }
+    }
+
+    fn raise_row(&mut self, j: i32, row: &[Span], z: f64) {
+        let Ok(line) = usize::try_from(j - self.low[1]) else { return };
+        for &span in row {
+            let at = |column: i32| usize::try_from(column - self.low[0]).unwrap_or(0);
+            let columns = columns(span, CELL);
+            self.pile.raise_row(line, at(columns.start)..at(columns.end), z);
+        }
+    }
+
+    /// A cell stands at least so high, mm.
+    pub(super) fn raise(&mut self, [x, y]: Spot, z: f64) {
+        let at = (usize::try_from(x - self.low[0]), usize::try_from(y - self.low[1]));
+        if let (Ok(x), Ok(y)) = at {
+            self.pile.raise([x, y], z);
+        }
+    }
+
+    /// How high a cell stands, mm.
+    pub(super) fn height(&self, [x, y]: Spot) -> f64 {
+        match (usize::try_from(x - self.low[0]), usize::try_from(y - self.low[1])) {
+            (Ok(x), Ok(y)) => self.pile.height([x, y]),
+            _ => f64::NEG_INFINITY,
+        }
+    }
+
+    /// Whether support stands or stood at a cell.
+    pub(super) fn is_supported(&self, [x, y]: Spot) -> bool {
+        let spans = self.supported.row(y);
+        spans.iter().any(|span| span.start <= x * CELL && x * CELL < span.end)
+    }
+}
+
+impl Cut {
+    /// The room of skins of this depth over an area, in the layers from `from` on.
+    pub(super) fn new(
+        field: &Field,
+        area: &[Contour],
+        heights: &Heights,
+        (depth, height): (Coord, Coord),
+        from: usize,
+    ) -> Self {
+        let reach = |z: f64| -> Range<usize> {
+            // The base ends where a part lowered by the skins would; see `base`.
+            let first = heights.planes_up_to((z - f64::from(depth)) as Coord).max(from);
+            let last = heights.planes_up_to((z + f64::from(ABOVE * height)) as Coord);
+            first..last.max(first)
+        };
+        let rows = cells(area);
+        let mut stretches: Vec<(i32, Range<usize>, Span)> = Vec::new();
+        for (j, row) in rows.iter() {
+            for column in row.iter().flat_map(|&span| columns(span, CELL)) {
+                let Some(z) = field.at([column, j]) else { continue };
+                let (layers, start) = (reach(z), column * CELL - CELL / 2);
+                match stretches.last_mut() {
+                    Some((row, same, span)) if *row == j && *same == layers && span.end == start => {
+                        span.end += CELL;
+                    }
+                    _ => stretches.push((j, layers, Span { start, end: start + CELL })),
+                }
+            }
+        }
+        let used = || stretches.iter().filter(|(_, layers, _)| !layers.is_empty());
+        let first = used().map(|(_, layers, _)| layers.start).min().unwrap_or(from);
+        let last = used().map(|(_, layers, _)| layers.end).max().unwrap_or(first);
+        let mut layers = vec![Rows::starting_at(rows.range().start); last - first];
+        let mut row: Vec<Vec<Span>> = vec![Vec::new(); layers.len()];
+        let mut at = stretches.into_iter().peekable();
+        for j in rows.range() {
+            while let Some((_, reached, span)) = at.next_if(|(row, ..)| *row == j) {
+                reached.for_each(|k| row[k - first].push(span));
+            }
+            for (rows, spans) in layers.iter_mut().zip(&mut row) {
+                rows.push_row(|out| merge(spans, out));
+                spans.clear();
+            }
+        }
+        Self { first, layers }
+    }
+}
+
+/// The cells of an area with their heights above the bed, mm.
+pub(super) fn heights_over(field: &Field, rows: &Rows) -> Vec<(Spot, f64)> {
+    let all = super::grid::spots(rows, CELL).into_iter();
+    all.filter_map(|cell| Some((cell, mm(field.at(cell)?)))).collect()
+}

@@ -1,0 +1,249 @@
+//! A piece at its home -> its skins' areas: what passes, with all that stands there.
+//!
+//! The head is tried at all places of each skin's area. Skin i lies (n − i) skin heights below the
+//! surface, so its tip is lower where it is not the last.
+//!
+//! - A place that fails for the last skin is refused to all: it is printed flat, and stands at most half
+//!   a layer over the surface. A place that fails for a lower skin only leaves that one: the base ends
+//!   higher there. So a flat zone does not grow: beside it, on a slope of 10° with a flat of 1 mm and
+//!   layers of 0.2 mm, the last skin's tip touches treads that stand 0.1 mm over the surface, and the
+//!   slope adds 0.1 mm under the flat's uphill edge: 0.2 of the 0.3 mm that may be pressed. The first
+//!   skin's tip is 0.2 mm lower: that one keeps 0.6 mm off. Beside the base that is left, which stands 0.1
+//!   mm over it, it may lie.
+//! - What is printed flat instead is raised in the stack, and all is tried again until nothing fails.
+//!   Areas only shrink and what stands only grows: that ends.
+//! - *Later* lines are those of layers above the home that are no higher than the piece's top: the skins
+//!   stand beside them. They are tried the other way round: a head upside down over a pile of their tips.
+
+use super::candidate::{Ground, Piece};
+use super::grid::{self, CELL, Spot, cell_of};
+use super::scene::Scene;
+use super::shrink::{Refused, refuse, shrink_all};
+use super::stack::{Stack, heights_over};
+use super::tally::Reason;
+use super::touch::{Touch, cell_at, mm};
+use crate::geom::Contour;
+use crate::geom::boxes::extent;
+use crate::geom::spans::Rows;
+use crate::head::Head;
+use crate::head::pile::{Hit, Pile};
+use crate::units::{Coord, to_mm};
+use rayon::prelude::*;
+
+/// More room than this many skin heights is no base.
+const MOST_ROOM: f64 = 1.75;
+
+/// Less room than this share of a skin height is none.
+const LEAST_ROOM: f64 = 0.25;
+
+/// A piece that is tried.
+pub(super) struct Trial<'a> {
+    pub scene: &'a Scene<'a>,
+    pub ground: &'a mut Ground,
+    pub piece: &'a Piece,
+    /// The area of each skin, from the lowest up.
+    pub areas: Vec<Vec<Contour>>,
+    later: Option<Later>,
+}
+
+/// The tips of later lines.
+struct Later {
+    head: Head,
+    pile: Pile,
+    low: Spot,
+    /// Where a part goes on above the piece's top.
+    higher: Rows,
+    /// The top of the lowest of these layers, and its middle.
+    top: Coord,
+    plane: Coord,
+}
+
+impl<'a> Trial<'a> {
+    /// A piece with all skins everywhere.
+    pub(super) fn new(
+        scene: &'a Scene<'a>,
+        ground: &'a mut Ground,
+        piece: &'a Piece,
+        stack: &mut Stack<'_>,
+    ) -> Self {
+        let areas = vec![piece.area.clone(); scene.params.skins as usize];
+        let later = Later::new(scene, piece, stack);
+        Self { scene, ground, piece, areas, later }
+    }
+
+    /// Whether nothing is left.
+    pub(super) fn is_empty(&self) -> bool {
+        self.areas.last().is_none_or(Vec::is_empty)
+    }
+
+    /// Shrinks the areas until all places pass.
+    pub(super) fn settle(&mut self, stack: &mut Stack<'_>) {
+        while !self.is_empty() {
+            let refused = self.refused(stack);
+            if refused.iter().all(Refused::is_empty) {
+                return;
+            }
+            self.cut(&refused, stack);
+        }
+    }
+
+    /// The places of each skin that fail.
+    fn refused(&self, stack: &Stack<'_>) -> Vec<Refused> {
+        let last = self.areas.len() - 1;
+        let inset = self.scene.params.line_width / 2;
+        let mut out: Vec<Refused> = Vec::new();
+        let mut same: Option<(&Vec<Contour>, Vec<Spot>)> = None;
+        for (i, area) in self.areas.iter().enumerate() {
+            let places = match same.take() {
+                Some((other, places)) if other == area => places,
+                _ => grid::places(area, inset),
+            };
+            let fails = |place: &Spot| Some((*place, self.fails(*place, i, i == last, stack)?));
+            let failed: Vec<(Spot, Reason)> = places.par_iter().filter_map(fails).collect();
+            out.push(failed.into_iter().collect());
+            same = Some((area, places));
+        }
+        self.without_base(stack, &mut out);
+        out
+    }
+
+    /// Why skin `i` cannot be laid at a place.
+    fn fails(&self, place: Spot, i: usize, is_last: bool, stack: &Stack<'_>) -> Option<Reason> {
+        let (field, cell) = (&self.ground.field, cell_of(place));
+        let touch = Touch { scene: self.scene, field };
+        let z = field.at(cell)?;
+        let [x, y] = grid::middle(cell);
+        let tip = [x, y, mm(z - f64::from(self.scene.lowered(i)))];
+        let head = &self.scene.params.head;
+        let hit = stack.pile.hit(head, tip, &|hit| touch.is_press(hit));
+        let of = |hit: &Hit| touch.reason(hit, |cell| stack.is_supported(cell));
+        let later = || self.later.as_ref().filter(|_| is_last)?.fails(&touch, [x, y], z);
+        hit.map(|hit| of(&hit)).or_else(later)
+    }
+
+    /// Adds places where the lowest skin has no base at its height to those of the last skin.
+    fn without_base(&self, stack: &Stack<'_>, refused: &mut [Refused]) {
+        let (height, last) = (to_mm(self.scene.params.height), refused.len() - 1);
+        let room = LEAST_ROOM * height..=MOST_ROOM * height;
+        let Some(lowest) = self.areas.iter().position(|area| !area.is_empty()) else { return };
+        let inset = self.scene.params.line_width / 2;
+        let lacks = |place: &Spot| {
+            let cell = cell_of(*place);
+            let top = mm(self.ground.field.at(cell)? - f64::from(self.scene.lowered(lowest)));
+            (!room.contains(&(top - stack.height(cell)))).then_some(*place)
+        };
+        let places = grid::places(&self.areas[lowest], inset);
+        let lacking: Vec<Spot> = places.par_iter().filter_map(lacks).collect();
+        // What the head touches there has the better reason.
+        for place in lacking {
+            if !refused[lowest].contains_key(&place) {
+                refuse(&mut refused[last], place, Reason::Overhang);
+            }
+        }
+    }
+
+    /// Cuts places out, and raises what is printed flat there instead.
+    pub(super) fn cut(&mut self, refused: &[Refused], stack: &mut Stack<'_>) {
+        let old: Vec<Rows> = self.areas.iter().map(|area| grid::cells(area)).collect();
+        let marks = &mut self.ground.marks;
+        self.areas = shrink_all(&self.areas, refused, marks, self.scene.params);
+        let heights = self.scene.slicer.heights();
+        let most = to_mm(heights.top(self.piece.home));
+        let tread = to_mm(self.scene.params.height) / 2.0;
+        for (i, old) in old.iter().enumerate() {
+            let lost = old.minus(&grid::cells(&self.areas[i]));
+            let lowered = to_mm(self.scene.lowered(i));
+            for (cell, z) in heights_over(&self.ground.field, &lost) {
+                stack.raise(cell, (z - lowered + tread).min(most));
+                let last = i + 1 == self.areas.len();
+                if let Some(later) = self.later.as_mut().filter(|_| last) {
+                    later.add(cell, z);
+                }
+            }
+        }
+    }
+}
+
+impl Trial<'_> {
+    /// Prints all that is left flat, for the reasons of the last round.
+    pub(super) fn give_up(&mut self, refused: &[Refused], stack: &mut Stack<'_>) {
+        let reason = refused.iter().flat_map(Refused::values).min().copied();
+        let last = self.areas.len().saturating_sub(1);
+        let area = self.areas.last().map_or(&[][..], |area| area);
+        let all: Refused = grid::places(area, 0)
+            .into_iter()
+            .map(|place| (place, reason.unwrap_or(Reason::Cone)))
+            .collect();
+        let mut refused = vec![Refused::new(); self.areas.len()];
+        refused[last] = all;
+        self.cut(&refused, stack);
+        self.areas.iter_mut().for_each(Vec::clear);
+    }
+}
+
+impl Later {
+    /// The later lines beside a piece, if any layer above its home is lower than its top.
+    fn new(scene: &Scene<'_>, piece: &Piece, stack: &mut Stack<'_>) -> Option<Self> {
+        let (heights, params) = (scene.slicer.heights(), scene.params);
+        let high = piece.bounds[1];
+        let all = piece.home + 1..heights.count();
+        let layers: Vec<usize> =
+            all.take_while(|&k| f64::from(heights.top(k)) < high).collect();
+        let lowest = *layers.first()?;
+        let (from, to) = extent(piece.area.iter().flatten())?;
+        let reach = (params.head.reach() / to_mm(CELL)).ceil() as i32 + 1;
+        let low = [from.x, from.y].map(|v| v.div_euclid(CELL) - reach);
+        let high_cell = [to.x, to.y].map(|v| v.div_euclid(CELL) + reach + 2);
+        let corner = |cell: Spot| grid::middle(cell).map(|v| v - to_mm(CELL) / 2.0);
+        let pile = Pile::new(corner(low), corner(high_cell), to_mm(CELL));
+        let (top, plane) = (heights.top(lowest), heights.plane(lowest));
+        let higher = heights.planes_up_to(high as Coord + params.height / 2);
+        let higher = stack.section(higher).map(|section| section.solid.clone());
+        let (head, higher) = (params.head.mirrored(), higher.unwrap_or_default());
+        let mut later = Self { head, pile, low, higher, top, plane };
+        let own = grid::cells(&piece.area);
+        for k in layers {
+            let Some(section) = stack.section(k).cloned() else { break };
+            let standing = stack.standing(k, &section).minus(&own);
+            // Lines keep half a line off the edge.
+            let tips = standing.erode(params.line_width / 2, CELL);
+            for cell in grid::spots(&tips, CELL) {
+                later.raise(cell, -to_mm(heights.top(k)));
+            }
+        }
+        Some(later)
+    }
+
+    fn raise(&mut self, cell: Spot, z: f64) {
+        let at = |axis: usize| usize::try_from(cell[axis] - self.low[axis]);
+        if let (Ok(x), Ok(y)) = (at(0), at(1)) {
+            self.pile.raise([x, y], z);
+        }
+    }
+
+    /// A cell of the piece whose surface lies at `z`, mm, is printed flat.
+    fn add(&mut self, cell: Spot, z: f64) {
+        if z > to_mm(self.plane) {
+            self.raise(cell, -to_mm(self.top));
+        }
+    }
+
+    /// Why the skins at a place are in the way of later lines.
+    fn fails(&self, touch: &Touch<'_>, [x, y]: [f64; 2], z: f64) -> Option<Reason> {
+        if z <= f64::from(self.top) {
+            return None;
+        }
+        let params = touch.scene.params;
+        let goes_on = |[x, y]: Spot| {
+            let row = self.higher.row(y).iter();
+            row.clone().any(|span| span.start <= x * CELL && x * CELL < span.end)
+        };
+        // A plateau continues the surface; what goes on above it does not.
+        let spare = |hit: &Hit| {
+            params.head.presses(hit, to_mm(params.height)) && !goes_on(cell_at(hit.at))
+        };
+        let hit = self.pile.hit(&self.head, [x, y, -mm(z)], &spare)?;
+        let is_same = touch.body(hit.at) == touch.body([x, y]);
+        Some(if is_same { Reason::Obstacle } else { Reason::Neighbour })
+    }
+}
