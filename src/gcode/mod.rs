@@ -206,6 +206,7 @@ impl<'a> Writer<'a> {
         self.timer.finish();
         self.write_ready()?;
         let mut tail = self.params.finish(&self.moves, self.before);
+        tail.extend_from_slice(hosts::risen(self.usage.highest, self.timer.times()).as_bytes());
         tail.extend_from_slice(self.progress.done().as_bytes());
         tail.extend_from_slice(format!(";TYPE:Custom\n{}", self.end).as_bytes());
         let cooled = self.cooling.as_ref().map(|cooling| cooling.cooled().clone());

@@ -35,7 +35,7 @@ pub struct Usage {
     pub short: Short,
     /// What holds the feeds of lines on slopes down.
     pub slopes: SlopeFeeds,
-    /// The greatest z that anything is printed at, grid units above the bed.
+    /// The greatest z of the nozzle while it prints, grid units above the bed.
     pub highest: Coord,
 }
 
@@ -48,6 +48,11 @@ impl Usage {
         let flows = layer.flows.clone();
         let (short, slopes) = (layer.short, layer.slopes);
         let mut usage = Self { flows, arced, short, slopes, ..Self::default() };
+        let beads = layer.moves.iter().filter(|step| matches!(step.kind, Kind::Extrude(_)));
+        usage.highest = match layer.risen.is_empty() {
+            true => layer.z,
+            false => beads.map(|step| step.z).max().unwrap_or_default(),
+        };
         let mut on_its_way = false;
         for step in &layer.moves {
             match step.kind {
@@ -56,7 +61,6 @@ impl Usage {
                     let used = usage.roles[bead.role].of_mut(bead.thick);
                     used.length += step.length;
                     used.filament += step.filament;
-                    usage.highest = usage.highest.max(step.z);
                 }
                 Kind::Travel => {
                     // A travel may have corners.

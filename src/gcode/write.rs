@@ -116,7 +116,11 @@ impl WriteParams {
                 text.line(";NONPLANAR_END");
             }
             cuts.push(text.out.len());
-            patches.peek().filter(|run| run.paths.start == path).iter().for_each(|run| text.patch(run));
+            patches
+                .peek()
+                .filter(|run| run.paths.start == path)
+                .iter()
+                .for_each(|run| text.patch(run));
         }
         text.steps(layer, done..layer.moves.len());
         if patches.next().is_some() {

@@ -19,6 +19,7 @@ use super::{Head, PlanParams, PrintMove, Toolpath};
 use crate::fill::{Path, Shape};
 use crate::geom::{Contour, Point};
 use crate::slice::Layer;
+use crate::units::Coord;
 
 /// The travels of one layer.
 struct Travels<'a> {
