@@ -182,7 +182,7 @@ fn a_patch_is_written_after_its_layer_between_marks_with_its_own_heights() {
     let layer = text.find(";Z:0.6\n").unwrap();
     let patch = &text[layer..text.find(";Z:0.8\n").unwrap()];
     let patch = &patch[patch.find(";NONPLANAR_START").unwrap()..];
-    let kept = patch.lines().filter(|line| !line.starts_with("M73"));
+    let kept = patch.lines().filter(|line| *line != ";LAYER_CHANGE");
     let patch: String = kept.map(|line| format!("{line}\n")).collect();
     assert_eq!(patch, include_str!("slopes/patch.gcode"), "{patch}");
     assert_eq!(text.matches(";NONPLANAR_").count(), 2);
@@ -247,13 +247,15 @@ fn within_limits(text: &str, settings: &Settings) {
         assert!(bead.feed <= settings.speed.nonplanar + 1e-9, "{bead:?}");
     }
     for joint in beads.windows(2).filter(|joint| joint[0].to == joint[1].from) {
-        let change = (joint[1].sine() - joint[0].sine()).abs();
+        // z is rounded by half a thousandth at each end of a line.
+        let rounding = 0.001 / joint[0].long() + 0.001 / joint[1].long();
+        let change = (joint[1].sine() - joint[0].sine()).abs() - rounding;
         let mean = 0.5 * (joint[0].long() + joint[1].long());
         for bead in joint {
             let acceleration = bead.feed * bead.feed * change / mean;
-            assert!(acceleration <= 1.05 * limits.acceleration_z + 0.5, "{joint:?}");
+            assert!(acceleration <= 1.01 * limits.acceleration_z, "{joint:?}");
             let jerk = limits.junction == slicer::profile::JunctionRule::Jerk;
-            assert!(!jerk || bead.feed * change <= 1.05 * limits.jerk_z, "{joint:?}");
+            assert!(!jerk || bead.feed * change <= 1.01 * limits.jerk_z, "{joint:?}");
         }
     }
 }
