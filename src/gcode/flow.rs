@@ -28,6 +28,12 @@ impl FlowLimit {
         Self { most: settings.max_volumetric_speed(), area: settings.filament_area() }
     }
 
+    /// Whether it is what holds a feed of whole mm/min down: one more, and `filament` mm for each mm of
+    /// path would not melt.
+    pub(super) fn holds(self, filament: f64, feed: u32) -> bool {
+        f64::from(feed + 1) * filament * self.area / 60.0 > self.most * (1.0 + SLACK)
+    }
+
     /// The feed (mm/min) and the flow (mm³/s) of a bead that takes `filament` mm for each mm of
     /// path: the feed `asked` for, clamped to the highest at which the filament melts.
     pub(super) fn feed(self, filament: f64, asked: f64) -> (u32, f64) {

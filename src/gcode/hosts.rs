@@ -5,10 +5,12 @@
 //! sums: `layer_height` and `first_layer_height` have the same name in both slicers.
 
 use super::Sums;
-use super::times::in_words;
+use super::number::{push_fixed, thousandths};
+use super::times::{Times, in_words};
 use super::usage::Material;
 use crate::job;
 use crate::profile::{Settings, Stamp};
+use crate::units::{Coord, to_mm};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
@@ -114,6 +116,19 @@ pub(super) fn tail(layers: usize, sums: &Sums, settings: &Settings) -> String {
         filament.diameter,
         filament.name.replace('"', "\\\""),
     )
+}
+
+/// The height of the print, if a path rises above the last layer: hosts take the greatest height that
+/// follows such a line.
+pub(super) fn risen(highest: Coord, times: &Times) -> String {
+    let top = times.layers.iter().map(|layer| layer.z).max().unwrap_or_default();
+    if highest <= top {
+        return String::new();
+    }
+    let mut text = b";BEFORE_LAYER_CHANGE\n;".to_vec();
+    push_fixed::<3>(&mut text, thousandths(to_mm(highest)));
+    text.push(b'\n');
+    String::from_utf8(text).unwrap_or_default()
 }
 
 /// The material in a filament's name, if there is one: `PLA` in `Galaxy PLA+`.

@@ -4,8 +4,8 @@
 //!   that the times are those of what is written.
 //! - *Progress* lines (`M73`) tell the printer which part of the print is done.
 //!
-//! 1. [`moves`] turns a layer into machine moves; [`flow`] lowers feeds to the flow limit. `arcs`
-//!    replaces lines that lie on a circle; `segments` joins and slows down lines that are too short.
+//! 1. [`moves`] turns a layer into machine moves; [`flow`] lowers feeds to the flow limit, `slopes` to
+//!    what the z axis can follow. `arcs` replaces lines that lie on a circle; `segments` joins and slows down lines that are too short.
 //! 2. [`cooling`] lowers those of layers that would take too little time. It holds back some layers,
 //!    since those above have a say.
 //! 3. [`times`] runs the clock over these moves, layer by layer; [`usage`] sums their filament.
@@ -30,6 +30,7 @@ mod output;
 mod progress;
 pub mod reshaped;
 mod segments;
+mod slopes;
 pub mod times;
 pub mod usage;
 pub mod write;
@@ -51,6 +52,7 @@ use output::Places;
 use progress::Progress;
 use rayon::prelude::*;
 use segments::Segments;
+use slopes::Slopes;
 use std::collections::VecDeque;
 use times::{Timer, Times};
 use usage::Usage;
@@ -73,6 +75,7 @@ pub struct Writer<'a> {
     settings: &'a Settings,
     facts: PrintFacts,
     moves: MoveParams,
+    slopes: Slopes,
     arcs: Option<Arcs>,
     segments: Option<Segments>,
     params: WriteParams,
@@ -107,6 +110,7 @@ impl<'a> Writer<'a> {
             settings,
             facts,
             moves: MoveParams::new(settings, offset),
+            slopes: Slopes::new(settings),
             arcs: Arcs::new(settings),
             segments: Segments::new(settings),
             params: WriteParams::new(settings),
@@ -142,9 +146,11 @@ impl<'a> Writer<'a> {
         // Few at once: moves and text take more memory than the layers themselves.
         let at_once = rayon::current_num_threads().max(4);
         layers.chunks(at_once).try_for_each(|layers| {
-            let (params, arcs, segments) = (&self.moves, &self.arcs, &self.segments);
+            let (params, slopes) = (&self.moves, &self.slopes);
+            let (arcs, segments) = (&self.arcs, &self.segments);
             let made = |layer: &Toolpath| {
                 let mut moves = params.moves(layer);
+                slopes.limit(&mut moves);
                 arcs.iter().for_each(|arcs| arcs.replace(&mut moves));
                 segments.iter().for_each(|segments| segments.limit(&mut moves));
                 moves
@@ -200,6 +206,7 @@ impl<'a> Writer<'a> {
         self.timer.finish();
         self.write_ready()?;
         let mut tail = self.params.finish(&self.moves, self.before);
+        tail.extend_from_slice(hosts::risen(self.usage.highest, self.timer.times()).as_bytes());
         tail.extend_from_slice(self.progress.done().as_bytes());
         tail.extend_from_slice(format!(";TYPE:Custom\n{}", self.end).as_bytes());
         let cooled = self.cooling.as_ref().map(|cooling| cooling.cooled().clone());

@@ -210,9 +210,11 @@ impl Nozzle {
         (delta != [0.0; 4]).then_some(motion::Move { delta, feed, tag })
     }
 
-    /// Moves to `z`. Returns by how much it rises, mm; 0 if its height was unknown.
+    /// Moves to `z`, as it is written. Returns by how much it rises, mm; 0 if its height was unknown.
     fn rise_to(&mut self, z: Coord) -> f64 {
-        self.z.replace(z).map_or(0.0, |from| to_mm(z - from))
+        // On a slope of short lines a thousandth more or less is a corner.
+        let [from, z] = [self.z.replace(z).unwrap_or(z), z].map(|z| (z + 5).div_euclid(10));
+        to_mm(10 * (z - from))
     }
 }
 

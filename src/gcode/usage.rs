@@ -2,9 +2,10 @@
 
 use super::flow::Flows;
 use super::moves::{Kind, Moves};
-use super::reshaped::{Arced, Short};
+use super::reshaped::{Arced, Short, SlopeFeeds};
 use crate::fill::{Both, RoleTable};
 use crate::profile::Settings;
+use crate::units::Coord;
 
 /// Path and filament extruded for one role.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -32,6 +33,10 @@ pub struct Usage {
     pub arced: Arced,
     /// Lines shorter than the printer can be fed.
     pub short: Short,
+    /// What holds the feeds of lines on slopes down.
+    pub slopes: SlopeFeeds,
+    /// The greatest z of the nozzle while it prints, grid units above the bed.
+    pub highest: Coord,
 }
 
 impl Usage {
@@ -41,7 +46,13 @@ impl Usage {
         let lines = layer.arcs.iter().map(|arc| arc.lines).sum();
         let arced = Arced { arcs: layer.arcs.len(), lines };
         let flows = layer.flows.clone();
-        let mut usage = Self { flows, arced, short: layer.short, ..Self::default() };
+        let (short, slopes) = (layer.short, layer.slopes);
+        let mut usage = Self { flows, arced, short, slopes, ..Self::default() };
+        let beads = layer.moves.iter().filter(|step| matches!(step.kind, Kind::Extrude(_)));
+        usage.highest = match layer.risen.is_empty() {
+            true => layer.z,
+            false => beads.map(|step| step.z).max().unwrap_or_default(),
+        };
         let mut on_its_way = false;
         for step in &layer.moves {
             match step.kind {
@@ -86,6 +97,8 @@ impl Usage {
         self.arced.arcs += other.arced.arcs;
         self.arced.lines += other.arced.lines;
         self.short.add(&other.short);
+        self.slopes.add(&other.slopes);
+        self.highest = self.highest.max(other.highest);
     }
 }
 

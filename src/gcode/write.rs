@@ -17,17 +17,21 @@ use super::drive::{Drives, Driving, Told};
 use super::fan::{Fan, FanParams};
 use super::moves::{Bead, Kind, Move, MoveParams, Moves};
 use super::number::{push_fixed, thousandths};
-use super::reshaped::ArcRun;
+use super::reshaped::{ArcRun, PatchRun};
 use crate::fill::Role;
 use crate::profile::Settings;
 use crate::units::{Coord, Thousandths, nearest, to_mm};
 use std::io::Write as _;
 use std::ops::Range;
 
-/// The smallest change of width that is annotated: 0.01 mm. A trade-off: a smaller value
+/// The smallest change of width that is annotated, grid units: 0.01 mm. A trade-off: a smaller value
 /// makes the file longer, a larger one makes viewers and `check` work with wrong widths.
 /// The moves do not depend on it.
 const LEAST_WIDTH_CHANGE: Coord = 100;
+
+/// The smallest change of height and width that is annotated on a slope, grid units: 0.02 mm. There both
+/// change from line to line.
+const LEAST_CHANGE_ON_SLOPES: Coord = 200;
 
 /// A layer's text.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -104,12 +108,24 @@ impl WriteParams {
         cuts.push(text.out.len());
         text.begin(layer, before.fan);
         let mut done = 0;
-        for &first in &layer.paths {
+        let mut patches = layer.patches.iter().peekable();
+        for (path, &first) in layer.paths.iter().enumerate() {
             text.steps(layer, done..first);
             done = first;
+            if patches.next_if(|run| run.paths.end == path).is_some() {
+                text.line(";NONPLANAR_END");
+            }
             cuts.push(text.out.len());
+            patches
+                .peek()
+                .filter(|run| run.paths.start == path)
+                .iter()
+                .for_each(|run| text.patch(run));
         }
         text.steps(layer, done..layer.moves.len());
+        if patches.next().is_some() {
+            text.line(";NONPLANAR_END");
+        }
         text.blow(None);
         LayerText { text: text.out, cuts }
     }
@@ -148,6 +164,8 @@ struct Text<'a> {
     driving: Driving<'a>,
     width: Coord,
     height: Coord,
+    /// The layer's top, grid units.
+    level: Coord,
 }
 
 impl<'a> Text<'a> {
@@ -166,6 +184,7 @@ impl<'a> Text<'a> {
             driving,
             width: 0,
             height: 0,
+            level: 0,
         }
     }
 
@@ -178,6 +197,13 @@ impl<'a> Text<'a> {
         self.line(";BEFORE_LAYER_CHANGE");
         self.annotate(";", layer.z);
         self.height = layer.height;
+        self.level = layer.z;
+    }
+
+    /// Tells that a patch begins. What its lines are is told anew.
+    fn patch(&mut self, run: &PatchRun) {
+        self.line(&format!(";NONPLANAR_START {}", run.patch));
+        (self.role, self.height) = (None, 0);
     }
 
     /// Sets the fan and resets E at the beginning of a layer.
@@ -229,7 +255,7 @@ impl<'a> Text<'a> {
             return;
         };
         self.drive(&Kind::Extrude(bead));
-        self.announce(&bead);
+        self.announce(&bead, z);
         self.e += pieces.iter().map(|piece| piece.filament).sum::<f64>();
         self.at = Some(to);
         self.out.extend_from_slice(if arc.clockwise { b"G2" } else { b"G3" });
@@ -265,7 +291,7 @@ impl<'a> Text<'a> {
                 self.out.push(b'\n');
             }
             Kind::Extrude(bead) => {
-                self.announce(&bead);
+                self.announce(&bead, step.z);
                 self.e += step.filament;
                 if self.go(step.to, Some(step.z)) {
                     self.push_e();
@@ -292,8 +318,8 @@ impl<'a> Text<'a> {
         self.end_move(feed);
     }
 
-    /// Annotates what differs from the bead before.
-    fn announce(&mut self, bead: &Bead) {
+    /// Annotates what differs from the bead before; `z` is where this one ends.
+    fn announce(&mut self, bead: &Bead, z: Coord) {
         if self.role != Some(bead.role) {
             self.role = Some(bead.role);
             self.blow(self.role);
@@ -301,11 +327,13 @@ impl<'a> Text<'a> {
             self.line(bead.role.facts().annotation);
             self.width = 0;
         }
-        if self.height != bead.height {
+        let level = z == self.level && bead.role != Role::NonPlanar;
+        let least = if level { [1, LEAST_WIDTH_CHANGE] } else { [LEAST_CHANGE_ON_SLOPES; 2] };
+        if (bead.height - self.height).abs() >= least[0] {
             self.height = bead.height;
             self.annotate(";HEIGHT:", bead.height);
         }
-        if (bead.width - self.width).abs() >= LEAST_WIDTH_CHANGE {
+        if (bead.width - self.width).abs() >= least[1] {
             self.width = bead.width;
             self.annotate(";WIDTH:", bead.width);
         }
@@ -455,23 +483,6 @@ G1 X150 E2.3 F3600
             moves,
             ["G1 E-1 F1200", "G1 E1 F1200", "G1 X160 E0.3326 F1620", "G1 X150 E0.6652 F3600"]
         );
-    }
-
-    #[test]
-    fn a_path_that_rises_is_written_with_z_where_it_changes() {
-        let settings = profile::load(["generic-klipper"], &[]).unwrap().settings;
-        let mut hill = toolpath();
-        let points = &mut hill.moves[0].path.points;
-        points[1].z = 1_000;
-        points.push(PathPoint { at: Point { x: 200_000, y: 0 }, ..points[1] });
-        let moves = MoveParams::new(&settings, [0.0, 0.0]).moves(&hill);
-        let text = WriteParams::new(&settings).layer(&moves, Before::default()).text;
-        let text = String::from_utf8(text).unwrap();
-        let beads: Vec<&str> = text.lines().filter(|l| l.contains(" E0.")).collect();
-        assert!(beads[0].starts_with("G1 X10 Z0.9 E"), "{text}");
-        assert!(beads[1].starts_with("G1 X20 E"), "{text}");
-        // Down again before the next path.
-        assert!(text.contains("G1 Z0.8 F"), "{text}");
     }
 
     #[test]

@@ -63,7 +63,7 @@ pub enum Junction {
 const LEAST: f64 = 1e-3;
 
 /// Least jerk that is used, mm/s: no jerk at all would divide by 0.
-const LEAST_JERK: f64 = 1e-12;
+pub(super) const LEAST_JERK: f64 = 1e-12;
 
 /// [`Limits`] with what every move needs precomputed, so that a clock can change from one to another
 /// at no cost.

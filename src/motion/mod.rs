@@ -11,12 +11,14 @@
 
 mod block;
 mod clock;
+mod joint;
 mod junction;
 mod limits;
 mod plan;
 mod queue;
 
 pub use clock::{Clock, Timed};
+pub use joint::joint;
 pub use limits::{Junction, Limits, Rates};
 
 use crate::units::MmPerS;

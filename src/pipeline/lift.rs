@@ -60,6 +60,8 @@ impl Lift {
             for path in paths.filter(|path| stands(path)) {
                 path.points.iter_mut().for_each(|point| point.height += self.filled);
             }
+            let over = toolpath.moves.iter_mut().map(|next| &mut next.over);
+            over.filter(|over| **over > 0).for_each(|over| *over += self.by());
             toolpath.layer += self.layers();
             toolpath.z += self.by();
             toolpath.from.highest += self.by();

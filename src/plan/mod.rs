@@ -40,7 +40,9 @@ pub struct PrintMove {
     pub wipe: Vec<Point>,
     /// The travel goes over these points.
     pub via: Vec<Point>,
-    /// The travel goes at least so high above the bed, grid units; 0 where nothing is in its way.
+    /// The travel rises at least so high above the bed before it goes sideways, grid units; 0 where nothing
+    /// is in its way. From one path of a patch to the next it says all: elsewhere travels rise above
+    /// everything that is printed in any case.
     pub over: Coord,
     /// The path is one of this patch of non-planar skin.
     pub patch: Option<u32>,
@@ -76,8 +78,8 @@ pub struct Toolpath {
 pub struct Head {
     /// Position of the nozzle, if known.
     pub at: Option<Point>,
-    /// The greatest z printed so far, grid units above the bed. It is below the next layer unless
-    /// a path rose above its own layer.
+    /// The greatest z printed so far, and over patches of non-planar skin the clearance more; grid units
+    /// above the bed. It is below the next layer unless a path rose above its own layer.
     pub highest: Coord,
 }
 
@@ -93,7 +95,19 @@ impl Head {
     /// The head once `paths` of `layer` are printed as well.
     #[must_use]
     pub fn after(self, layer: &Layer, paths: &[Path]) -> Self {
-        let risen = paths.iter().flat_map(|path| &path.points).map(|p| layer.z + p.z).max();
+        self.once(layer.z, paths, 0)
+    }
+
+    /// The head once the paths of a patch are printed as well, over which travels keep the `clearance`.
+    /// `z` is the top of the layer that they are printed on. Grid units.
+    #[must_use]
+    pub fn after_patch(self, z: Coord, paths: &[Path], clearance: Coord) -> Self {
+        self.once(z, paths, clearance)
+    }
+
+    fn once(self, z: Coord, paths: &[Path], clearance: Coord) -> Self {
+        let points = paths.iter().flat_map(|path| &path.points);
+        let risen = points.map(|p| z + p.z + clearance).max();
         Self {
             at: paths.last().map(Path::end).or(self.at),
             highest: risen.map_or(self.highest, |risen| risen.max(self.highest)),

@@ -19,6 +19,7 @@ use super::{Head, PlanParams, PrintMove, Toolpath};
 use crate::fill::{Path, Shape};
 use crate::geom::{Contour, Point};
 use crate::slice::Layer;
+use crate::units::Coord;
 
 /// The travels of one layer.
 struct Travels<'a> {
@@ -88,6 +89,27 @@ impl Cost for Travels<'_> {
 pub fn toolpath(layer: &Layer, paths: Vec<Path>, from: Head, params: &PlanParams) -> Toolpath {
     let moves = moves(paths, &layer.contours, from.at, params);
     Toolpath { layer: layer.index, z: layer.z, height: layer.height, from, moves }
+}
+
+/// Adds the paths of a patch of non-planar skin to the toolpath of the layer that they are printed on, in
+/// their order. Each comes with the height over which the travel to it goes, as [`PrintMove::over`].
+///
+/// What oozes on a skin is seen, so that all travels retract that are long enough. The nozzle is not
+/// wiped: the way back would run into the slope.
+pub fn add_patch(
+    toolpath: &mut Toolpath,
+    patch: u32,
+    paths: impl IntoIterator<Item = (Path, Coord)>,
+    params: &PlanParams,
+) {
+    let mut at = toolpath.moves.last().map(|last| last.path.end()).or(toolpath.from.at);
+    let least = i64::from(params.min_travel).pow(2);
+    for (path, over) in paths {
+        let far = |at: Point| at != path.start() && at.distance2(path.start()) >= least;
+        let retract = params.retracts && at.is_none_or(far);
+        at = Some(path.end());
+        toolpath.moves.push(PrintMove { retract, over, patch: Some(patch), ..PrintMove::to(path) });
+    }
 }
 
 /// Improves the order of the paths, starting from `at`, and decides for each how the travel to it

@@ -13,6 +13,7 @@ mod mend;
 mod motion;
 mod reader;
 mod rounding;
+mod slopes;
 mod sound;
 mod stl;
 mod tour;

@@ -49,7 +49,8 @@ impl Waiting {
         if slowing.seconds(layer) >= slowing.least {
             return false;
         }
-        let up = (end.z + to_units(LIFT)).min(self.top).max(end.z);
+        // On a slope the end is not the highest place.
+        let up = (end.z.max(layer.highest) + to_units(LIFT)).min(self.top).max(end.z);
         let beside = self.beside(layer).unwrap_or(end.to);
         let go =
             |to, z, kind| Move { to, z, feed: self.travel_feed, length: 0.0, filament: 0.0, kind };
