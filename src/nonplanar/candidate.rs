@@ -20,9 +20,9 @@ use super::stack::heights_over;
 use super::surface::Surface;
 use super::tally::Reason;
 use super::touch::{Touch, mm};
+use crate::geom::Contour;
 use crate::geom::boxes::extent;
 use crate::geom::spans::Rows;
-use crate::geom::Contour;
 use crate::head::pile::Pile;
 use crate::region::scan::around;
 use crate::units::{Coord, to_mm};
@@ -86,12 +86,7 @@ fn home(scene: &Scene<'_>, high: f64) -> Option<usize> {
 }
 
 /// The part of a surface that has room for a base below it and for travels above.
-fn between(
-    scene: &Scene<'_>,
-    surface: &Surface,
-    field: &Field,
-    marks: &mut Marks,
-) -> Vec<Contour> {
+fn between(scene: &Scene<'_>, surface: &Surface, field: &Field, marks: &mut Marks) -> Vec<Contour> {
     let heights = scene.slicer.heights();
     if heights.count() == 0 {
         return Vec::new();
@@ -176,12 +171,7 @@ fn standing(field: &Field, area: &[Contour]) -> Pile {
 }
 
 /// Places where the head would touch the surface itself.
-fn in_its_own_way(
-    scene: &Scene<'_>,
-    field: &Field,
-    own: &Pile,
-    area: &[Contour],
-) -> Refused {
+fn in_its_own_way(scene: &Scene<'_>, field: &Field, own: &Pile, area: &[Contour]) -> Refused {
     let touch = Touch { scene, field };
     let params = scene.params;
     let tried = |place: &Spot| {

@@ -72,7 +72,9 @@ fn fill(line: &mut [f32], surface: &Surface, (start, j): (i32, i32), row: &[Span
             k += 1;
         }
         let z = match (profile.get(k), profile.get(k + 1)) {
-            (Some(&(from, low)), Some(&(to, high))) if from <= share && share <= to && to > from => {
+            (Some(&(from, low)), Some(&(to, high)))
+                if from <= share && share <= to && to > from =>
+            {
                 Some(low + (high - low) * (share - from) / (to - from))
             }
             _ => surface.z(point(x)),

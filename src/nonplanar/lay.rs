@@ -171,7 +171,8 @@ pub(super) fn strokes(trial: &Trial<'_>, stack: &Stack<'_>, skins: Vec<Vec<Path>
     let clearance = trial.scene.params.clearance;
     let mut out: Vec<Stroke> = Vec::new();
     for path in skins.into_iter().flatten() {
-        let ends = out.last().and_then(|last: &Stroke| last.path.points.last().zip(path.points.first()));
+        let ends =
+            out.last().and_then(|last: &Stroke| last.path.points.last().zip(path.points.first()));
         let over = match ends {
             Some((a, b)) => {
                 let (a, b) = (place(a, layer_top), place(b, layer_top));

@@ -63,7 +63,8 @@ impl Marks {
     /// The places of the surface, row by row.
     pub(super) fn places(&self) -> impl Iterator<Item = Spot> + use<'_> {
         let wide = self.size[0].max(1);
-        let spot = move |at: usize| [self.low[0] + (at % wide) as i32, self.low[1] + (at / wide) as i32];
+        let spot =
+            move |at: usize| [self.low[0] + (at % wide) as i32, self.low[1] + (at / wide) as i32];
         (0..self.of.len()).filter(|&at| self.of[at] != BESIDE).map(spot)
     }
 

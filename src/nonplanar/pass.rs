@@ -45,7 +45,10 @@ pub fn patches(scene: &Scene<'_>) -> Patches {
     let mut pieces: Vec<Piece> = pieces.into_iter().flatten().collect();
     // Of equal ones the first surface's, from its first contour: as they come.
     pieces.sort_by(|a, b| {
-        a.home.cmp(&b.home).then(a.bounds[1].total_cmp(&b.bounds[1])).then(a.surface.cmp(&b.surface))
+        a.home
+            .cmp(&b.home)
+            .then(a.bounds[1].total_cmp(&b.bounds[1]))
+            .then(a.surface.cmp(&b.surface))
     });
     let (mut out, mut from) = (Patches::default(), Vec::new());
     if !pieces.is_empty() {
@@ -176,7 +179,9 @@ fn tally(scene: &Scene<'_>, grounds: &[Ground], patches: &mut [Patch], from: &[&
             all.add(reason, own.of(reason) * share);
         }
         for (patch, piece) in patches.iter_mut().zip(from) {
-            let Some(area) = patch.areas.last().filter(|_| patch.surface == number) else { continue };
+            let Some(area) = patch.areas.last().filter(|_| patch.surface == number) else {
+                continue;
+            };
             let skin = rows(area);
             for place in grid::spots(&rows(&piece.area), STEP) {
                 count(&mut patch.mm2, ground, place, holds(&skin, place));

@@ -198,7 +198,9 @@ impl Cut {
                 let Some(z) = field.at([column, j]) else { continue };
                 let (layers, start) = (reach(z), column * CELL - CELL / 2);
                 match stretches.last_mut() {
-                    Some((row, same, span)) if *row == j && *same == layers && span.end == start => {
+                    Some((row, same, span))
+                        if *row == j && *same == layers && span.end == start =>
+                    {
                         span.end += CELL;
                     }
                     _ => stretches.push((j, layers, Span { start, end: start + CELL })),

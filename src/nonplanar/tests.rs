@@ -62,7 +62,12 @@ pub(super) fn body(
     for j in 0..rows {
         for i in 0..columns {
             quad([at(true, i, j), at(true, i + 1, j), at(true, i + 1, j + 1), at(true, i, j + 1)]);
-            quad([at(false, i, j), at(false, i, j + 1), at(false, i + 1, j + 1), at(false, i + 1, j)]);
+            quad([
+                at(false, i, j),
+                at(false, i, j + 1),
+                at(false, i + 1, j + 1),
+                at(false, i + 1, j),
+            ]);
         }
     }
     let mut side = |a: (usize, usize), b: (usize, usize)| {
@@ -124,7 +129,11 @@ pub(super) fn passed(placed: &Placed, params: &NonPlanarParams) -> Patches {
     };
     let out = patches(&scene);
     let sum = out.mm2.total();
-    assert!((sum - surfaces.tops.all).abs() < 0.01 * surfaces.tops.all, "{sum} {:?}", surfaces.tops);
+    assert!(
+        (sum - surfaces.tops.all).abs() < 0.01 * surfaces.tops.all,
+        "{sum} {:?}",
+        surfaces.tops
+    );
     check(&out, heights_of(&slicer));
     out
 }
@@ -163,7 +172,11 @@ pub(super) fn tell(name: &str, out: &Patches) {
     let sloped = out.mm2.total() - out.mm2.level;
     eprintln!(
         "{name}: {} patches, skin {:.1} ({:.1} % of sloped), level {:.1}, {}",
-        out.patches.len(), out.mm2.skin, 100.0 * out.mm2.skin / sloped, out.mm2.level, flat.join(", ")
+        out.patches.len(),
+        out.mm2.skin,
+        100.0 * out.mm2.skin / sloped,
+        out.mm2.level,
+        flat.join(", ")
     );
 }
 
@@ -188,7 +201,8 @@ fn a_wave_with_a_boss_loses_a_ring() {
         let is_boss = (x - 15.0).abs() < 3.1 && (y - 10.0).abs() < 3.1;
         if is_boss { 12.0 } else { z }
     };
-    let out = passed(&placed(vec![body([0.0, 0.0], (60, 40, 0.5), wave)], 1), &params(head("long-0.6")));
+    let out =
+        passed(&placed(vec![body([0.0, 0.0], (60, 40, 0.5), wave)], 1), &params(head("long-0.6")));
     tell("wave with a boss", &out);
     assert!(out.mm2.of(Reason::Obstacle) > 10.0);
 }
@@ -239,7 +253,8 @@ fn flat_zones_do_not_grow() {
         let z = 6.0 + x * tan(10.0);
         if (x - 15.0).hypot(y - 10.0) < 2.2 { z + 2.0 } else { z }
     };
-    let out = passed(&placed(vec![body([0.0, 0.0], (60, 40, 0.5), pit)], 1), &params(head("long-0.6")));
+    let out =
+        passed(&placed(vec![body([0.0, 0.0], (60, 40, 0.5), pit)], 1), &params(head("long-0.6")));
     tell("knob on a slope", &out);
 }
 
@@ -249,7 +264,9 @@ fn flat_zones_do_not_grow() {
 fn tries_models() {
     let files = std::env::var("SLICER_TRY").unwrap();
     for file in files.split(',') {
-        for name in std::env::var("SLICER_HEADS").unwrap_or_else(|_| "long-0.6,v6".into()).split(',') {
+        for name in
+            std::env::var("SLICER_HEADS").unwrap_or_else(|_| "long-0.6,v6".into()).split(',')
+        {
             let mesh = crate::mesh::read::from_path(file, MAX_TRIANGLES).unwrap();
             let placed = placed(vec![mesh], 1);
             let start = std::time::Instant::now();

@@ -187,8 +187,7 @@ impl Later {
         let (heights, params) = (scene.slicer.heights(), scene.params);
         let high = piece.bounds[1];
         let all = piece.home + 1..heights.count();
-        let layers: Vec<usize> =
-            all.take_while(|&k| f64::from(heights.top(k)) < high).collect();
+        let layers: Vec<usize> = all.take_while(|&k| f64::from(heights.top(k)) < high).collect();
         let lowest = *layers.first()?;
         let (from, to) = extent(piece.area.iter().flatten())?;
         let reach = (params.head.reach() / to_mm(CELL)).ceil() as i32 + 1;
@@ -239,9 +238,8 @@ impl Later {
             row.clone().any(|span| span.start <= x * CELL && x * CELL < span.end)
         };
         // A plateau continues the surface; what goes on above it does not.
-        let spare = |hit: &Hit| {
-            params.head.presses(hit, to_mm(params.height)) && !goes_on(cell_at(hit.at))
-        };
+        let spare =
+            |hit: &Hit| params.head.presses(hit, to_mm(params.height)) && !goes_on(cell_at(hit.at));
         let hit = self.pile.hit(&self.head, [x, y, -mm(z)], &spare)?;
         let is_same = touch.body(hit.at) == touch.body([x, y]);
         Some(if is_same { Reason::Obstacle } else { Reason::Neighbour })

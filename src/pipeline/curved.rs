@@ -1,15 +1,19 @@
 //! Mesh and layers -> Curved: the patches of non-planar skin, for the stages that leave room for them and print them.
 
 use super::lift::Lift;
+use crate::geom::raster::Raster;
+use crate::geom::{Point, edges};
 use crate::mesh::place::Placed;
+use crate::nonplanar;
 use crate::nonplanar::base::Base;
-use crate::nonplanar::find::Surfaces;
-use crate::nonplanar::patch::{Patch, Patches};
+use crate::nonplanar::find::{Surfaces, surfaces};
+use crate::nonplanar::params::NonPlanarParams;
+use crate::nonplanar::{Patch, Patches, Props, Scene};
 use crate::plan::PrintMove;
 use crate::profile::Settings;
 use crate::region::curved::CurvedTops;
 use crate::region::window::Support;
-use crate::report::nonplanar::{self, NonPlanarReport};
+use crate::report::nonplanar::{NonPlanarReport, report};
 use crate::slice::Slicer;
 use crate::units::{Coord, to_mm, to_units};
 
@@ -23,11 +27,11 @@ impl Found {
     /// What is told of them, on a print that is lifted by a raft.
     #[must_use]
     pub fn report(&self, lift: &Lift) -> NonPlanarReport {
-        nonplanar::report(&self.patches, (lift.layers(), to_mm(lift.by())))
+        report(&self.patches, (lift.layers(), to_mm(lift.by())))
     }
 }
 
-/// The patches of a job, if it asks for any.
+/// The patches of a job, if it asks for any. Settings and support are those of the layers.
 #[must_use]
 pub fn find(
     settings: &Settings,
@@ -35,8 +39,45 @@ pub fn find(
     slicer: &Slicer<'_>,
     support: Option<&Support>,
 ) -> Option<Found> {
-    let _ = (settings, placed, slicer, support);
-    None
+    if !settings.nonplanar.enabled {
+        return None;
+    }
+    let params = NonPlanarParams::new(settings);
+    let surfaces = surfaces(&placed.mesh, &placed.adjacency, &params);
+    let lines = |k: usize| support.map_or_else(Vec::new, |support| lines(support, k));
+    let props = support.map(|_| Props {
+        lines: &lines,
+        width: params.line_width,
+        gap: to_units(settings.support.z_distance),
+    });
+    let ceiling = to_units(settings.machine.bed_height) - Lift::new(settings).by();
+    let scene = Scene {
+        slicer,
+        surfaces: &surfaces,
+        bodies: &placed.bodies,
+        support: props,
+        ceiling,
+        params: &params,
+    };
+    let patches = nonplanar::patches(&scene);
+    Some(Found { surfaces, patches })
+}
+
+/// The places that support of layer `k` may take, as lines beside each other.
+fn lines(support: &Support, k: usize) -> Vec<[Point; 2]> {
+    let Some(layer) = support.layers.get(k) else { return Vec::new() };
+    let Support { patterns, .. } = support;
+    let body = patterns.body.iter().zip(&layer.body);
+    let interface = patterns.interface.iter().zip(&layer.interface);
+    let areas = body.chain(interface).flat_map(|(pattern, rows)| {
+        let Raster { frame, pitch } = pattern.raster();
+        rows.iter().flat_map(move |(j, row)| {
+            let at = move |u: Coord| frame.leave(Point { x: u, y: j * pitch });
+            row.iter().map(move |span| [at(span.start), at(span.end)]).collect::<Vec<_>>()
+        })
+    });
+    let outlines = layer.outlines.iter().flat_map(|outline| edges(outline).map(|(a, b)| [a, b]));
+    areas.chain(outlines).collect()
 }
 
 /// Patches, and what is left of the layers below them.

@@ -1,7 +1,6 @@
 //! Patches -> NonPlanarReport: which places of the tops are skin that follows the surface, and why others are not.
 
-use crate::nonplanar::patch::{Patch, Patches};
-use crate::nonplanar::tally::{Areas, Reason};
+use crate::nonplanar::{Areas, Patch, Patches, Reason};
 use crate::units::to_mm;
 use schemars::JsonSchema;
 use serde::Serialize;
