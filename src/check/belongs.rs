@@ -11,7 +11,7 @@ pub(super) const SAME_HEIGHT: f64 = 1e-3;
 
 /// Whether a line is of the part itself: no support, skirt or start line.
 pub(super) fn is_of_part(step: &Step, has_roles: bool) -> bool {
-    let roles = [Role::OuterWall, Role::InnerWall, Role::Skin, Role::Infill];
+    let roles = [Role::OuterWall, Role::InnerWall, Role::Skin, Role::NonPlanar, Role::Infill];
     step.is_line() && (!has_roles || roles.contains(&step.role))
 }
 

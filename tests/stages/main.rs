@@ -13,6 +13,7 @@ mod mend;
 mod motion;
 mod reader;
 mod rounding;
+mod slope;
 mod sound;
 mod stl;
 mod tour;
