@@ -62,9 +62,12 @@ pub(crate) fn height(x: f64) -> f64 {
     LOW + RISE * x
 }
 
+/// What of the base is narrower is not printed, mm.
+const NARROW: f64 = 2.5 * WIDTH;
+
 /// Layers of the base: the middle of the last lies below its top.
 pub(crate) fn base() -> usize {
-    ((height(SIDES[0]) - 2.0 * LAYER) / LAYER + 0.5).floor() as usize
+    ((height(SIDES[0] - NARROW) - 1.5 * LAYER) / LAYER).floor() as usize
 }
 
 /// Lines of a skin along x, and across.
@@ -182,7 +185,7 @@ impl Pen {
         let (z, below) = (LAYER * (k + 1) as f64, if self.form == Form::Contoured { 0.0 } else { 2.0 });
         // Where the middle of the layer meets the surface less the skins.
         let from = ((z - LAYER / 2.0 + below * LAYER - LOW) / RISE).clamp(0.0, SIDES[0]);
-        if SIDES[0] - from < 4.0 * WIDTH {
+        if SIDES[0] - from < NARROW {
             return;
         }
         let bent = |x: f64| (height(x) - z).clamp(-0.14, 0.06);
