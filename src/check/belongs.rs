@@ -73,12 +73,19 @@ mod tests {
         let down = Step { from: step.to, to: step.from, ..step };
         for step in [step, down] {
             let pieces = pieces(&step, &layers);
-            let lengths: Vec<(usize, f32)> = pieces.iter().map(|(k, one)| (*k, one.filament)).collect();
+            let lengths: Vec<(usize, f32)> =
+                pieces.iter().map(|(k, one)| (*k, one.filament)).collect();
             assert_eq!(lengths.len(), 3);
-            for ((k, filament), (layer, length)) in lengths.iter().zip([(1, 1.0), (2, 2.0), (3, 1.0)]) {
+            for ((k, filament), (layer, length)) in
+                lengths.iter().zip([(1, 1.0), (2, 2.0), (3, 1.0)])
+            {
                 assert!(*k == layer && (filament - length).abs() < 1e-4, "{lengths:?}");
             }
-            assert!(pieces.iter().all(|(_, one)| (one.plan_length() - f64::from(one.filament)).abs() < 1e-4));
+            assert!(
+                pieces
+                    .iter()
+                    .all(|(_, one)| (one.plan_length() - f64::from(one.filament)).abs() < 1e-4)
+            );
         }
         let level = Step { to: [4.0, 0.0, 0.3], ..step };
         assert_eq!(pieces(&level, &layers), [(1, level)]);

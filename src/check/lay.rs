@@ -312,8 +312,8 @@ impl<'a> Judge<'a> {
     /// what was laid before.
     fn touch(&mut self, bead: &Bead, step: &Step, index: usize, ways: &mut Ways) {
         let strays = is_stray(step, self.level);
-        let is_off = self.has_strays
-            || bead.heights.iter().any(|z| (z - self.level.z).abs() > SAME_HEIGHT);
+        let is_off =
+            self.has_strays || bead.heights.iter().any(|z| (z - self.level.z).abs() > SAME_HEIGHT);
         let over = OVER * f64::from(step.height);
         let (mut fall, room) = (0.0_f64, room_below(step));
         let (touching, chain) = (&mut self.touching, bead.chain as usize);

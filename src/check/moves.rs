@@ -30,8 +30,8 @@ use super::through::Through;
 use super::warmth::Warmth;
 use super::window::Page;
 use crate::profile::DialectName;
-use crate::reader::{Facts, Role};
 use crate::reader::print::{Note, Order, Step, What};
+use crate::reader::{Facts, Role};
 
 /// Coordinates are rounded to this or less, mm; a smaller value would report files with two decimals.
 pub(super) const ROUNDING: f64 = 0.01;

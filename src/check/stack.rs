@@ -92,7 +92,8 @@ impl<'a> Stack<'a> {
         let laid = self.kept[layer].as_ref().unwrap_or(&nothing);
         let lowest = filled.survey.depths[layer] - MOST_BELOW;
         let ground = Ground::below(laid, &self.kept[..layer], lowest);
-        let mut judge = Judge::new((layer, level, self.part), (laid, moves), &ground, self.highest[layer]);
+        let mut judge =
+            Judge::new((layer, level, self.part), (laid, moves), &ground, self.highest[layer]);
         judge.found.extend(gap((filled.survey, moves), (layer, self.part)));
         judge.layer()
     }

@@ -13,8 +13,8 @@
 
 use super::line::{Line, Point, seen};
 use super::sums;
-use crate::reader::{Patch, Role};
 use crate::reader::print::Step;
+use crate::reader::{Patch, Role};
 
 /// One file's part of a pair.
 #[derive(Debug, Clone, Copy, Default)]

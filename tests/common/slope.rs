@@ -182,7 +182,8 @@ impl Pen {
     }
 
     fn wedge(&mut self, k: usize) {
-        let (z, below) = (LAYER * (k + 1) as f64, if self.form == Form::Contoured { 0.0 } else { 2.0 });
+        let (z, below) =
+            (LAYER * (k + 1) as f64, if self.form == Form::Contoured { 0.0 } else { 2.0 });
         // Where the middle of the layer meets the surface less the skins.
         let from = ((z - LAYER / 2.0 + below * LAYER - LOW) / RISE).clamp(0.0, SIDES[0]);
         if SIDES[0] - from < NARROW {
@@ -225,9 +226,8 @@ impl Pen {
                 is_first = true;
                 continue;
             }
-            let at = ends.map(|[x, y]| {
-                [CORNER[0] + x, CORNER[1] + y, height(x) - skin * LAYER + lift]
-            });
+            let at =
+                ends.map(|[x, y]| [CORNER[0] + x, CORNER[1] + y, height(x) - skin * LAYER + lift]);
             let how = (flow, SLOW * feed);
             if is_first || !joined {
                 self.travel(at[0], over);
