@@ -149,8 +149,10 @@ struct Tag {
 #[derive(Debug, Clone, Default)]
 struct Layer {
     seconds: f64,
-    /// Of its lines.
+    /// Of its lines, but for those of non-planar skin.
     heights: Heights,
+    /// Height of the level lines that it was found by, mm.
+    found: Option<f64>,
 }
 
 /// Sums up.
@@ -208,11 +210,11 @@ impl Meter {
                     Wait::Moves => {}
                 }
             }
-            Event::Layer { marked } => {
+            Event::Layer { marked, z } => {
                 if marked && self.first_marked.is_none() {
                     self.first_marked = Some(self.layers.len());
                 }
-                self.layers.push(Layer::default());
+                self.layers.push(Layer { found: z, ..Layer::default() });
             }
             Event::Change(change) if !self.options.fixed_limits => {
                 let mut limits = self.clock.limits().clone();
@@ -220,7 +222,11 @@ impl Meter {
                 self.clock.set_limits(limits);
             }
             // Setting a heater takes no time; waiting for it is counted above.
-            Event::Change(_) | Event::Heating(_) | Event::Command { .. } | Event::Comment(_) => {}
+            Event::Change(_)
+            | Event::Heating(_)
+            | Event::Command { .. }
+            | Event::Comment(_)
+            | Event::Patch(_) => {}
             // Both are in the reader's summary.
             Event::FirmwareRetraction { .. } | Event::Unknown(_) => {}
         }
@@ -241,7 +247,9 @@ impl Meter {
         if motion.filament > 0.0 && (x != 0.0 || y != 0.0) {
             let diameter = self.options.filament_diameter;
             area = motion.filament * PI * diameter * diameter / 4.0 / length;
-            self.layers[layer].heights.add([motion.from[2], motion.to[2]], length);
+            if motion.role != Role::NonPlanar {
+                self.layers[layer].heights.add([motion.from[2], motion.to[2]], length);
+            }
         }
         let tag = Tag { layer, role: Some(motion.role), area };
         self.clock.push(Move { delta: [x, y, z, motion.filament], feed: motion.feed, tag });
@@ -268,7 +276,7 @@ impl Meter {
         let mut start_seconds: f64 = start.iter().map(|layer| layer.seconds).sum();
         let mut layers: Vec<LayerTime> = Vec::new();
         for layer in marked {
-            match (layer.heights.height(), layers.last_mut()) {
+            match (layer.heights.height(layer.found), layers.last_mut()) {
                 (Some(z_mm), _) => layers.push(LayerTime { z_mm, seconds: layer.seconds }),
                 // Without a line: its moves count with what lies before.
                 (None, Some(last)) => last.seconds += layer.seconds,

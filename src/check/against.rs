@@ -11,13 +11,17 @@
 //! - lines less the cut, grown by what lines may stick out: lines outside the part.
 //!
 //! Only places that are wide enough for a line count. Thick lines, and lines that vary in height,
-//! also cover the layers that they reach down into. Volumes of plastic are summed up on the way.
+//! also cover the layers that they reach down into. Strays, as lines of non-planar skin, cover the
+//! layers at which they lie, piece by piece: they close what is exposed there. Those that lie above the
+//! model's surface, or beside it, lie outside it: the height of a slope belongs to no layer. Volumes of plastic are summed up on the way.
 
+use super::beads::place;
 use super::belongs::{SAME_HEIGHT, is_of_part, is_stray};
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Place, short};
 use super::laid::{Bead, Seen};
 use super::part::Section;
+use super::roof::Roof;
 use super::rows::Lattice;
 use super::runs::united;
 use super::samples::Samples;
@@ -57,6 +61,16 @@ const LEAST_WIDE: f64 = 6.0;
 pub(super) const PIECE: f64 = 0.2;
 const LONG_PIECE: f64 = 0.5;
 
+/// Layers above that strays are looked for in which reach down into one: their lines are hardly
+/// higher than two layers.
+const MOST_DEEP: usize = 3;
+
+/// A stray may lie above the surface by this part of its height, and by rounding, mm; and so long a piece
+/// of it counts, mm.
+const MOST_ABOVE: f64 = 0.5;
+const ROUNDING: f64 = 0.05;
+const LEAST_STRAY: f64 = 1.0;
+
 /// Findings and measures of one layer.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Verdict {
@@ -89,6 +103,8 @@ pub(super) struct Judge<'a> {
     pub(super) terms: &'a Terms,
     /// Whether the file gives roles, so that the part's lines differ from others.
     pub(super) has_roles: bool,
+    /// The model's surface, if lines stray.
+    pub(super) roof: &'a Option<Roof>,
 }
 
 impl Judge<'_> {
@@ -102,10 +118,11 @@ impl Judge<'_> {
         let moved =
             self.terms.moved_at(self.window.facts.layers[index].z - self.survey.heights[index]);
         let most = MOST_OUT + moved;
+        let strays = lattice.draw(self.strays_at(index).map(|step| Capsule::of(step, 1.0)));
         let sparse = lines().filter(|step| step.role == Role::Infill);
         let sparse = lattice.draw(near_outline(cut, lattice, most.max(RIM), sparse).into_iter());
         let (here, own) = (&cut.inside, sparse.or(&solid));
-        let reaching = self.reaching_down(index);
+        let reaching = self.reaching_down(index).or(&strays);
         let (printed, closed) = (own.or(&reaching), solid.or(&reaching));
         let printable = cut.opened(lattice, self.survey.line_width * PRINTABLE / 2.0);
         let along = cut.along(lattice, RIM);
@@ -143,17 +160,60 @@ impl Judge<'_> {
             });
             verdict.findings.extend(patches);
         }
+        verdict.findings.extend(self.above(index));
         let height = self.survey.heights[index];
-        self.amounts((lines(), height), here, [&solid, &closed], &mut verdict.areas);
+        let all = lines().chain(self.strays_at(index));
+        let solid = solid.or(&strays);
+        self.amounts((all, height), here, [&solid, &closed], &mut verdict.areas);
         verdict
     }
 
-    /// The part's lines at the height of a layer: its own, and those of other layers that vary in
-    /// height so much that they lie here.
+    /// The lines at a layer that lie above the model's surface, or beside it: of each line of the file
+    /// the piece that lies here.
+    fn above(&self, index: usize) -> Vec<Finding> {
+        let Some(roof) = self.roof else { return Vec::new() };
+        let mut found = Vec::new();
+        for step in self.strays_at(index) {
+            let (mut length, mut most) = (0.0, 0.0_f64);
+            let allowed = MOST_ABOVE * f64::from(step.height) + ROUNDING;
+            for one in Samples::of(step, LONG_PIECE) {
+                let [x, y] = one.at;
+                let beside = || {
+                    let around = [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]];
+                    around.iter().find_map(|[u, v]| roof.at([x + MOST_OUT * u, y + MOST_OUT * v]))
+                };
+                let out = roof.at(one.at).or_else(beside).map_or(f64::INFINITY, |top| one.z - top);
+                if out > allowed {
+                    length += one.length;
+                    most = most.max(if out.is_finite() { out } else { 0.0 });
+                }
+            }
+            if length >= LEAST_STRAY {
+                let where_to = if most > 0.0 {
+                    format!("{} mm above the part's surface", short(most))
+                } else {
+                    "beside the part".to_owned()
+                };
+                let text = format!("{} mm of {} lie {where_to}", short(length), step.role.name());
+                let area = length * f64::from(step.width);
+                let finding = Finding::of(Code::OutsidePart, area, "mm²", text);
+                found.push(finding.at(place(index, step)));
+            }
+        }
+        found
+    }
+
+    /// The part's lines of a layer, without strays.
     fn lines_at(&self, index: usize) -> impl Iterator<Item = &Step> {
         let layer = &self.window.facts.layers[index];
         let own = self.window.moves(index).iter().filter(|step| !is_stray(step, layer));
-        own.chain(&self.survey.strays[index]).filter(|step| is_of_part(step, self.has_roles))
+        own.filter(|step| is_of_part(step, self.has_roles))
+    }
+
+    /// The pieces of the part's lines of any layer that stray and lie at the height of this one.
+    fn strays_at(&self, index: usize) -> impl Iterator<Item = &Step> {
+        let strays = self.survey.strays[index].iter();
+        strays.filter(|step| is_of_part(step, self.has_roles))
     }
 
     /// What walls and skins of the layers above cover of this one: thick ones, and those that vary
@@ -170,10 +230,13 @@ impl Judge<'_> {
                 let [low, high] = step.heights();
                 step.role != Role::Infill && low - f64::from(step.height) < top && high > bottom
             };
-            let steps = self.window.moves(above).iter();
-            let steps = steps.filter(|step| is_of_part(step, self.has_roles)).filter(reaches);
+            let steps = self.lines_at(above).filter(reaches);
             capsules.extend(steps.map(|step| Capsule::of(step, 1.0)));
         }
+        let next = index + 1..(index + 1 + MOST_DEEP).min(self.survey.strays.len());
+        let strays = next.flat_map(|above| self.strays_at(above));
+        let strays = strays.filter(|step| step.heights()[0] - f64::from(step.height) < top);
+        capsules.extend(strays.map(|step| Capsule::of(step, 1.0)));
         self.lattice.draw(capsules.into_iter())
     }
 

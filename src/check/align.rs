@@ -19,7 +19,7 @@ use super::rows::Lattice;
 use super::survey::Survey;
 use super::terms::Terms;
 use crate::geom::segment;
-use crate::reader::print::Step;
+use crate::reader::print::{Layer, Step};
 use crate::reader::{Facts, Role};
 use nalgebra::Vector2;
 
@@ -73,8 +73,11 @@ pub(super) fn place(
         return None;
     }
     // A layer above a gap is no higher than its lines.
-    let layers = facts.layers.iter().zip(&survey.heights);
-    let heights: Vec<(f64, f64)> = layers.map(|(layer, height)| (layer.z, *height)).collect();
+    let layers = facts.layers.iter().zip(&survey.heights).zip(&survey.is_skin);
+    let of = |((layer, height), is_skin): ((&Layer, &f64), &bool)| {
+        (layer.z, if *is_skin { 0.0 } else { *height })
+    };
+    let heights: Vec<(f64, f64)> = layers.map(of).collect();
     let (made, lift) = lifted((facts, survey), (model, terms), has_roles, &heights);
     let mut part = match made {
         Ok(part) => part,

@@ -72,9 +72,9 @@ pub(super) struct Usual {
     pub(super) thick: f64,
 }
 
-/// The plastic of a mm of a line, mm².
+/// The plastic of a mm of a line as it is from above, mm².
 pub(super) fn thick(terms: &Terms, step: &Step) -> f64 {
-    f64::from(step.filament) * terms.filament_area / step.length()
+    f64::from(step.filament) * terms.filament_area / step.plan_length()
 }
 
 /// The plastic of a line by its size.
@@ -113,11 +113,11 @@ pub(super) fn is_judged(step: &Step) -> bool {
     step.is_line() && step.length() >= LEAST_LENGTH
 }
 
-/// The room that a line's plastic is compared with, mm³: its length times its height and, if the
-/// file gives it, its width.
+/// The room that a line's plastic is compared with, mm³: its length from above times its height and,
+/// if the file gives it, its width.
 fn room(facts: &Facts, step: &Step) -> f64 {
     let width = if facts.has_widths { f64::from(step.width) } else { 1.0 };
-    step.length() * width * f64::from(step.height)
+    step.plan_length() * width * f64::from(step.height)
 }
 
 /// Where a move of a layer, from 0, ends.

@@ -75,14 +75,13 @@ impl<'a> Ground<'a> {
         for ((_, laid), seen) in self.layers.iter().zip(seen) {
             let mut deepest = 0.0_f64;
             laid.near(line, 0.0, seen, &mut |_, bead| {
-                if bead.middle() <= lowest {
+                if bead.highest() <= lowest {
                     return;
                 }
                 let Some([from, to]) = line.way(bead, core * bead.radius) else { return };
                 let part = 0.5 * (from + to);
-                let z = line.heights[0] + part * (line.heights[1] - line.heights[0]);
                 if counts(line.place(part)) {
-                    deepest = deepest.max(bead.middle() - z);
+                    deepest = deepest.max(-line.above(bead, part));
                 }
             });
             if deepest > 0.0 {
@@ -102,6 +101,13 @@ impl<'a> Ground<'a> {
 pub(super) fn below(line: &Bead, most: f64) -> Option<[f64; 2]> {
     let [from, to] = line.heights;
     within(from, to - from, [f64::NEG_INFINITY, most])
+}
+
+/// The part of a line, from 0 to 1, that lies within these distances above another line, mm. Each is as
+/// high as it is there.
+pub(super) fn above(line: &Bead, other: &Bead, within_mm: [f64; 2]) -> Option<[f64; 2]> {
+    let [from, to] = [line.above(other, 0.0), line.above(other, 1.0)];
+    within(from, to - from, within_mm)
 }
 
 /// How high plastic must stand to carry a line at this height of the nozzle, mm. Support stands on the

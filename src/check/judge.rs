@@ -248,7 +248,7 @@ impl<'a> Judge<'a> {
 
     /// Lets go of what the layers from `next` on do not need.
     fn forget(&mut self, next: usize) {
-        let floor = self.survey.floors.get(next).copied().unwrap_or(f64::INFINITY);
+        let floor = self.survey.depths.get(next).copied().unwrap_or(f64::INFINITY);
         self.stack.forget(floor);
     }
 

@@ -85,6 +85,30 @@ impl Bead {
         self.highest() + if self.is_support { SUPPORT_GAP } else { 0.0 }
     }
 
+    /// Height of the nozzle at a part of it, from 0 to 1, mm.
+    pub(super) fn height(&self, part: f64) -> f64 {
+        self.heights[0] + part * (self.heights[1] - self.heights[0])
+    }
+
+    /// Height of the nozzle where it is nearest to a place, mm.
+    pub(super) fn height_at(&self, at: [f64; 2]) -> f64 {
+        if self.is_level() {
+            return self.heights[0];
+        }
+        let along = segment::dot(segment::way(self.from, at), self.along);
+        self.height((along / self.length).clamp(0.0, 1.0))
+    }
+
+    /// Whether all of it lies at one height.
+    pub(super) fn is_level(&self) -> bool {
+        self.heights[0] == self.heights[1]
+    }
+
+    /// How far it lies above another line at a part of it, from 0 to 1, mm.
+    pub(super) fn above(&self, other: &Self, part: f64) -> f64 {
+        self.height(part) - other.height_at(self.place(part))
+    }
+
     /// Height in its middle, mm.
     pub(super) fn middle(&self) -> f64 {
         0.5 * (self.heights[0] + self.heights[1])

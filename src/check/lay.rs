@@ -9,12 +9,17 @@
 //!    lines near it;
 //! 2. they are put together to runs of the chain, which are judged;
 //! 3. chains that touch become patches, which are judged last.
+//!
+//! Lines *stray* that are farther off their layer's height than it is high, as those of skins over a slope
+//! are. In a layer with such, and elsewhere off the height, a line lies on what was laid before it, be it of
+//! its own layer.
 
 use super::anchors::{self, LEAST_RUN, Loose, Piece};
 use super::beads::place;
+use super::belongs::is_stray;
 use super::bodies::Start;
 use super::finding::{Code, Finding, Place, short};
-use super::ground::{Carrier, Ground, PITCH, bed_room, below, lower_side, room_below};
+use super::ground::{Carrier, Ground, PITCH, above, bed_room, below, lower_side, room_below};
 use super::laid::{Bead, Laid, Seen, both};
 use super::moves::ROUNDING;
 use super::part::Part;
@@ -22,7 +27,7 @@ use super::runs::{Runs, Twice, united};
 use super::samples::{Sample, Samples};
 use super::sets::Sets;
 use crate::reader::Role;
-use crate::reader::print::Step;
+use crate::reader::print::{Layer, Step};
 use std::ops::Range;
 
 /// A patch with shorter lines in all is no layer that is missing below, but a blob, mm.
@@ -50,6 +55,11 @@ const CLOSED: f64 = 0.03;
 
 /// Heights of lines that differ by less are the same, mm: positions are rounded to this or less.
 const SAME_HEIGHT: f64 = 0.01;
+
+/// A line that strays lies on another of its layer, or falls into it, from this part of its height on;
+/// and so long a stretch of it may have nothing under it, mm.
+const OVER: f64 = 0.25;
+const LEAST_STRAY: f64 = 2.0;
 
 /// Lines this near to each other touch, mm: a sixth of a line.
 const BESIDE: f64 = 0.07;
@@ -120,6 +130,8 @@ pub(super) struct Judged {
 /// Judges a layer.
 pub(super) struct Judge<'a> {
     layer: usize,
+    level: &'a Layer,
+    has_strays: bool,
     part: Option<&'a Part>,
     laid: &'a Laid,
     moves: &'a [Step],
@@ -150,7 +162,7 @@ struct Ways {
 
 impl<'a> Judge<'a> {
     pub(super) fn new(
-        (layer, part): (usize, Option<&'a Part>),
+        (layer, level, part): (usize, &'a Layer, Option<&'a Part>),
         (laid, moves): (&'a Laid, &'a [Step]),
         ground: &'a Ground<'a>,
         highest: f64,
@@ -159,6 +171,8 @@ impl<'a> Judge<'a> {
         laid.chains.iter().for_each(|_| _ = touching.add());
         Self {
             layer,
+            level,
+            has_strays: moves.iter().any(|step| step.is_line() && is_stray(step, level)),
             part,
             laid,
             moves,
@@ -201,7 +215,7 @@ impl<'a> Judge<'a> {
             let step = &self.moves[bead.step as usize];
             self.find_fall(bead, step, beads.start);
             self.carry(bead, step, ways, &mut carriers);
-            self.touch(bead, index, ways);
+            self.touch(bead, step, index, ways);
             united(&mut ways.carried, 0.0);
             runs.add(index - beads.start, bead.length, &ways.carried);
             united(&mut ways.laid, CLOSED / bead.length);
@@ -212,9 +226,29 @@ impl<'a> Judge<'a> {
             let text = format!("{} mm of a line lie on another of the layer", short(long));
             self.add(Finding::of(Code::PrintedTwice, long, "mm", text), &step);
         }
+        if self.has_strays && beads.clone().any(|bead| self.strays(bead)) {
+            let (longest_end, longest_bridge) = (0.0, 0.0);
+            self.hang(beads.start, &runs);
+            return Line { length, carriers, longest_end, longest_bridge, loose: Vec::new() };
+        }
         let loose = if runs.hanging() > LEAST_RUN { self.loose(beads, &runs) } else { Vec::new() };
         let (longest_end, longest_bridge) = runs.longest();
         Line { length, carriers, longest_end, longest_bridge, loose }
+    }
+
+    /// Whether a bead is of a line that strays.
+    fn strays(&self, bead: usize) -> bool {
+        is_stray(&self.moves[self.laid.beads[bead].step as usize], self.level)
+    }
+
+    /// Reports what of a chain that strays has nothing under it; `first` is its first bead.
+    fn hang(&mut self, first: usize, runs: &Runs) {
+        for run in runs.all.iter().filter(|run| !run.carried && run.length >= LEAST_STRAY) {
+            let step = self.moves[self.laid.beads[first + run.from.0].step as usize];
+            let (length, what) = (short(run.length), step.role.name());
+            let text = format!("{length} mm of {what} have nothing under them");
+            self.add(Finding::of(Code::InTheAir, run.length, "mm", text), &step);
+        }
     }
 
     /// Finds what carries a line.
@@ -234,15 +268,20 @@ impl<'a> Judge<'a> {
         let room = room_below(step);
         let needed = bead.heights[0].min(bead.heights[1]) - room;
         self.ground.near(bead, (needed, SLACK), &mut self.seen_below, &mut |layer, other| {
-            if is_highest && (other.middle() - bead.middle()).abs() < SAME_HEIGHT {
-                ways.laid.extend(bead.way(other, CORE * other.radius));
+            if is_highest {
+                ways.laid.extend(runs_on(bead, other));
             }
             let carrier = Carrier::Chain(layer, other.chain);
             let is_known = carriers.contains(&carrier);
             if is_whole && is_known {
                 return;
             }
-            let low = below(bead, other.top() + room);
+            let gap = other.top() - other.highest() + room;
+            let low = if other.is_level() {
+                below(bead, other.top() + room)
+            } else {
+                above(bead, other, [f64::NEG_INFINITY, gap])
+            };
             let side = bead.way(other, other.radius + bead.radius + SLACK);
             let Some(side) = low.zip(side).and_then(|(a, b)| both(a, b)) else { return };
             is_whole |= side == [0.0, 1.0];
@@ -271,7 +310,12 @@ impl<'a> Judge<'a> {
 
     /// Joins a line's chain to those that it touches, and finds what it lies on of its own layer: of
     /// what was laid before.
-    fn touch(&mut self, bead: &Bead, index: usize, ways: &mut Ways) {
+    fn touch(&mut self, bead: &Bead, step: &Step, index: usize, ways: &mut Ways) {
+        let strays = is_stray(step, self.level);
+        let is_off =
+            self.has_strays || bead.heights.iter().any(|z| (z - self.level.z).abs() > SAME_HEIGHT);
+        let over = OVER * f64::from(step.height);
+        let (mut fall, room) = (0.0_f64, room_below(step));
         let (touching, chain) = (&mut self.touching, bead.chain as usize);
         self.laid.near(bead, BESIDE, &mut self.seen, &mut |k, other| {
             if k >= index {
@@ -285,10 +329,22 @@ impl<'a> Judge<'a> {
                 touching.join(chain, other.chain as usize);
             }
             let is_behind = !is_own || bead.reach - other.reach > BEHIND;
-            if is_behind && (other.middle() - bead.middle()).abs() < SAME_HEIGHT {
-                ways.laid.extend(bead.way(other, CORE * other.radius));
+            if !is_behind {
+                return;
+            }
+            ways.laid.extend(runs_on(bead, other));
+            if is_off {
+                let under = bead.way(other, other.radius + SLACK);
+                let carried = under.zip(above(bead, other, [over, room]));
+                ways.carried.extend(carried.and_then(|(a, b)| both(a, b)));
+            }
+            if strays && let Some([from, to]) = bead.way(other, CORE * other.radius) {
+                fall = fall.max(-bead.above(other, 0.5 * (from + to)));
             }
         });
+        if fall > self.fall.map_or(over, |(most, _)| most.max(over)) {
+            self.fall = Some((fall, *step));
+        }
     }
 
     /// Notes how far a line lies below the nozzle's way there in a layer before; `before` is how many
@@ -297,7 +353,9 @@ impl<'a> Judge<'a> {
         if bead.heights[0].min(bead.heights[1]) >= self.highest - ROUNDING {
             return;
         }
-        let is_free = |at| !self.laid.covers(at, |k, _| k < before);
+        // Skins lie on what their layer has there.
+        let strays = is_stray(step, self.level);
+        let is_free = |at| strays || !self.laid.covers(at, |k, _| k < before);
         let fall = self.ground.depth(bead, CORE, &mut self.seen_below, is_free);
         if fall > self.fall.map_or(ROUNDING, |(most, _)| most) {
             self.fall = Some((fall, *step));
@@ -443,6 +501,16 @@ impl<'a> Judge<'a> {
             bottom: step.heights()[0] - f64::from(step.height),
         })
     }
+}
+
+/// What of a line runs on another, at its height.
+fn runs_on(bead: &Bead, other: &Bead) -> Option<[f64; 2]> {
+    if bead.is_level() && other.is_level() {
+        let is_as_high = (other.middle() - bead.middle()).abs() < SAME_HEIGHT;
+        return if is_as_high { bead.way(other, CORE * other.radius) } else { None };
+    }
+    let [from, to] = bead.way(other, CORE * other.radius)?;
+    (bead.above(other, 0.5 * (from + to)).abs() < SAME_HEIGHT).then_some([from, to])
 }
 
 fn length_of(samples: &[Sample]) -> f64 {

@@ -6,9 +6,9 @@
 //! - filament that is still pulled back when a line begins, or pushed out more than was pulled back;
 //! - lines outside the machine's volume, other moves beyond the nozzle's reach;
 //! - speeds in x and y beyond the machine's, and more plastic per second than the hot end melts.
-//!   Speeds of the filament alone are not judged, and speeds in z only in files of this program's, or
-//!   beyond any machine's: firmwares cap them, and slicers rely on that. A line that rises is as slow as
-//!   the cap on z makes it;
+//!   Speeds of the filament alone are not judged, and speeds in z only of lines that rise, in files of
+//!   this program's, or beyond any machine's: firmwares cap them, and slicers rely on that. A move that
+//!   rises is as slow as the cap on z makes it;
 //! - travels through what stands ([`through`](super::through)), and lines on what the start block primed
 //!   ([`primed`](super::primed)).
 //!
@@ -23,14 +23,15 @@ use super::changes::Changes;
 use super::dialect;
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::heat::Heat;
+use super::patches::Patches;
 use super::primed::Primed;
 use super::terms::{Machine, Terms};
 use super::through::Through;
 use super::warmth::Warmth;
 use super::window::Page;
 use crate::profile::DialectName;
-use crate::reader::Facts;
 use crate::reader::print::{Note, Order, Step, What};
+use crate::reader::{Facts, Role};
 
 /// Coordinates are rounded to this or less, mm; a smaller value would report files with two decimals.
 pub(super) const ROUNDING: f64 = 0.01;
@@ -102,6 +103,7 @@ impl<'a> Moves<'a> {
         walk.changes.finish(found);
         walk.warmth.finish(found);
         walk.primed.finish(found);
+        walk.patches.finish(walk.facts, found);
         let summary = &walk.facts.summary;
         if summary.coarse_arcs > 0 {
             let (arcs, line) = (summary.coarse_arcs, summary.first_coarse_arc);
@@ -208,6 +210,7 @@ struct Walk<'a> {
     air: Air,
     through: Through,
     primed: Primed,
+    patches: Patches,
     /// Where the nozzle is.
     at: [f64; 3],
     /// Layer of the next move; `None` before the first.
@@ -238,6 +241,7 @@ impl<'a> Walk<'a> {
             air: Air::new(terms),
             through: Through::new(terms),
             primed: Primed::default(),
+            patches: Patches::default(),
             at: [0.0; 3],
             layer: None,
             printing: facts.start.end..facts.last_line.max(facts.start.end),
@@ -293,13 +297,16 @@ impl<'a> Walk<'a> {
             None => self.primed.start(step),
             Some(_) => {}
         }
+        if step.role == Role::NonPlanar && step.is_line() {
+            self.patches.line((self.facts, self.terms), step, self.layer);
+        }
         let before = found.len();
         self.retraction(index, step, found);
         self.cold(step, found);
         self.place(step, printing, found);
         self.lift(step, printing, found);
         if step.is_line() || printing {
-            self.speed(step, found);
+            self.speed(step, printing, found);
         }
         self.through.step(step, is_of_layer, found);
         self.at = step.to.map(f64::from);
@@ -410,15 +417,22 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn speed(&self, step: &Step, found: &mut Findings) {
+    fn speed(&self, step: &Step, printing: bool, found: &mut Findings) {
         let Some(machine) = self.machine else { return };
         let length = step.length();
         let rise = (f64::from(step.to[2]) - f64::from(step.from[2])).abs();
-        // Firmwares hold moves in z and of the filament alone to their limits, as slicers count on.
-        if length < LEAST_LENGTH || (rise > 0.0 && !step.is_line()) {
+        // Moves in z alone are judged apart.
+        if length < LEAST_LENGTH || step.plan_length() == 0.0 {
             return;
         }
         let feed = f64::from(step.feed).min(machine.speed[2] * length / rise);
+        let in_z = rise / length * f64::from(step.feed);
+        let is_judged = printing && (step.is_line() || self.terms.is_own);
+        if is_judged && rise >= LEAST_LIFT && in_z > machine.speed[2] * SPEED_SLACK {
+            let (speed, most) = (short(in_z), short(machine.speed[2]));
+            let text = format!("{speed} mm/s in z, where the machine does {most}");
+            found.add(Finding::of(Code::TooFast, in_z, "mm/s", text));
+        }
         for axis in 0..2 {
             let way = f64::from(step.to[axis]) - f64::from(step.from[axis]);
             let speed = way.abs() / length * feed;

@@ -101,7 +101,7 @@ impl Section {
 
 impl Part {
     /// Cuts `mesh`, moved by `offset` mm and lifted by `lift`, in the middle of each layer; `layers`
-    /// are their tops and heights, mm. What lies lower than it was lifted is no part: it was cut off at
+    /// are their tops and heights, mm. A layer of no height is none, and has the cut of the one before. What lies lower than it was lifted is no part: it was cut off at
     /// the bed.
     ///
     /// # Errors
@@ -117,6 +117,10 @@ impl Part {
         for (layer, (top, height)) in layers.iter().enumerate() {
             let here = plane(top - height / 2.0);
             let last = planes.last().copied().unwrap_or(0.0);
+            if layer > 0 && *height <= 0.0 {
+                of_layer.push(planes.len() - 1);
+                continue;
+            }
             if layer > 0 && here <= last {
                 return Err(layer);
             }
@@ -139,6 +143,12 @@ impl Part {
         let cut = cut(&vertices, &triangles, &planes, first);
         let levels = levels(&vertices, &triangles);
         Ok(Self { vertices, triangles, planes, of_layer, cut, levels })
+    }
+
+    /// Its triangles, mm.
+    pub(super) fn triangles(&self) -> impl ExactSizeIterator<Item = [[f64; 3]; 3]> {
+        let place = |corner: u32| self.vertices[corner as usize];
+        self.triangles.iter().map(move |corners| corners.map(place))
     }
 
     /// Moves it, mm.

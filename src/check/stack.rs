@@ -88,10 +88,12 @@ impl<'a> Stack<'a> {
     pub(super) fn judged(&self, filled: &Filled<'_>, layer: usize) -> Judged {
         let moves = filled.window.moves(layer);
         let nothing = Laid::default();
+        let level = &filled.window.facts.layers[layer];
         let laid = self.kept[layer].as_ref().unwrap_or(&nothing);
-        let lowest = filled.survey.floors[layer] - MOST_BELOW;
+        let lowest = filled.survey.depths[layer] - MOST_BELOW;
         let ground = Ground::below(laid, &self.kept[..layer], lowest);
-        let mut judge = Judge::new((layer, self.part), (laid, moves), &ground, self.highest[layer]);
+        let mut judge =
+            Judge::new((layer, level, self.part), (laid, moves), &ground, self.highest[layer]);
         judge.found.extend(gap((filled.survey, moves), (layer, self.part)));
         judge.layer()
     }

@@ -1,7 +1,7 @@
 //! Lines in the file's order -> Standing: how high plastic stands at each place of the bed.
 //!
 //! It is a map of *cells*, squares of [`CELL`] mm; a cell is as high as the highest line whose middle
-//! goes through it. Cells lie in *tiles* of [`SIDE`] by [`SIDE`], which exist where something stands:
+//! goes through it, where it goes through it. Cells lie in *tiles* of [`SIDE`] by [`SIDE`], which exist where something stands:
 //! the map grows with the print, and needs to know nothing of it before.
 //!
 //! Lines are only kept, and are drawn when somebody asks for a place. Flat files hardly ever ask. So
@@ -25,8 +25,8 @@ const MOST_TILES: usize = 16_384;
 /// Places further from 0 are on no machine, mm.
 const FARTHEST: f32 = 10_000.0;
 
-/// A line's ends and its highest place, mm.
-type Kept = [f32; 5];
+/// A line's ends, x, y and z of each, mm.
+type Kept = [[f32; 3]; 2];
 
 /// The cells of a tile.
 type Tile = Box<[f32]>;
@@ -55,7 +55,7 @@ impl Standing {
             return;
         }
         self.highest = self.highest.max(top);
-        self.kept.push([x, y, to_x, to_y, top]);
+        self.kept.push([step.from, step.to]);
         if self.kept.len() >= MOST_KEPT {
             self.draw();
         }
@@ -94,9 +94,9 @@ impl Standing {
         }
     }
 
-    fn draw_line(&mut self, [x, y, to_x, to_y, top]: Kept) {
-        let [x, y, to_x, to_y] = [x, y, to_x, to_y].map(f64::from);
-        let way = [to_x - x, to_y - y];
+    fn draw_line(&mut self, [from, to]: Kept) {
+        let ([x, y, z], [to_x, to_y, to_z]) = (from.map(f64::from), to.map(f64::from));
+        let way = [to_x - x, to_y - y, to_z - z];
         let count = (way[0].abs().max(way[1].abs()) / CELL).ceil().max(1.0) as usize;
         let mut known: Option<([i32; 2], usize)> = None;
         for k in 0..=count {
@@ -112,7 +112,7 @@ impl Standing {
             };
             known = Some((at, tile));
             let cell = &mut self.tiles[tile][index];
-            *cell = cell.max(top);
+            *cell = cell.max((z + part * way[2]) as f32);
         }
     }
 
@@ -163,6 +163,10 @@ mod tests {
         for beside in [[-15.0, 7.0], [-21.5, 5.0], [2.0, 8.0], [900.0, 0.0]] {
             assert_eq!(standing.around(beside, 0.5), 0.0, "{beside:?}");
         }
+        // As high as the line is there.
+        standing.lay(&Step { from: [50.0, 5.0, 1.0], to: [60.0, 5.0, 3.0], ..step });
+        let [low, high] = [51.0, 59.0].map(|x| standing.around([x, 5.2], 0.5));
+        assert!((1.0..1.5).contains(&low) && (2.6..3.0).contains(&high), "{low} {high}");
         standing.lay(&Step { to: [9e8, 0.0, 3.0], ..step });
         assert_eq!(standing.around([1000.0, 5.0], 0.5), 0.0);
     }

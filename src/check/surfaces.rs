@@ -14,6 +14,7 @@ use super::against::{Areas, Judge, Verdict};
 use super::filled::Filled;
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::part::{Part, Section};
+use super::roof::Roof;
 use super::rows::Lattice;
 use super::survey::{Survey, both};
 use super::terms::Terms;
@@ -67,6 +68,8 @@ pub(super) struct Surfaces<'a> {
     terms: &'a Terms,
     has_roles: bool,
     lattice: Lattice,
+    /// The part's surface, if lines stray.
+    roof: Option<Roof>,
     areas: Vec<Areas>,
     unsure: usize,
 }
@@ -80,14 +83,17 @@ impl<'a> Surfaces<'a> {
     ) -> Option<Self> {
         let (low, high) = both(survey.part, part.extent())?;
         let lattice = Lattice::new(PITCH, high[1] - low[1], MOST_ROWS);
-        Some(Self { part, terms, has_roles, lattice, areas: Vec::new(), unsure: 0 })
+        let strays = survey.strays.iter().any(|strays| !strays.is_empty());
+        let roof = if strays { Roof::of(part) } else { None };
+        Some(Self { part, terms, has_roles, lattice, roof, areas: Vec::new(), unsure: 0 })
     }
 
     /// Judges some layers side by side.
     pub(super) fn batch(&self, filled: &Filled<'_>, layers: Range<usize>) -> Vec<Verdict> {
         let &Filled { window, survey } = filled;
         let (lattice, terms, has_roles) = (self.lattice, self.terms, self.has_roles);
-        let judge = Judge { window, survey, lattice, terms, has_roles };
+        let roof = &self.roof;
+        let judge = Judge { window, survey, lattice, terms, has_roles, roof };
         // From the layer below the first to that above the last.
         let cuts: Vec<Section> = (layers.start..layers.end + 2)
             .into_par_iter()
@@ -99,7 +105,7 @@ impl<'a> Surfaces<'a> {
         let judged = layers.clone().into_par_iter().map(|index| {
             let k = index - layers.start;
             let three = &cuts[k..k + 3];
-            if survey.between[index] {
+            if survey.between[index] || survey.is_skin[index] {
                 return Verdict::default();
             }
             let is_sure = three.iter().all(|cut| cut.closes)

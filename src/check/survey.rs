@@ -2,15 +2,17 @@
 //!
 //! Words used here: a layer's *floor* is how low its lines and those of all layers above reach; its
 //! *gap* is how much higher it lies above the layer below than its walls are; a *stray* is a line
-//! so far from its layer's height that it is judged with the layer it lies at; what is *usual* is the
-//! middle one of all by their order (the median).
+//! so far from its layer's height that it is judged with the layers it lies at, as all lines of
+//! non-planar skin are; what is *usual* is the middle one of all by their order (the median).
+//!
+//! A layer of strays alone that does not lie above the one before is a skin that a file calls a layer.
 //!
 //! A few numbers a layer are kept, and no moves, but for strays, which are rare, and a few layers by
 //! which the part is laid where it was printed. What is usual is found by counting in narrow classes, a
 //! part in four thousand wide, instead of keeping all values.
 
 use super::beads::{self, Usual};
-use super::belongs::{SOME_WIDTH, is_of_part, is_stray};
+use super::belongs::{SOME_WIDTH, is_of_part, is_stray, pieces};
 use super::capsule::Capsule;
 use super::part::extent_of;
 use super::terms::Terms;
@@ -32,6 +34,9 @@ const ROUNDED: f64 = 0.02;
 /// The least distance of two cuts, mm.
 const APART: f64 = 1e-3;
 
+/// Share of a layer's lines that are level at its height, unless it is a skin over a slope.
+const LEAST_LEVEL: f64 = 0.25;
+
 /// Lowest and highest x and y, mm.
 pub(super) type Extent = Option<([f64; 2], [f64; 2])>;
 
@@ -47,13 +52,17 @@ pub(super) struct Survey {
     /// See the words of this file, mm.
     pub(super) gaps: Vec<f64>,
     pub(super) floors: Vec<f64>,
+    /// As the floors, but with strays, mm.
+    pub(super) depths: Vec<f64>,
     /// How low lines of the part reach, mm; endless without one.
     pub(super) bottoms: Vec<f64>,
     /// Whether it is support alone, between two layers of the part that lie on one another.
     pub(super) between: Vec<bool>,
     /// What outer walls cover, or else lines of the part.
     pub(super) outlines: Vec<Extent>,
-    /// Lines of other layers that lie at its height.
+    /// Whether it is no layer, but a skin over those before.
+    pub(super) is_skin: Vec<bool>,
+    /// What of lines of any layer that stray lies at its height.
     pub(super) strays: Vec<Vec<Step>>,
     /// What all lines cover; those of the part, those before the layers included.
     pub(super) extent: Extent,
@@ -110,10 +119,12 @@ impl Survey {
                 survey.looked_at.push((layer, page.moves.into_owned()));
             }
         }
-        let mut floor = f64::INFINITY;
-        for own in survey.floors.iter_mut().rev() {
-            floor = floor.min(*own);
-            *own = floor;
+        for lows in [&mut survey.floors, &mut survey.depths] {
+            let mut floor = f64::INFINITY;
+            for own in lows.iter_mut().rev() {
+                floor = floor.min(*own);
+                *own = floor;
+            }
         }
         survey.set_heights(facts);
         survey.line_width = widths.median().unwrap_or(SOME_WIDTH);
@@ -162,7 +173,8 @@ impl Survey {
     fn page(&mut self, facts: &Facts, page: &Page<'_>) {
         let has_roles = facts.has(Role::OuterWall);
         let (mut walls, mut floor, mut bottom) = (0.0_f64, f64::INFINITY, f64::INFINITY);
-        let mut lines = 0.0_f64;
+        let (mut lines, mut depth) = (0.0_f64, f64::INFINITY);
+        let is_skin = page.layer.is_some_and(|layer| is_skin(facts, layer, &page.moves));
         let (mut of_walls, mut of_part) = (None, None);
         for (index, step) in (page.first..).zip(page.moves.iter()) {
             if index < facts.last_line {
@@ -192,8 +204,17 @@ impl Survey {
                 _ => {}
             }
             let low = step.heights()[0] - f64::from(step.height);
-            floor = floor.min(low);
+            depth = depth.min(low);
             self.top = self.top.max(step.heights()[1]);
+            if let Some(layer) = page.layer
+                && (is_skin || is_stray(step, &facts.layers[layer]))
+            {
+                for (at, piece) in pieces(step, &facts.layers) {
+                    self.strays[at].push(piece);
+                }
+                continue;
+            }
+            floor = floor.min(low);
             if is_of_part(step, true) {
                 bottom = bottom.min(low);
             }
@@ -202,22 +223,34 @@ impl Survey {
                 walls = walls.max(f64::from(step.height));
                 of_walls = both(of_walls, Some(covered));
             }
-            if let Some(layer) = page.layer
-                && is_stray(step, &facts.layers[layer])
-            {
-                let [low, high] = step.heights();
-                let at = facts.layers.partition_point(|one| one.z < 0.5 * (low + high));
-                self.strays[at.min(facts.layers.len() - 1)].push(*step);
-            }
         }
         if page.layer.is_some() {
             self.walls.push(walls);
             self.lines.push(lines);
             self.floors.push(floor);
+            self.depths.push(depth);
+            self.is_skin.push(is_skin);
             self.bottoms.push(bottom);
             self.outlines.push(of_walls.or(of_part));
         }
     }
+}
+
+/// Whether a layer that does not lie above the one before has next to no level line at its height.
+fn is_skin(facts: &Facts, layer: usize, moves: &[Step]) -> bool {
+    let own = &facts.layers[layer];
+    let is_above = layer.checked_sub(1).is_none_or(|below| own.z > facts.layers[below].z + APART);
+    if is_above {
+        return false;
+    }
+    let (mut level, mut all) = (0.0, 0.0);
+    for step in moves.iter().filter(|step| step.is_line()) {
+        all += step.length();
+        if step.heights().iter().all(|z| (z - own.z).abs() < APART) {
+            level += step.length();
+        }
+    }
+    level < LEAST_LEVEL * all
 }
 
 fn flat(at: [f32; 3]) -> [f64; 2] {

@@ -134,7 +134,7 @@ impl Terms {
 
     /// Width of a box of a line's height and plastic, mm, whatever the file says.
     pub(super) fn box_width(&self, step: &Step) -> f64 {
-        let room = step.length() * f64::from(step.height);
+        let room = step.plan_length() * f64::from(step.height);
         f64::from(step.filament) * self.filament_area / room
     }
 
@@ -144,6 +144,7 @@ impl Terms {
             Role::OuterWall | Role::InnerWall => self.flow[0],
             Role::Skin | Role::Ironing => self.flow[1],
             Role::Infill => self.flow[2],
+            Role::NonPlanar => self.multiplier,
             _ => 1.0,
         };
         f64::from(step.filament) * self.filament_area / flow

@@ -100,6 +100,9 @@ pub enum Finding {
         role: Role,
         /// In these of its layers.
         layers: Vec<usize>,
+        /// Of these patches of non-planar skin.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        patches: Vec<u32>,
         /// Their length, mm.
         length_mm: f64,
     },
@@ -110,6 +113,9 @@ pub enum Finding {
         /// Their role.
         #[schemars(with = "String")]
         role: Role,
+        /// The patch of non-planar skin that they are of.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        patch: Option<Both<Option<u32>>>,
         /// Length of all lines of the role there, mm.
         length_mm: Both<f64>,
         /// Length that is farther than the tolerance from the other file's lines, mm.
@@ -124,6 +130,9 @@ pub enum Finding {
         /// Their role.
         #[schemars(with = "String")]
         role: Role,
+        /// The patch of non-planar skin that they are of.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        patch: Option<Both<Option<u32>>>,
         /// Their length, mm.
         unlike_mm: Both<f64>,
         /// The two that differ most.

@@ -74,19 +74,25 @@ fn only_in(file: File, pairs: &[PairOfLayers]) -> Option<Finding> {
 
 fn role_only_in(file: File, role: Role, pairs: &[PairOfLayers]) -> Option<Finding> {
     let (mut layers, mut length_mm) = (Vec::new(), 0.0);
+    let mut patches = Vec::new();
     for pair in pairs {
         let Both { a: Some(a), b: Some(b) } = pair.layer else { continue };
-        let Some(found) = pair.roles.iter().find(|one| one.role == role) else { continue };
-        let (number, own) = match file {
-            File::A => (a, found.far_mm.a),
-            File::B => (b, found.far_mm.b),
-        };
-        if own > 0.0 && found.farthest.is_none() {
-            layers.push(number);
-            length_mm += own;
+        for found in pair.roles.iter().filter(|one| one.role == role) {
+            let patch = found.patch.unwrap_or_default();
+            let (number, own, patch) = match file {
+                File::A => (a, found.far_mm.a, patch.a),
+                File::B => (b, found.far_mm.b, patch.b),
+            };
+            if own > 0.0 && found.farthest.is_none() {
+                if layers.last() != Some(&number) {
+                    layers.push(number);
+                }
+                patches.extend(patch);
+                length_mm += own;
+            }
         }
     }
-    (!layers.is_empty()).then_some(Finding::RoleOnlyIn { file, role, layers, length_mm })
+    (!layers.is_empty()).then_some(Finding::RoleOnlyIn { file, role, layers, patches, length_mm })
 }
 
 fn heights(pairs: &[PairOfLayers], raised: f64, tolerance: f64) -> Option<Finding> {
@@ -212,7 +218,7 @@ fn of_orders(orders: &Orders, layer: Option<Both<usize>>, found: &mut Vec<Findin
 }
 
 fn of_role(pair: &RoleOfPair, layer: Both<usize>, found: &mut Vec<Finding>) {
-    let RoleOfPair { role, far_mm, farthest, unlike_mm, .. } = *pair;
+    let RoleOfPair { role, patch, far_mm, farthest, unlike_mm, .. } = *pair;
     if far_mm.a + far_mm.b > 0.0 && farthest.is_none() {
         // Reported for all layers together.
         return;
@@ -220,10 +226,10 @@ fn of_role(pair: &RoleOfPair, layer: Both<usize>, found: &mut Vec<Finding>) {
     let before = found.len();
     if let Some(farthest) = farthest {
         let length_mm = Both { a: pair.length_mm.a, b: pair.length_mm.b };
-        found.push(Finding::Lines { layer, role, length_mm, far_mm, farthest });
+        found.push(Finding::Lines { layer, role, patch, length_mm, far_mm, farthest });
     }
     if let Some(most_unlike) = pair.most_unlike {
-        found.push(Finding::Flow { layer, role, unlike_mm, most_unlike });
+        found.push(Finding::Flow { layer, role, patch, unlike_mm, most_unlike });
     }
     // Lines that are drawn twice lie nowhere else: only the sums show it.
     if found.len() == before {

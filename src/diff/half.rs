@@ -13,8 +13,8 @@
 
 use super::line::{Line, Point, seen};
 use super::sums;
-use crate::reader::Role;
 use crate::reader::print::Step;
+use crate::reader::{Patch, Role};
 
 /// One file's part of a pair.
 #[derive(Debug, Clone, Copy, Default)]
@@ -28,6 +28,8 @@ pub(super) struct Half<'a> {
     pub(super) seconds: f64,
     /// Where places are seen from, mm.
     pub(super) origin: Point,
+    /// The file's patches of non-planar skin.
+    pub(super) patches: &'a [Patch],
     /// The file's line with which the first layer begins, from 1.
     pub(super) first_line: u32,
 }

@@ -11,6 +11,7 @@
 //! 2. In each pair, lines of each role are compared with those of the same role (`apart`): what of
 //!    a line is farther than the tolerance from all lines of the other file is *far*; what lies in
 //!    the same place with another amount of filament per mm is *unlike*.
+//!    Lines of a patch of non-planar skin are compared with those of the same patch (`patches`).
 //! 3. Travels are compared likewise (`travels`), and the places where walls begin (`seams`).
 //! 4. Commands besides moves are compared in their order (`codes`).
 //! 5. Sums of length, filament and time are compared, by layer and for the file (`sums`).
@@ -32,6 +33,7 @@ mod half;
 mod line;
 mod moved;
 mod pair;
+mod patches;
 mod place;
 mod seams;
 mod show;

@@ -16,6 +16,7 @@ use super::apart::{Apart, Unlike, apart};
 use super::codes::{self, Code, Orders};
 use super::half::Half;
 use super::line::{Line, Point};
+use super::patches;
 use super::place::{Place, farthest, in_file};
 use super::seams::{self, SeamsOfPair, WALLS};
 use super::sums::{Both, Extent, Measure, ROLES, Sum};
@@ -59,6 +60,10 @@ pub struct RoleOfPair {
     /// The role; `other` is all that extrudes if one of the files gives no roles.
     #[schemars(with = "String")]
     pub role: Role,
+    /// The patch of non-planar skin that they are of, by its number in either file: patches are
+    /// compared one by one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub patch: Option<Both<Option<u32>>>,
     /// Number of moves.
     pub moves: Both<u64>,
     /// Length, mm.
@@ -114,8 +119,10 @@ pub(super) fn compare(
     let Rules { tolerances, by_role, .. } = rules;
     let measures = halves.map(|half| Measure::new(half.steps, by_role));
     let of_role = |index: usize| role(halves, measures.as_ref(), index, rules);
-    let plastic = (0..ROLES).filter(|&index| is_plastic(Role::ALL[index]));
-    let roles = plastic.map(of_role).filter(|role| role.moves.a + role.moves.b > 0);
+    let is_whole = |role: Role| is_plastic(role) && !(by_role && role == Role::NonPlanar);
+    let plastic = (0..ROLES).filter(|&index| is_whole(Role::ALL[index]));
+    let patches = if by_role { patches::compare(halves, rules) } else { Vec::new() };
+    let roles = plastic.map(of_role).chain(patches).filter(|role| role.moves.a + role.moves.b > 0);
     let roles: Vec<RoleOfPair> = roles.collect();
     let both = halves.a.number.is_some() && halves.b.number.is_some();
     let travels = (both && tolerances.travels).then(|| travels(halves, &roles, slack, rules));
@@ -157,7 +164,7 @@ fn travels(
     travels
 }
 
-fn role(
+pub(super) fn role(
     halves: Both<&Half<'_>>,
     measures: Both<&Measure>,
     index: usize,
@@ -171,6 +178,7 @@ fn role(
     let other = apart(&lines.b, &lines.a, place, share);
     RoleOfPair {
         role,
+        patch: None,
         moves: tally.map(|tally| tally.moves),
         length_mm: Sum::new(tally.a.length, tally.b.length, share, LEAST_LENGTH),
         filament_mm: Sum::new(tally.a.filament, tally.b.filament, share, LEAST_FILAMENT),

@@ -61,7 +61,7 @@ impl Side {
         estimate: Estimate,
     ) -> Result<Self, Error> {
         let unreadable = |error| Cause::Unreadable(error).of(name);
-        let roles = [Role::Other, Role::Travel, Role::Retraction];
+        let roles = [Role::Other, Role::Travel, Role::Retraction, Role::NonPlanar];
         let mut roles = Role::ALL.into_iter().filter(|role| !roles.contains(role));
         let has_roles = roles.any(|role| stream.facts().has(role));
         let Survey { floors, places, heats, first_line } =
@@ -111,14 +111,14 @@ impl Side {
     }
 
     /// What comes before the first layer.
-    pub(super) fn start<'a>(&self, steps: &'a [Step]) -> Half<'a> {
+    pub(super) fn start<'a>(&'a self, steps: &'a [Step]) -> Half<'a> {
         let seconds = self.estimate.start_seconds;
-        Half { steps, number: Some(0), seconds, first_line: self.first_line, ..Half::default() }
+        Half { number: Some(0), seconds, ..self.end(steps) }
     }
 
     /// A layer, counted from 0. The print as a whole has moved by `by`, mm.
     pub(super) fn layer<'a>(
-        &self,
+        &'a self,
         index: Option<usize>,
         by: [f64; 2],
         steps: &'a [Step],
@@ -127,18 +127,18 @@ impl Side {
         let Some((index, floor)) = layer else { return Half::default() };
         let time = self.estimate.layers.get(index);
         Half {
-            steps,
             number: Some(index + 1),
             level: Some([floor.level.z, floor.level.height]),
             seconds: time.map_or(0.0, |time| time.seconds),
             origin: [by[0], by[1], floor.level.z],
-            first_line: self.first_line,
+            ..self.end(steps)
         }
     }
 
     /// What comes after the last line.
-    pub(super) fn end<'a>(&self, steps: &'a [Step]) -> Half<'a> {
-        Half { steps, first_line: self.first_line, ..Half::default() }
+    pub(super) fn end<'a>(&'a self, steps: &'a [Step]) -> Half<'a> {
+        let patches = &self.stream.facts().patches;
+        Half { steps, patches, first_line: self.first_line, ..Half::default() }
     }
 }
 

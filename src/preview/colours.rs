@@ -30,6 +30,7 @@ impl Colour {
             Role::InnerWall => ([199, 109, 184], [102, 10, 87]),
             Role::Skin => ([243, 183, 70], [191, 93, 0]),
             Role::Ironing => ([165, 135, 255], [96, 6, 192]),
+            Role::NonPlanar => ([232, 120, 108], [140, 22, 30]),
             Role::Infill => ([78, 211, 255], [16, 89, 178]),
             Role::Support => ([113, 176, 157], [0, 76, 32]),
             Role::Adhesion => ([144, 40, 248], [18, 0, 126]),
@@ -70,12 +71,12 @@ mod tests {
 
     #[test]
     fn every_role_has_its_own_colour_and_a_shade_of_it() {
-        let drawn = &Role::ALL[..8];
+        let drawn = &Role::ALL[..9];
         let all = |thick| drawn.iter().map(move |role| Colour::of(*role, thick));
         let mut colours: Vec<Colour> = all(false).chain(all(true)).collect();
         colours.sort_unstable();
         colours.dedup();
-        assert_eq!(colours.len(), 16);
+        assert_eq!(colours.len(), 18);
     }
 
     #[test]

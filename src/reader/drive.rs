@@ -113,6 +113,8 @@ impl State {
         let moves = from != to;
         let (feed, filament) = self.scaled(moves, filament);
         let role = match (moves, filament > 0.0) {
+            // The filament alone may move, or the nozzle up: neither lays a line.
+            (true, true) if self.is_in_patch => Role::NonPlanar,
             (true, true) => self.role,
             (true, false) => Role::Travel,
             (false, _) if filament != 0.0 => Role::Retraction,

@@ -9,7 +9,9 @@
 //!   comes before the first mark is no layer: what heights told until then is forgotten;
 //! - a segment without a line is no layer: its moves belong to the one before;
 //! - a layer lies where most of its lines do (see `height`), and is as high as it lies above the
-//!   layer before.
+//!   layer before;
+//! - the lines of a patch of non-planar skin belong to the layer in which they stand, and say nothing of
+//!   its height. A patch without other lines belongs to the layer before.
 //!
 //! A line without a comment is as high as its layer rises, with an exception. Where layers of support lie
 //! between those of the part, and on rafts, a layer's lines are higher or lower than it rises. They
@@ -33,6 +35,9 @@ const MOST_BYTES: usize = 1 << 22;
 
 /// Different commands that are kept: firmwares know some hundreds.
 const MOST_COMMANDS: usize = 10_000;
+
+/// Patches of skin that are kept: a print has tens.
+const MOST_PATCHES: usize = 100_000;
 
 /// Lines that a start block draws to prime the nozzle, at most.
 const MOST_PRIMING: usize = 8;
@@ -60,6 +65,17 @@ const OTHER_ROOM: f64 = 1.6;
 /// How near that has to bring the layer's rise to the usual one, as a share.
 const NEAR_USUAL: f64 = 0.25;
 
+/// A patch of non-planar skin between its marks.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Patch {
+    /// Its number in the file; a patch may come in several pieces.
+    pub number: u32,
+    /// Its part of the file's moves, travels to and on it among them.
+    pub moves: Range<usize>,
+    /// The lines of the file between its marks, from 1; the last is not in it.
+    pub lines: Range<u64>,
+}
+
 /// What is known of a file as a whole.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Facts {
@@ -68,6 +84,8 @@ pub struct Facts {
     /// The layers from the bed up. Each ends where the next begins; the last
     /// holds what comes after the print as well.
     pub layers: Vec<Layer>,
+    /// Patches of non-planar skin, in the file's order; some may be a layer's.
+    pub patches: Vec<Patch>,
     /// Moves in all.
     pub move_count: usize,
     /// Place in the moves after the last line; 0 without one.
@@ -110,6 +128,14 @@ impl Facts {
     #[must_use]
     pub fn has(&self, role: Role) -> bool {
         self.roles[role as usize]
+    }
+
+    /// The patch that a line of the file is in, from 1.
+    #[must_use]
+    pub fn patch_at(&self, line: u64) -> Option<&Patch> {
+        let after = self.patches.partition_point(|patch| patch.lines.start <= line);
+        let patch = self.patches.get(after.checked_sub(1)?)?;
+        patch.lines.contains(&line).then_some(patch)
     }
 
     /// How high layers are by the file's settings or head, mm.
@@ -160,6 +186,10 @@ pub(super) struct Gatherer {
     /// Heights of its lines, and their length and filament, mm.
     heights: Heights,
     drawn: [f64; 2],
+    /// Height of the level lines that the segment was found by, mm.
+    found: Option<f64>,
+    /// Whether a patch of skin goes on.
+    is_in_patch: bool,
     /// Filament for each mm of the lines of each layer, mm.
     flows: Vec<f64>,
     /// How many lines it has, and how many the first layer has.
@@ -179,7 +209,8 @@ impl Gatherer {
     pub(super) fn event(&mut self, line: u64, event: &Event) {
         match event {
             Event::Move(motion) => self.motion(line, motion),
-            Event::Layer { marked } => self.begin(*marked),
+            Event::Layer { marked, z } => self.begin(*marked, *z),
+            Event::Patch(number) => self.patch(line, *number),
             Event::Command { letter, number, .. } => {
                 let commands = &mut self.facts.commands;
                 if commands.len() < MOST_COMMANDS {
@@ -201,7 +232,7 @@ impl Gatherer {
         let step = Step::of(line, motion);
         if step.is_line() {
             facts.last_line = facts.move_count;
-            if self.segment.is_some() {
+            if self.segment.is_some() && motion.role != Role::NonPlanar {
                 self.lines += 1;
                 self.heights.add([step.from[2], step.to[2]].map(f64::from), step.length());
                 self.drawn[0] += step.length();
@@ -210,8 +241,28 @@ impl Gatherer {
         }
     }
 
-    /// A layer begins.
-    fn begin(&mut self, marked: bool) {
+    /// A patch of skin begins or ends.
+    fn patch(&mut self, line: u64, number: Option<u32>) {
+        self.end_patch(line);
+        let facts = &mut self.facts;
+        if let Some(number) = number.filter(|_| facts.patches.len() < MOST_PATCHES) {
+            let moves = facts.move_count..facts.move_count;
+            facts.patches.push(Patch { number, moves, lines: line..u64::MAX });
+            self.is_in_patch = true;
+        }
+    }
+
+    /// The patch that goes on ends at this line of the file.
+    fn end_patch(&mut self, line: u64) {
+        if std::mem::take(&mut self.is_in_patch)
+            && let Some(last) = self.facts.patches.last_mut()
+        {
+            (last.moves.end, last.lines.end) = (self.facts.move_count, line);
+        }
+    }
+
+    /// A layer begins, by level lines at height `z` if it was found by such, mm.
+    fn begin(&mut self, marked: bool, z: Option<f64>) {
         let facts = &mut self.facts;
         if facts.marked && !marked {
             return;
@@ -228,6 +279,7 @@ impl Gatherer {
         let facts = &mut self.facts;
         facts.marked |= marked;
         facts.begun += 1;
+        self.found = z;
         self.segment = Some(facts.move_count);
     }
 
@@ -237,7 +289,7 @@ impl Gatherer {
         let facts = &mut self.facts;
         let (end, last) = (facts.move_count, facts.layers.last_mut());
         let [length, filament] = std::mem::take(&mut self.drawn);
-        let Some(z) = std::mem::take(&mut self.heights).height() else {
+        let Some(z) = std::mem::take(&mut self.heights).height(self.found) else {
             if let Some(last) = last {
                 last.moves.end = end;
             }
@@ -292,6 +344,7 @@ impl Gatherer {
     /// The facts, at the file's end. `diameter`, mm, is that of the filament if the file gives none.
     pub(super) fn facts(mut self, summary: Summary, diameter: f64) -> Facts {
         self.end();
+        self.end_patch(u64::MAX);
         if self.has_priming() {
             self.facts.layers.remove(0);
             self.flows.remove(0);

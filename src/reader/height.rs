@@ -2,8 +2,9 @@
 //!
 //! A layer's lines need not all lie at one height: a skin may follow a surface, a seam may begin
 //! with a ramp. The layer's own height is that at which the greatest length of level lines lies,
-//! as long as this is a fair share of all its lines: walls, as a rule. If nothing is level, it is
-//! the height that half of the lines' length lies below (the weighted median).
+//! as long as this is a fair share of all its lines: walls, as a rule. Else it is the height of the
+//! level lines that it was found by, and without such the height that half of the lines' length lies
+//! below (the weighted median).
 
 use std::collections::BTreeMap;
 
@@ -59,10 +60,13 @@ impl Heights {
         (most.level > 0.0).then_some((most.z, most.level / all))
     }
 
-    /// The layer's height; `None` without a line.
-    pub(crate) fn height(&self) -> Option<f64> {
+    /// The layer's height; `None` without a line. `found` is that of the lines it was found by.
+    pub(crate) fn height(&self, found: Option<f64>) -> Option<f64> {
         if let Some((z, _)) = self.level().filter(|(_, share)| *share >= LEAST_SHARE) {
             return Some(z);
+        }
+        if found.is_some() && self.last.sum() > 0.0 {
+            return found;
         }
         let half = 0.5 * self.all().map(Lengths::sum).sum::<f64>();
         let mut below = 0.0;
@@ -98,19 +102,24 @@ mod tests {
     #[test]
     fn walls_tell_the_height_and_bent_lines_only_without_them() {
         let mut heights = Heights::default();
-        assert_eq!(heights.height(), None);
+        assert_eq!(heights.height(None), None);
         heights.add([0.0, 0.0], 1.0);
-        assert_eq!(heights.height(), Some(0.0));
+        assert_eq!(heights.height(None), Some(0.0));
         let mut heights = Heights::default();
         for k in 0..20 {
             let z = 0.4 + 0.01 * f64::from(k % 7);
             heights.add([z, z + 0.01], 1.0);
         }
-        assert!((heights.height().unwrap() - 0.435).abs() < 1e-9, "{heights:?}");
+        assert!((heights.height(None).unwrap() - 0.435).abs() < 1e-9, "{heights:?}");
         heights.add([0.4, 0.4], 4.0);
         heights.add([0.7, 0.7], 3.0);
-        assert!((heights.height().unwrap() - 0.435).abs() < 1e-9, "{heights:?}");
+        assert!((heights.height(None).unwrap() - 0.435).abs() < 1e-9, "{heights:?}");
         heights.add([0.4, 0.4], 5.0);
-        assert_eq!(heights.height(), Some(0.4));
+        assert_eq!(heights.height(None), Some(0.4));
+        for k in 0..20 {
+            heights.add([0.4, 2.4], f64::from(k));
+        }
+        assert_eq!(heights.height(Some(0.7)), Some(0.7));
+        assert_eq!(heights.height(None), Some(1.4));
     }
 }

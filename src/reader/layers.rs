@@ -11,13 +11,19 @@
 //! but most of it is never at one new height. A run that rises round after round is a spiral, and each
 //! of its rounds is a layer (see `spiral`).
 //!
+//! Skins that were laid over a slope after the body under them, without marks, go far below their
+//! layer's height and far above it, and lines across the slope are level, each at a height of its own.
+//! Once a line lies lower than the layer before, only a run with two level lines at one height that turn
+//! begins a layer, and it need only lie above the last one that began: walls do, lines across a slope do
+//! not. Between marks of a patch no layer begins.
+//!
 //! What a run's height is shows only at its end, so that a run which leaves the range is held back
 //! until then. Runs within the range, which all are in flat layers but the first of each, are
 //! handed on at once. After the first mark in the file everything is.
 
 use super::height::Heights;
 use super::spiral::Spiral;
-use super::{Event, Motion};
+use super::{Event, Motion, Role};
 use nalgebra::Vector3;
 
 /// Heights that differ by less are the same, mm. Positions in files have at least three decimals;
@@ -27,6 +33,9 @@ const SAME_HEIGHT: f64 = 1e-4;
 /// Share of a run that must be level at one height. A run across a bent skin has a tenth of its
 /// pieces at its turning points, a seam that begins with a ramp is level for nine tenths.
 const LEAST_LEVEL: f64 = 0.5;
+
+/// Square of the sine from which on level lines turn, 10 degrees.
+const TURN: f64 = 0.03;
 
 /// Events that are held back, at most; by then a run is judged by what it was so far. It bounds
 /// the memory; walls have fewer pieces than this before most of them is level.
@@ -48,6 +57,10 @@ pub(super) struct Layers {
     layer: Option<Range>,
     /// Height of the lowest layer so far, mm.
     lowest: f64,
+    /// Heights of the last two layers that began with level lines, mm: the last, and the one before.
+    levels: [f64; 2],
+    /// Whether the layer has a skin over a slope.
+    has_skin: bool,
     /// The run that goes on.
     run: Option<Run>,
     /// Its events from where it left the layer's range.
@@ -59,6 +72,10 @@ pub(super) struct Layers {
 struct Run {
     range: Range,
     heights: Heights,
+    /// Its last line if that was level: its height and its way, mm.
+    level: Option<[f64; 3]>,
+    /// Whether two level lines at one height turn.
+    turns: bool,
     spiral: Spiral,
     /// Whether it is known to be a spiral.
     is_spiral: bool,
@@ -82,6 +99,7 @@ impl Layers {
                 self.end_run(sink);
                 self.marked = true;
             }
+            Event::Move(motion) if motion.role == Role::NonPlanar => self.end_run(sink),
             Event::Move(motion) if is_line(motion) => self.line(line, motion, sink),
             Event::Move(_) => self.end_run(sink),
             _ => {}
@@ -104,10 +122,14 @@ impl Layers {
     fn line(&mut self, number: u64, motion: &Motion, sink: Sink<'_>) {
         let ends = [motion.from[2], motion.to[2]];
         let own = Range { low: ends[0].min(ends[1]), high: ends[0].max(ends[1]) };
+        let is_deep = self.layer.is_some() && own.low < self.levels[1] - SAME_HEIGHT;
+        self.has_skin |= is_deep && !self.is_on_the_bed(own.low);
         let leaves = self.leaves(own);
         let run = self.run.get_or_insert_with(|| Run {
             range: own,
             heights: Heights::default(),
+            level: None,
+            turns: false,
             spiral: Spiral::default(),
             is_spiral: false,
             second: None,
@@ -119,7 +141,7 @@ impl Layers {
         if run.is_spiral {
             self.layer = Some(run.range);
             if begins {
-                sink(number, Event::Layer { marked: false });
+                sink(number, Event::Layer { marked: false, z: None });
             }
             return;
         }
@@ -128,6 +150,9 @@ impl Layers {
         }
         let way = Vector3::from(motion.to) - Vector3::from(motion.from);
         run.heights.add(ends, way.norm());
+        if self.has_skin {
+            run.turn(motion);
+        }
         if run.is_open && run.second.is_some() && run.spiral.is_one() {
             self.begin_spiral(sink);
         }
@@ -138,10 +163,11 @@ impl Layers {
         let Some(run) = &mut self.run else { return };
         (run.is_open, run.is_spiral) = (false, true);
         self.lowest = self.layer.map_or(run.range.low, |_| self.lowest.min(run.range.low));
-        self.layer = Some(run.range);
+        (self.layer, self.has_skin) = (Some(run.range), false);
+        self.levels = [run.range.low; 2];
         for (k, (line, event)) in self.held.drain(..).enumerate() {
             if k == 0 || run.second == Some(k) {
-                sink(line, Event::Layer { marked: false });
+                sink(line, Event::Layer { marked: false, z: None });
             }
             sink(line, event);
         }
@@ -150,6 +176,9 @@ impl Layers {
     /// Whether a line at these heights may belong to a new layer.
     fn leaves(&self, line: Range) -> bool {
         let Some(layer) = self.layer else { return true };
+        if self.has_skin && line.high > self.levels[0] + SAME_HEIGHT {
+            return true;
+        }
         line.high > layer.high + SAME_HEIGHT || self.is_on_the_bed(line.low)
     }
 
@@ -168,11 +197,13 @@ impl Layers {
     fn judge(&mut self, sink: Sink<'_>) {
         let Some(run) = &mut self.run else { return };
         let (range, level) = (run.range, run.heights.level().filter(|_| run.is_open));
+        let turns = run.turns;
         run.is_open = false;
         let begins = level.filter(|&(z, share)| match self.layer {
             Some(layer) => {
-                let is_new = z > layer.high + SAME_HEIGHT || self.is_on_the_bed(z);
-                is_new && share > LEAST_LEVEL
+                let top = if self.has_skin { self.levels[0] } else { layer.high };
+                let is_new = z > top + SAME_HEIGHT || self.is_on_the_bed(z);
+                is_new && share > LEAST_LEVEL && (turns || !self.has_skin)
             }
             None => true,
         });
@@ -181,13 +212,36 @@ impl Layers {
             // A spiral that begins at once is no range within which other runs lie.
             let is_level = share > LEAST_LEVEL;
             self.layer = Some(if is_level { range } else { Range { low: z, high: z } });
+            self.levels = [z, self.levels[0].min(z)];
+            self.has_skin = false;
             if let Some(&(line, _)) = self.held.first() {
-                sink(line, Event::Layer { marked: false });
+                let z = is_level.then_some(z);
+                sink(line, Event::Layer { marked: false, z });
             }
         } else if let Some(layer) = &mut self.layer {
             *layer = layer.and(range);
         }
         self.held.drain(..).for_each(|(line, event)| sink(line, event));
+    }
+}
+
+impl Run {
+    /// Notes whether a line and the one before it are level, at one height, and turn.
+    fn turn(&mut self, motion: &Motion) {
+        let [from, to] = [motion.from, motion.to];
+        let before = self.level.take();
+        if from[2] != to[2] {
+            return;
+        }
+        let [x, y] = [to[0] - from[0], to[1] - from[1]];
+        if let Some([z, u, v]) = before
+            && (z - to[2]).abs() < SAME_HEIGHT
+        {
+            let (aside, along) = (x * v - y * u, x * u + y * v);
+            let square = (x * x + y * y) * (u * u + v * v);
+            self.turns |= along < 0.0 || aside * aside > TURN * square;
+        }
+        self.level = Some([to[2], x, y]);
     }
 }
 

@@ -14,6 +14,9 @@ pub(super) enum Mark {
     Width(f64),
     /// `;HEIGHT:`, mm.
     Height(f64),
+    /// `;NONPLANAR_START 3`: what follows is this patch of skin; without a number after
+    /// `;NONPLANAR_END`.
+    Patch(Option<u32>),
     /// `;FLAVOR:UltiGCode`: E is plastic in mm³, from here on.
     Volumes,
 }
@@ -30,10 +33,17 @@ pub(super) fn mark(comment: &[u8]) -> Option<Mark> {
         b'L' if comment == b"LAYER_CHANGE" => Some(Mark::Layer),
         b'L' => after(b"LAYER:").map(|_| Mark::Layer),
         b'C' => (comment == b"CHANGE_LAYER").then_some(Mark::Layer),
+        b'N' if comment == b"NONPLANAR_END" => Some(Mark::Patch(None)),
+        b'N' => after(b"NONPLANAR_START").map(|number| Mark::Patch(Some(counted(number)))),
         b'W' => length(after(b"WIDTH:")?).map(Mark::Width),
         b'H' => length(after(b"HEIGHT:")?).map(Mark::Height),
         _ => None,
     }
+}
+
+/// A number without a fraction; 0 where none is told.
+fn counted(text: &[u8]) -> u32 {
+    words::number(text).0.map_or(0, |number| number as u32)
 }
 
 fn length(text: &[u8]) -> Option<f64> {
@@ -52,6 +62,9 @@ mod tests {
         assert_eq!(mark(b"LAYER_COUNT:80"), None);
         assert_eq!(mark(b"HEIGHT:0.2"), Some(Mark::Height(0.2)));
         assert_eq!(mark(b"WIDTH:x"), None);
+        assert_eq!(mark(b"NONPLANAR_START 3"), Some(Mark::Patch(Some(3))));
+        assert_eq!(mark(b"NONPLANAR_END"), Some(Mark::Patch(None)));
+        assert_eq!(mark(b"NONPLANAR"), None);
         assert_eq!(mark(b"This is LAYER:1"), None);
         assert_eq!(mark(b""), None);
     }

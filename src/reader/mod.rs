@@ -31,7 +31,7 @@ mod words;
 
 pub use change::Change;
 pub use error::{Cause, Error};
-pub use facts::Facts;
+pub use facts::{Facts, Patch};
 pub use firmware::{Firmware, OwnFilament};
 pub use heat::{Heater, Heating};
 pub(crate) use height::Heights;
@@ -58,7 +58,11 @@ pub enum Event {
     Layer {
         /// Whether a comment marks it; otherwise it is found from the heights of lines.
         marked: bool,
+        /// Height of the level lines that it was found by, mm.
+        z: Option<f64>,
     },
+    /// A patch of non-planar skin begins, with its number, or one ends.
+    Patch(Option<u32>),
     /// The machine's limits change.
     Change(Change),
     /// A heater is set, or waited for.

@@ -14,6 +14,8 @@ pub enum Role {
     Skin,
     /// The nozzle goes over skin once more, with little plastic.
     Ironing,
+    /// Skin that follows a slope, between the marks of its patch.
+    NonPlanar,
     /// Sparse infill.
     Infill,
     /// Support.
@@ -67,11 +69,12 @@ const NAMES: &[(&str, Role)] = &[
 
 impl Role {
     /// All of them, in the order of reports.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::OuterWall,
         Self::InnerWall,
         Self::Skin,
         Self::Ironing,
+        Self::NonPlanar,
         Self::Infill,
         Self::Support,
         Self::Adhesion,
@@ -88,6 +91,7 @@ impl Role {
             Self::InnerWall => "inner wall",
             Self::Skin => "skin",
             Self::Ironing => "ironing",
+            Self::NonPlanar => "non-planar skin",
             Self::Infill => "infill",
             Self::Support => "support",
             Self::Adhesion => "skirt and brim",

@@ -67,6 +67,8 @@ pub(super) struct State {
     pub(super) retraction: Retraction,
     pub(super) pieces: Pieces,
     pub(super) role: Role,
+    /// Whether lines are those of a patch of skin, whatever their role is called.
+    pub(super) is_in_patch: bool,
     pub(super) width: Option<f64>,
     pub(super) height: Option<f64>,
     pub(super) summary: Summary,
@@ -96,6 +98,7 @@ impl State {
             retraction: Retraction::default(),
             pieces: Pieces::default(),
             role: Role::Other,
+            is_in_patch: false,
             width: None,
             height: None,
             summary: Summary { firmware: reading.firmware, ..Summary::default() },
@@ -115,7 +118,11 @@ impl State {
             Some(Mark::Role(role)) => self.role = role,
             Some(Mark::Width(width)) => self.width = Some(width),
             Some(Mark::Height(height)) => self.height = Some(height),
-            Some(Mark::Layer) => sink(Event::Layer { marked: true }),
+            Some(Mark::Layer) => sink(Event::Layer { marked: true, z: None }),
+            Some(Mark::Patch(number)) => {
+                self.is_in_patch = number.is_some();
+                sink(Event::Patch(number));
+            }
             Some(Mark::Volumes) => self.ultimaker(),
             None => sink(Event::Comment(comment.to_vec())),
         }

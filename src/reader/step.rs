@@ -36,7 +36,8 @@ pub struct Step {
     pub width: f32,
     /// Height of the line, mm: by the file's comments, else that of its layer; 0 for what is no line.
     pub height: f32,
-    /// What it prints, if anything.
+    /// What it prints, if anything. All lines of a patch are non-planar skin; which patch it is tells
+    /// [`Facts::patch_at`](super::Facts::patch_at).
     pub role: Role,
     /// Line of the file, from 1.
     pub line: u32,
@@ -112,6 +113,20 @@ impl Step {
         (way(0) * way(0) + way(1) * way(1) + way(2) * way(2)).sqrt()
     }
 
+    /// Way of the nozzle from above, mm.
+    #[must_use]
+    pub fn plan_length(&self) -> f64 {
+        let way = |axis: usize| f64::from(self.to[axis]) - f64::from(self.from[axis]);
+        (way(0) * way(0) + way(1) * way(1)).sqrt()
+    }
+
+    /// Room of the line by its width and height, mm³. It is as long as it is from above: lines are
+    /// spaced, and heights told, from above, so that a slope makes a bead thinner and as much longer.
+    #[must_use]
+    pub fn room(&self) -> f64 {
+        self.plan_length() * f64::from(self.width) * f64::from(self.height)
+    }
+
     /// Lowest and highest height of the nozzle, mm.
     #[must_use]
     pub fn heights(&self) -> [f64; 2] {
@@ -155,7 +170,7 @@ impl Step {
         if self.width == 0.0 {
             // A bead with round ends is as much wider than a box of the same height and volume.
             let height = f64::from(self.height);
-            let boxed = f64::from(self.filament) * area / self.length() / height;
+            let boxed = f64::from(self.filament) * area / self.plan_length() / height;
             self.width = (boxed + (1.0 - FRAC_PI_4) * height) as f32;
         }
     }

@@ -135,7 +135,7 @@ fn more_filament_on_a_line_is_found_although_it_lies_where_it_did() {
     let mut other = made.clone();
     other[1][5].3 *= 2.0;
     let found = compared(&gcode(&made), &gcode(&other));
-    let Finding::Flow { layer, role, unlike_mm, most_unlike } = &found.findings[0] else {
+    let Finding::Flow { layer, role, unlike_mm, most_unlike, .. } = &found.findings[0] else {
         panic!("{:?}", found.findings);
     };
     assert_eq!((layer.a, *role), (2, Role::Infill));

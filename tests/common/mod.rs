@@ -9,6 +9,7 @@ pub(crate) mod damage;
 pub(crate) mod gcode;
 pub(crate) mod raster;
 pub(crate) mod section;
+pub(crate) mod slope;
 pub(crate) mod solid;
 pub(crate) mod stack;
 

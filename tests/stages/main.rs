@@ -14,6 +14,7 @@ mod motion;
 mod reader;
 mod rounding;
 mod slopes;
+mod slope;
 mod sound;
 mod stl;
 mod tour;

@@ -99,7 +99,7 @@ fn layers_come_from_marks_or_from_heights() {
     let layers = |text: &str| {
         let (events, _) = read(text.as_bytes());
         let marked = |event: &Event| match event {
-            Event::Layer { marked } => Some(*marked),
+            Event::Layer { marked, .. } => Some(*marked),
             _ => None,
         };
         events.iter().filter_map(marked).collect::<Vec<_>>()

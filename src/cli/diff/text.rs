@@ -20,6 +20,9 @@ use slicer::warning::plural;
 /// Differences that are listed without `--all`.
 const MOST_LISTED: usize = 10;
 
+/// Width of the names of roles in the table, at least.
+const LEAST_NAME: usize = 11;
+
 /// Settings that are named where they do not decide.
 const MOST_NAMED: usize = 5;
 
@@ -65,8 +68,9 @@ fn verdict(found: &Difference) -> String {
 
 /// Sums of both files, side by side. `!` marks what is beyond the tolerances.
 fn table(found: &Difference, limits: &str) -> String {
+    let wide = found.roles.iter().map(|row| row.role.name().len() + 1).fold(LEAST_NAME, usize::max);
     let mut text = format!(
-        "{:<11}{:^30}  {:^30}  {:^28}\n{:11}{}  {}  {}\n",
+        "{:<wide$}{:^30}  {:^30}  {:^28}\n{:wide$}{}  {}  {}\n",
         "",
         "length, mm",
         "filament, mm",
@@ -78,7 +82,7 @@ fn table(found: &Difference, limits: &str) -> String {
     );
     for row in &found.roles {
         text.push_str(&format!(
-            "{:<11}{}  {}  {}\n",
+            "{:<wide$}{}  {}  {}\n",
             row.role.name(),
             cells(&row.length_mm, 10, row.decides),
             cells(&row.filament_mm, 10, row.decides),
@@ -86,7 +90,7 @@ fn table(found: &Difference, limits: &str) -> String {
         ));
     }
     text.push_str(&format!(
-        "{:<11}{:30}  {}  {}\n",
+        "{:<wide$}{:30}  {}  {}\n",
         "all",
         "",
         cells(&found.filament_mm, 10, true),
@@ -161,9 +165,15 @@ pub(super) fn line(finding: &Finding, tolerance: f64) -> String {
         Finding::LayersOnlyIn { file, layers, length_mm } => {
             format!("only in {}: {} ({length_mm:.1} mm of lines)", name(*file), runs(layers))
         }
-        Finding::RoleOnlyIn { file, role, layers, length_mm } => {
+        Finding::RoleOnlyIn { file, role, layers, patches, length_mm } => {
             let (role, file) = (role.name(), name(*file));
-            format!("{role} only in {file}: {length_mm:.1} mm in {}", runs(layers))
+            let numbers: Vec<String> = patches.iter().map(u32::to_string).collect();
+            let patches = match numbers.len() {
+                0 => String::new(),
+                1 => format!(" (patch {})", numbers[0]),
+                _ => format!(" (patches {})", numbers.join(", ")),
+            };
+            format!("{role}{patches} only in {file}: {length_mm:.1} mm in {}", runs(layers))
         }
         Finding::Heights { count, layer, z_mm } => {
             let Both { a, b } = z_mm;
@@ -176,12 +186,12 @@ pub(super) fn line(finding: &Finding, tolerance: f64) -> String {
         Finding::Commands { layer, difference } => {
             format!("{}: commands: {}", place(*layer), codes(difference))
         }
-        Finding::Lines { layer, role, length_mm, far_mm, farthest } => {
-            let place = lines(*role, *length_mm, *far_mm, farthest, tolerance);
+        Finding::Lines { layer, role, patch, length_mm, far_mm, farthest } => {
+            let place = lines(&of(*role, *patch), *length_mm, *far_mm, farthest, tolerance);
             format!("{}: {place}", label(*layer))
         }
-        Finding::Flow { layer, role, unlike_mm, most_unlike } => {
-            format!("{}: {}", label(*layer), flow(*role, *unlike_mm, most_unlike))
+        Finding::Flow { layer, role, patch, unlike_mm, most_unlike } => {
+            format!("{}: {}", label(*layer), flow(&of(*role, *patch), *unlike_mm, most_unlike))
         }
         Finding::Sum { layer, role, quantity, sum } => {
             let layer = layer.map_or_else(|| "whole file".to_owned(), label);
@@ -277,16 +287,27 @@ pub(super) fn short(mm: f64) -> String {
     format!("{}", (mm * 1e4).round() / 1e4)
 }
 
+/// A role, and the patch that it is of.
+fn of(role: Role, patch: Option<Both<Option<u32>>>) -> String {
+    let patch = match patch {
+        Some(Both { a: Some(a), b: Some(b) }) if a != b => format!(" (patch {a} in A, {b} in B)"),
+        Some(Both { a: Some(number), .. } | Both { b: Some(number), .. }) => {
+            format!(" (patch {number})")
+        }
+        _ => String::new(),
+    };
+    format!("{}{patch}", role.name())
+}
+
 fn lines(
-    role: Role,
+    role: &str,
     length: Both<f64>,
     far: Both<f64>,
     farthest: &Place,
     tolerance: f64,
 ) -> String {
     format!(
-        "{} {}; {:.1} of {:.1} mm in A and {:.1} of {:.1} in B farther than {tolerance} mm",
-        role.name(),
+        "{role} {}; {:.1} of {:.1} mm in A and {:.1} of {:.1} in B farther than {tolerance} mm",
         apart(farthest),
         far.a,
         length.a,
@@ -295,14 +316,13 @@ fn lines(
     )
 }
 
-fn flow(role: Role, unlike: Both<f64>, flow: &Flow) -> String {
+fn flow(role: &str, unlike: Both<f64>, flow: &Flow) -> String {
     let Flow { filament_per_mm, section_mm, at_mm: [x, y, z], line } = flow;
     let more = percent(filament_per_mm.a, filament_per_mm.b);
     let section = |[width, height]: [f64; 2]| format!("{width:.2} x {height:.2}");
     format!(
-        "{} with other filament on {:.1} mm, most {more} at x {x:.3} y {y:.3} z {z:.3} \
+        "{role} with other filament on {:.1} mm, most {more} at x {x:.3} y {y:.3} z {z:.3} \
          (lines {}; {} and {} mm)",
-        role.name(),
         unlike.a.max(unlike.b),
         numbers(*line),
         section(section_mm.a),
