@@ -23,6 +23,7 @@ Examples:
   slicer profile show generic-marlin > mine.toml
   slicer estimate part.gcode -p ./mine.toml
   slicer check part.gcode --against part.stl
+  slicer roughness part.gcode --against part.stl
   slicer preview part.gcode --layer 40 -o part.png
   slicer mesh part.stl -o mended.stl
 
@@ -95,6 +96,8 @@ pub(crate) enum Command {
     Compare(Box<CompareArgs>),
     /// Tell whether two G-code files print the same, and where not
     Diff(super::diff::DiffArgs),
+    /// Measure how rough the tops are that a G-code file prints, against the model
+    Roughness(Box<super::roughness::RoughnessArgs>),
     /// Print completions for a shell
     Completions {
         /// The shell
