@@ -96,7 +96,7 @@ pub(crate) enum Command {
     Compare(Box<CompareArgs>),
     /// Tell whether two G-code files print the same, and where not
     Diff(super::diff::DiffArgs),
-    /// Measure how rough the tops are that a G-code file prints, against the model
+    /// Measure how rough the tops of a print are, against the model
     Roughness(Box<super::roughness::RoughnessArgs>),
     /// Print completions for a shell
     Completions {

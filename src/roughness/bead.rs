@@ -39,6 +39,13 @@ impl Bead {
         Self { from, to, radius, square: way[0] * way[0] + way[1] * way[1] }
     }
 
+    /// The same, higher by this many grid units.
+    #[cfg(test)]
+    pub(super) fn raised(&self, by: f64) -> Self {
+        let up = |[x, y, z]: [f64; 3]| [x, y, z + by];
+        Self { from: up(self.from), to: up(self.to), ..*self }
+    }
+
     /// Lowest and highest y, grid units.
     pub(super) fn rows(&self) -> [f64; 2] {
         let (from, to) = (self.from[1], self.to[1]);

@@ -27,6 +27,8 @@ mod profile;
 mod report;
 mod sums;
 mod surface;
+#[cfg(test)]
+mod tests;
 
 use crate::mesh::Mesh;
 use crate::mesh::edges::Adjacency;

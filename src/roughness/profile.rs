@@ -226,28 +226,39 @@ impl Piece {
             sums[class].raw.profile.add(weight, f64::from(raw[k]) - mean);
             sums[class].filtered.profile.add(weight, f64::from(rest[k]));
         }
-        let pieces = (places.len() as f64 * self.step_of(places) / cutoff).round().max(1.0) as usize;
-        for piece in 0..pieces {
-            let part = |k: usize| k * places.len() / pieces;
-            let range = part(piece)..part(piece + 1);
+        self.ranges(places, &counts, [&raw, &rest], cutoff, &mut sums);
+        Some(sums)
+    }
+
+    /// Adds the heights of the pieces of a profile: of `values` without the filter, and with it.
+    fn ranges(
+        &self,
+        places: &[Option<usize>],
+        counts: &impl Fn(&Option<usize>) -> bool,
+        values: [&[f32]; 2],
+        cutoff: f64,
+        sums: &mut [Sums; CLASSES],
+    ) {
+        let length = places.len() as f64 * self.step_of(places);
+        let pieces = (length / cutoff).round().max(1.0) as usize;
+        let part = |piece: usize| piece * places.len() / pieces;
+        for range in (0..pieces).map(|piece| part(piece)..part(piece + 1)) {
             let counted: Vec<usize> = range.clone().filter(|k| counts(&places[*k])).collect();
             let Some(middle) = counted.get(counted.len() / 2) else { continue };
             if 2 * counted.len() < range.len() {
                 continue;
             }
             let class = places[*middle].map_or(0, |place| usize::from(self.class[place]));
-            for (kind, values) in
-                [(&mut sums[class].raw, &raw), (&mut sums[class].filtered, &rest)]
-            {
-                let of = |best: fn(f32, f32) -> f32| {
-                    counted.iter().map(|k| values[*k]).fold(values[*middle], best)
+            let kinds = [&mut sums[class].raw, &mut sums[class].filtered];
+            for (kind, values) in kinds.into_iter().zip(values) {
+                let best = |better: fn(f32, f32) -> f32| {
+                    counted.iter().map(|k| values[*k]).fold(values[*middle], better)
                 };
                 let weight = counted.len() as f64;
-                let height = f64::from(of(f32::max) - of(f32::min));
+                let height = f64::from(best(f32::max) - best(f32::min));
                 kind.range = [kind.range[0] + weight * height, kind.range[1] + weight];
             }
         }
-        Some(sums)
     }
 
     /// Distance of the places of a profile on the surface, mm.

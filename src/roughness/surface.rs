@@ -141,11 +141,6 @@ impl Surface {
         Grid { cell, low: self.low, size: [size(0), size(1)] }
     }
 
-    /// Its lowest and highest x and y, grid units.
-    pub(super) fn extent(&self) -> ([i32; 2], [i32; 2]) {
-        (self.low, self.high)
-    }
-
     /// The surface over the middles of all cells, by cell, then by patch; one of each.
     pub(super) fn samples(&self, grid: &Grid) -> Vec<Sample> {
         let mut samples: Vec<Sample> =
