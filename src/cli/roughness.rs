@@ -107,7 +107,8 @@ pub(super) fn run(args: &RoughnessArgs) -> Result<String> {
     let lift = Terms::new(judge, own.as_ref().map(|profile| &profile.settings), print).lift;
     let model =
         Model { mesh: &placed.mesh, adjacency: &placed.adjacency, offset: placed.offset, lift };
-    let found = roughness(&stream, model, &Options { cutoff: args.lc }).with_context(|| name.clone())?;
+    let found =
+        roughness(&stream, model, &Options { cutoff: args.lc }).with_context(|| name.clone())?;
     if args.json {
         return output::json(&found, Path::new("-"));
     }
@@ -197,5 +198,9 @@ fn values(values: &Values) -> String {
 
 fn cutoff(text: &str) -> std::result::Result<f64, String> {
     let value: f64 = text.parse().map_err(|_| "it must be a number, such as 2.5".to_owned())?;
-    if (0.01..=100.0).contains(&value) { Ok(value) } else { Err("it must be 0.01 to 100".to_owned()) }
+    if (0.01..=100.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err("it must be 0.01 to 100".to_owned())
+    }
 }

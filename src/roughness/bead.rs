@@ -76,7 +76,8 @@ impl Bead {
                 (self.from[1] - self.to[1]) / length * self.radius,
                 (self.to[0] - self.from[0]) / length * self.radius,
             ];
-            let corner = |end: [f64; 3], sign: f64| [end[0] + sign * side[0], end[1] + sign * side[1]];
+            let corner =
+                |end: [f64; 3], sign: f64| [end[0] + sign * side[0], end[1] + sign * side[1]];
             let corners = [
                 corner(self.from, 1.0),
                 corner(self.to, 1.0),

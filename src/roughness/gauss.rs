@@ -116,8 +116,10 @@ mod tests {
         }
         // Over an area, along x and along y.
         let rows: Vec<f32> = (0..200).flat_map(|_| wave(2.0, 400)).collect();
-        for plane in [gauss.plane(&rows, 400), turned(&gauss.plane(&turned(&rows, 400), 200), 200)] {
-            let most = plane[100 * 400 + 100..100 * 400 + 300].iter().fold(0.0_f32, |a, b| a.max(*b));
+        for plane in [gauss.plane(&rows, 400), turned(&gauss.plane(&turned(&rows, 400), 200), 200)]
+        {
+            let most =
+                plane[100 * 400 + 100..100 * 400 + 300].iter().fold(0.0_f32, |a, b| a.max(*b));
             assert!((most - 0.5).abs() < 2e-3, "{most}");
         }
     }

@@ -1,8 +1,9 @@
 //! G-code + Model -> Lie: where the part was printed, how high its raft is, and how high layers are.
 //!
-//! The model is tried where it is expected, and where the box around the part's lines lies, by its middle
-//! and by each of its edges. Where the plastic lies nearest along the surface counts; that is looked at on
-//! coarse cells. So it does not matter where a slicer lays the part, nor that a thin edge was not printed.
+//! The model is tried where it is expected, and where the middle of the box around the part's lines lies; if
+//! it fits in neither place, where each edge of that box lies. The place counts where the plastic lies
+//! nearest along the surface, looked at on coarse cells. So it does not matter where a slicer lays the part,
+//! nor that a thin edge was not printed.
 
 use super::bead::is_of_part;
 use super::map::Map;
@@ -16,6 +17,13 @@ use std::io;
 
 /// Places that differ by less are the same, mm.
 const SAME: f64 = 0.01;
+
+/// Mean distance between plastic and surface, in layers, up to which a place fits: steps of a staircase are
+/// a quarter of a layer off.
+const FITS: f64 = 0.4;
+
+/// By which share another place must be better than the expected one.
+const BETTER: f64 = 0.02;
 
 /// Distance between cells by which places are compared, grid units, as a multiple of the usual cell.
 const COARSER: Coord = 5;
@@ -74,19 +82,27 @@ pub(super) fn find(stream: &Stream, model: &Model<'_>, surface: &Surface) -> Res
         lift,
         layer,
     };
-    let places = seen.places(model);
-    if places.len() == 1 {
+    let [x, y] = seen.ways(model);
+    let usual = [0.0, 0.5].map(|part| [x, y].map(|[low, high]| part * (low + high)));
+    if usual[1].iter().all(|by| by.abs() <= SAME) {
         return Ok(at([0.0; 2]));
     }
     let mut map = Map::new(surface, COARSER * surface.cell(), layer);
     let mut best = (f64::INFINITY, [0.0; 2]);
-    for moved in places {
-        map.clear();
-        map.draw(stream, at(moved).origin, lift)?;
-        let misfit = map.misfit();
-        if misfit < best.0 {
-            best = (misfit, moved);
+    let mut look = |places: &[[f64; 2]]| {
+        for &moved in places {
+            map.clear();
+            map.draw(stream, at(moved).origin, lift)?;
+            let misfit = map.misfit();
+            if misfit < (1.0 - BETTER) * best.0 {
+                best = (misfit, moved);
+            }
         }
+        Ok::<_, Error>(best.0 <= FITS * layer)
+    };
+    let is_wider = |[low, high]: [f64; 2]| high - low > WIDER;
+    if !look(&usual)? && ![x, y].into_iter().any(is_wider) {
+        look(&[[x[0], y[0]], [x[0], y[1]], [x[1], y[0]], [x[1], y[1]]])?;
     }
     Ok(at(best.1))
 }
@@ -102,8 +118,7 @@ impl Seen {
     fn of(stream: &Stream) -> io::Result<Self> {
         let facts = stream.facts();
         let (most, heights) = (f64::INFINITY, BTreeMap::new());
-        let mut seen =
-            Self { low: [most; 2], high: [-most; 2], bottom: most, top: -most, heights };
+        let mut seen = Self { low: [most; 2], high: [-most; 2], bottom: most, top: -most, heights };
         for section in stream.sections() {
             let section = section?;
             // What the start draws, and what no comment calls a part of the print, is beside the part.
@@ -148,26 +163,14 @@ impl Seen {
         if is_raft && more > LEAST_RAFT * self.bottom { self.bottom } else { 0.0 }
     }
 
-    /// Where the part may lie, mm from where it is expected; that place first.
-    fn places(&self, model: &Model<'_>) -> Vec<[f64; 2]> {
-        let ways = |axis: usize| {
+    /// How far the lower and the upper edge of the lines lie from the model's, where it is expected, mm; along
+    /// x and along y.
+    fn ways(&self, model: &Model<'_>) -> [[f64; 2]; 2] {
+        [0, 1].map(|axis: usize| {
             let all = || model.mesh.vertices.iter().map(|at| at[axis]);
             let (low, high) = (all().min().unwrap_or(0), all().max().unwrap_or(0));
             let [low, high] = [low, high].map(|at| to_mm(at) + model.offset[axis]);
-            let [low, high] = [self.low[axis] - low, self.high[axis] - high];
-            let mut ways = vec![0.0, 0.5 * (low + high)];
-            if high - low <= WIDER {
-                ways.extend([low, high]);
-            }
-            let mut found: Vec<f64> = Vec::new();
-            for way in ways {
-                if found.iter().all(|one| (one - way).abs() > SAME) {
-                    found.push(way);
-                }
-            }
-            found
-        };
-        let [x, y] = [ways(0), ways(1)];
-        x.iter().flat_map(|x| y.iter().map(move |y| [*x, *y])).collect()
+            [self.low[axis] - low, self.high[axis] - high]
+        })
     }
 }

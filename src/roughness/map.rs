@@ -55,7 +55,8 @@ impl Map {
         let width = grid.size[0].div_ceil(TILE);
         let mut tiles = vec![[Coord::MAX, Coord::MIN]; width * grid.size[1].div_ceil(TILE)];
         for sample in &samples {
-            let (row, place) = (sample.cell as usize / grid.size[0], sample.cell as usize % grid.size[0]);
+            let (row, place) =
+                (sample.cell as usize / grid.size[0], sample.cell as usize % grid.size[0]);
             let tile = &mut tiles[row / TILE * width + place / TILE];
             *tile = [tile[0].min(sample.z), tile[1].max(sample.z)];
         }

@@ -77,10 +77,14 @@ pub enum Error {
     #[error("cannot read: {0}; check the path")]
     Unreadable(#[from] io::Error),
     /// Nothing of the model faces up.
-    #[error("no face of the model slopes by 45° or less and faces up; turn it as it was printed, with --rotate")]
+    #[error(
+        "no face of the model slopes by 45° or less and faces up; turn it as it was printed, with --rotate"
+    )]
     NoSurface,
     /// No plastic lies near the model's surface.
-    #[error("no plastic lies near the model's tops; give the model, --scale and --rotate of this print")]
+    #[error(
+        "no plastic lies near the model's tops; give the model, --scale and --rotate of this print"
+    )]
     NoPlastic,
     /// Plastic lies near some of it alone.
     #[error(
@@ -97,11 +101,7 @@ pub enum Error {
 ///
 /// # Errors
 /// See [`Error`].
-pub fn roughness(
-    stream: &Stream,
-    model: Model<'_>,
-    options: &Options,
-) -> Result<Roughness, Error> {
+pub fn roughness(stream: &Stream, model: Model<'_>, options: &Options) -> Result<Roughness, Error> {
     let surface = Surface::new(model.mesh, model.adjacency).ok_or(Error::NoSurface)?;
     let lie = lie::find(stream, &model, &surface)?;
     let mut map = Map::new(&surface, surface.cell(), lie.layer);

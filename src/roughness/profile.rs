@@ -204,7 +204,8 @@ impl Piece {
         gauss: &Gauss,
         cutoff: f64,
     ) -> Option<[Sums; CLASSES]> {
-        let counts = |place: &Option<usize>| place.is_some_and(|at| self.direction[at] == direction);
+        let counts =
+            |place: &Option<usize>| place.is_some_and(|at| self.direction[at] == direction);
         if !places.iter().any(counts) {
             return None;
         }

@@ -3,8 +3,8 @@
 use super::lie::Lie;
 use super::map::Map;
 use super::profile::{Found, measure};
-use super::surface::Surface;
 use super::sums::{CLASSES, SLOPES, Sums};
+use super::surface::Surface;
 use super::{Options, WINDOW};
 use crate::units::to_mm;
 use schemars::JsonSchema;

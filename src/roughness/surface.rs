@@ -116,7 +116,8 @@ impl Surface {
             })
             .collect();
         let all = || facets.iter().flat_map(|facet| facet.corners);
-        let end = |axis: usize| Some((all().map(|at| at[axis]).min()?, all().map(|at| at[axis]).max()?));
+        let end =
+            |axis: usize| Some((all().map(|at| at[axis]).min()?, all().map(|at| at[axis]).max()?));
         let ((left, right), (front, back)) = (end(0)?, end(1)?);
         Some(Self { facets, patches, low: [left, front], high: [right, back] })
     }
@@ -125,7 +126,8 @@ impl Surface {
     pub(super) fn cell(&self) -> Coord {
         let side = |axis: usize| f64::from(self.high[axis]) - f64::from(self.low[axis]);
         let area = side(0).max(1.0) * side(1).max(1.0);
-        let fits = |&&(cell, most): &&(Coord, f64)| area / f64::from(cell) / f64::from(cell) <= most;
+        let fits =
+            |&&(cell, most): &&(Coord, f64)| area / f64::from(cell) / f64::from(cell) <= most;
         match CELLS.iter().find(fits) {
             Some((cell, _)) => *cell,
             None => (area / CELLS[1].1).sqrt().ceil() as Coord,
@@ -148,7 +150,9 @@ impl Surface {
         // Of one patch the highest comes first, and stays.
         samples.par_sort_unstable_by(|a, b| {
             let key = |one: &Sample| (one.cell, one.patch, -i64::from(one.z));
-            key(a).cmp(&key(b)).then(a.gradient.map(f32::to_bits).cmp(&b.gradient.map(f32::to_bits)))
+            key(a)
+                .cmp(&key(b))
+                .then(a.gradient.map(f32::to_bits).cmp(&b.gradient.map(f32::to_bits)))
         });
         samples.dedup_by_key(|one| (one.cell, one.patch));
         samples

@@ -88,7 +88,8 @@ fn the_table_has_units_and_the_same_values_for_any_number_of_threads() {
     let folder = folder();
     let (code, out, err) = roughness(&folder, &["away.gcode", "--against", "wedge.stl"]);
     assert_eq!((code, err.as_str()), (0, ""));
-    for words in ["µm", "mm²", "Gauss 8 mm", "5° to 15°", "patch 1", "from where it was expected"] {
+    for words in ["µm", "mm²", "Gauss 8 mm", "5° to 15°", "patch 1", "from where it was expected"]
+    {
         assert!(out.contains(words), "{words}:\n{out}");
     }
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
@@ -103,7 +104,8 @@ fn wrong_arguments_and_files_are_one_line() {
     let path = folder.path();
     fs::write(path.join("travels.gcode"), "G28\nG1 X10 Y10 Z5 F3000\n").unwrap();
     // A part that has no top.
-    let needle = Solid::cone(3.0, 40.0, 16).map(|[x, y, z]| [x, y, if z > 1.0 { z + 40.0 * x } else { z }]);
+    let needle =
+        Solid::cone(3.0, 40.0, 16).map(|[x, y, z]| [x, y, if z > 1.0 { z + 40.0 * x } else { z }]);
     fs::write(path.join("needle.stl"), needle.stl()).unwrap();
     for (words, code, says) in [
         (&["travels.gcode", "--against", "wedge.stl"][..], 3, "travels.gcode: no move in it"),
