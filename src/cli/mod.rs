@@ -16,6 +16,7 @@ mod mesh;
 mod model;
 mod output;
 mod part;
+mod place;
 mod preview;
 mod profiles;
 mod progress;

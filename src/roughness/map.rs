@@ -148,10 +148,12 @@ impl Map {
         over.is_some_and(|over| over.abs() * UNITS_PER_MM <= COVERED * self.layer)
     }
 
-    /// Share of the samples that have plastic near.
-    pub(super) fn fit(&self) -> f64 {
-        let near = (0..self.samples.len()).filter(|sample| self.over(*sample).is_some()).count();
-        near as f64 / self.samples.len().max(1) as f64
+    /// Share of the samples that have plastic near, and of those that it covers.
+    pub(super) fn fit(&self) -> [f64; 2] {
+        let all = || (0..self.samples.len()).map(|sample| self.over(sample));
+        let near = all().filter(Option::is_some).count();
+        let covered = all().filter(|over| self.covers(*over)).count();
+        [near, covered].map(|count| count as f64 / self.samples.len().max(1) as f64)
     }
 
     /// How badly the plastic lies along the surface: the mean distance, mm, at most [`WINDOW`] layers each.

@@ -23,6 +23,7 @@ mod bead;
 mod gauss;
 mod lie;
 mod map;
+mod means;
 mod profile;
 mod report;
 mod sums;
@@ -34,7 +35,8 @@ use crate::mesh::Mesh;
 use crate::mesh::edges::Adjacency;
 use crate::reader::Stream;
 use map::Map;
-pub use report::{Means, OfPatch, OfSlope, Roughness, SCHEMA, Values, schema};
+pub use means::{Means, Values};
+pub use report::{OfPatch, OfSlope, Roughness, SCHEMA, schema};
 use std::io;
 use surface::Surface;
 
@@ -46,8 +48,8 @@ pub const WINDOW: f64 = 2.0;
 /// of a layer's height. Steps of a staircase are half a layer off, a lacking line is a whole one.
 pub const COVERED: f64 = 0.8;
 
-/// Share of the surface that must have plastic within [`WINDOW`] layers; with less it is another part.
-const LEAST_FIT: f64 = 0.5;
+/// Share of the surface that must be covered; with less it is another part.
+const LEAST_FIT: f64 = 1.0 / 3.0;
 
 /// What was printed.
 #[derive(Debug, Clone, Copy)]
@@ -86,13 +88,13 @@ pub enum Error {
         "no plastic lies near the model's tops; give the model, --scale and --rotate of this print"
     )]
     NoPlastic,
-    /// Plastic lies near some of it alone.
+    /// Plastic lies along some of it alone.
     #[error(
-        "the model does not fit the file: plastic lies near only {percent:.0} % of its tops; give the \
+        "the model does not fit the file: plastic lies along only {percent:.0} % of its tops; give the \
          model, --scale and --rotate of this print"
     )]
     OtherPart {
-        /// Share of the surface that has plastic near it, %.
+        /// Share of the surface that is covered, %.
         percent: f64,
     },
 }
@@ -106,8 +108,8 @@ pub fn roughness(stream: &Stream, model: Model<'_>, options: &Options) -> Result
     let lie = lie::find(stream, &model, &surface)?;
     let mut map = Map::new(&surface, surface.cell(), lie.layer);
     map.draw(stream, lie.origin, lie.lift)?;
-    let fit = map.fit();
-    if fit <= 0.0 {
+    let [near, fit] = map.fit();
+    if near <= 0.0 {
         return Err(Error::NoPlastic);
     }
     if fit < LEAST_FIT {

@@ -2,6 +2,7 @@
 
 use super::lie::Lie;
 use super::map::Map;
+use super::means::Means;
 use super::profile::{Found, measure};
 use super::sums::{CLASSES, SLOPES, Sums};
 use super::surface::Surface;
@@ -44,37 +45,6 @@ pub struct Roughness {
     pub small_patches: usize,
     /// And their area, mm².
     pub small_area_mm2: f64,
-}
-
-/// A part of the surface and how the plastic lies on it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-pub struct Means {
-    /// Area on the surface, mm².
-    pub area_mm2: f64,
-    /// Share of it over which the plastic's top is within 0.8 layers, straight up or down, part of 1.
-    pub coverage: f64,
-    /// Mean deviation at right angles to the surface, more plastic above 0, µm. This and all below is of
-    /// what has plastic near; `None` without any.
-    pub mean_um: Option<f64>,
-    /// Of deviations as they are, less their mean.
-    pub unfiltered: Values,
-    /// Of deviations less the Gaussian mean line or plane.
-    pub filtered: Values,
-}
-
-/// Values of roughness, µm; `None` if there is nothing to measure.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
-pub struct Values {
-    /// Mean of the absolute deviations over profiles along the steepest slope.
-    pub ra_um: Option<f64>,
-    /// Root of the mean square over them.
-    pub rq_um: Option<f64>,
-    /// Mean height from the lowest to the highest place in pieces of them as long as the cut-off.
-    pub rz_um: Option<f64>,
-    /// Mean of the absolute deviations over the area.
-    pub sa_um: Option<f64>,
-    /// Root of the mean square over it.
-    pub sq_um: Option<f64>,
 }
 
 /// Slopes from one to another.

@@ -1,6 +1,6 @@
 //! Deviations -> Sums: what means over profiles and areas are made of, for each class of slopes.
 
-use super::report::{Means, Values};
+use super::means::{Means, Values};
 
 /// Slopes of the surface that are told apart, degrees: each class goes up to the next one's begin. The
 /// first is level.
