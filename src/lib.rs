@@ -28,6 +28,7 @@
 //! | [`mod@estimate`] | moves -> time by role and layer |
 //! | [`mod@check`] | moves and model -> what is wrong |
 //! | [`mod@diff`] | two files -> whether they print the same |
+//! | [`mod@roughness`] | moves and model -> how rough its tops are |
 //! | [`preview`] | moves -> pictures |
 //!
 //! Beside the flow:
@@ -68,6 +69,7 @@ pub mod reader;
 pub mod region;
 pub mod render;
 pub mod report;
+pub mod roughness;
 pub mod slice;
 pub mod text;
 pub mod units;

@@ -1,14 +1,12 @@
 //! Words of the command line -> Arguments: every flag, its help, and the settings it stands for.
 
+use super::place::PlaceArgs;
 use super::preview::PreviewArgs;
 use super::profiles::{ProfileArgs, ShelfArgs};
 use super::reading::ReadingArgs;
-use super::words::{UNITS, brim, factor, numbers, parts, sunk, triangles, unit, words};
+use super::words::{brim, parts, words};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
-use slicer::mesh::place::GAP_MM;
-use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
-use slicer::mesh::{Placement, Policy};
 use slicer::profile::{Override, ValueOrigin};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -23,6 +21,7 @@ Examples:
   slicer profile show generic-marlin > mine.toml
   slicer estimate part.gcode -p ./mine.toml
   slicer check part.gcode --against part.stl
+  slicer roughness part.gcode --against part.stl
   slicer preview part.gcode --layer 40 -o part.png
   slicer mesh part.stl -o mended.stl
 
@@ -95,6 +94,8 @@ pub(crate) enum Command {
     Compare(Box<CompareArgs>),
     /// Tell whether two G-code files print the same, and where not
     Diff(super::diff::DiffArgs),
+    /// Measure how rough the tops of a print are, against the model
+    Roughness(Box<super::roughness::RoughnessArgs>),
     /// Print completions for a shell
     Completions {
         /// The shell
@@ -340,58 +341,6 @@ pub(crate) struct SettingArgs {
     stamp: Option<String>,
 }
 
-/// How the models are laid on the bed.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Placing")]
-pub(crate) struct PlaceArgs {
-    /// Make the models larger or smaller by this factor
-    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = factor, allow_negative_numbers = true)]
-    scale: f64,
-    /// Turn the models about x, then y, then z, degrees
-    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", value_parser = numbers::<3>, allow_hyphen_values = true)]
-    rotate: [f64; 3],
-    /// Cut this much off the bottom of the models, mm
-    #[arg(long, value_name = "MM", default_value = "0", value_parser = sunk, allow_negative_numbers = true)]
-    sink: f64,
-    /// Put the middle of the layout here, mm [default: middle of the bed]
-    #[arg(long, value_name = "X,Y", value_parser = numbers::<2>, allow_hyphen_values = true)]
-    at: Option<[f64; 2]>,
-    /// Unit of the models' numbers
-    #[arg(long, default_value = "mm", value_parser = UNITS)]
-    unit: String,
-    /// Print each model N times
-    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    copies: u32,
-    /// Refuse models with more triangles, alone or together: 5 million take some 0.5 GB
-    #[arg(hide_short_help = true, long, value_name = "N", default_value_t = DEFAULT_MAX_TRIANGLES, value_parser = triangles())]
-    max_triangles: usize,
-    /// What to do about faults of a mesh: mend it, slice it as it is, or refuse it
-    #[arg(long, value_name = "POLICY", default_value = "repair", value_parser = ["repair", "warn", "strict"])]
-    mesh: String,
-}
-
-impl PlaceArgs {
-    /// As the mesh stage takes it.
-    pub(crate) fn placement(&self) -> Placement {
-        Placement {
-            gap: GAP_MM,
-            unit: unit(&self.unit),
-            scale: self.scale,
-            stretch: [1.0; 3],
-            rotate: self.rotate,
-            sink: self.sink,
-            at: self.at,
-            copies: self.copies,
-            max_triangles: self.max_triangles,
-            policy: match self.mesh.as_str() {
-                "warn" => Policy::Warn,
-                "strict" => Policy::Strict,
-                _ => Policy::Repair,
-            },
-        }
-    }
-}
-
 impl SettingArgs {
     /// The settings these flags give.
     pub(crate) fn overrides(&self) -> Vec<Override> {
@@ -447,6 +396,7 @@ impl SettingArgs {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::words::numbers;
     use clap::CommandFactory as _;
 
     #[test]

@@ -11,7 +11,7 @@
 use slicer::error::Error;
 use slicer::error::details::Details;
 use slicer::profile::ProfileError;
-use slicer::{mesh, reader, text};
+use slicer::{mesh, reader, roughness, text};
 use std::error::Error as StdError;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -132,7 +132,7 @@ fn code_of(error: &(dyn StdError + 'static)) -> Option<u8> {
     if let Some(error) = error.downcast_ref::<mesh::Error>() {
         return Some(if error.is_usage() { USAGE } else { INPUT });
     }
-    if error.is::<reader::Error>() {
+    if error.is::<reader::Error>() || error.is::<roughness::Error>() {
         return Some(INPUT);
     }
     error.downcast_ref().map(Error::exit_code)

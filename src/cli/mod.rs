@@ -16,11 +16,13 @@ mod mesh;
 mod model;
 mod output;
 mod part;
+mod place;
 mod preview;
 mod profiles;
 mod progress;
 mod publish;
 mod reading;
+mod roughness;
 mod slice;
 mod summary;
 mod texts;
@@ -164,6 +166,7 @@ fn other(command: &Command) -> Result<Outcome> {
         // Its product is a file, unless `-o -` asks for another.
         Command::Preview(args) => preview::run(args).map(|()| String::new())?,
         Command::Diff(args) => return diff::run(args),
+        Command::Roughness(args) => roughness::run(args)?,
         Command::Mesh(args) => return mesh::run(args),
         Command::Completions { shell } => help::completions(*shell),
         Command::Man { command } => help::manual(command)?,

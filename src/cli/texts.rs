@@ -83,3 +83,29 @@ that layers take alike.
   inner-walls  where a loop runs along that of the layer below within a tenth of a line
   inner-skin   where at least one layer covers it, and it is wider than six lines
 The report's dual.audit lists the material of each group against that of thin lines.";
+
+/// How roughness is measured.
+pub(super) const ROUGHNESS: &str = "\
+Deviations are measured from the true surface of the model, at right angles to it, over cells of 0.05 mm
+(0.1 mm from 100 cm² of bed on), wherever it faces up by 45° or less:
+  bead      the top of a line is level across its full width, as high as the nozzle was, straight from end
+            to end, with round ends. A staircase of layers h high on a slope T so has Ra = h cos(T) / 4, and
+            lines s apart across a slope have Ra = s sin(T) / 4. Plastic that flows is not in it
+  top       of all beads over a cell the highest counts that is no more than 2 layers above the surface;
+            without one down to 2 layers below it, nothing is near
+  covered   share of the surface over which the top is within 0.8 layers of it, straight up or down. The
+            steps of a staircase are half a layer off; where a line lacks it is a whole one
+  mean      mean deviation; above 0 there is too much
+  Ra Rq Rz  means over profiles along the steepest slope, a cell apart. Each place counts in that one of six
+            directions, 30° apart, that is nearest to its own steepest slope. Rz is the height of a piece
+            of a profile as long as the cut-off
+  Sa Sq     means over the area
+  plain     less the mean of the profile, or of the patch
+  Gauss     less what the Gaussian filter lets through, of profiles by ISO 16610-21, over the area by
+            ISO 16610-61. At borders and gaps the weights of what is there are made 1 in all
+A patch is a piece of the surface joined over edges that bend by less than 30°. What slopes by less than
+0.5° is level: it has a row of its own, and is in no other. The model is placed as the flags below say, then
+moved to where the lines are.
+
+Exit codes: 0 measured, 2 wrong arguments or profile, 3 a file cannot be read, prints nothing, or has no
+plastic near the model's tops.";

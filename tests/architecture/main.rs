@@ -43,12 +43,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("check", &["reader", "mesh", "profile", "units", "geom"]),
     ("preview", &["reader", "estimate", "text", "units"]),
     ("diff", &["reader", "estimate", "geom"]),
+    ("roughness", &["reader", "mesh", "units"]),
     // Composed of the stages' own errors: no stage uses it.
     ("error", &["gcode", "mesh", "profile", "progress", "reader", "warning"]),
 ];
 
 /// Modules that judge what the others have made.
-const WITNESSES: &[&str] = &["reader", "estimate", "check", "diff"];
+const WITNESSES: &[&str] = &["reader", "estimate", "check", "diff", "roughness"];
 
 /// What witnesses may use of `geom`: distances to segments, sorting by counting, booleans of spans on a
 /// line, and the pieces of an arc. None knows what is sliced or printed, all are tested on their own by laws, and a

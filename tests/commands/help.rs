@@ -8,7 +8,7 @@ use std::fs;
 use std::process::Command as Process;
 
 /// Every command there is; those below have commands of their own.
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 18] = [
     "",
     "check",
     "compare",
@@ -26,6 +26,7 @@ const COMMANDS: [&str; 17] = [
     "profile show",
     "report",
     "report schema",
+    "roughness",
 ];
 
 fn product(words: &str, flags: &[&str]) -> String {

@@ -15,6 +15,7 @@ mod names;
 mod preview;
 mod profiles;
 mod reading;
+mod roughness;
 mod run;
 mod schema;
 mod viewer;

@@ -194,6 +194,7 @@ fn devices_are_refused_and_pipes_are_read() {
         &["check", "/dev/zero"],
         &["estimate", "/dev/zero"],
         &["diff", "/dev/zero", "a.gcode"],
+        &["roughness", "/dev/zero", "--against", "a.stl"],
         &["preview", "/dev/zero", "-o", "a.svg"],
         &["preview", "/dev/zero", "-o", "a.html"],
     ];

@@ -15,6 +15,7 @@ mod models;
 mod motion;
 mod printers;
 mod raft;
+mod roughness;
 mod seams;
 mod segments;
 mod skins;
