@@ -76,7 +76,7 @@ pub enum Conflict {
     NothingToIron,
     /// Skins that follow the surface, without a top.
     #[error(
-        "nonplanar.enabled: tops follow the surface, and there are none without a skin at the top; leave it \
+        "nonplanar.enabled lets tops follow the surface, and there are none without a skin at the top; leave it \
          out, or set top_layers = 1"
     )]
     NothingToFollow,

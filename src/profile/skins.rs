@@ -93,7 +93,7 @@ mod tests {
         for (set, text) in [
             (
                 &[on, ("top_layers", "0")][..],
-                "--set: nonplanar.enabled: tops follow the surface, and there are",
+                "--set: nonplanar.enabled lets tops follow the surface, and there are",
             ),
             (
                 &[on, ("layer_height", "0.05")],

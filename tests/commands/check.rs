@@ -95,6 +95,31 @@ fn wrong_arguments_and_files_are_one_line() {
 }
 
 #[test]
+fn a_head_is_told_by_name_or_by_its_keys() {
+    let folder = folder();
+    for words in [
+        &["good.gcode", "--head", "v6"][..],
+        &["good.gcode", "--set", "head.cone=3"],
+        &["good.gcode", "--head", "long-0.6", "--set", "head.discs=[[5,2]]"],
+        &["good.gcode", "-p", "generic-marlin", "--head", "v6"],
+    ] {
+        let (code, out, err) = check(&folder, words, b"");
+        assert_eq!((code, err.as_str()), (0, ""), "{words:?} {out}");
+    }
+    for (words, text) in [
+        (["--head", "mk8"], "invalid value 'mk8' for '--head <NAME>'"),
+        (["--set", "head.cone=90"], "--set: head.cone = 90 is out of range"),
+        (["--set", "head.disc=3"], "--set: unknown key `head.disc`; did you mean `head.discs`?"),
+        // What is no part of the head still wants a profile.
+        (["--set", "walls=3"], "--set changes a profile; name one with -p, too"),
+    ] {
+        let (code, out, err) = check(&folder, &["good.gcode", words[0], words[1]], b"");
+        assert_eq!((code, out.as_str()), (2, ""), "{err}");
+        assert!(err.starts_with(&format!("error: {text}")) && err.lines().count() == 1, "{err}");
+    }
+}
+
+#[test]
 fn text_has_a_line_for_each_finding_with_its_place_and_measure() {
     let folder = folder();
     let (_, out, _) = check(&folder, &["bad.gcode", "--against", "cube.stl"], b"");

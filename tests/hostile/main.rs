@@ -13,7 +13,7 @@ mod witness;
 
 use proptest::prelude::*;
 use proptest::sample::Index;
-use slicer::profile::keys::{self, Key, Kind};
+use slicer::profile::keys::{self, Key, Kind, Limits};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -224,6 +224,14 @@ fn value(kind: &Kind, chance: f64, which: u8) -> String {
             between(f64::from(*min), f64::from(*max)).replace(".0", "")
         }
         Kind::Word(words) | Kind::Words(words) => words[usize::from(which) % words.len()].clone(),
+        Kind::NumbersOrAuto(Limits { min, max, .. }) => {
+            let list = [between(*min, *max), between(*max, *min)];
+            list[..1 + usize::from(which / 128)].join(",")
+        }
+        Kind::Rows { columns, limits: Limits { min, max, .. } } => {
+            let row = vec![between(*min, *max); *columns].join(",");
+            format!("[{}]", vec![format!("[{row}]"); usize::from(which) % 3].join(","))
+        }
         Kind::Switch => which.is_multiple_of(2).to_string(),
         _ => WORDS[usize::from(which) % WORDS.len()].to_owned(),
     }
