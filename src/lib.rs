@@ -132,22 +132,27 @@ pub fn slice_placed(
     );
     refuse::gaps(job, placed, &slicer, progress)?;
 
-    // Layers -> regions -> toolpaths, in batches. The thumbnails stand in the head of the file:
-    // they are drawn while the first batches are planned.
+    // Tops whose skins follow the surface: known before the first layer, since its base is lower.
     let setup = Setup::new(&settings, &heights, &placed.bodies);
     let corners = bed_corners(&bed(&settings.machine), placed.offset);
-    let footing = Footing::new(&settings, placed.offset);
-    let sticking = Sticking::new(&settings, placed, &heights, corners);
     let support = setup.supports(&slicer, corners);
     let found = curved::find(&settings, placed, &slicer, support.as_ref());
-    let curved = found.as_ref().map(|found| Curved::new(found, &settings));
+    let curved = found.as_ref().map(|found| Curved::new(found, &slicer, &settings));
+    let layers = curved.as_ref().map_or(heights.count(), Curved::layers);
+    let (heights, slicer) = (heights.lowest(layers), slicer.lowest(layers));
+
+    // Layers -> regions -> toolpaths, in batches. The thumbnails stand in the head of the file:
+    // they are drawn while the first batches are planned.
+    let footing = Footing::new(&settings, placed.offset);
+    let sticking = Sticking::new(&settings, placed, &heights, corners);
     let mut planner = setup.planner(&slicer, support, curved.as_ref(), footing, sticking);
     let (pictures, planned) = rayon::join(|| thumbnails(&settings, placed), || planner.ahead());
 
     // Toolpaths -> text, one batch while the next is planned.
     let pictures = pictures.map_err(Error::Thumbnails)?;
     let stuck = planner.stuck()?;
-    let facts = print_facts(placed, &heights, &lift, stuck.extent);
+    let highest = curved.as_ref().map_or(0, Curved::highest);
+    let facts = print_facts(placed, (&heights, highest), &lift, stuck.extent);
     let first = planned.front().and_then(|batch| batch.first());
     prime::refuse(&settings, &facts, placed.offset, first)?;
     let mut writer = gcode::Writer::new(out, &settings, facts, placed.offset, &pictures)?;

@@ -14,7 +14,7 @@ use crate::profile::Settings;
 use crate::region::curved::CurvedTops;
 use crate::region::window::Support;
 use crate::report::nonplanar::{NonPlanarReport, report};
-use crate::slice::Slicer;
+use crate::slice::{Layer, Slicer};
 use crate::units::{Coord, to_mm, to_units};
 
 /// The surfaces of a mesh, and the patches on them.
@@ -83,20 +83,23 @@ fn lines(support: &Support, k: usize) -> Vec<[Point; 2]> {
 /// Patches, and what is left of the layers below them.
 pub struct Curved<'a> {
     patches: &'a Patches,
+    /// How many layers are printed: of those above nothing is left.
+    layers: usize,
     base: Base<'a>,
     /// Whether travels to patches pull the filament back.
     retracts: bool,
 }
 
 impl<'a> Curved<'a> {
-    /// The patches on these `surfaces`.
+    /// The patches that were `found`, over the layers of `slicer`.
     #[must_use]
-    pub fn new(found: &'a Found, settings: &Settings) -> Self {
+    pub fn new(found: &'a Found, slicer: &Slicer<'_>, settings: &Settings) -> Self {
         let Found { surfaces, patches } = found;
-        let height = to_units(settings.layer_height);
+        let base = patches.base(surfaces, to_units(settings.layer_height));
         Self {
             patches,
-            base: patches.base(surfaces, height),
+            layers: layers(&base, slicer),
+            base,
             retracts: settings.retraction.length > 0.0,
         }
     }
@@ -105,6 +108,12 @@ impl<'a> Curved<'a> {
     #[must_use]
     pub fn tops(&self) -> &dyn CurvedTops {
         &self.base
+    }
+
+    /// How many of the layers are printed, from the lowest on; skins take the place of those above.
+    #[must_use]
+    pub fn layers(&self) -> usize {
+        self.layers
     }
 
     /// What is printed after the paths of layer `k`, in its order.
@@ -118,7 +127,10 @@ impl<'a> Curved<'a> {
                 ..PrintMove::to(stroke.path.clone())
             })
         };
-        self.patches.after(k).flat_map(moves).collect()
+        // A patch may wait for a layer of which nothing is left.
+        let last = self.layers.saturating_sub(1);
+        let here = self.patches.patches.iter().filter(|patch| patch.layer.min(last) == k);
+        here.flat_map(moves).collect()
     }
 
     /// The highest place of all patches above the bed, grid units; 0 without any.
@@ -126,4 +138,11 @@ impl<'a> Curved<'a> {
     pub fn highest(&self) -> Coord {
         self.patches.patches.iter().map(|patch| patch.bounds[1]).max().unwrap_or(0)
     }
+}
+
+/// How many layers of `slicer` have something left on the `base`, from the lowest on.
+fn layers(base: &Base<'_>, slicer: &Slicer<'_>) -> usize {
+    let is_left = |layer: &&Layer| !base.cut(Layer::clone(layer)).contours.is_empty();
+    let last = |block| slicer.block(block).iter().rev().find(is_left).map(|layer| layer.index + 1);
+    (0..slicer.blocks()).rev().find_map(last).unwrap_or(0)
 }

@@ -9,7 +9,7 @@ use crate::profile::template::PrintFacts;
 use crate::profile::{Machine, Settings};
 use crate::progress::Progress;
 use crate::slice::Heights;
-use crate::units::{to_mm, to_units};
+use crate::units::{Coord, to_mm, to_units};
 
 /// Reads models and lays them on a bed. Only `progress` of a longer run is of use here: the
 /// reading stops once that is cancelled.
@@ -68,12 +68,12 @@ pub fn bed_corners(bed: &Bed, offset: [f64; 2]) -> (Point, Point) {
     (corner(bed.min), corner(bed.max))
 }
 
-/// What the start and end blocks may name. `beside` is the box around skirt, brim and raft, in the
+/// What the start and end blocks may name. Above the layers skins reach up to `highest`. `beside` is the box around skirt, brim and raft, in the
 /// layout.
 #[must_use]
 pub fn print_facts(
     placed: &Placed,
-    heights: &Heights,
+    (heights, highest): (&Heights, Coord),
     lift: &Lift,
     beside: Option<(Point, Point)>,
 ) -> PrintFacts {
@@ -86,6 +86,6 @@ pub fn print_facts(
         layers: heights.count() + lift.layers(),
         min: [0, 1].map(|axis| at[axis] + low[axis].min(-half[axis])),
         max: [0, 1].map(|axis| at[axis] + high[axis].max(half[axis])),
-        height: to_mm(heights.top(heights.count() - 1) + lift.by()),
+        height: to_mm(heights.top(heights.count() - 1).max(highest) + lift.by()),
     }
 }

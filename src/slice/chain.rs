@@ -104,6 +104,12 @@ impl<'a> Slicer<'a> {
         Self { compensation, ..self }
     }
 
+    /// The same for its lowest `count` layers.
+    #[must_use]
+    pub fn lowest(self, count: usize) -> Self {
+        Self { heights: self.heights.lowest(count), ..self }
+    }
+
     /// The layers' heights.
     #[must_use]
     pub fn heights(&self) -> &Heights {
@@ -113,7 +119,7 @@ impl<'a> Slicer<'a> {
     /// The number of blocks.
     #[must_use]
     pub fn blocks(&self) -> usize {
-        self.cells.count()
+        self.heights.count().div_ceil(self.block)
     }
 
     /// The block of layer `k`.

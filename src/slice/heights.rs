@@ -38,6 +38,14 @@ impl Heights {
         Self::new(first.into_iter().chain(std::iter::repeat_n(other, more)))
     }
 
+    /// The lowest `count` of these layers.
+    #[must_use]
+    pub fn lowest(mut self, count: usize) -> Self {
+        self.tops.truncate(count);
+        self.planes.truncate(count);
+        self
+    }
+
     /// Number of layers.
     #[must_use]
     pub fn count(&self) -> usize {
