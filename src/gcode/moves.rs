@@ -454,7 +454,8 @@ mod tests {
     }
 
     fn moves(toolpath: &Toolpath) -> (Moves, Settings) {
-        let settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
+        let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
+        settings.machine.max_volumetric_speed = 5.0;
         (MoveParams::new(&settings, [0.0, 0.0]).moves(toolpath), settings)
     }
 

@@ -198,7 +198,11 @@ impl Nozzle {
             Kind::Extrude(bead) => {
                 self.at = Some(step.to);
                 self.held += step.filament;
-                let rise = self.rise_to(step.z);
+                // As it is written: on short lines a thousandth more or less is a corner.
+                let rise = match self.z.replace(step.z) {
+                    Some(z) if z != step.z => to_mm(10 * (thousandths(step.z) - thousandths(z))),
+                    _ => 0.0,
+                };
                 if step.to == at && rise == 0.0 {
                     return None;
                 }
@@ -210,12 +214,15 @@ impl Nozzle {
         (delta != [0.0; 4]).then_some(motion::Move { delta, feed, tag })
     }
 
-    /// Moves to `z`, as it is written. Returns by how much it rises, mm; 0 if its height was unknown.
+    /// Moves to `z`. Returns by how much it rises, mm; 0 if its height was unknown.
     fn rise_to(&mut self, z: Coord) -> f64 {
-        // On a slope of short lines a thousandth more or less is a corner.
-        let [from, z] = [self.z.replace(z).unwrap_or(z), z].map(|z| (z + 5).div_euclid(10));
-        to_mm(10 * (z - from))
+        self.z.replace(z).map_or(0.0, |from| to_mm(z - from))
     }
+}
+
+/// `z` in thousandths of a mm.
+fn thousandths(z: Coord) -> Coord {
+    (z + 5).div_euclid(10)
 }
 
 /// Assigns the times that the clock reports to layers, paths and roles.
