@@ -296,7 +296,8 @@ fn plastic_is_the_room_over_a_staircase_along_and_across_it() {
         assert_eq!(laid.outside, [], "{direction}");
         let heights = || segments(&laid).map(|[_, b]| b.height);
         let (low, high) = (heights().min().unwrap(), heights().max().unwrap());
-        assert!(low >= 900 && low < 1_400 && high > 2_600 && high <= 3_100, "{low} {high}");
+        let (lows, highs) = (900..1_400, 2_601..3_101);
+        assert!(lows.contains(&low) && highs.contains(&high), "{low} {high}");
         let lengths: Vec<f64> = segments(&laid).map(|[a, b]| a.at.distance(b.at)).collect();
         let longest = lengths.iter().copied().fold(0.0, f64::max);
         match direction {
