@@ -1,4 +1,13 @@
-//! Skins on surfaces of known formulas: planes, an arc, a wave.
+//! Skins on surfaces of known formulas: planes, an arc, a wave, and the facets of a mesh.
+//!
+//! Words: the *room* is what lies between surface and base. A place is *odd* if a square millimetre of the
+//! outline around it has over 1.3 or under 0.7 times the plastic that its room takes.
+//!
+//! 1. Coverage: each stretch of a path is a rectangle of plastic on a grid of 0.1 mm, and seen with round
+//!    ends. Outlines of many shapes must be covered once, and nothing beside them.
+//! 2. Plastic is the room, over a staircase too, and told where it is no height of a bead.
+//! 3. Chords leave the surface by the tolerance at most, and have the lengths asked for.
+//! 4. Order: from below; walls first; the same for any number of threads.
 
 use super::*;
 use crate::head::Head;
