@@ -124,14 +124,15 @@ impl Layer<'_> {
     /// Appends the points of a leg.
     fn leg(&self, leg: &Leg, points: &mut Vec<PathPoint>, outside: &mut Vec<Outside>) {
         let params = self.params;
-        let Some(heights) = Heights::new(leg, self.skin.surface) else { return };
+        let (lowered, surface) = (f64::from(self.skin.lowered), self.skin.surface);
+        let before = points.last().map(|p| f64::from(p.z + self.skin.layer_top) + lowered);
+        let Some(heights) = Heights::new(leg, surface, before) else { return };
         let limits = Limits {
             tolerance: f64::from(params.tolerance),
             segment: f64::from(params.segment),
             shortest: f64::from(params.shortest),
             cell: f64::from(params.line_width),
         };
-        let lowered = f64::from(self.skin.lowered);
         let room = Room::new(leg, |s| heights.at(s) - lowered, self.base, params.height);
         let length = leg.from.distance(leg.to);
         let cuts = points::cuts(length, &heights, &room, &limits);

@@ -39,8 +39,9 @@ pub(super) struct Limits {
 pub(super) struct Heights(Vec<(f64, f64)>);
 
 impl Heights {
-    /// Along `leg` on `surface`; `None` if no place of it lies on the surface.
-    pub(super) fn new(leg: &Leg, surface: &dyn Relief) -> Option<Self> {
+    /// Along `leg` on `surface`. A leg that does not touch it is as high as `else_at`, where the leg before
+    /// ends; `None` if there is no such leg.
+    pub(super) fn new(leg: &Leg, surface: &dyn Relief, else_at: Option<f64>) -> Option<Self> {
         let length = leg.from.distance(leg.to);
         let profile = surface.profile(leg.from, leg.to);
         let mut all: Vec<(f64, f64)> = Vec::with_capacity(profile.len() + 2);
@@ -51,7 +52,7 @@ impl Heights {
             }
         }
         let ends = [surface.z(leg.from), surface.z(leg.to)];
-        let first = ends[0].or(all.first().map(|one| one.1)).or(ends[1])?;
+        let first = ends[0].or(all.first().map(|one| one.1)).or(ends[1]).or(else_at)?;
         let last = ends[1].or(all.last().map(|one| one.1)).unwrap_or(first);
         if all.first().is_none_or(|(s, _)| *s > 0.5) {
             all.insert(0, (0.0, first));

@@ -4,8 +4,8 @@
 //! in plan. Neither the slope nor the length in space has a part in it (a leg that rises is longer, and
 //! thinner at right angles to itself by the same share).
 //!
-//! The base is asked for its height at places all along the leg, and across it. Sums along
-//! the leg then tell the room of any part of it, and no plastic is lost or counted twice where it is cut.
+//! The base is asked for its height at places all along the leg, and across it. Sums along the leg then
+//! tell the room of any part of it, and no plastic is lost or counted twice where it is cut.
 
 use super::relief::Base;
 use super::runs::Leg;

@@ -1,4 +1,13 @@
-//! Skins on surfaces of known formulas: planes, an arc, a wave.
+//! Skins on surfaces of known formulas: planes, an arc, a wave, and the facets of a mesh.
+//!
+//! Words: the *room* is what lies between surface and base. A place is *odd* if a square millimetre of the
+//! outline around it has over 1.3 or under 0.7 times the plastic that its room takes.
+//!
+//! 1. Coverage: each stretch of a path is a rectangle of plastic on a grid of 0.1 mm, and seen with round
+//!    ends. Outlines of many shapes must be covered once, and nothing beside them.
+//! 2. Plastic is the room, over a staircase too, and told where it is no height of a bead.
+//! 3. Chords leave the surface by the tolerance at most, and have the lengths asked for.
+//! 4. Order: from below; walls first; the same for any number of threads.
 
 use super::*;
 use crate::head::Head;
@@ -296,7 +305,8 @@ fn plastic_is_the_room_over_a_staircase_along_and_across_it() {
         assert_eq!(laid.outside, [], "{direction}");
         let heights = || segments(&laid).map(|[_, b]| b.height);
         let (low, high) = (heights().min().unwrap(), heights().max().unwrap());
-        assert!(low >= 900 && low < 1_400 && high > 2_600 && high <= 3_100, "{low} {high}");
+        let (lows, highs) = (900..1_400, 2_601..3_101);
+        assert!(lows.contains(&low) && highs.contains(&high), "{low} {high}");
         let lengths: Vec<f64> = segments(&laid).map(|[a, b]| a.at.distance(b.at)).collect();
         let longest = lengths.iter().copied().fold(0.0, f64::max);
         match direction {
