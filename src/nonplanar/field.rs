@@ -3,7 +3,7 @@
 use super::grid::{CELL, Spot, cells, columns};
 use super::surface::Surface;
 use crate::geom::Point;
-use crate::geom::spans::{Rows, Span};
+use crate::geom::spans::Span;
 use crate::units::Coord;
 use rayon::prelude::*;
 
@@ -14,8 +14,6 @@ pub(super) struct Field {
     size: [usize; 2],
     /// Row by row; not a number beside the surface.
     heights: Vec<f32>,
-    /// The cells of its outline.
-    pub rows: Rows,
 }
 
 impl Field {
@@ -30,7 +28,13 @@ impl Field {
         let mut heights = vec![f32::NAN; size[0] * size[1]];
         let lines = heights.par_chunks_mut(size[0].max(1)).zip(range.clone().into_par_iter());
         lines.for_each(|(line, j)| fill(line, surface, (start, j), rows.row(j)));
-        Self { low: [start, range.start], size, heights, rows }
+        Self { low: [start, range.start], size, heights }
+    }
+
+    /// Its first and last column, or row.
+    pub(super) fn range(&self, axis: usize) -> [i32; 2] {
+        let last = i32::try_from(self.size[axis]).unwrap_or(0) - 1;
+        [self.low[axis], self.low[axis] + last]
     }
 
     /// How high the surface lies over a cell; `None` beside it.

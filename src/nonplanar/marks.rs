@@ -22,12 +22,10 @@ pub(super) struct Marks {
 impl Marks {
     /// The places of a field, with nothing said of them.
     pub(super) fn new(field: &Field) -> Self {
-        let spots = || super::grid::spots(&field.rows, super::grid::CELL);
-        let bound = |axis: usize| {
-            let all = || spots().into_iter().map(move |spot| spot[axis].div_euclid(2));
-            [all().min().unwrap_or(0), all().max().unwrap_or(-1)]
-        };
-        let [x, y] = [bound(0), bound(1)];
+        let [x, y] = [0, 1].map(|axis| {
+            let [low, high] = field.range(axis);
+            [low.div_euclid(2), high.div_euclid(2)]
+        });
         let size = [x, y].map(|[low, high]| usize::try_from(high - low + 1).unwrap_or(0));
         let low = [x[0], y[0]];
         let mut marks = Self { low, size, of: vec![BESIDE; size[0] * size[1]] };

@@ -32,5 +32,5 @@ mod tests;
 
 pub use pass::patches;
 pub use patch::{Patch, Patches, Stroke};
-pub use scene::{Props, Scene};
+pub use scene::{Props, Scene, support_lines};
 pub use tally::{Areas, Reason};

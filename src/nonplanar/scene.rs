@@ -3,6 +3,9 @@
 use super::find::Surfaces;
 use super::params::NonPlanarParams;
 use crate::geom::Point;
+use crate::geom::raster::Raster;
+use crate::geom::spans::{Rows, Span};
+use crate::region::support::{SupportLayer, SupportPatterns};
 use crate::slice::Slicer;
 use crate::units::Coord;
 
@@ -18,6 +21,22 @@ pub struct Props<'a> {
     pub width: Coord,
     /// How far above the part it begins, grid units.
     pub gap: Coord,
+}
+
+/// The lines that support may have in a layer: all rows of where it stands.
+#[must_use]
+pub fn support_lines(layer: &SupportLayer, patterns: &SupportPatterns) -> Vec<[Point; 2]> {
+    let pairs = layer.body.iter().zip(&patterns.body);
+    let all = pairs.chain(layer.interface.iter().zip(&patterns.interface));
+    let lines = |rows: &Rows, raster: Raster| {
+        let line = |j: i32, span: &Span| {
+            let end = |u: Coord| raster.frame.leave(Point { x: u, y: j * raster.pitch });
+            [end(span.start), end(span.end)]
+        };
+        let rows = rows.iter().flat_map(|(j, row)| row.iter().map(move |span| line(j, span)));
+        rows.collect::<Vec<_>>()
+    };
+    all.flat_map(|(rows, pattern)| lines(rows, pattern.raster())).collect()
 }
 
 /// A part on the bed, with its gentle slopes.

@@ -44,6 +44,8 @@ pub(super) struct Trial<'a> {
     /// The area of each skin, from the lowest up.
     pub areas: Vec<Vec<Contour>>,
     later: Option<Later>,
+    /// The lowest and the highest place that may fail now, if some were tried before.
+    fresh: Option<[Spot; 2]>,
 }
 
 /// The tips of later lines.
@@ -68,7 +70,7 @@ impl<'a> Trial<'a> {
     ) -> Self {
         let areas = vec![piece.area.clone(); scene.params.skins as usize];
         let later = Later::new(scene, piece, stack);
-        Self { scene, ground, piece, areas, later }
+        Self { scene, ground, piece, areas, later, fresh: None }
     }
 
     /// Whether nothing is left.
@@ -99,12 +101,21 @@ impl<'a> Trial<'a> {
                 _ => grid::places(area, inset),
             };
             let fails = |place: &Spot| Some((*place, self.fails(*place, i, i == last, stack)?));
-            let failed: Vec<(Spot, Reason)> = places.par_iter().filter_map(fails).collect();
+            let asked = places.par_iter().filter(|place| self.is_fresh(**place));
+            let failed: Vec<(Spot, Reason)> = asked.filter_map(fails).collect();
             out.push(failed.into_iter().collect());
             same = Some((area, places));
         }
         self.without_base(stack, &mut out);
         out
+    }
+
+    /// Whether something was raised in reach of a place since it passed.
+    fn is_fresh(&self, place: Spot) -> bool {
+        let holds = |[low, high]: [Spot; 2]| {
+            (0..2).all(|axis| low[axis] <= place[axis] && place[axis] <= high[axis])
+        };
+        self.fresh.is_none_or(holds)
     }
 
     /// Why skin `i` cannot be laid at a place.
@@ -133,7 +144,8 @@ impl<'a> Trial<'a> {
             (!room.contains(&(top - stack.height(cell)))).then_some(*place)
         };
         let places = grid::places(&self.areas[lowest], inset);
-        let lacking: Vec<Spot> = places.par_iter().filter_map(lacks).collect();
+        let asked = places.par_iter().filter(|place| self.is_fresh(**place));
+        let lacking: Vec<Spot> = asked.filter_map(lacks).collect();
         // What the head touches there has the better reason.
         for place in lacking {
             if !refused[lowest].contains_key(&place) {
@@ -150,17 +162,29 @@ impl<'a> Trial<'a> {
         let heights = self.scene.slicer.heights();
         let most = to_mm(heights.top(self.piece.home));
         let tread = to_mm(self.scene.params.height) / 2.0;
+        let reach = (self.scene.params.head.reach() / to_mm(grid::STEP)).ceil() as i32 + 1;
+        let mut raised: Option<[Spot; 2]> = None;
         for (i, old) in old.iter().enumerate() {
             let lost = old.minus(&grid::cells(&self.areas[i]));
             let lowered = to_mm(self.scene.lowered(i));
             for (cell, z) in heights_over(&self.ground.field, &lost) {
                 stack.raise(cell, (z - lowered + tread).min(most));
+                let [low, high] = raised.unwrap_or([cell, cell]);
+                raised = Some([
+                    [low[0].min(cell[0]), low[1].min(cell[1])],
+                    [high[0].max(cell[0]), high[1].max(cell[1])],
+                ]);
                 let last = i + 1 == self.areas.len();
                 if let Some(later) = self.later.as_mut().filter(|_| last) {
                     later.add(cell, z);
                 }
             }
         }
+        let around = |[low, high]: [Spot; 2]| {
+            [low.map(|v| v.div_euclid(2) - reach), high.map(|v| v.div_euclid(2) + reach)]
+        };
+        // Nothing was raised: nothing can fail that passed.
+        self.fresh = Some(raised.map_or([[1, 1], [0, 0]], around));
     }
 }
 
