@@ -6,9 +6,9 @@
 //! - filament that is still pulled back when a line begins, or pushed out more than was pulled back;
 //! - lines outside the machine's volume, other moves beyond the nozzle's reach;
 //! - speeds in x and y beyond the machine's, and more plastic per second than the hot end melts.
-//!   Speeds of the filament alone are not judged, and speeds in z only of lines that rise, in files of
-//!   this program's, or beyond any machine's: firmwares cap them, and slicers rely on that. A move that
-//!   rises is as slow as the cap on z makes it;
+//!   Speeds of the filament alone are not judged, and speeds in z only of non-planar skin, of lines that
+//!   rise by more than a layer, in files of this program's, or beyond any machine's: firmwares cap them,
+//!   and slicers rely on that. A move that rises is as slow as the cap on z makes it;
 //! - travels through what stands ([`through`](super::through)), and lines on what the start block primed
 //!   ([`primed`](super::primed)).
 //!
@@ -417,6 +417,18 @@ impl<'a> Walk<'a> {
         }
     }
 
+    /// From which rise on a move's speed in z is judged, mm. Others' files leave ramps, spirals and
+    /// bends within a layer to the firmware's cap, and all travels.
+    fn least_rise(&self, step: &Step) -> f64 {
+        let layer = self.layer.and_then(|layer| self.facts.layers.get(layer));
+        match step.role {
+            Role::NonPlanar => LEAST_LIFT,
+            _ if self.terms.is_own => LEAST_LIFT,
+            _ if step.is_line() => layer.map_or(f64::INFINITY, |layer| layer.height + ROUNDING),
+            _ => f64::INFINITY,
+        }
+    }
+
     fn speed(&self, step: &Step, printing: bool, found: &mut Findings) {
         let Some(machine) = self.machine else { return };
         let length = step.length();
@@ -427,8 +439,7 @@ impl<'a> Walk<'a> {
         }
         let feed = f64::from(step.feed).min(machine.speed[2] * length / rise);
         let in_z = rise / length * f64::from(step.feed);
-        let is_judged = printing && (step.is_line() || self.terms.is_own);
-        if is_judged && rise >= LEAST_LIFT && in_z > machine.speed[2] * SPEED_SLACK {
+        if printing && rise >= self.least_rise(step) && in_z > machine.speed[2] * SPEED_SLACK {
             let (speed, most) = (short(in_z), short(machine.speed[2]));
             let text = format!("{speed} mm/s in z, where the machine does {most}");
             found.add(Finding::of(Code::TooFast, in_z, "mm/s", text));
