@@ -126,11 +126,9 @@ impl Seen {
             let lines = section.moves.iter().filter(|step| is_of_part(step, facts));
             for step in lines.filter(|step| section.layer.is_some() && is_known(step.role)) {
                 let half = f64::from(step.width) / 2.0;
-                for at in [step.from, step.to] {
-                    for axis in 0..2 {
-                        seen.low[axis] = seen.low[axis].min(f64::from(at[axis]) - half);
-                        seen.high[axis] = seen.high[axis].max(f64::from(at[axis]) + half);
-                    }
+                for [x, y, _] in [step.from, step.to].map(|at| at.map(f64::from)) {
+                    seen.low = [seen.low[0].min(x - half), seen.low[1].min(y - half)];
+                    seen.high = [seen.high[0].max(x + half), seen.high[1].max(y + half)];
                 }
                 let height = f64::from(step.height);
                 let [low, high] = step.heights();
