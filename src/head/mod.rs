@@ -61,9 +61,8 @@ impl Head {
     pub fn steepest(&self) -> f64 {
         let shape = Shape::of(self);
         let from = self.press_radius();
-        let cone = (shape.cone_end > from && from > 0.0)
-            .then(|| atan(shape.rise(from), from))
-            .or((shape.cone_end > 0.0 && from <= 0.0).then_some(self.cone));
+        let flank = if from > 0.0 { atan(shape.rise(from), from) } else { self.cone };
+        let cone = (shape.cone_end > from).then_some(flank);
         let discs = self.discs.iter().map(|&[radius, z]| atan(z, radius));
         cone.into_iter().chain(discs).fold(90.0, f64::min)
     }

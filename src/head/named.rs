@@ -5,8 +5,11 @@
 
 use super::Head;
 
+/// A name, and its head.
+type Named = (&'static str, fn() -> Head);
+
 /// The heads by name, the default first.
-const NAMED: [(&str, fn() -> Head); 3] = [("cautious", cautious), ("v6", v6), ("long-0.6", long)];
+const NAMED: [Named; 3] = [("cautious", cautious), ("v6", v6), ("long-0.6", long)];
 
 /// The names, the default first.
 pub fn names() -> impl Iterator<Item = &'static str> {
