@@ -146,6 +146,7 @@ fn made(
         number: 0,
         surface: piece.surface,
         layer: piece.home,
+        top: scene.slicer.heights().top(piece.home),
         strokes,
         extent: [low, high],
         bounds: [bounds[0].floor() as Coord, bounds[1].ceil() as Coord],

@@ -25,6 +25,8 @@ pub struct Patch {
     pub surface: usize,
     /// It is printed after the paths of this layer.
     pub layer: usize,
+    /// The top of that layer above the bed.
+    pub top: Coord,
     /// Where each skin lies in plan, from the lowest up; each within the next.
     pub areas: Vec<Vec<Contour>>,
     /// Its paths in the order of printing.

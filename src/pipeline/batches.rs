@@ -231,7 +231,9 @@ impl Orderer<'_> {
             let at = self.head.at.unwrap_or_default();
             let paths = order::order(paths, at, &mut self.seams, plan);
             let skins = self.curved.map(|c| c.after(region.layer.index)).unwrap_or_default();
-            let next = self.head.after(&region.layer, &paths).after_moves(&region.layer, &skins);
+            let next = self.head.after(&region.layer, &paths);
+            let k = region.layer.index;
+            let next = self.curved.map_or(next, |c| c.head_after(next, k, &skins));
             ordered.push((region, std::mem::replace(&mut self.head, next), paths, skins));
             self.tally.layer(region);
             self.footing.layer(footprint, region);
@@ -239,7 +241,7 @@ impl Orderer<'_> {
         let toolpaths = ordered.into_par_iter();
         let toolpaths = toolpaths.map(|(region, from, paths, skins)| {
             let mut toolpath = travel::toolpath(&region.layer, paths, from, plan);
-            toolpath.moves.extend(skins);
+            skins.into_iter().for_each(|skin| skin.add_to(&mut toolpath, plan));
             toolpath
         });
         self.lifted(toolpaths.collect())

@@ -1,6 +1,7 @@
 //! Mesh and layers -> Curved: the patches of non-planar skin, for the stages that leave room for them and print them.
 
 use super::lift::Lift;
+use crate::fill::Path;
 use crate::geom::raster::Raster;
 use crate::geom::{Point, edges};
 use crate::mesh::place::Placed;
@@ -9,12 +10,12 @@ use crate::nonplanar::base::Base;
 use crate::nonplanar::find::{Surfaces, surfaces};
 use crate::nonplanar::params::NonPlanarParams;
 use crate::nonplanar::{Patch, Patches, Props, Scene};
-use crate::plan::PrintMove;
+use crate::plan::{Head, PlanParams, Toolpath, travel};
 use crate::profile::Settings;
 use crate::region::curved::CurvedTops;
 use crate::region::window::Support;
 use crate::report::nonplanar::{NonPlanarReport, report};
-use crate::slice::{Layer, Slicer};
+use crate::slice::{Heights, Layer, Slicer};
 use crate::units::{Coord, to_mm, to_units};
 
 /// The surfaces of a mesh, and the patches on them.
@@ -83,11 +84,11 @@ fn lines(support: &Support, k: usize) -> Vec<[Point; 2]> {
 /// Patches, and what is left of the layers below them.
 pub struct Curved<'a> {
     patches: &'a Patches,
-    /// How many layers are printed: of those above nothing is left.
-    layers: usize,
+    /// The layers that are printed: of those above nothing is left.
+    heights: Heights,
     base: Base<'a>,
-    /// Whether travels to patches pull the filament back.
-    retracts: bool,
+    /// Travels keep so far above patches, grid units.
+    clearance: Coord,
 }
 
 impl<'a> Curved<'a> {
@@ -98,9 +99,9 @@ impl<'a> Curved<'a> {
         let base = patches.base(surfaces, to_units(settings.layer_height));
         Self {
             patches,
-            layers: layers(&base, slicer),
+            heights: slicer.heights().clone().lowest(layers(&base, slicer)),
             base,
-            retracts: settings.retraction.length > 0.0,
+            clearance: to_units(settings.nonplanar.clearance),
         }
     }
 
@@ -113,30 +114,56 @@ impl<'a> Curved<'a> {
     /// How many of the layers are printed, from the lowest on; skins take the place of those above.
     #[must_use]
     pub fn layers(&self) -> usize {
-        self.layers
+        self.heights.count()
     }
 
-    /// What is printed after the paths of layer `k`, in its order.
+    /// The patches that are printed after the paths of layer `k`, in their order. The z of their points is
+    /// relative to that layer's top.
     #[must_use]
-    pub fn after(&self, k: usize) -> Vec<PrintMove> {
-        let moves = |patch: &'a Patch| {
-            patch.strokes.iter().map(|stroke| PrintMove {
-                retract: self.retracts && stroke.over > 0,
-                over: stroke.over,
-                patch: Some(patch.number),
-                ..PrintMove::to(stroke.path.clone())
-            })
-        };
-        // A patch may wait for a layer of which nothing is left.
-        let last = self.layers.saturating_sub(1);
+    pub fn after(&self, k: usize) -> Vec<Coat> {
+        let last = self.layers().saturating_sub(1);
         let here = self.patches.patches.iter().filter(|patch| patch.layer.min(last) == k);
-        here.flat_map(moves).collect()
+        here.map(|patch| self.coat(patch, k)).collect()
+    }
+
+    fn coat(&self, patch: &Patch, k: usize) -> Coat {
+        // A patch may have waited for a layer of which nothing is left.
+        let up = patch.top - self.heights.top(k);
+        let strokes = patch.strokes.iter().map(|stroke| {
+            let mut path = stroke.path.clone();
+            path.points.iter_mut().for_each(|point| point.z += up);
+            (path, stroke.over)
+        });
+        let (paths, over) = strokes.unzip();
+        Coat { number: patch.number, paths, over }
+    }
+
+    /// The head once the patches after layer `k` are printed as well; `head` is that after its paths.
+    #[must_use]
+    pub fn head_after(&self, head: Head, k: usize, coats: &[Coat]) -> Head {
+        let z = self.heights.top(k);
+        coats.iter().fold(head, |head, coat| head.after_patch(z, &coat.paths, self.clearance))
     }
 
     /// The highest place of all patches above the bed, grid units; 0 without any.
     #[must_use]
     pub fn highest(&self) -> Coord {
         self.patches.patches.iter().map(|patch| patch.bounds[1]).max().unwrap_or(0)
+    }
+}
+
+/// A patch as it is printed.
+pub struct Coat {
+    number: u32,
+    paths: Vec<Path>,
+    /// How high the travel to each goes.
+    over: Vec<Coord>,
+}
+
+impl Coat {
+    /// Adds it to the toolpath of its layer.
+    pub fn add_to(self, toolpath: &mut Toolpath, params: &PlanParams) {
+        travel::add_patch(toolpath, self.number, self.paths.into_iter().zip(self.over), params);
     }
 }
 

@@ -84,14 +84,6 @@ pub struct Head {
 }
 
 impl Head {
-    /// The head once the paths of `moves` are printed after those of `layer`.
-    #[must_use]
-    pub fn after_moves(self, layer: &Layer, moves: &[PrintMove]) -> Self {
-        let after =
-            |head: Self, next: &PrintMove| head.after(layer, std::slice::from_ref(&next.path));
-        moves.iter().fold(self, after)
-    }
-
     /// The head once `paths` of `layer` are printed as well.
     #[must_use]
     pub fn after(self, layer: &Layer, paths: &[Path]) -> Self {

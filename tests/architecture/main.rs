@@ -26,7 +26,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("region", &["geom", "mesh", "pattern", "slice", "profile", "units"]),
     ("fill", &["geom", "pattern", "region", "slice", "profile", "units"]),
     // Paths of its own kind; of regions it sees how sections are scanned.
-    ("nonplanar", &["geom", "mesh", "slice", "region", "pattern", "fill", "head", "profile", "units"]),
+    (
+        "nonplanar",
+        &["geom", "mesh", "slice", "region", "pattern", "fill", "head", "profile", "units"],
+    ),
     // Paths in, paths out: nothing of where they come from.
     ("plan", &["fill", "geom", "slice", "profile", "units"]),
     // The program's name comes from the job.
