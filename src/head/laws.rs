@@ -121,3 +121,39 @@ fn a_height_is_never_rounded_down() {
     assert!((pile.highest() - 200.0001).abs() < 1e-9);
     assert_eq!((pile.cell([0.35, 0.3501]), pile.cell([1.01, 0.5])), (Some([3, 3]), None));
 }
+
+/// What touches a plane through the tip that rises along x by `slope` degrees, while layers of 0.3 mm are printed.
+fn on_a_plane(head: &Head, slope: f64) -> Option<Part> {
+    let mut pile = Pile::new([-20.0, -20.0], [20.0, 20.0], 0.1);
+    let [columns, rows] = pile.size();
+    let rise = slope.to_radians().tan();
+    for column in 0..columns {
+        // A cell is as high as the plane anywhere over it.
+        let x = pile.middle([column, 0])[0] + 0.05 * rise.signum();
+        (0..rows).for_each(|row| pile.raise_row(row, column..column + 1, 30.0 + x * rise));
+    }
+    pile.hit_printing(head, [0.0, 0.0, 30.0], 0.3).map(|hit| hit.part)
+}
+
+#[test]
+fn a_plane_touches_what_its_slope_lets_it_touch() {
+    let v6 = crate::head::named::v6();
+    for (slope, part) in [
+        (15.0, None),
+        (-15.0, None),
+        (20.0, None),
+        // The block reaches further to the left.
+        (-20.0, Some(Part::Box(0))),
+        (28.0, Some(Part::Disc(0))),
+    ] {
+        assert_eq!(on_a_plane(&v6, slope), part, "{slope}");
+    }
+    let cautious = crate::head::named::cautious();
+    assert_eq!(
+        (on_a_plane(&cautious, 4.2), on_a_plane(&cautious, 9.0)),
+        (None, Some(Part::Disc(0)))
+    );
+    assert_eq!(on_a_plane(&crate::head::named::long(), 31.0), None);
+    // The flat presses deeper than a layer and a half.
+    assert_eq!(on_a_plane(&crate::head::named::long(), 42.0), Some(Part::Flat));
+}
