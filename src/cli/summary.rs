@@ -79,7 +79,7 @@ fn nonplanar(report: &NonPlanarReport) -> String {
         "non-planar skin on {:.0} of {:.0} mm² of sloped tops{contour}, {:.0} flat{why}\n",
         areas.skin_mm2,
         areas.top_mm2 - areas.level_mm2,
-        areas.flat_mm2.max(0.0),
+        areas.flat_mm2,
     )
 }
 

@@ -92,7 +92,7 @@ fn areas(mm2: &Areas) -> TopAreas {
         skin_mm2: mm2.skin,
         contour_mm2: mm2.contour,
         level_mm2: mm2.level,
-        flat_mm2: flat.iter().map(|flat| flat.mm2).sum(),
+        flat_mm2: flat.iter().fold(0.0, |sum, flat| sum + flat.mm2),
         flat,
     }
 }
