@@ -30,6 +30,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "nonplanar",
         &["geom", "mesh", "slice", "region", "pattern", "fill", "head", "profile", "units"],
     ),
+    (
+        "nonplanar",
+        &["fill", "geom", "head", "mesh", "pattern", "region", "slice", "profile", "units"],
+    ),
     // Paths in, paths out: nothing of where they come from.
     ("plan", &["fill", "geom", "slice", "profile", "units"]),
     // The program's name comes from the job.
