@@ -72,12 +72,7 @@ pub(super) fn place(
         notes.push("the part: the file has support, and does not tell which lines it is".into());
         return None;
     }
-    // A layer above a gap is no higher than its lines.
-    let layers = facts.layers.iter().zip(&survey.heights).zip(&survey.is_skin);
-    let of = |((layer, height), is_skin): ((&Layer, &f64), &bool)| {
-        (layer.z, if *is_skin { 0.0 } else { *height })
-    };
-    let heights: Vec<(f64, f64)> = layers.map(of).collect();
+    let heights = tops(facts, survey);
     let (made, lift) = lifted((facts, survey), (model, terms), has_roles, &heights);
     let mut part = match made {
         Ok(part) => part,
@@ -123,6 +118,16 @@ pub(super) fn place(
     }
     height((facts, survey), (model, lift), &part, found);
     Some(part)
+}
+
+/// Tops and heights of all layers, mm. A layer above a gap is no higher than its lines, a skin that a file
+/// calls a layer is none.
+fn tops(facts: &Facts, survey: &Survey) -> Vec<(f64, f64)> {
+    let layers = facts.layers.iter().zip(&survey.heights).zip(&survey.is_skin);
+    let of = |((layer, height), is_skin): ((&Layer, &f64), &bool)| {
+        (layer.z, if *is_skin { 0.0 } else { *height })
+    };
+    layers.map(of).collect()
 }
 
 /// The model cut at layers of these tops and heights, as high as a raft lifts it, and how far that is, mm.

@@ -41,8 +41,8 @@ pub(super) fn pieces(step: &Step, layers: &[Layer]) -> Vec<(usize, Step)> {
     let rises = step.to[2] > step.from[2];
     let mut from = 0.0;
     let mut pieces = Vec::with_capacity(end - first + 1);
-    for k in first..=end {
-        let to = if k == end { 1.0 } else { (layers[k].z - low) / (high - low) };
+    for (k, layer) in layers.iter().enumerate().take(end + 1).skip(first) {
+        let to = if k == end { 1.0 } else { (layer.z - low) / (high - low) };
         let ends = if rises { [from, to] } else { [1.0 - to, 1.0 - from] };
         let filament = (f64::from(step.filament) * (to - from)) as f32;
         let piece = Step { from: part(ends[0]), to: part(ends[1]), filament, ..*step };

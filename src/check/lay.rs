@@ -18,6 +18,7 @@ use super::anchors::{self, LEAST_RUN, Loose, Piece};
 use super::beads::place;
 use super::belongs::is_stray;
 use super::bodies::Start;
+use super::chains::{CORE, SAME_HEIGHT, chains_of, is_ironing, runs_on};
 use super::finding::{Code, Finding, Place, short};
 use super::ground::{Carrier, Ground, PITCH, above, bed_room, below, lower_side, room_below};
 use super::laid::{Bead, Laid, Seen, both};
@@ -42,19 +43,12 @@ const MOST_MISSING: f64 = 2.0;
 /// Length behind the nozzle that does not count as laid, mm: a line may turn back within it.
 const BEHIND: f64 = 1.5;
 
-/// A line runs on another where their cores meet, which are this part of their widths: neighbours
-/// overlap by less, turns of a zigzag by more.
-const CORE: f64 = 0.4;
-
 /// What carries a line may end so far beside it, mm: a tenth of a line, by which widths are rounded
 /// and beads are wider than files say.
 const SLACK: f64 = 0.05;
 
 /// Gaps in what a line lies on that do not count, mm.
 const CLOSED: f64 = 0.03;
-
-/// Heights of lines that differ by less are the same, mm: positions are rounded to this or less.
-const SAME_HEIGHT: f64 = 0.01;
 
 /// A line that strays lies on another of its layer, or falls into it, from this part of its height on;
 /// and so long a stretch of it may have nothing under it, mm.
@@ -73,25 +67,6 @@ pub(super) struct Measured {
     pub(super) longest_end: f64,
     /// Length of lines that hang where the part itself hangs, mm.
     pub(super) part_hangs: f64,
-}
-
-/// The chains of a layer's moves.
-pub(super) fn chains_of(moves: &[Step]) -> impl Iterator<Item = Range<usize>> {
-    let mut next = 0;
-    let chains = moves.chunk_by(|a, b| {
-        a.is_line() && b.is_line() && a.to == b.from && is_ironing(a) == is_ironing(b)
-    });
-    let chains = chains.map(move |chain| {
-        let first = next;
-        next += chain.len();
-        first..next
-    });
-    chains.filter(|chain| moves[chain.start].is_line())
-}
-
-/// Whether a line lies on purpose on others of its layer.
-pub(super) fn is_ironing(step: &Step) -> bool {
-    step.role == Role::Ironing
 }
 
 /// A chain once it is laid.
@@ -501,16 +476,6 @@ impl<'a> Judge<'a> {
             bottom: step.heights()[0] - f64::from(step.height),
         })
     }
-}
-
-/// What of a line runs on another, at its height.
-fn runs_on(bead: &Bead, other: &Bead) -> Option<[f64; 2]> {
-    if bead.is_level() && other.is_level() {
-        let is_as_high = (other.middle() - bead.middle()).abs() < SAME_HEIGHT;
-        return if is_as_high { bead.way(other, CORE * other.radius) } else { None };
-    }
-    let [from, to] = bead.way(other, CORE * other.radius)?;
-    (bead.above(other, 0.5 * (from + to)).abs() < SAME_HEIGHT).then_some([from, to])
 }
 
 fn length_of(samples: &[Sample]) -> f64 {

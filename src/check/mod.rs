@@ -23,6 +23,7 @@ mod beads;
 mod belongs;
 mod bodies;
 mod capsule;
+mod chains;
 mod changes;
 mod contact;
 mod dialect;

@@ -19,11 +19,12 @@
 
 use super::beads::place;
 use super::bodies::Bodies;
+use super::chains::{chains_of, is_ironing};
 use super::filled::Filled;
 use super::finding::{Code, Finding, Findings, short};
 use super::ground::{Carrier, Ground};
 use super::laid::{Laid, SUPPORT_GAP};
-use super::lay::{Judge, Judged, Measured, Patch, chains_of, is_ironing};
+use super::lay::{Judge, Judged, Measured, Patch};
 use super::part::Part;
 use super::raft;
 use super::survey::Survey;

@@ -190,9 +190,7 @@ impl Survey {
                 self.part = both(self.part, Some(covered));
                 of_part = both(of_part, Some(covered));
             }
-            if page.layer.is_none() {
-                continue;
-            }
+            let Some(layer) = page.layer else { continue };
             self.filament += f64::from(step.filament);
             self.extent = both(self.extent, Some(covered));
             let ends = || extent_of([step.from, step.to].map(flat).into_iter());
@@ -206,12 +204,7 @@ impl Survey {
             let low = step.heights()[0] - f64::from(step.height);
             depth = depth.min(low);
             self.top = self.top.max(step.heights()[1]);
-            if let Some(layer) = page.layer
-                && (is_skin || is_stray(step, &facts.layers[layer]))
-            {
-                for (at, piece) in pieces(step, &facts.layers) {
-                    self.strays[at].push(piece);
-                }
+            if self.stray(facts, (layer, is_skin), step) {
                 continue;
             }
             floor = floor.min(low);
@@ -233,6 +226,19 @@ impl Survey {
             self.bottoms.push(bottom);
             self.outlines.push(of_walls.or(of_part));
         }
+    }
+}
+
+impl Survey {
+    /// Puts a line of a layer that strays, as all of a skin do, where it lies; whether it does.
+    fn stray(&mut self, facts: &Facts, (layer, is_skin): (usize, bool), step: &Step) -> bool {
+        let strays = is_skin || is_stray(step, &facts.layers[layer]);
+        if strays {
+            for (at, piece) in pieces(step, &facts.layers) {
+                self.strays[at].push(piece);
+            }
+        }
+        strays
     }
 }
 

@@ -121,7 +121,7 @@ pub(super) fn compare(
     let of_role = |index: usize| role(halves, measures.as_ref(), index, rules);
     let is_whole = |role: Role| is_plastic(role) && !(by_role && role == Role::NonPlanar);
     let plastic = (0..ROLES).filter(|&index| is_whole(Role::ALL[index]));
-    let patches = if by_role { patches::compare(halves, rules) } else { Vec::new() };
+    let patches = if by_role { patches(halves, rules) } else { Vec::new() };
     let roles = plastic.map(of_role).chain(patches).filter(|role| role.moves.a + role.moves.b > 0);
     let roles: Vec<RoleOfPair> = roles.collect();
     let both = halves.a.number.is_some() && halves.b.number.is_some();
@@ -146,6 +146,21 @@ pub(super) fn compare(
     (found, measures)
 }
 
+/// The lines of non-planar skin, patch by patch.
+fn patches(halves: Both<&Half<'_>>, rules: Rules<'_>) -> Vec<RoleOfPair> {
+    let compared = patches::all(halves).into_iter().map(|(patch, steps)| {
+        let own = Both {
+            a: Half { steps: &steps.a, ..*halves.a },
+            b: Half { steps: &steps.b, ..*halves.b },
+        };
+        let own = own.as_ref();
+        let measures = own.map(|half| Measure::new(half.steps, rules.by_role));
+        let found = role(own, measures.as_ref(), Role::NonPlanar as usize, rules);
+        RoleOfPair { patch: Some(patch), ..found }
+    });
+    compared.collect()
+}
+
 /// Travels, and whether others come from another order of the same lines.
 fn travels(
     halves: Both<&Half<'_>>,
@@ -164,7 +179,7 @@ fn travels(
     travels
 }
 
-pub(super) fn role(
+fn role(
     halves: Both<&Half<'_>>,
     measures: Both<&Measure>,
     index: usize,

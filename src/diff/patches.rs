@@ -1,10 +1,9 @@
-//! Two halves -> RoleOfPair of each patch of non-planar skin: its lines with those of the same patch.
+//! Two halves -> patches of non-planar skin: the lines of each in both, to be compared one by one.
 //!
 //! Patches are the same that have the same number and lie at one place of the bed; of the rest those are
 //! that lie at one place. A patch that only one file has there is compared with nothing.
 
 use super::half::Half;
-use super::pair::{RoleOfPair, Rules, role};
 use super::sums::{Both, Extent, Measure};
 use crate::reader::Role;
 use crate::reader::print::Step;
@@ -13,21 +12,16 @@ use std::collections::BTreeMap;
 /// The moves of the lines of each patch, by its number.
 type Patches = BTreeMap<u32, Vec<Step>>;
 
-/// Compares all patches of both halves, one by one.
-pub(super) fn compare(halves: Both<&Half<'_>>, rules: Rules<'_>) -> Vec<RoleOfPair> {
+/// The patches of both halves, one by one: their numbers and their lines.
+pub(super) fn all(halves: Both<&Half<'_>>) -> Vec<(Both<Option<u32>>, Both<Vec<Step>>)> {
     let all = halves.map(of_half);
-    let none = Vec::new();
-    let compared = pairs(&all).into_iter().map(|patch| {
-        let steps = |number: Option<u32>, all: &'_ Patches| {
-            number.and_then(|number| all.get(&number)).cloned().unwrap_or_else(|| none.clone())
-        };
-        let (a, b) = (steps(patch.a, &all.a), steps(patch.b, &all.b));
-        let own = Both { a: Half { steps: &a, ..*halves.a }, b: Half { steps: &b, ..*halves.b } };
-        let measures = own.as_ref().map(|half| Measure::new(half.steps, rules.by_role));
-        let found = role(own.as_ref(), measures.as_ref(), Role::NonPlanar as usize, rules);
-        RoleOfPair { patch: Some(patch), ..found }
-    });
-    compared.collect()
+    let steps = |number: Option<u32>, all: &Patches| {
+        number.and_then(|number| all.get(&number)).cloned().unwrap_or_default()
+    };
+    let of = |patch: Both<Option<u32>>| {
+        (patch, Both { a: steps(patch.a, &all.a), b: steps(patch.b, &all.b) })
+    };
+    pairs(&all).into_iter().map(of).collect()
 }
 
 fn of_half(half: &Half<'_>) -> Patches {
