@@ -165,7 +165,6 @@ fn check(patches: &Patches, heights: &Heights) {
             assert!(grid::area_mm2(&out) < 0.1, "{}", grid::area_mm2(&out));
         }
         let top = heights.top(patch.layer);
-        assert!(top < patch.bounds[1]);
         let first = patch.strokes.first().unwrap();
         assert!(first.over > top);
         let highest = |stroke: &Stroke| stroke.path.points.iter().map(|p| p.z + top).max().unwrap();
@@ -217,6 +216,23 @@ fn a_wedge_is_taken_whole() {
     // The base is whole, and nothing stands higher than the wedge's top.
     assert!((patch.bounds[1] - to_units(2.0 + 20.0 * tan(4.76))).abs() < 5);
     assert_eq!(patch.layer, 16);
+    assert!(17 * 2_000 < patch.bounds[1]);
+}
+
+#[test]
+fn threads_change_nothing() {
+    let wave = |x: f64, y: f64| {
+        let is_boss = (x - 5.0).abs() < 1.1 && (y - 4.0).abs() < 1.1;
+        if is_boss { 9.0 } else { 4.0 + libm::sin(x / 4.0) }
+    };
+    let placed = placed(vec![body([0.0, 0.0], (20, 16, 0.5), wave)], 2);
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| passed(&placed, &params(head("v6"))))
+    };
+    let one = with(1);
+    assert!(one.patches.len() == 2 && one.mm2.of(Reason::Obstacle) > 1.0, "{:?}", one.mm2);
+    assert_eq!(one, with(3));
 }
 
 #[test]
