@@ -17,7 +17,7 @@ pub struct Stroke {
 }
 
 /// A piece of a surface that is printed as skins. Grid units.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Patch {
     /// Its number in the order of printing, counted from 1.
     pub number: u32,
@@ -44,7 +44,7 @@ pub struct Patch {
 }
 
 /// The patches of a print.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Patches {
     /// In the order of printing.
     pub patches: Vec<Patch>,
