@@ -12,6 +12,7 @@
 //! than these.
 
 use super::field::Field;
+use super::glance::{Glance, Under};
 use super::grid::{self, CELL, STEP, Spot, cell_of};
 use super::marks::Marks;
 use super::scene::Scene;
@@ -19,7 +20,7 @@ use super::shrink::{Refused, refuse, shrink};
 use super::stack::heights_over;
 use super::surface::Surface;
 use super::tally::Reason;
-use super::touch::{Touch, mm};
+use super::touch::mm;
 use crate::geom::Contour;
 use crate::geom::boxes::extent;
 use crate::geom::spans::Rows;
@@ -28,6 +29,9 @@ use crate::region::scan::around;
 use crate::units::{Coord, to_mm};
 use rayon::prelude::*;
 use std::sync::Arc;
+
+/// Heights differ by no more than this from those of cells, mm.
+const SLACK: f64 = 0.1;
 
 /// A surface, and what is known of its places.
 pub(super) struct Ground {
@@ -47,6 +51,8 @@ pub(super) struct Piece {
     pub home: usize,
     /// Its skins as they stand when all are laid.
     pub own: Arc<Pile>,
+    /// Where these skins are not in the way of the head, at a glance.
+    pub glance: Arc<Glance>,
 }
 
 /// The pieces of surface `number`.
@@ -58,14 +64,16 @@ pub(super) fn pieces(scene: &Scene<'_>, number: usize, surface: &Surface) -> (Gr
     let area = shrink(area, &refused, &mut marks, scene.params);
     let mut out = Vec::new();
     for whole in grid::pieces(&area) {
-        let own = Arc::new(standing(&field, &whole));
-        let refused = in_its_own_way(scene, &field, &own, &whole);
+        let (own, glance) = standing(scene, &field, &whole);
+        let (own, glance) = (Arc::new(own), Arc::new(glance));
+        let refused = in_its_own_way(scene, &field, (&own, &glance), &whole);
         let left = shrink(whole, &refused, &mut marks, scene.params);
         for area in grid::pieces(&left) {
             let Some(bounds) = surface.over(&area) else { continue };
             match home(scene, bounds[1]) {
                 Some(home) => {
-                    out.push(Piece { surface: number, area, bounds, home, own: Arc::clone(&own) });
+                    let (own, glance) = (Arc::clone(&own), Arc::clone(&glance));
+                    out.push(Piece { surface: number, area, bounds, home, own, glance });
                 }
                 None => marks.mark_all(&places(&area), |_| Reason::Overhang),
             }
@@ -156,29 +164,39 @@ fn under_support(scene: &Scene<'_>, field: &Field, places: &[Spot], out: &mut Re
 }
 
 /// The surface over an area as it stands when all skins are laid.
-fn standing(field: &Field, area: &[Contour]) -> Pile {
+fn standing(scene: &Scene<'_>, field: &Field, area: &[Contour]) -> (Pile, Glance) {
     let (low, high) = extent(area.iter().flatten()).unwrap_or_default();
     let floor = |v: Coord| v.div_euclid(CELL) - 1;
     let low = [floor(low.x), floor(low.y)];
     let high = [floor(high.x) + 3, floor(high.y) + 3];
     let corner = |cell: Spot| grid::middle(cell).map(|v| v - to_mm(CELL) / 2.0);
     let mut pile = Pile::new(corner(low), corner(high), to_mm(CELL));
+    let [columns, rows] = pile.size();
+    let mut heights = vec![f32::NEG_INFINITY; columns * rows];
     for (cell, z) in heights_over(field, &grid::cells(area)) {
-        let at = |axis: usize| usize::try_from(cell[axis] - low[axis]).unwrap_or(usize::MAX);
-        pile.raise([at(0), at(1)], z);
+        let [x, y] = [0, 1].map(|axis| usize::try_from(cell[axis] - low[axis]).unwrap_or(0));
+        pile.raise([x, y], z);
+        heights[y * columns + x] = z as f32;
     }
-    pile
+    let known = || heights.iter().copied().filter(|z| z.is_finite()).map(f64::from);
+    let most = known().fold(f64::MIN, f64::max) - known().fold(f64::MAX, f64::min);
+    let under = Under::pressing(&scene.params.head, to_mm(scene.params.height), most + SLACK);
+    (pile, Glance::new(low, columns, heights, under))
 }
 
 /// Places where the head would touch the surface itself.
-fn in_its_own_way(scene: &Scene<'_>, field: &Field, own: &Pile, area: &[Contour]) -> Refused {
-    let touch = Touch { scene, field };
-    let params = scene.params;
+fn in_its_own_way(
+    scene: &Scene<'_>,
+    field: &Field,
+    (own, glance): (&Pile, &Glance),
+    area: &[Contour],
+) -> Refused {
+    let (params, layer) = (scene.params, to_mm(scene.params.height));
     let tried = |place: &Spot| {
         let cell = cell_of(*place);
-        let z = field.at(cell)?;
+        let z = field.at(cell).filter(|z| !glance.is_clear(cell, mm(*z)))?;
         let [x, y] = grid::middle(cell);
-        let hit = own.hit(&params.head, [x, y, mm(z)], &|hit| touch.is_press(hit));
+        let hit = own.hit_printing(&params.head, [x, y, mm(z)], layer);
         hit.map(|_| (*place, Reason::Cone))
     };
     let places = grid::places(area, params.line_width / 2);

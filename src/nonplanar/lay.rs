@@ -17,13 +17,13 @@ use super::skin::{self, Base, Laid, Outside, Skin};
 use super::stack::Stack;
 use super::surface::Surface;
 use super::tally::Reason;
-use super::touch::{Touch, up};
+use super::touch::{Touch, cell_at, up};
 use super::trial::Trial;
 use crate::fill::{Path, PathPoint};
 use crate::geom::Point;
 use crate::geom::spans::Rows;
 use crate::head::pile::{Hit, Pile};
-use crate::head::sweep::sweep;
+use crate::head::sweep::{SAMPLE, sweep, sweep_printing};
 use crate::units::{Coord, to_mm};
 use rayon::prelude::*;
 
@@ -93,7 +93,7 @@ pub(super) fn lay(trial: &Trial<'_>, surface: &Surface, stack: &Stack<'_>) -> Co
         for place in outside.iter().flat_map(covered) {
             refuse(&mut coat.refused[last], place, Reason::Overhang);
         }
-        let swept = Swept { trial, stack, lowered, layer_top };
+        let swept = Swept { trial, stack, layer_top };
         for (place, reason) in swept.touches(&paths) {
             refuse(&mut coat.refused[i], place, reason);
         }
@@ -118,7 +118,6 @@ fn covered(outside: &Outside) -> Vec<Spot> {
 struct Swept<'a> {
     trial: &'a Trial<'a>,
     stack: &'a Stack<'a>,
-    lowered: Coord,
     layer_top: Coord,
 }
 
@@ -134,22 +133,35 @@ impl Swept<'_> {
         moves.par_iter().flat_map_iter(touched).collect()
     }
 
+    /// Whether a straight way is clear at a glance.
+    fn is_clear(&self, a: [f64; 3], b: [f64; 3]) -> bool {
+        let length = (a[0] - b[0]).hypot(a[1] - b[1]);
+        let steps = (length / SAMPLE).ceil().max(1.0);
+        (0..=steps as usize).all(|k| {
+            let share = k as f64 / steps;
+            let [x, y, z] = [0, 1, 2].map(|axis| a[axis] + share * (b[axis] - a[axis]));
+            self.trial.is_clear(cell_at([x, y]), z)
+        })
+    }
+
     /// The places on a straight way. Most ways are clear.
     fn on_way(&self, a: [f64; 3], b: [f64; 3]) -> Vec<(Spot, Reason)> {
         let scene = self.trial.scene;
         let (head, field) = (&scene.params.head, &self.trial.ground.field);
         let touch = Touch { scene, field };
         let press = |hit: &Hit| touch.is_press(hit);
-        let lift = to_mm(self.lowered);
-        let up = |[x, y, z]: [f64; 3]| [x, y, z + lift];
+        let layer = to_mm(scene.params.height);
         let mut out = Vec::new();
         let mut open = vec![(a, b)];
         while let Some((a, b)) = open.pop() {
-            let hit = sweep(&self.stack.pile, head, a, b, &press);
-            let reason = hit.map(|hit| touch.reason(&hit, |cell| self.stack.is_supported(cell)));
-            // A skin is to itself as the last one is to the surface.
-            let own = || sweep(&self.trial.piece.own, head, up(a), up(b), &press);
-            let Some(reason) = reason.or_else(|| own().map(|_| Reason::Cone)) else { continue };
+            if self.is_clear(a, b) {
+                continue;
+            }
+            // What the skins are to themselves is known: they lie on the surface within the tolerance.
+            let pressed = || sweep(&self.trial.others, head, a, b, &press);
+            let hit = sweep_printing(&self.stack.pile, head, a, b, layer).or_else(pressed);
+            let Some(hit) = hit else { continue };
+            let reason = touch.reason(&hit, |cell| self.stack.is_supported(cell));
             let middle = [0, 1, 2].map(|axis| f64::midpoint(a[axis], b[axis]));
             if (a[0] - b[0]).hypot(a[1] - b[1]) <= to_mm(grid::STEP) {
                 out.push((place_at([middle[0], middle[1]]), reason));

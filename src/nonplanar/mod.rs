@@ -16,6 +16,7 @@ pub mod tally;
 mod candidate;
 mod facets;
 mod field;
+mod glance;
 mod grid;
 mod index;
 mod lay;

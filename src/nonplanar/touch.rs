@@ -36,9 +36,18 @@ impl Touch<'_> {
         params.head.presses(hit, to_mm(params.height)) && self.is_own(hit)
     }
 
+    /// Whether a cell that stands so high, mm, is the surface or its base.
+    pub(super) fn is_surface(&self, cell: Spot, height: f64) -> bool {
+        self.field.at(cell).is_some_and(|z| height <= mm(z) + self.tread())
+    }
+
+    /// How far what is printed flat may stand over the surface, mm.
+    fn tread(&self) -> f64 {
+        TREAD * to_mm(self.scene.params.height)
+    }
+
     /// Whether what is touched is the surface, or continues it.
     fn is_own(&self, hit: &Hit) -> bool {
-        let tread = TREAD * to_mm(self.scene.params.height);
         let at = cell_at(hit.at);
         let level = match self.field.at(at) {
             Some(z) => z,
@@ -50,7 +59,7 @@ impl Touch<'_> {
                 z + (x * by[0] + y * by[1]).max(0.0)
             }
         };
-        hit.height <= level / crate::units::UNITS_PER_MM + tread
+        hit.height <= mm(level) + self.tread()
     }
 
     /// Why a touch refuses a place. `is_support` tells whether support stood at a cell.

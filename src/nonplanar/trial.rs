@@ -16,6 +16,8 @@
 //!   stand beside them. They are tried the other way round: a head upside down over a pile of their tips.
 
 use super::candidate::{Ground, Piece};
+use super::field::Field;
+use super::glance::{Glance, Under};
 use super::grid::{self, CELL, Spot, cell_of};
 use super::scene::Scene;
 use super::shrink::{Refused, refuse, shrink_all};
@@ -36,6 +38,10 @@ const MOST_ROOM: f64 = 1.75;
 /// Less room than this share of a skin height is none.
 const LEAST_ROOM: f64 = 0.25;
 
+/// What lies lower than the lowest skin by this share of its height is base: a base ends half a skin
+/// height below it at the highest, but for rounding.
+const LOWER: f64 = 0.2;
+
 /// A piece that is tried.
 pub(super) struct Trial<'a> {
     pub scene: &'a Scene<'a>,
@@ -43,6 +49,10 @@ pub(super) struct Trial<'a> {
     pub piece: &'a Piece,
     /// The area of each skin, from the lowest up.
     pub areas: Vec<Vec<Contour>>,
+    /// What stands around the piece that is neither its surface nor its base.
+    pub others: Pile,
+    /// Where what stands leaves room for the head, at a glance; `None` while that changes.
+    glance: Option<Glance>,
     later: Option<Later>,
     /// The lowest and the highest place that may fail now, if some were tried before.
     fresh: Option<[Spot; 2]>,
@@ -70,7 +80,8 @@ impl<'a> Trial<'a> {
     ) -> Self {
         let areas = vec![piece.area.clone(); scene.params.skins as usize];
         let later = Later::new(scene, piece, stack);
-        Self { scene, ground, piece, areas, later, fresh: None }
+        let others = others(scene, &ground.field, piece, stack);
+        Self { scene, ground, piece, areas, others, glance: None, later, fresh: None }
     }
 
     /// Whether nothing is left.
@@ -81,12 +92,49 @@ impl<'a> Trial<'a> {
     /// Shrinks the areas until all places pass.
     pub(super) fn settle(&mut self, stack: &mut Stack<'_>) {
         while !self.is_empty() {
+            if self.glance.is_none() {
+                self.glance = Some(self.look(stack));
+            }
             let refused = self.refused(stack);
             if refused.iter().all(Refused::is_empty) {
                 return;
             }
             self.cut(&refused, stack);
         }
+    }
+
+    /// What stands around the piece, but for what lies so low below its surface that only skins would
+    /// touch it.
+    fn look(&self, stack: &Stack<'_>) -> Glance {
+        let params = self.scene.params;
+        let (from, to) = extent(self.piece.area.iter().flatten()).unwrap_or_default();
+        let reach = (params.head.reach() / to_mm(CELL)).ceil() as i32 + 2;
+        let low = [from.x, from.y].map(|v| v.div_euclid(CELL) - reach);
+        let high = [to.x, to.y].map(|v| v.div_euclid(CELL) + reach);
+        let depth = f64::from(self.scene.lowered(0)) + LOWER * f64::from(params.height);
+        let row = |y: i32| {
+            (low[0]..high[0]).map(move |x| {
+                let stands = stack.height([x, y]);
+                let base = self.ground.field.at([x, y]).map(|z| mm(z - depth));
+                if base.is_some_and(|base| stands <= base) {
+                    f32::NEG_INFINITY
+                } else {
+                    stands as f32
+                }
+            })
+        };
+        let heights: Vec<f32> = (low[1]..high[1]).into_par_iter().flat_map_iter(row).collect();
+        let columns = usize::try_from(high[0] - low[0]).unwrap_or(1);
+        let highest = heights.iter().copied().fold(f32::MIN, f32::max);
+        let most = f64::from(highest) - mm(self.piece.bounds[0] - depth);
+        Glance::new(low, columns, heights, Under::of(&params.head, most))
+    }
+
+    /// Whether the head touches nothing, at a glance, with its tip so high, mm, over a cell of the piece.
+    pub(super) fn is_clear(&self, cell: Spot, tip: f64) -> bool {
+        let surface = self.ground.field.at(cell).map(mm);
+        self.glance.as_ref().is_some_and(|glance| glance.is_clear(cell, tip))
+            && surface.is_some_and(|z| self.piece.glance.is_clear(cell, z))
     }
 
     /// The places of each skin that fail.
@@ -126,7 +174,11 @@ impl<'a> Trial<'a> {
         let [x, y] = grid::middle(cell);
         let tip = [x, y, mm(z - f64::from(self.scene.lowered(i)))];
         let head = &self.scene.params.head;
-        let hit = stack.pile.hit(head, tip, &|hit| touch.is_press(hit));
+        // Press goes into its own surface alone.
+        let pressed = || self.others.hit(head, tip, &|hit| touch.is_press(hit));
+        let layer = to_mm(self.scene.params.height);
+        let tried = || stack.pile.hit_printing(head, tip, layer).or_else(pressed);
+        let hit = if self.is_clear(cell, tip[2]) { None } else { tried() };
         let of = |hit: &Hit| touch.reason(hit, |cell| stack.is_supported(cell));
         let later = || self.later.as_ref().filter(|_| is_last)?.fails(&touch, [x, y], z);
         hit.map(|hit| of(&hit)).or_else(later)
@@ -170,6 +222,7 @@ impl<'a> Trial<'a> {
             for (cell, z) in heights_over(&self.ground.field, &lost) {
                 stack.raise(cell, (z - lowered + tread).min(most));
                 let [low, high] = raised.unwrap_or([cell, cell]);
+                self.glance = None;
                 raised = Some([
                     [low[0].min(cell[0]), low[1].min(cell[1])],
                     [high[0].max(cell[0]), high[1].max(cell[1])],
@@ -203,6 +256,27 @@ impl Trial<'_> {
         self.cut(&refused, stack);
         self.areas.iter_mut().for_each(Vec::clear);
     }
+}
+
+/// What stands near a piece and is not known to be its own surface: nothing of it may be pressed unless it
+/// continues the surface. Further off nothing is pressed at all.
+fn others(scene: &Scene<'_>, field: &Field, piece: &Piece, stack: &Stack<'_>) -> Pile {
+    let (from, to) = extent(piece.area.iter().flatten()).unwrap_or_default();
+    let reach = (scene.params.head.press_radius() / to_mm(CELL)).ceil() as i32 + 2;
+    let low = [from.x, from.y].map(|v| v.div_euclid(CELL) - reach);
+    let high = [to.x, to.y].map(|v| v.div_euclid(CELL) + reach);
+    let corner = |cell: Spot| grid::middle(cell).map(|v| v - to_mm(CELL) / 2.0);
+    let mut pile = Pile::new(corner(low), corner(high), to_mm(CELL));
+    let touch = Touch { scene, field };
+    for y in low[1]..high[1] {
+        for x in low[0]..high[0] {
+            let height = stack.height([x, y]);
+            if !touch.is_surface([x, y], height) {
+                pile.raise([(x - low[0]) as usize, (y - low[1]) as usize], height);
+            }
+        }
+    }
+    pile
 }
 
 impl Later {

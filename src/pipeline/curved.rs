@@ -2,14 +2,12 @@
 
 use super::lift::Lift;
 use crate::fill::Path;
-use crate::geom::raster::Raster;
-use crate::geom::{Point, edges};
 use crate::mesh::place::Placed;
 use crate::nonplanar;
 use crate::nonplanar::base::Base;
 use crate::nonplanar::find::{Surfaces, surfaces};
 use crate::nonplanar::params::NonPlanarParams;
-use crate::nonplanar::{Patch, Patches, Props, Scene};
+use crate::nonplanar::{Patch, Patches, Props, Scene, support_lines};
 use crate::plan::{Head, PlanParams, Toolpath, travel};
 use crate::profile::Settings;
 use crate::region::curved::CurvedTops;
@@ -45,7 +43,10 @@ pub fn find(
     }
     let params = NonPlanarParams::new(settings);
     let surfaces = surfaces(&placed.mesh, &placed.adjacency, &params);
-    let lines = |k: usize| support.map_or_else(Vec::new, |support| lines(support, k));
+    let lines = |k: usize| {
+        let support = support.and_then(|support| Some((support.layers.get(k)?, &support.patterns)));
+        support.map_or_else(Vec::new, |(layer, patterns)| support_lines(layer, patterns))
+    };
     let props = support.map(|_| Props {
         lines: &lines,
         width: params.line_width,
@@ -62,23 +63,6 @@ pub fn find(
     };
     let patches = nonplanar::patches(&scene);
     Some(Found { surfaces, patches })
-}
-
-/// The places that support of layer `k` may take, as lines beside each other.
-fn lines(support: &Support, k: usize) -> Vec<[Point; 2]> {
-    let Some(layer) = support.layers.get(k) else { return Vec::new() };
-    let Support { patterns, .. } = support;
-    let body = patterns.body.iter().zip(&layer.body);
-    let interface = patterns.interface.iter().zip(&layer.interface);
-    let areas = body.chain(interface).flat_map(|(pattern, rows)| {
-        let Raster { frame, pitch } = pattern.raster();
-        rows.iter().flat_map(move |(j, row)| {
-            let at = move |u: Coord| frame.leave(Point { x: u, y: j * pitch });
-            row.iter().map(move |span| [at(span.start), at(span.end)]).collect::<Vec<_>>()
-        })
-    });
-    let outlines = layer.outlines.iter().flat_map(|outline| edges(outline).map(|(a, b)| [a, b]));
-    areas.chain(outlines).collect()
 }
 
 /// Patches, and what is left of the layers below them.

@@ -133,7 +133,10 @@ impl<'a> Window<'a> {
     fn load(&mut self) {
         let layers = self.slicer.block(self.batch);
         self.batch += 1;
-        let cut = |layer: Layer| self.curved.map_or(layer.clone(), |curved| curved.cut(layer));
+        let cut = |layer: Layer| match self.curved {
+            Some(curved) => curved.cut(layer),
+            None => layer,
+        };
         let prepared: Vec<(Own, LayerRows)> =
             layers.into_par_iter().map(|layer| prepare(cut(layer), self.params)).collect();
         let prepared = if self.params.one_wall.is_some() { self.open(prepared) } else { prepared };
