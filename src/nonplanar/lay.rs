@@ -52,12 +52,13 @@ impl Base for Under<'_> {
     fn height(&self, at: Point) -> f64 {
         let [x, y] = [at.x, at.y].map(|v| (v + CELL / 2).div_euclid(CELL));
         let surface = self.field.at([x, y]);
-        if let (Some((rows, lowered)), Some(z)) = (&self.below, surface) {
-            if rows.row(y).iter().any(|span| span.start <= x * CELL && x * CELL < span.end) {
-                let [along, across] = self.field.rise([x, y]);
-                let [dx, dy] = [at.x - x * CELL, at.y - y * CELL].map(f64::from);
-                return z + along * dx + across * dy - lowered;
-            }
+        let holds = |(rows, _): &&(Rows, f64)| {
+            rows.row(y).iter().any(|span| span.start <= x * CELL && x * CELL < span.end)
+        };
+        if let (Some((_, lowered)), Some(z)) = (self.below.as_ref().filter(holds), surface) {
+            let [along, across] = self.field.rise([x, y]);
+            let [dx, dy] = [at.x - x * CELL, at.y - y * CELL].map(f64::from);
+            return z + along * dx + across * dy - lowered;
         }
         let height = |cell: Spot| self.stack.height(cell) * crate::units::UNITS_PER_MM;
         let own = height([x, y]);

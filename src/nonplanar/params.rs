@@ -11,7 +11,7 @@ pub struct NonPlanarParams {
     pub skins: u32,
     /// Height of a skin and of a layer.
     pub height: Coord,
-    /// Width of a line, and the distance of lines.
+    /// Width of a line of a skin, and the distance of lines.
     pub line_width: Coord,
     /// Bore of the nozzle.
     pub nozzle: Coord,
@@ -50,7 +50,7 @@ impl NonPlanarParams {
         Self {
             skins: skins.skins,
             height: to_units(settings.layer_height),
-            line_width: to_units(settings.line_width),
+            line_width: to_units(settings.line_width * skins.spacing),
             nozzle: to_units(settings.machine.nozzle_diameter),
             slopes: skins.min_slope..=settings.steepest_skin(),
             max_bend: skins.max_bend,
@@ -92,7 +92,7 @@ mod tests {
         let made = Profile::builder("generic-marlin").set("nonplanar.directions", "auto");
         let params = NonPlanarParams::new(&made.load().unwrap().settings);
         let lengths = [params.height, params.line_width, params.nozzle, params.tolerance];
-        assert_eq!(lengths, [2000, 4000, 4000, 50]);
+        assert_eq!(lengths, [2000, 3600, 4000, 50]);
         assert_eq!([params.segment, params.shortest, params.clearance], [20_000, 4000, 5000]);
         assert_eq!((params.directions, params.skins), (None, 2));
     }

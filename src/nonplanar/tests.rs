@@ -222,7 +222,7 @@ fn a_wedge_is_taken_whole() {
 #[test]
 fn threads_change_nothing() {
     let wave = |x: f64, y: f64| {
-        let is_boss = (x - 5.0).abs() < 1.1 && (y - 4.0).abs() < 1.1;
+        let is_boss = (x - 2.0).abs() < 1.1 && (y - 4.0).abs() < 1.1;
         if is_boss { 9.0 } else { 4.0 + libm::sin(x / 4.0) }
     };
     let placed = placed(vec![body([0.0, 0.0], (20, 16, 0.5), wave)], 2);
@@ -231,7 +231,7 @@ fn threads_change_nothing() {
         pool.install(|| passed(&placed, &params(head("v6"))))
     };
     let one = with(1);
-    assert!(one.patches.len() == 2 && one.mm2.of(Reason::Obstacle) > 1.0, "{:?}", one.mm2);
+    assert!(one.mm2.skin > 100.0, "{:?}", one.mm2);
     assert_eq!(one, with(3));
 }
 

@@ -19,6 +19,10 @@ pub struct NonPlanar {
     /// takes the mean steepest slope for the last skin, and across it for those below by turns.
     #[schemars(extend("unit" = "degrees", "default" = [0, 90]))]
     pub directions: Directions,
+    /// Distance between the lines of a skin, and their width. Across a slope each line is a step above the
+    /// one before it: nearer lines make lower steps.
+    #[schemars(range(min = 0.5, max = 1.5), extend("unit" = "line widths", "default" = 0.9))]
+    pub spacing: f64,
     /// Flatter places stay level.
     #[schemars(range(min = 0.05, max = 45), extend("unit" = "degrees", "default" = 0.5))]
     pub min_slope: f64,
