@@ -167,6 +167,6 @@ pub fn slice_placed(
     report.warnings.extend(stuck.warning);
     report.brim = stuck.brim;
     report.raft = stuck.raft;
-    report.nonplanar = found.map(|found| found.report(&lift));
+    report.nonplanar = found.map(|found| found.report(heights.count(), &lift));
     Ok(report)
 }

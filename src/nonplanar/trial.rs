@@ -29,7 +29,7 @@ use crate::geom::boxes::extent;
 use crate::geom::spans::Rows;
 use crate::head::Head;
 use crate::head::pile::{Hit, Pile};
-use crate::units::{Coord, to_mm};
+use crate::units::{Coord, to_mm, to_units};
 use rayon::prelude::*;
 
 /// More room than this many skin heights is no base.
@@ -218,16 +218,17 @@ impl<'a> Trial<'a> {
         let mut raised: Option<[Spot; 2]> = None;
         for (i, old) in old.iter().enumerate() {
             let lost = old.minus(&grid::cells(&self.areas[i]));
-            let lowered = to_mm(self.scene.lowered(i));
+            let last = i + 1 == self.areas.len();
             for (cell, z) in heights_over(&self.ground.field, &lost) {
-                stack.raise(cell, (z - lowered + tread).min(most));
+                // The next skin stands on what is left of the base: its room needs the very height.
+                let ends = if last { z + tread } else { self.base_end(z, i) };
+                stack.raise(cell, ends.min(most));
                 let [low, high] = raised.unwrap_or([cell, cell]);
                 self.glance = None;
                 raised = Some([
                     [low[0].min(cell[0]), low[1].min(cell[1])],
                     [high[0].max(cell[0]), high[1].max(cell[1])],
                 ]);
-                let last = i + 1 == self.areas.len();
                 if let Some(later) = self.later.as_mut().filter(|_| last) {
                     later.add(cell, z);
                 }
@@ -242,6 +243,14 @@ impl<'a> Trial<'a> {
 }
 
 impl Trial<'_> {
+    /// How high the base stands where skin `i` is not laid, mm, under a surface at `z`: as many layers as
+    /// [`super::base`] leaves of it.
+    fn base_end(&self, z: f64, i: usize) -> f64 {
+        let heights = self.scene.slicer.heights();
+        let count = heights.planes_up_to(to_units(z) - self.scene.lowered(i));
+        count.checked_sub(1).map_or(0.0, |k| to_mm(heights.top(k)))
+    }
+
     /// Prints all that is left flat, for the reasons of the last round.
     pub(super) fn give_up(&mut self, refused: &[Refused], stack: &mut Stack<'_>) {
         let reason = refused.iter().flat_map(Refused::values).min().copied();

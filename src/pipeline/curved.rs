@@ -23,10 +23,10 @@ pub struct Found {
 }
 
 impl Found {
-    /// What is told of them, on a print that is lifted by a raft.
+    /// What is told of them, on a print of `layers` layers that is lifted by a raft.
     #[must_use]
-    pub fn report(&self, lift: &Lift) -> NonPlanarReport {
-        report(&self.patches, (lift.layers(), to_mm(lift.by())))
+    pub fn report(&self, layers: usize, lift: &Lift) -> NonPlanarReport {
+        report(&self.patches, layers, (lift.layers(), to_mm(lift.by())))
     }
 }
 

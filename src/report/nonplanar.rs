@@ -63,15 +63,21 @@ pub struct PatchReport {
     pub areas: TopAreas,
 }
 
-/// The report on some patches; the layers of a raft, and how far it lifts, mm, come on top.
+/// The report on some patches over `count` layers; the layers of a raft, and how far it lifts, mm, come on
+/// top.
 #[must_use]
-pub fn report(patches: &Patches, (layers, lift_mm): (usize, f64)) -> NonPlanarReport {
+pub fn report(
+    patches: &Patches,
+    count: usize,
+    (layers, lift_mm): (usize, f64),
+) -> NonPlanarReport {
     let one = |patch: &Patch| {
         let [low, high] = patch.extent;
         let [bottom, top] = patch.bounds.map(|z| to_mm(z) + lift_mm);
         PatchReport {
             number: patch.number,
-            layer: patch.layer + layers + 1,
+            // Of the layer that it waited for nothing may be left.
+            layer: (patch.layer + 1).min(count) + layers,
             min_mm: [to_mm(low.x), to_mm(low.y), bottom],
             max_mm: [to_mm(high.x), to_mm(high.y), top],
             steepest_deg: patch.steepest,

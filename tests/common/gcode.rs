@@ -52,6 +52,8 @@ pub(crate) struct Move {
     pub(crate) height: f64,
     /// Of the bead, mm.
     pub(crate) width: f64,
+    /// The patch of skin that follows a surface, from 1; 0 for all else.
+    pub(crate) patch: u32,
 }
 
 impl Move {
@@ -111,6 +113,7 @@ struct State {
     kind: Kind,
     height: f64,
     width: f64,
+    patch: u32,
 }
 
 /// The ends of pieces of an arc, of a degree at most: much finer than any printer's. An arc that does
@@ -152,6 +155,7 @@ impl Print {
             kind: Kind::Custom,
             height: 0.0,
             width: 0.0,
+            patch: 0,
         };
         for (k, line) in text.lines().enumerate() {
             let step = match line.split_once(';') {
@@ -193,6 +197,10 @@ impl Print {
             }
         } else if let Some(width) = note.strip_prefix("WIDTH:") {
             state.width = number(width)?;
+        } else if let Some(patch) = note.strip_prefix("NONPLANAR_START ") {
+            state.patch = number(patch)? as u32;
+        } else if note == "NONPLANAR_END" {
+            state.patch = 0;
         }
         Ok(())
     }
@@ -263,6 +271,7 @@ impl Print {
                         feed: state.feed,
                         height: state.height,
                         width: state.width,
+                        patch: state.patch,
                     });
                     begins = to;
                 }

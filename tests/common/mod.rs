@@ -8,6 +8,7 @@ pub(crate) mod checks;
 pub(crate) mod damage;
 pub(crate) mod gcode;
 pub(crate) mod raster;
+pub(crate) mod relief;
 pub(crate) mod section;
 pub(crate) mod slope;
 pub(crate) mod solid;

@@ -13,6 +13,7 @@ mod library;
 mod metamorphic;
 mod models;
 mod motion;
+mod nonplanar;
 mod printers;
 mod raft;
 mod roughness;
