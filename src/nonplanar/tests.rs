@@ -1,4 +1,12 @@
 //! Solids made by hand -> what of their tops becomes skin, and why the rest does not.
+//!
+//! - A *body* is a grid of columns whose tops are as high as a formula says.
+//! - A *ramp* rises evenly, a *wave* up and down, a *boss* stands on either.
+//! - What is *passed* are the patches that the whole way from mesh to patch gives.
+//!
+//! 1. Make bodies, put them on a bed, and find their patches with a head and some parameters.
+//! 2. Look at what holds of all patches: areas add up, outlines lie within each other, all reasons are told.
+//! 3. Look at the share of a box that is skin, and at the reasons of the rest.
 
 use super::find::surfaces;
 use super::params::NonPlanarParams;

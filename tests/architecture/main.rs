@@ -28,10 +28,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // Paths of its own kind; of regions it sees how sections are scanned.
     (
         "nonplanar",
-        &["geom", "mesh", "slice", "region", "pattern", "fill", "head", "profile", "units"],
-    ),
-    (
-        "nonplanar",
         &["fill", "geom", "head", "mesh", "pattern", "region", "slice", "profile", "units"],
     ),
     // Paths in, paths out: nothing of where they come from.

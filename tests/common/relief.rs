@@ -129,7 +129,7 @@ impl Map {
     /// Shares a bead's plastic out over the squares under it.
     fn spread(&mut self, bead: &Move, plastic: f64) {
         let mut under = Vec::new();
-        self.under(bead, |k, ..| under.push(k));
+        self.under(bead, |k, _, _| under.push(k));
         for k in &under {
             self.values[*k] += plastic / under.len() as f64;
         }

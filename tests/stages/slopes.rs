@@ -185,7 +185,7 @@ fn a_patch_is_written_after_its_layer_between_marks_with_its_own_heights() {
     let patch = &patch[patch.find(";NONPLANAR_START").unwrap()..];
     let kept = patch.lines().filter(|line| *line != ";LAYER_CHANGE");
     let patch: String = kept.map(|line| format!("{line}\n")).collect();
-    assert_eq!(patch, include_str!("slopes/patch.gcode"), "{patch}");
+    assert_eq!(patch, include_str!("slopes/patch.txt"), "{patch}");
     assert_eq!(text.matches(";NONPLANAR_").count(), 2);
     assert_eq!(text.matches(";LAYER_CHANGE").count(), 4);
 }
