@@ -5,7 +5,7 @@
 //! - What is *passed* are the patches that the whole way from mesh to patch gives.
 //!
 //! 1. Make bodies, put them on a bed, and find their patches with a head and some parameters.
-//! 2. Look at what holds of all patches: areas add up, outlines lie within each other, all reasons are told.
+//! 2. Look at what holds of all patches: numbers in order, outlines within each other, travels above the layer.
 //! 3. Look at the share of a box that is skin, and at the reasons of the rest.
 
 use super::find::surfaces;
@@ -179,23 +179,6 @@ fn check(patches: &Patches, heights: &Heights) {
         let most = patch.strokes.iter().map(highest).max().unwrap();
         assert!((most - patch.bounds[1]).abs() < 1_200, "{most} {:?}", patch.bounds);
     }
-}
-
-fn tell(name: &str, out: &Patches) {
-    let flat: Vec<String> = Reason::ALL
-        .iter()
-        .filter(|r| out.mm2.of(**r) > 0.0)
-        .map(|r| format!("{} {:.1}", r.name(), out.mm2.of(*r)))
-        .collect();
-    let sloped = out.mm2.total() - out.mm2.level;
-    eprintln!(
-        "{name}: {} patches, skin {:.1} ({:.1} % of sloped), level {:.1}, {}",
-        out.patches.len(),
-        out.mm2.skin,
-        100.0 * out.mm2.skin / sloped,
-        out.mm2.level,
-        flat.join(", ")
-    );
 }
 
 fn tan(degrees: f64) -> f64 {
@@ -377,22 +360,4 @@ fn support_stands_on_no_patch() {
     );
     assert!(share(&out, 1, [-0.5, -3.0], [0.5, 3.0]) < 1e-3);
     assert!(out.mm2.skin > 60.0);
-}
-
-/// `SLICER_TRY=file,file cargo test --lib tries_models -- --ignored --nocapture`
-#[test]
-#[ignore = "for looking at models"]
-fn tries_models() {
-    let files = std::env::var("SLICER_TRY").unwrap();
-    for file in files.split(',') {
-        for name in
-            std::env::var("SLICER_HEADS").unwrap_or_else(|_| "long-0.6,v6".into()).split(',')
-        {
-            let mesh = crate::mesh::read::from_path(file, MAX_TRIANGLES).unwrap();
-            let placed = placed(vec![mesh], 1);
-            let start = std::time::Instant::now();
-            let out = passed(&placed, &params(head(name)));
-            tell(&format!("{file} {name} {:?}", start.elapsed()), &out);
-        }
-    }
 }

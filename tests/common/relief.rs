@@ -14,6 +14,9 @@ use super::{Move, Run, Solid};
 /// Side of a square, mm.
 pub(crate) const CELL: f64 = 0.1;
 
+/// Squares along the side of a block, so that the head passes over most of a map at a glance.
+const BLOCK: usize = 10;
+
 /// Height over the bed at x, y, mm, from the part's lower left corner.
 pub(crate) type Surface = fn(f64, f64) -> f64;
 
@@ -66,13 +69,18 @@ pub(crate) struct Map {
     low: [f64; 2],
     size: [usize; 2],
     values: Vec<f64>,
+    /// Greatest value of each [`BLOCK`] by [`BLOCK`] squares, with as many blocks to a row.
+    blocks: Vec<f64>,
+    in_a_row: usize,
     highest: f64,
 }
 
 impl Map {
     pub(crate) fn new(low: [f64; 2], high: [f64; 2]) -> Self {
         let size = [0, 1].map(|axis| ((high[axis] - low[axis]) / CELL).round() as usize);
-        Self { low, size, values: vec![0.0; size[0] * size[1]], highest: 0.0 }
+        let [in_a_row, rows] = size.map(|n| n.div_ceil(BLOCK));
+        let (values, blocks) = (vec![0.0; size[0] * size[1]], vec![0.0; in_a_row * rows]);
+        Self { low, size, values, blocks, in_a_row, highest: 0.0 }
     }
 
     /// The squares within some mm of `from` to `to`: index, the way along, mm, and beside it.
@@ -122,6 +130,8 @@ impl Map {
         self.under(bead, |k, z, _| under.push((k, z)));
         for (k, z) in under {
             self.values[k] = self.values[k].max(z);
+            let block = k / self.size[0] / BLOCK * self.in_a_row + k % self.size[0] / BLOCK;
+            self.blocks[block] = self.blocks[block].max(z);
             self.highest = self.highest.max(z);
         }
     }
@@ -153,13 +163,30 @@ impl Map {
         if self.highest <= tip[2] {
             return deepest;
         }
-        self.near([tip[0], tip[1]], [tip[0], tip[1]], 13.0, |k, _, at| {
-            let far = (at[0] - tip[0]).hypot(at[1] - tip[1]);
-            let slope = (far - 0.5).max(0.0) * 60.0_f64.to_radians().tan();
-            let free = if far <= 13.0 { slope.min(20.0) } else { f64::INFINITY };
-            let place = usize::from(far > 1.0);
-            deepest[place] = deepest[place].max(self.values[k] - tip[2] - free);
-        });
+        let free = |far: f64| {
+            let cone = (far - 0.5).max(0.0) * 60.0_f64.to_radians().tan();
+            if far <= 13.0 { cone.min(20.0) } else { f64::INFINITY }
+        };
+        for (block, &top) in self.blocks.iter().enumerate() {
+            let first = [block % self.in_a_row * BLOCK, block / self.in_a_row * BLOCK];
+            // The place of the block that is nearest to the tip.
+            let beside = [0, 1].map(|axis| {
+                let from = self.low[axis] + first[axis] as f64 * CELL;
+                tip[axis] - tip[axis].clamp(from, from + BLOCK as f64 * CELL)
+            });
+            if top <= tip[2] + free(beside[0].hypot(beside[1])) {
+                continue;
+            }
+            for j in first[1]..(first[1] + BLOCK).min(self.size[1]) {
+                for i in first[0]..(first[0] + BLOCK).min(self.size[0]) {
+                    let at = self.middle([i, j]);
+                    let far = (at[0] - tip[0]).hypot(at[1] - tip[1]);
+                    let place = usize::from(far > 1.0);
+                    let depth = self.values[j * self.size[0] + i] - tip[2] - free(far);
+                    deepest[place] = deepest[place].max(depth);
+                }
+            }
+        }
         deepest
     }
 }
