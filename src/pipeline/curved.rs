@@ -6,6 +6,7 @@ use crate::geom::{Point, edges};
 use crate::mesh::place::Placed;
 use crate::nonplanar;
 use crate::nonplanar::base::Base;
+use crate::nonplanar::contour::Contours;
 use crate::nonplanar::find::{Surfaces, surfaces};
 use crate::nonplanar::params::NonPlanarParams;
 use crate::nonplanar::{Patch, Patches, Props, Scene};
@@ -21,6 +22,7 @@ use crate::units::{Coord, to_mm, to_units};
 pub struct Found {
     surfaces: Surfaces,
     patches: Patches,
+    contours: Option<Contours>,
 }
 
 impl Found {
@@ -59,8 +61,14 @@ pub fn find(
         ceiling,
         params: &params,
     };
-    let patches = nonplanar::patches(&scene);
-    Some(Found { surfaces, patches })
+    let mut patches = nonplanar::patches(&scene);
+    let contours = settings.nonplanar.contour.then(|| {
+        let min_height = to_units(settings.nonplanar.min_height);
+        let contours = Contours::new(&placed.mesh, &placed.adjacency, &params, min_height);
+        contours.tell(&surfaces, &mut patches);
+        contours.beside(&patches)
+    });
+    Some(Found { surfaces, patches, contours })
 }
 
 /// The places that support of layer `k` may take, as lines beside each other.
@@ -84,6 +92,7 @@ fn lines(support: &Support, k: usize) -> Vec<[Point; 2]> {
 pub struct Curved<'a> {
     patches: &'a Patches,
     base: Base<'a>,
+    contours: Option<&'a Contours>,
     /// Whether travels to patches pull the filament back.
     retracts: bool,
 }
@@ -92,11 +101,12 @@ impl<'a> Curved<'a> {
     /// The patches on these `surfaces`.
     #[must_use]
     pub fn new(found: &'a Found, settings: &Settings) -> Self {
-        let Found { surfaces, patches } = found;
+        let Found { surfaces, patches, contours } = found;
         let height = to_units(settings.layer_height);
         Self {
             patches,
             base: patches.base(surfaces, height),
+            contours: contours.as_ref(),
             retracts: settings.retraction.length > 0.0,
         }
     }
@@ -105,6 +115,12 @@ impl<'a> Curved<'a> {
     #[must_use]
     pub fn tops(&self) -> &dyn CurvedTops {
         &self.base
+    }
+
+    /// The slopes whose lines rise and fall within their layer.
+    #[must_use]
+    pub fn contours(&self) -> Option<&Contours> {
+        self.contours
     }
 
     /// What is printed after the paths of layer `k`, in its order.
