@@ -80,7 +80,7 @@ impl Areas {
     /// So much of what was flat for a reason has lines that rise and fall instead.
     pub fn contoured(&mut self, reason: Reason, mm2: f64) {
         let moved = mm2.clamp(0.0, self.flat[reason as usize].max(0.0));
-        self.flat[reason as usize] -= moved;
+        self.flat[reason as usize] = (self.flat[reason as usize] - moved).max(0.0);
         self.contour += moved;
     }
 

@@ -2,6 +2,7 @@
 
 use crate::nonplanar::{Areas, Patch, Patches, Reason};
 use crate::units::to_mm;
+use crate::warning::Warning;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -83,6 +84,15 @@ pub fn report(patches: &Patches, (layers, lift_mm): (usize, f64)) -> NonPlanarRe
     NonPlanarReport { areas: areas(&patches.mm2), patches: patches_report }
 }
 
+/// A warning if no top is printed otherwise than without such skins.
+#[must_use]
+pub fn unused(report: &NonPlanarReport) -> Option<Warning> {
+    let why = "no top slopes so that the head can follow it; the report says why";
+    let areas = &report.areas;
+    let is_void = areas.skin_mm2 <= 0.0 && areas.contour_mm2 <= 0.0;
+    is_void.then(|| Warning::void(["nonplanar.enabled"], why))
+}
+
 fn areas(mm2: &Areas) -> TopAreas {
     let of = |reason: Reason| FlatReport { reason: reason.name(), mm2: mm2.of(reason) };
     let flat: Vec<FlatReport> =
@@ -92,7 +102,7 @@ fn areas(mm2: &Areas) -> TopAreas {
         skin_mm2: mm2.skin,
         contour_mm2: mm2.contour,
         level_mm2: mm2.level,
-        flat_mm2: flat.iter().map(|flat| flat.mm2).sum(),
+        flat_mm2: flat.iter().map(|flat| flat.mm2).fold(0.0, |sum, mm2| sum + mm2),
         flat,
     }
 }
