@@ -3,8 +3,11 @@
 //! 1. Places along the path, [`STEP`] apart and at its points, each with the height that it should have above
 //!    the layer's top: that of the surface, within what a line may rise and fall. It is *off* where there is no
 //!    surface, or where a zone forbids it: 0 there.
-//! 2. From what is off, heights go away no steeper than the steepest slope: lines rise and fall smoothly.
-//! 3. Segments are cut into chords that keep to these heights within the tolerance. The height of each bead is
+//! 2. From what is off, heights go away no steeper than the steepest slope: lines rise and fall smoothly. Walls
+//!    run along slopes, where they rise little; above the layer's top they do so by [`GENTLE`] at most.
+//! 3. Heights are made straight as long as they miss none by more than the tolerance: z is slow, and each of
+//!    its turns takes time.
+//! 4. Segments are cut into chords that keep to these heights within the tolerance. The height of each bead is
 //!    the mean over its chord.
 //!
 //! The way in plan stays the same: every point of the path remains, and new ones lie on its segments.
@@ -13,10 +16,15 @@ use super::zones::Zones;
 use super::{Limits, Tread, between, cell_at};
 use crate::fill::{Path, PathPoint, Role, Shape};
 use crate::geom::Point;
+use crate::geom::decimate::{decimate, most_missed};
 use crate::units::{Coord, nearest};
 
 /// Distance of places, grid units: 0.2 mm.
 const STEP: f64 = 2_000.0;
+
+/// The steepest rise of walls above their layer's top. Walls beside a layer above that comes and goes would
+/// climb at each turn: at 0.03 most machines pass with half of a wall's speed, and 0.06 mm take 2 mm.
+const GENTLE: f64 = 0.03;
 
 /// A chord changes its height by no more, if it is long enough to be divided: 0.05 mm. The flow of a chord is
 /// steady, while the room below it is not.
@@ -44,8 +52,9 @@ pub(super) fn bend(path: &mut Path, tread: &Tread<'_>, zones: &Zones, rise: Coor
     if places.iter().all(|place| place.is_off || nearest(place.up) == 0) {
         return;
     }
-    ramp(&mut places, path, tread.all.limits.steepest);
     let limits = &tread.all.limits;
+    ramp(&mut places, path, limits.steepest);
+    straighten(&mut places, limits.tolerance);
     let keeps_height = path.role == Role::Ironing;
     let up = |place: &Place| nearest(place.up) as Coord;
     let first = path.points.first().zip(places.first());
@@ -75,7 +84,7 @@ fn places(
         // Above the middle of the layer above, there is that layer.
         let bare = tread.above(at).filter(|_| !hangs);
         let up = match bare {
-            Some(up) if 2.0 * up >= f64::from(tread.layer.height) => Some(0.0),
+            Some(up) if 2.0 * up >= f64::from(tread.layer.height) => None,
             Some(up) if zones.lets(cell, up > 0.0) => Some(up.clamp(lowest, highest)),
             _ => None,
         };
@@ -109,6 +118,8 @@ fn ramp(places: &mut [Place], path: &Path, steepest: f64) {
     let offs: Vec<f64> =
         places.iter().filter(|place| place.is_off).map(|place| place.along).collect();
     let Some((&first, &last)) = offs.first().zip(offs.last()) else { return };
+    let is_wall = matches!(path.role, Role::OuterWall | Role::InnerWall);
+    let rises = if is_wall { steepest.min(GENTLE) } else { steepest };
     for place in places.iter_mut() {
         let after = offs.partition_point(|&off| off <= place.along);
         let mut near = f64::MAX;
@@ -118,8 +129,25 @@ fn ramp(places: &mut [Place], path: &Path, steepest: f64) {
         if is_closed {
             near = near.min(way(place.along + whole, last)).min(way(place.along, first + whole));
         }
-        let most = steepest * near;
-        place.up = place.up.clamp(-most, most);
+        place.up = place.up.clamp(-steepest * near, rises * near);
+    }
+}
+
+/// Makes heights straight between as few places as keep to them within the tolerance.
+fn straighten(places: &mut [Place], tolerance: f64) {
+    let on = |a: &Place, b: &Place, along: f64| {
+        let length = b.along - a.along;
+        if length > 0.0 { a.up + (b.up - a.up) * (along - a.along) / length } else { b.up }
+    };
+    let off = |a: usize, b: usize, k: usize| {
+        (places[k].up - on(&places[a], &places[b], places[k].along)).abs()
+    };
+    let kept = decimate(places.len(), |a, b| most_missed(a, b, tolerance, |k| off(a, b, k)));
+    for ends in kept.windows(2) {
+        let (a, b) = (places[ends[0]], places[ends[1]]);
+        for place in &mut places[ends[0] + 1..ends[1]] {
+            place.up = on(&a, &b, place.along);
+        }
     }
 }
 
