@@ -3,8 +3,8 @@
 //! 1. Places along the path, [`STEP`] apart and at its points, each with the height that it should have above
 //!    the layer's top: that of the surface, within what a line may rise and fall. It is *off* where there is no
 //!    surface, or where a zone forbids it: 0 there.
-//! 2. From what is off, heights go away no steeper than the steepest slope: lines rise and fall smoothly. Walls
-//!    run along slopes, where they rise little; above the layer's top they do so by [`GENTLE`] at most.
+//! 2. From what is off, heights go away no steeper than the steepest slope: lines rise and fall smoothly. Above
+//!    the layer's top they rise no steeper than [`GENTLE`].
 //! 3. Heights are made straight as long as they miss none by more than the tolerance: z is slow, and each of
 //!    its turns takes time.
 //! 4. Segments are cut into chords that keep to these heights within the tolerance. The height of each bead is
@@ -22,9 +22,11 @@ use crate::units::{Coord, nearest};
 /// Distance of places, grid units: 0.2 mm.
 const STEP: f64 = 2_000.0;
 
-/// The steepest rise of walls above their layer's top. Walls beside a layer above that comes and goes would
-/// climb at each turn: at 0.03 most machines pass with half of a wall's speed, and 0.06 mm take 2 mm.
-const GENTLE: f64 = 0.03;
+/// How steeply walls and other lines rise above their layer's top from what is off, at most. Where the layer
+/// above begins they have to come down again, and z is slow. Walls beside a layer above that comes and goes
+/// would climb at each turn: at 0.03 most machines pass with half of a wall's speed, and 0.06 mm take 2 mm.
+/// Lines across a slope climb by themselves.
+const GENTLE: [f64; 2] = [0.03, 0.1];
 
 /// A chord changes its height by no more, if it is long enough to be divided: 0.05 mm. The flow of a chord is
 /// steady, while the room below it is not.
@@ -119,7 +121,7 @@ fn ramp(places: &mut [Place], path: &Path, steepest: f64) {
         places.iter().filter(|place| place.is_off).map(|place| place.along).collect();
     let Some((&first, &last)) = offs.first().zip(offs.last()) else { return };
     let is_wall = matches!(path.role, Role::OuterWall | Role::InnerWall);
-    let rises = if is_wall { steepest.min(GENTLE) } else { steepest };
+    let rises = steepest.min(GENTLE[usize::from(!is_wall)]);
     for place in places.iter_mut() {
         let after = offs.partition_point(|&off| off <= place.along);
         let mut near = f64::MAX;
