@@ -264,7 +264,7 @@ impl<'a> Window<'a> {
 
     /// Where none of these layers may print a line for several: near a curved top.
     fn thin_places(&self, layers: Range<usize>) -> Vec<Contour> {
-        if self.curved.is_none() || layers.is_empty() {
+        if self.curved.is_none() || layers.is_empty() || layers.end > self.count() {
             return Vec::new();
         }
         let heights = self.slicer.heights();
