@@ -168,5 +168,6 @@ pub fn slice_placed(
     report.brim = stuck.brim;
     report.raft = stuck.raft;
     report.nonplanar = found.map(|found| found.report(heights.count(), &lift));
+    report.warnings.extend(report.nonplanar.as_ref().and_then(report::nonplanar::unused));
     Ok(report)
 }
