@@ -7,6 +7,9 @@ use super::text::TextSize;
 /// pixels a bead.
 const EDGE: f64 = 0.09;
 
+/// Width of the edge around a filled outline, mm: about as wide as that of a bead of 0.2 mm.
+pub const OUTLINE: f64 = 0.018;
+
 /// How much darker an edge is than its bead.
 const EDGE_DARK: f64 = 0.38;
 
@@ -75,6 +78,11 @@ pub enum Kind {
     Bead,
     /// Plastic in the background.
     PaleBead,
+    /// Plastic within an outline, whose points it goes through: filled, with a darker edge along them of
+    /// the given width.
+    Outline,
+    /// A stripe without edges.
+    Plain,
     /// Dashes of this many widths, and gaps as long.
     Dashed(u8),
 }
@@ -131,13 +139,22 @@ impl Look {
         match self.kind {
             Kind::Bead => self.bead(EDGE_DARK),
             Kind::PaleBead => self.bead(PALE_EDGE_DARK),
-            Kind::Dashed(_) => vec![(self.width, self.colour)],
+            Kind::Outline => {
+                vec![(self.width, self.colour.mixed(Colour([0; 3]), EDGE_DARK))]
+            }
+            Kind::Dashed(_) | Kind::Plain => vec![(self.width, self.colour)],
         }
+    }
+
+    /// Width of a bead within its edges.
+    #[must_use]
+    pub fn within_edges(&self) -> f64 {
+        self.width * (1.0 - 2.0 * EDGE)
     }
 
     fn bead(&self, dark: f64) -> Vec<(f64, Colour)> {
         let edge = self.colour.mixed(Colour([0; 3]), dark);
-        vec![(self.width, edge), (self.width * (1.0 - 2.0 * EDGE), self.colour)]
+        vec![(self.width, edge), (self.within_edges(), self.colour)]
     }
 }
 

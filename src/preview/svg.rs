@@ -57,16 +57,17 @@ fn paths(group: &[Stroke], number: usize, decimals: usize, out: &mut String) {
             put(out, format_args!("<use href=\"#p{number}\" {paint}/>\n"));
             continue;
         }
-        let dashes = match look.kind {
+        let more = match look.kind {
             Kind::Dashed(dash) => {
                 let dash = short(f64::from(dash) * look.width, 3);
                 format!(" stroke-linecap=\"butt\" stroke-dasharray=\"{dash}\"")
             }
-            Kind::Bead | Kind::PaleBead => String::new(),
+            Kind::Outline => format!(" fill=\"{}\"", look.colour.hex()),
+            Kind::Bead | Kind::PaleBead | Kind::Plain => String::new(),
         };
         // What paints lies around the path, so that its second coat can differ.
         let id = if several { format!(" id=\"p{number}\"") } else { String::new() };
-        put(out, format_args!("<g {paint}{dashes}><path{id} d=\""));
+        put(out, format_args!("<g {paint}{more}><path{id} d=\""));
         group.iter().for_each(|stroke| path(stroke, decimals, out));
         out.push_str("\"/></g>\n");
     }
@@ -84,6 +85,9 @@ fn path(stroke: &Stroke, decimals: usize, out: &mut String) {
     for next in points {
         pair(letter, [number(next[0] - at[0]), number(next[1] - at[1])], out);
         (at, letter) = (next, " ");
+    }
+    if stroke.look.kind == Kind::Outline {
+        out.push('z');
     }
 }
 
