@@ -4,7 +4,7 @@
 const RAMP = ["#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#f0e51c"]
   .map(rgbOf);
 
-/** What lines can be coloured by, in the order of the keys 1 to 6. */
+/** What lines can be coloured by, in the order of the keys 1 to 7; the last only where there are skins. */
 const MODES = {
   role: { name: "role" },
   speed: { name: "speed", unit: "mm/s", value: (moves, i) => moves.speed[i] },
@@ -12,7 +12,9 @@ const MODES = {
   time: { name: "layer time", unit: "s", value: (moves, i, layer) => FACTS.layers[layer - 1]?.seconds },
   width: { name: "line width", unit: "mm", value: (moves, i) => moves.width[i] },
   height: { name: "line height", unit: "mm", value: (moves, i) => moves.height[i] },
+  z: { name: "height of skins", unit: "mm", value: (moves, i) => (moves.z.from[i] + moves.z.to[i]) / 2 },
 };
+if (!FACTS.scales.z) delete MODES.z;
 
 /** `#rrggbb` as three numbers from 0 to 255. */
 function rgbOf(hex) {

@@ -17,10 +17,11 @@ class Scene {
     this.blocks = findBlocks(bytes);
     this.unpacked = new Map();
     this.unpackedMoves = 0;
+    this.side = "top";
     this.painter = makePainter(canvas);
   }
 
-  /** Number of layers; block 0 is what comes before the first. */
+  /** Number of stages; block 0 is what comes before the first. */
   get layers() {
     return this.blocks.length - 1;
   }
@@ -43,8 +44,9 @@ class Scene {
     return moves;
   }
 
-  /** Colours or what is hidden have changed. */
-  restyle({ colour, hidden }) {
+  /** Colours, what is hidden or the side that is looked at have changed. */
+  restyle({ colour, hidden, side }) {
+    this.side = side;
     this.palette = rolePalette();
     this.paper = rgbOf(themeColour("paper"));
     this.colourOf = colouring(colour, this.palette);
@@ -82,10 +84,7 @@ class Scene {
     const inks = new Uint8Array(floats.buffer);
     for (let i = 0; i < moves.count; i++) {
       const at = INSTANCE * i;
-      floats[at] = moves.x.from[i];
-      floats[at + 1] = moves.y.from[i];
-      floats[at + 2] = moves.x.to[i];
-      floats[at + 3] = moves.y.to[i];
+      floats.set(this.endsOf(moves, i).flat(), at);
       floats[at + 4] = this.widthOf(moves, i);
       if (this.hidden.has(roleOf(moves, i))) continue;
       inks.set(this.colourOf(moves, i, layer), 4 * (at + 5));
@@ -94,9 +93,21 @@ class Scene {
     return floats;
   }
 
+  /** Where a move begins and ends on the side that is looked at, mm: the middle of a line, from above its top. */
+  endsOf(moves, i) {
+    const [across, up] = SIDES[this.side];
+    const sunk = up === "z" && isLine(moves, i) ? moves.height[i] / 2 : 0;
+    return ["from", "to"].map((end) => [moves[across][end][i], moves[up][end][i] - sunk]);
+  }
+
+  /** How wide a line looks, mm; 0 for what is none. */
+  thicknessOf(moves, i) {
+    return this.side === "top" ? moves.width[i] : moves.height[i];
+  }
+
   /** mm; below 0 in pixels. */
   widthOf(moves, i) {
-    if (isLine(moves, i)) return moves.width[i];
+    if (isLine(moves, i)) return this.thicknessOf(moves, i);
     return -devicePixelRatio * (roleOf(moves, i) === RETRACTION ? RETRACTION_WIDTH : TRAVEL_WIDTH);
   }
 
@@ -109,7 +120,7 @@ class Scene {
     let [found, best] = [-1, 0];
     for (let i = 0; i < Math.min(count, moves.count); i++) {
       if (this.hidden.has(roleOf(moves, i))) continue;
-      const beyond = distance(moves, i, x, y) - moves.width[i] / 2;
+      const beyond = distance(this.endsOf(moves, i), x, y) - this.thicknessOf(moves, i) / 2;
       const beside = Math.max(beyond, 0);
       // Marks and travels lie over lines, but are hit on themselves only.
       if (beside <= reach && (found < 0 || beside <= best)) [found, best] = [i, beside];
@@ -118,10 +129,9 @@ class Scene {
   }
 }
 
-/** Of a point from a move, mm. */
-function distance(moves, i, x, y) {
-  const [fromX, fromY] = [moves.x.from[i], moves.y.from[i]];
-  const [wayX, wayY] = [moves.x.to[i] - fromX, moves.y.to[i] - fromY];
+/** Of a point from a line between two, mm. */
+function distance([[fromX, fromY], [toX, toY]], x, y) {
+  const [wayX, wayY] = [toX - fromX, toY - fromY];
   const square = wayX * wayX + wayY * wayY;
   const along = square > 0 ? ((x - fromX) * wayX + (y - fromY) * wayY) / square : 0;
   const part = Math.min(Math.max(along, 0), 1);
