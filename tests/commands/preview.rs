@@ -241,6 +241,95 @@ fn thick_infill_is_twice_as_high_in_a_cut_and_all_lies_in_the_print() {
     assert!(painted.iter().any(|p| p.colour == blue && p.width == 0.4));
 }
 
+/// The ramp with non-planar skins, sliced in `folder`; returns its G-code.
+fn wedge(folder: &TempDir) -> String {
+    let words = ["--nonplanar", "--head", "long-0.6", "-q", "-o", "wedge.gcode"];
+    slicer(folder).arg(fixtures().join("wedge.stl")).args(words).assert().success();
+    fs::read_to_string(folder.path().join("wedge.gcode")).unwrap()
+}
+
+#[test]
+fn skins_follow_the_surface_in_a_cut_along_them_and_across() {
+    let folder = tempfile::tempdir().unwrap();
+    let print = print(&wedge(&folder));
+    let surface = |x: f64| 1.6 + (x + 12.0) / 12.0;
+    // Not half-way between two lines, wherever those lie.
+    let along = |at| Cut::new(&print, Plane { axis: Axis::Y, at });
+    let strip = |cut: Cut| {
+        let width = |section: &slicer::preview::cut::Section| section.high - section.low;
+        let strips = cut.sections.into_iter().filter(|section| !section.course.is_empty());
+        strips.max_by(|a, b| width(a).total_cmp(&width(b))).unwrap()
+    };
+    let longest = strip(along(0.05));
+    assert!(longest.low < -11.9 && longest.high > 11.9, "{longest:?}");
+    for spot in &longest.course {
+        // The first of two skins of 0.2 mm.
+        let off = spot.top - (surface(spot.at) - 0.2);
+        assert!(off.abs() < 0.025, "{spot:?}: {off}");
+        // It fills the steps of the base, layers of 0.2 mm.
+        assert!((0.09..0.31).contains(&spot.height), "{spot:?}");
+        let bottom = spot.top - spot.height;
+        assert!((bottom / 0.2 - (bottom / 0.2).round()).abs() < 0.02, "{spot:?}");
+    }
+    // Lines across the plane are as high above the bed as the surface is there.
+    let across = along(0.05).sections;
+    let skin = Colour::of(Role::NonPlanar, false);
+    let tops = across.iter().filter(|s| s.colour == skin && s.course.is_empty());
+    let off = tops.map(|s| (s.top() - surface(f64::midpoint(s.low, s.high))).abs());
+    let off: Vec<f64> = off.collect();
+    assert!(off.len() > 50 && off.iter().all(|off| *off < 0.025), "{off:?}");
+    // A strip is drawn as one filled outline.
+    let plane = Plane { axis: Axis::Y, at: 0.05 };
+    let cut = along(0.05);
+    let text = svg::write(&cut.drawing(plane, cut.frame(), 1200));
+    let document = roxmltree::Document::parse(&text).unwrap();
+    let filled = document.descendants().filter(|node| {
+        node.has_tag_name("g") && node.attribute("fill") == Some(skin.hex().as_str())
+    });
+    assert_eq!(filled.count(), 1);
+}
+
+#[test]
+fn a_patch_has_a_picture_of_its_own_which_its_layer_leaves_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = wedge(&folder);
+    let print = print(&text);
+    let home = slicer::preview::patch::home(&print, 1).unwrap() + 1;
+    let draw = |words: &[&str]| {
+        let more = ["--format", "svg", "-o", "-", "-q"];
+        let run = slicer(&folder).args(["preview", "wedge.gcode"]).args(words).args(more).assert();
+        String::from_utf8(run.success().get_output().stdout.clone()).unwrap()
+    };
+    let skin = Colour::of(Role::NonPlanar, false).hex();
+    let layer = draw(&["--layer", &home.to_string()]);
+    assert!(!layer.contains(&skin) && layer.contains(">then skin 1<"));
+    let patch = draw(&["--patch", "1"]);
+    let title = format!("<title>skin 1, after layer {home} of {}, z 1.", print.layers.len());
+    assert!(patch.contains(&title), "{patch:.400}");
+    // From the lowest to the highest colour of the scale, and both are in the legend.
+    for part in [0.0, 1.0] {
+        let colour = Colour::on_scale(part).hex();
+        assert!(patch.matches(&colour).count() >= 2, "{colour}");
+    }
+    assert!(patch.contains(">z 3."), "{patch:.4000}");
+    let fails = |words: &[&str], says: &str| {
+        let run = slicer(&folder).arg("preview").args(words).args(["-o", "a.svg"]).assert();
+        run.code(2).stderr(predicate::str::contains(says));
+    };
+    fails(&["wedge.gcode", "--patch", "2"], "--patch 2: wedge.gcode has only patch 1");
+    fails(&["wedge.gcode", "--patch", "1", "--layer", "2"], "cannot be used with");
+    fs::copy(fixtures().join(TILE), folder.path().join("tile.gcode")).unwrap();
+    fails(&["tile.gcode", "--patch", "1"], "--patch 1: tile.gcode has no non-planar skin");
+
+    let words = ["preview", "wedge.gcode", "--all", "-o", "a.png", "--size", "400", "-q"];
+    slicer(&folder).args(words).assert().success();
+    let mut names: Vec<_> = (1..=print.layers.len()).map(|n| format!("a-{n:04}.png")).collect();
+    names.push(format!("a-{home:04}-skin-1.png"));
+    names.sort();
+    let made: Vec<_> = files(folder.path()).into_iter().filter(|n| n.starts_with("a-")).collect();
+    assert_eq!(made, names);
+}
+
 #[test]
 fn travels_and_layers_below_are_drawn_only_when_asked_for() {
     let folder = tempfile::tempdir().unwrap();
@@ -344,15 +433,20 @@ fn the_pictures_of_the_readme_are_as_kept() {
     let model = fixtures().join("bracket.stl");
     let words = ["--dual", "-q", "-o", "bracket.gcode"];
     slicer(&folder).arg(model).args(words).assert().success();
-    for (name, words) in [
-        ("bracket-layer-13.svg", "--layer 13"),
-        ("bracket-layer-14.svg", "--layer 14"),
-        ("bracket-cut.svg", "--cut x=0 --crop 3,0,15.5,7"),
+    wedge(&folder);
+    let flat = ["-q", "-o", "flat.gcode"];
+    slicer(&folder).arg(fixtures().join("wedge.stl")).args(flat).assert().success();
+    for (name, file, words) in [
+        ("bracket-layer-13.svg", "bracket.gcode", "--layer 13"),
+        ("bracket-layer-14.svg", "bracket.gcode", "--layer 14"),
+        ("bracket-cut.svg", "bracket.gcode", "--cut x=0 --crop 3,0,15.5,7"),
+        ("wedge-cut-flat.svg", "flat.gcode", "--cut y=0 --crop -12.5,0,0.5,3.4"),
+        ("wedge-cut.svg", "wedge.gcode", "--cut y=0 --crop -12.5,0,0.5,3.4"),
     ] {
         let readme = fs::read_to_string(fixtures().join("README.md")).unwrap();
-        assert!(readme.contains(&format!("preview bracket.gcode {words} -o")), "{words}");
+        assert!(readme.contains(&format!("preview {file} {words} -o {name}")), "{words}");
         let words = words.split(' ').chain(["-q", "-o", name]);
-        slicer(&folder).args(["preview", "bracket.gcode"]).args(words).assert().success();
+        slicer(&folder).args(["preview", file]).args(words).assert().success();
         let made = fs::read_to_string(folder.path().join(name)).unwrap();
         assert!(made.len() < 150_000);
         let path = fixtures().join("pictures").join(name);
