@@ -308,7 +308,7 @@ mod tests {
 
     #[test]
     fn lines_that_rise_along_the_plane_are_one_strip_with_their_own_heights() {
-        let text = ";LAYER_CHANGE\nG1 X4 Y0 Z1\n;NONPLANAR_START 1\n;WIDTH:0.4\n;HEIGHT:0.2\n\
+        let text = ";LAYER_CHANGE\nG1 X40 Y0 Z0.2\nG1 X50 E0.5\nG1 X4 Z1\n;NONPLANAR_START 1\n;WIDTH:0.4\n;HEIGHT:0.2\n\
                     G1 Y10 Z2 E1\n;HEIGHT:0.3\nG1 Y20 Z1 E2\n;HEIGHT:0.2\nG1 X4.4 E2.1\n\
                     G1 Y10 Z2 E3\n;NONPLANAR_END\n";
         let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();

@@ -217,10 +217,10 @@ fn a_patch_is_a_step_after_its_layer() {
     }
     assert!(blocks[at + 1].iter().all(|one| one.role & packed::THICK == 0));
     let facts: Value = serde_json::from_str(script(&page, "facts-json")).unwrap();
-    let [layer, skin, next] = [0, 1, 2].map(|k| &facts["layers"][at - 1 + k]);
+    let [below, layer, skin] = [0, 1, 2].map(|k| &facts["layers"][at - 2 + k]);
     assert_eq!((&layer["number"], &layer["skin"]), (&(home + 1).into(), &Value::Null));
     assert_eq!((&skin["number"], &skin["skin"]), (&(home + 1).into(), &1.into()));
-    assert_eq!(next["number"], home + 2);
+    assert_eq!(below["number"], home);
     let (low, high) = (skin["low"].as_f64().unwrap(), skin["z"].as_f64().unwrap());
     assert!(low < 1.5 && high > 3.5, "from {low} to {high}");
     // The layer's time is shared.
@@ -231,7 +231,9 @@ fn a_patch_is_a_step_after_its_layer() {
     let flat = self::page(ODD.as_bytes(), "a.gcode");
     let flat = script(&flat, "facts-json");
     assert!(
-        ["number", "skin\"", "low\"", "\"z\":[", "highest"].iter().all(|word| !flat.contains(word))
+        ["\"number\":", "\"skin\":", "\"low\":", "\"z\":[", "\"highest\":"]
+            .iter()
+            .all(|word| !flat.contains(word))
     );
 }
 
@@ -393,9 +395,9 @@ fn a_browser_shows_the_layer_the_moves_and_what_is_pointed_at() {
     assert_eq!((&skin["layer"], &skin["skin"]), (&home.into(), &1.into()));
     assert_eq!((&skin["side"], &skin["colour"]), (&"front".into(), &"z".into()));
     assert!(skin["tip"].as_str().unwrap().starts_with("non-planar skin\n"), "{skin}");
-    let next = state(&chromium, &file, "", &format!("layer={}", home + 1));
-    assert_eq!((&next["layer"], &next["skin"]), (&(home + 1).into(), &Value::Null));
-    assert_eq!(next["layers"], skinned.layers.len());
+    let layer = state(&chromium, &file, "", &format!("layer={home}"));
+    assert_eq!((&layer["layer"], &layer["skin"]), (&home.into(), &Value::Null));
+    assert_eq!(layer["layers"], skinned.layers.len());
     // Beside the part there is nothing, and no move is shown before the first.
     let empty = state(&chromium, &file, "", "layer=999&move=0&at=0,40");
     assert_eq!((&empty["layer"], &empty["move"]), (&print.layers.len().into(), &0.into()));
