@@ -8,8 +8,8 @@
 use super::colours::Colour;
 use super::drawing::{Drawing, Frame, Kind, Look, Stroke};
 use super::layer::{self, Options, Scene, flat};
+use super::measured;
 use super::page::Page;
-use super::{measured, millimetres};
 use crate::reader::print::Step;
 use crate::reader::{Print, Role};
 
@@ -73,7 +73,7 @@ pub fn drawing(print: &Print, number: u32, options: &Options) -> Drawing {
     run.paint(&scale, &mut scene.strokes);
     let mut keys = scale.keys();
     keys.extend(layer::other_keys(options, below.len()));
-    let heading = heading(number, home, print.layers.len(), &scale);
+    let heading = heading(number, home, &scale);
     let (size, frame) = (options.size, options.frame);
     let mut drawing = Page { size, frame, axes: ["x", "y"], heading, keys }.lay_out();
     drawing.scene = scene.strokes;
@@ -82,10 +82,11 @@ pub fn drawing(print: &Print, number: u32, options: &Options) -> Drawing {
     drawing
 }
 
-fn heading(number: u32, home: Option<usize>, layers: usize, scale: &Scale) -> Vec<String> {
+/// Short enough for the panel up to a height of 1 m.
+fn heading(number: u32, home: Option<usize>, scale: &Scale) -> Vec<String> {
     let mut heading = vec![format!("skin {number}")];
-    heading.extend(home.map(|home| format!("after layer {} of {layers}", home + 1)));
-    let [low, high] = [scale.low, scale.high].map(millimetres);
+    heading.extend(home.map(|home| format!("after layer {}", home + 1)));
+    let [low, high] = [scale.low, scale.high].map(|z| (z * 100.0).round() / 100.0);
     heading.push(if low == high { format!("z {low} mm") } else { format!("z {low} to {high} mm") });
     heading
 }
@@ -217,7 +218,7 @@ mod tests {
         let print = Print::read(&mut RAMP.as_bytes(), 1.75).unwrap();
         assert_eq!((numbers(&print), home(&print, 7)), (vec![7], Some(0)));
         let drawing = drawing(&print, 7, &options(frame(&print, 7)));
-        assert_eq!(drawing.title, "skin 7, after layer 1 of 2, z 1 to 3 mm");
+        assert_eq!(drawing.title, "skin 7, after layer 1, z 1 to 3 mm");
         let (edges, pieces) = drawing.scene.split_at(1);
         assert_eq!((edges[0].look.width, edges[0].points.len()), (0.5, BANDS + 2));
         assert_eq!(pieces.len(), BANDS);
@@ -237,9 +238,6 @@ mod tests {
         let text = RAMP.replace("Z3", "");
         let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
         let level = drawing(&print, 7, &options(frame(&print, 7)));
-        assert_eq!(
-            (level.scene.len(), level.title.as_str()),
-            (2, "skin 7, after layer 1 of 2, z 1 mm")
-        );
+        assert_eq!((level.scene.len(), level.title.as_str()), (2, "skin 7, after layer 1, z 1 mm"));
     }
 }

@@ -69,7 +69,8 @@ class Scene {
   /** As many as can be drawn, the lowest first. */
   layersBelow(layer) {
     const below = [];
-    let left = this.painter.mostBehind;
+    // From above the highest hide the others, from a side they do not.
+    let left = this.painter.mostBehind * (this.side === "top" ? 1 : 5);
     for (let lower = layer - 1; lower >= 1 && left > 0; lower--) {
       left -= this.countOf(lower);
       if (left > 0) below.unshift(lower);
