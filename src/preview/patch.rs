@@ -61,7 +61,7 @@ pub fn drawing(print: &Print, number: u32, options: &Options) -> Drawing {
     let mut run = Run::default();
     for step in steps(print, number) {
         if measured(step) {
-            if last.is_none_or(|last| last.to != step.from || last.width != step.width) {
+            if last.is_none_or(|last| last.to != step.from) {
                 run.paint(&scale, &mut scene.strokes);
             }
             run.add(step, &scale, &options.frame);
@@ -140,19 +140,25 @@ impl Scale {
     }
 }
 
-/// A path without a break, of one width.
+/// A path without a break.
 #[derive(Default)]
 struct Run {
+    pieces: Vec<Piece>,
+}
+
+/// A part of a run with one look.
+struct Piece {
+    band: usize,
+    /// mm.
     width: f64,
-    /// Its pieces: band and points.
-    pieces: Vec<(usize, Vec<[f64; 2]>)>,
+    points: Vec<[f64; 2]>,
 }
 
 impl Run {
     fn add(&mut self, step: &Step, scale: &Scale, frame: &Frame) {
-        self.width = (f64::from(step.width) * 100.0).round() / 100.0;
+        let width = (f64::from(step.width) * 100.0).round() / 100.0;
         let (from, to) = (flat(step.from), flat(step.to));
-        if !frame.touches(from, to, self.width / 2.0) {
+        if !frame.touches(from, to, width / 2.0) {
             return;
         }
         let [z, z_to] = [step.from[2], step.to[2]].map(f64::from);
@@ -163,41 +169,47 @@ impl Run {
             let up = band < last;
             let border = scale.end_of(if up { band } else { band - 1 });
             let next = place(((border - z) / (z_to - z)).clamp(0.0, 1.0));
-            self.piece(band, at, next);
+            self.piece(band, width, [at, next]);
             at = next;
             band = if up { band + 1 } else { band - 1 };
         }
-        self.piece(band, at, to);
+        self.piece(band, width, [at, to]);
     }
 
-    fn piece(&mut self, band: usize, from: [f64; 2], to: [f64; 2]) {
+    fn piece(&mut self, band: usize, width: f64, [from, to]: [[f64; 2]; 2]) {
         match self.pieces.last_mut() {
-            Some((own, points)) if *own == band && points.last() == Some(&from) => points.push(to),
-            _ => self.pieces.push((band, vec![from, to])),
+            Some(last)
+                if (last.band, last.width) == (band, width)
+                    && last.points.last() == Some(&from) =>
+            {
+                last.points.push(to);
+            }
+            _ => self.pieces.push(Piece { band, width, points: vec![from, to] }),
         }
     }
 
     /// Draws it, and is empty again.
     fn paint(&mut self, scale: &Scale, strokes: &mut Vec<Stroke>) {
-        let Self { width, mut pieces } = std::mem::take(self);
-        let bead = Look { width, colour: EDGE, kind: Kind::Plain };
+        let Self { mut pieces } = std::mem::take(self);
         let mut edges: Vec<Stroke> = Vec::new();
-        for (_, points) in &pieces {
+        for Piece { width, points, .. } in &pieces {
+            let look = Look { width: *width, colour: EDGE, kind: Kind::Plain };
             match edges.last_mut() {
-                Some(last) if last.points.last() == points.first() => {
+                Some(last) if last.look == look && last.points.last() == points.first() => {
                     last.points.extend(&points[1..]);
                 }
-                _ => edges.push(Stroke { points: points.clone(), look: bead }),
+                _ => edges.push(Stroke { points: points.clone(), look }),
             }
         }
-        strokes.append(&mut edges);
         // Pieces of one run hardly cover each other: those of a band are painted at once.
-        pieces.sort_by_key(|(band, _)| *band);
+        pieces.sort_by_key(|piece| piece.band);
         let is_level = scale.low == scale.high;
-        strokes.extend(pieces.into_iter().map(|(band, points)| {
+        strokes.append(&mut edges);
+        strokes.extend(pieces.into_iter().map(|Piece { band, width, points }| {
             let colour = Scale::colour(if is_level { 0 } else { band });
+            let bead = Look { width, colour, kind: Kind::Plain };
             let width = (bead.within_edges() * 1000.0).round() / 1000.0;
-            Stroke { points, look: Look { width, colour, kind: Kind::Plain } }
+            Stroke { points, look: Look { width, ..bead } }
         }));
     }
 }
