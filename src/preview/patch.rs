@@ -62,7 +62,7 @@ pub fn drawing(print: &Print, number: u32, options: &Options) -> Drawing {
     for step in steps(print, number) {
         if measured(step) {
             if last.is_none_or(|last| last.to != step.from) {
-                run.paint(&scale, &mut scene.strokes);
+                run.paint(&mut scene.strokes);
             }
             run.add(step, &scale, &options.frame);
             last = Some(step);
@@ -70,7 +70,7 @@ pub fn drawing(print: &Print, number: u32, options: &Options) -> Drawing {
             scene.travel(step);
         }
     }
-    run.paint(&scale, &mut scene.strokes);
+    run.paint(&mut scene.strokes);
     let mut keys = scale.keys();
     keys.extend(layer::other_keys(options, below.len()));
     let heading = heading(number, home, &scale);
@@ -189,7 +189,7 @@ impl Run {
     }
 
     /// Draws it, and is empty again.
-    fn paint(&mut self, scale: &Scale, strokes: &mut Vec<Stroke>) {
+    fn paint(&mut self, strokes: &mut Vec<Stroke>) {
         let Self { mut pieces } = std::mem::take(self);
         let mut edges: Vec<Stroke> = Vec::new();
         for Piece { width, points, .. } in &pieces {
@@ -203,10 +203,9 @@ impl Run {
         }
         // Pieces of one run hardly cover each other: those of a band are painted at once.
         pieces.sort_by_key(|piece| piece.band);
-        let is_level = scale.low == scale.high;
         strokes.append(&mut edges);
         strokes.extend(pieces.into_iter().map(|Piece { band, width, points }| {
-            let colour = Scale::colour(if is_level { 0 } else { band });
+            let colour = Scale::colour(band);
             let bead = Look { width, colour, kind: Kind::Plain };
             let width = (bead.within_edges() * 1000.0).round() / 1000.0;
             Stroke { points, look: Look { width, ..bead } }
