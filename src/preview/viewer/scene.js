@@ -49,6 +49,7 @@ class Scene {
     this.side = side;
     this.palette = rolePalette();
     this.paper = rgbOf(themeColour("paper"));
+    this.mode = colour;
     this.colourOf = colouring(colour, this.palette);
     this.hidden = hidden;
     this.painter.forget();
@@ -58,7 +59,7 @@ class Scene {
     this.painter.draw({
       view,
       layer,
-      count,
+      count: this.instancesUpTo(layer, count),
       below: withBelow ? this.layersBelow(layer) : [],
       paper: this.paper,
       fade: FADE,
@@ -78,18 +79,35 @@ class Scene {
     return below;
   }
 
+  /** How many instances the first `count` moves of a layer are: one each, but for those that are cut. */
+  instancesUpTo(layer, count) {
+    const moves = this.movesOf(layer);
+    if (this.mode !== "z") return Math.min(count, moves.count);
+    let sum = 0;
+    for (let i = 0; i < Math.min(count, moves.count); i++) sum += piecesOf(this.mode, moves, i);
+    return sum;
+  }
+
   /** What a painter needs of a layer: see INSTANCE. */
   instancesOf(layer) {
     const moves = this.movesOf(layer);
-    const floats = new Float32Array(INSTANCE * moves.count);
+    const floats = new Float32Array(INSTANCE * this.instancesUpTo(layer, Infinity));
     const inks = new Uint8Array(floats.buffer);
+    let at = 0;
     for (let i = 0; i < moves.count; i++) {
-      const at = INSTANCE * i;
-      floats.set(this.endsOf(moves, i).flat(), at);
-      floats[at + 4] = this.widthOf(moves, i);
-      if (this.hidden.has(roleOf(moves, i))) continue;
-      inks.set(this.colourOf(moves, i, layer), 4 * (at + 5));
-      inks[4 * (at + 5) + 3] = 255;
+      const pieces = piecesOf(this.mode, moves, i);
+      const [[fromX, fromY], [toX, toY]] = this.endsOf(moves, i);
+      const isHidden = this.hidden.has(roleOf(moves, i));
+      for (let k = 0; k < pieces; k++, at += INSTANCE) {
+        for (const [place, part] of [[0, k / pieces], [2, (k + 1) / pieces]]) {
+          floats[at + place] = fromX + (toX - fromX) * part;
+          floats[at + place + 1] = fromY + (toY - fromY) * part;
+        }
+        floats[at + 4] = this.widthOf(moves, i);
+        if (isHidden) continue;
+        inks.set(this.colourOf(moves, i, layer, (k + 0.5) / pieces), 4 * (at + 5));
+        inks[4 * (at + 5) + 3] = 255;
+      }
     }
     return floats;
   }
