@@ -1,4 +1,12 @@
 //! What a picture shows -> Drawing: strokes in mm, and a page of marks around them, for any format.
+//!
+//! Words used here: a *stroke* is a line of some width through some points, mm; a *mark* is what
+//! stands around the scene, pixels; a *look* is a stroke's width, colour and kind; a *coat* is one of the
+//! lines that are painted over each other for a stroke: a dark edge, then the bead.
+//!
+//! A scene's second axis points upwards, a page's downwards: a view holds the way from one to the
+//! other. Neighbours in the scene that look alike are a group, painted together, so that a path of
+//! many strokes has no edges across it. What lies later in a list covers what lies before.
 
 use super::colours::Colour;
 use super::text::TextSize;

@@ -2,6 +2,10 @@
 //!
 //! A patch of non-planar skin that is printed after a layer would hide it: it has a picture of its own
 //! ([`patch`](super::patch)), and the layer's says that it comes. Of layers below, patches are drawn.
+//!
+//! Lines that go on where the last of the same look ended are one stroke. Layers below are drawn
+//! first, pale; travels, as dashes, last. All layers of a print have one frame, so that one can leaf
+//! through their pictures.
 
 use super::colours::{Colour, PAPER, is_thick};
 use super::drawing::{Drawing, Frame, Kind, Look, Stroke};

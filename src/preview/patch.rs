@@ -4,6 +4,9 @@
 //! *band* of the scale to the next. A *run* is a path without a break. Its edges are drawn first, as
 //! one line, and its pieces over them, so that no edge lies across it. Later runs cover earlier ones:
 //! of several skins one sees the last.
+//!
+//! The scale goes from the lowest to the highest place of the nozzle on the patch; the legend names six
+//! heights of it.
 
 use super::colours::Colour;
 use super::drawing::{Drawing, Frame, Kind, Look, Stroke};

@@ -1,4 +1,12 @@
 //! Drawing -> SVG: text, in mm of the bed, as short as it can be.
+//!
+//! The scene is a group whose matrix leads from mm to pixels, so that its numbers are places on the
+//! bed, and what is printed can be read from the file. The page around it is in pixels.
+//!
+//! Strokes that look alike are one path, painted once for each coat: `use` repeats it with another width
+//! and colour. A filled outline is such a path, closed, with a fill. Numbers have two decimals, or
+//! three in a picture that shows so much, and no zeros that mean nothing. A path goes from point to
+//! point by differences: they are shorter.
 
 use super::colours::{Colour, INK, PAPER};
 use super::drawing::{Anchor, Drawing, Kind, Mark, Stroke};
