@@ -18,5 +18,6 @@ mod reading;
 mod roughness;
 mod run;
 mod schema;
+mod skins;
 mod viewer;
 mod ways;
