@@ -29,6 +29,7 @@
 //! | [`mod@check`] | moves and model -> what is wrong |
 //! | [`mod@diff`] | two files -> whether they print the same |
 //! | [`preview`] | moves -> pictures |
+//! | [`steps`] | moves -> steps of motors, and back |
 //!
 //! Beside the flow:
 //!
@@ -67,6 +68,7 @@ pub mod region;
 pub mod render;
 pub mod report;
 pub mod slice;
+pub mod steps;
 pub mod text;
 pub mod units;
 pub mod warning;

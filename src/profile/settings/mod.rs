@@ -34,6 +34,7 @@ mod machine;
 mod material;
 mod output;
 mod speed;
+mod steps;
 mod support;
 mod travel;
 
@@ -52,6 +53,7 @@ pub use output::Output;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 pub use speed::Speed;
+pub use steps::Steps;
 pub use support::{Bridge, Support};
 pub use travel::{Retraction, Travel};
 
@@ -235,4 +237,6 @@ pub struct Settings {
     /// What the printer's planner holds itself to. It changes estimates of time; only max_segment_rate,
     /// and what may be asked for by `[acceleration]`, change the file.
     pub limits: MotionLimits,
+    /// The motors of a machine that takes steps.
+    pub steps: Steps,
 }
