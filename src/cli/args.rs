@@ -95,6 +95,10 @@ pub(crate) enum Command {
     Compare(Box<CompareArgs>),
     /// Tell whether two G-code files print the same, and where not
     Diff(super::diff::DiffArgs),
+    /// Turn a G-code file into steps of motors
+    Steps(super::steps::StepsArgs),
+    /// Play a stream of steps: totals, steps as text, its path as G-code
+    Play(super::play::PlayArgs),
     /// Print completions for a shell
     Completions {
         /// The shell
@@ -229,7 +233,7 @@ pub(crate) struct SliceArgs {
     /// STL files, binary or ASCII; `-` reads standard input
     #[arg(value_name = "INPUT", required = true)]
     pub(crate) inputs: Vec<OsString>,
-    /// G-code file to write; `-` writes standard output
+    /// G-code file to write, or OUT.steps for motors; `-` writes standard output
     #[arg(short, long, value_name = "OUT", required = true)]
     pub(crate) output: Option<PathBuf>,
 

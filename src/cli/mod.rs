@@ -16,12 +16,14 @@ mod mesh;
 mod model;
 mod output;
 mod part;
+mod play;
 mod preview;
 mod profiles;
 mod progress;
 mod publish;
 mod reading;
 mod slice;
+mod steps;
 mod summary;
 mod texts;
 mod threads;
@@ -161,6 +163,8 @@ fn other(command: &Command) -> Result<Outcome> {
         Command::Compare(args) => compare::run(args)?,
         Command::Check(args) => return check::run(args),
         Command::Estimate(args) => estimate::run(args)?,
+        Command::Steps(args) => steps::run(args)?,
+        Command::Play(args) => return play::run(args),
         // Its product is a file, unless `-o -` asks for another.
         Command::Preview(args) => preview::run(args).map(|()| String::new())?,
         Command::Diff(args) => return diff::run(args),

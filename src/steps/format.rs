@@ -11,49 +11,49 @@ use super::axis::{AXES, MOST_STEPS, Scale};
 use super::machine::Machine;
 
 /// The first bytes of a stream: a transfer as text, or one that cuts the eighth bit, damages them.
-pub const MAGIC: [u8; 8] = *b"\x89STEPS\r\n";
+pub(super) const MAGIC: [u8; 8] = *b"\x89STEPS\r\n";
 
 /// Version of the format.
-pub const VERSION: u16 = 1;
+pub(super) const VERSION: u16 = 1;
 
 /// Bytes of the header, its checksum included.
-pub const HEADER: usize = 216;
+pub(super) const HEADER: usize = 216;
 
 /// Bytes of a block at most.
 pub const BLOCK: usize = 512;
 
 /// Bytes of a block before its payload.
-pub const HEAD: usize = 10;
+pub(super) const HEAD: usize = 10;
 
 /// Bytes of a checksum.
-pub const SUM: usize = 4;
+pub(super) const SUM: usize = 4;
 
 /// Bytes of a payload at most.
-pub const PAYLOAD: usize = BLOCK - HEAD - SUM;
+pub(super) const PAYLOAD: usize = BLOCK - HEAD - SUM;
 
 /// A block of records.
-pub const OF_STEPS: u8 = 1;
+pub(super) const OF_STEPS: u8 = 1;
 
 /// The last block.
-pub const OF_TOTALS: u8 = 2;
+pub(super) const OF_TOTALS: u8 = 2;
 
 /// High half of a byte whose time follows as a number.
-pub const FAR: u8 = 15;
+pub(super) const FAR: u8 = 15;
 
 /// High half of a byte whose time is that of the step before.
-pub const SAME: i64 = 7;
+pub(super) const SAME: i64 = 7;
 
 /// A byte that is followed by directions.
-pub const DIRECTIONS: u8 = 0x00;
+pub(super) const DIRECTIONS: u8 = 0x00;
 
 /// A byte that is followed by a time in which no axis steps.
-pub const PAUSE: u8 = 0x10;
+pub(super) const PAUSE: u8 = 0x10;
 
 /// A byte that is followed by where a move of the file ends, in parts of a step.
-pub const MARK: u8 = 0x20;
+pub(super) const MARK: u8 = 0x20;
 
 /// The longest time of a record, µs; what is longer has pauses before it.
-pub const LONGEST: i64 = (1 << 31) - 1;
+pub(super) const LONGEST: i64 = (1 << 31) - 1;
 
 /// What a stream holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

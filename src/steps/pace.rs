@@ -19,7 +19,7 @@ const NEVER: i64 = i64::MIN / 4;
 
 /// A clock of whole µs.
 #[derive(Debug, Clone)]
-pub struct Pace {
+pub(super) struct Pace {
     /// The end of the moves so far: whole µs, and what is left of one.
     due: i64,
     rest: f64,
@@ -39,7 +39,7 @@ pub struct Pace {
 impl Pace {
     /// At rest, at time 0.
     #[must_use]
-    pub fn new(machine: &Machine) -> Self {
+    pub(super) fn new(machine: &Machine) -> Self {
         let interval = machine.interval.map(i64::from);
         Self {
             due: 0,
@@ -58,7 +58,7 @@ impl Pace {
     /// When the axes of `mask` step that are due so many µs after the beginning of this move. `backwards`
     /// has a bit for each axis that goes towards lower numbers.
     #[inline]
-    pub fn step(&mut self, after: f64, mask: u8, backwards: u8) -> i64 {
+    pub(super) fn step(&mut self, after: f64, mask: u8, backwards: u8) -> i64 {
         // Half up: what is before zero is no time.
         let due = self.due + (self.rest + after + 0.5) as i64 + self.waits;
         let mut at = due.max(self.before + self.pulse);
@@ -85,7 +85,7 @@ impl Pace {
     }
 
     /// The move ends, or nothing moves for so long, µs.
-    pub fn pass(&mut self, time: f64) {
+    pub(super) fn pass(&mut self, time: f64) {
         let sum = self.rest + time;
         let whole = sum.floor();
         self.due += whole as i64;
@@ -94,13 +94,13 @@ impl Pace {
 
     /// The end of all so far, µs.
     #[must_use]
-    pub fn end(&self) -> i64 {
+    pub(super) fn end(&self) -> i64 {
         (self.due + i64::from(self.rest >= 0.5) + self.waits).max(self.before)
     }
 
     /// Waits that the plan does not have, µs.
     #[must_use]
-    pub fn waits(&self) -> i64 {
+    pub(super) fn waits(&self) -> i64 {
         self.waits
     }
 }

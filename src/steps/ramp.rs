@@ -9,7 +9,7 @@ use crate::motion::Timed;
 
 /// When a move is where. Times in µs, ways in mm.
 #[derive(Debug, Clone, Copy)]
-pub struct Ramp {
+pub(super) struct Ramp {
     way: f64,
     /// Where speeding up ends, and where slowing down begins.
     up: f64,
@@ -30,7 +30,7 @@ pub struct Ramp {
 
 impl Ramp {
     /// Of a move of so many mm, as the planner has timed it.
-    pub fn new<T>(way: f64, timed: &Timed<T>) -> Self {
+    pub(super) fn new<T>(way: f64, timed: &Timed<T>) -> Self {
         let Timed { entry, exit, peak, acceleration, .. } = *timed;
         let length = |slow: f64| ((peak * peak - slow * slow) / (2.0 * acceleration)).max(0.0);
         let up = length(entry).min(way);
@@ -52,7 +52,7 @@ impl Ramp {
 
     /// At one speed from beginning to end, mm/s.
     #[must_use]
-    pub fn even(way: f64, speed: f64) -> Self {
+    pub(super) fn even(way: f64, speed: f64) -> Self {
         let cruising = 1e6 / speed;
         Self {
             way,
@@ -70,14 +70,14 @@ impl Ramp {
 
     /// How long the move takes, µs.
     #[must_use]
-    pub fn time(&self) -> f64 {
+    pub(super) fn time(&self) -> f64 {
         self.time
     }
 
     /// When so many mm of the way are behind, µs.
     #[inline]
     #[must_use]
-    pub fn at(&self, way: f64) -> f64 {
+    pub(super) fn at(&self, way: f64) -> f64 {
         if way < self.up {
             let speed = (self.squares[0] + self.twice * way).sqrt();
             (speed - self.ends[0]) * self.per_speed

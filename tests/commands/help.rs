@@ -8,7 +8,7 @@ use std::fs;
 use std::process::Command as Process;
 
 /// Every command there is; those below have commands of their own.
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 19] = [
     "",
     "check",
     "compare",
@@ -17,6 +17,7 @@ const COMMANDS: [&str; 17] = [
     "estimate",
     "man",
     "mesh",
+    "play",
     "preview",
     "profile",
     "profile check",
@@ -26,6 +27,7 @@ const COMMANDS: [&str; 17] = [
     "profile show",
     "report",
     "report schema",
+    "steps",
 ];
 
 fn product(words: &str, flags: &[&str]) -> String {

@@ -4,21 +4,21 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// `[steps]`: the motors of a machine that takes steps instead of G-code, for `slicer steps`. Without x,
-/// y, z and e no steps are made.
+/// y, z and e, or with 0 for one, no steps are made.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Steps {
     /// Steps for a mm of x, as they are sent: half steps or microsteps are steps.
-    #[schemars(range(min = 0.1, max = 100_000), extend("unit" = "steps/mm"))]
+    #[schemars(range(min = 0, max = 100_000), extend("unit" = "steps/mm"))]
     pub x: Option<f64>,
     /// Steps for a mm of y.
-    #[schemars(range(min = 0.1, max = 100_000), extend("unit" = "steps/mm"))]
+    #[schemars(range(min = 0, max = 100_000), extend("unit" = "steps/mm"))]
     pub y: Option<f64>,
     /// Steps for a mm of z.
-    #[schemars(range(min = 0.1, max = 100_000), extend("unit" = "steps/mm"))]
+    #[schemars(range(min = 0, max = 100_000), extend("unit" = "steps/mm"))]
     pub z: Option<f64>,
     /// Steps for a mm of filament.
-    #[schemars(range(min = 0.1, max = 100_000), extend("unit" = "steps/mm"))]
+    #[schemars(range(min = 0, max = 100_000), extend("unit" = "steps/mm"))]
     pub e: Option<f64>,
     /// Most steps of x in a second; unset means what limits.speed_x makes.
     #[schemars(range(min = 1, max = 1_000_000), extend("unit" = "steps/s"))]
