@@ -261,4 +261,41 @@ mod tests {
         assert_eq!(walk(&long).last().unwrap().1, [1_000_000, 333_333, 1_000_000, -1_000_000]);
         assert_eq!(walk(&Line { from: [0; 4], to: [STEP / 2 - 1, 9, 9, 9] }), []);
     }
+
+    /// Where all axes are at the leader's crossings, in floating point.
+    fn compare(lines: u32) {
+        let mut state = 7_u64;
+        let mut roll = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 20) as i64 % (40 * STEP) - 20 * STEP
+        };
+        let mut compared = 0_u64;
+        for _ in 0..lines {
+            let line = Line { from: [(); AXES].map(|()| roll()), to: [(); AXES].map(|()| roll()) };
+            let at = |share: f64, axis: usize| {
+                let [from, to] = [line.from[axis], line.to[axis]].map(|place| place as f64 / STEP as f64);
+                from + share * (to - from)
+            };
+            for (share, stands) in walk(&line) {
+                for (axis, stands) in stands.into_iter().enumerate() {
+                    let place = at(share, axis);
+                    let beside = (place - stands as f64).abs();
+                    assert!(beside <= 0.5 + 1e-9, "{line:?}: {stands} at {place}");
+                    compared += 1;
+                }
+            }
+        }
+        assert!(compared > u64::from(lines));
+    }
+
+    #[test]
+    fn floating_point_gives_the_same() {
+        compare(3000);
+    }
+
+    #[test]
+    #[ignore = "a minute: a million lines"]
+    fn floating_point_gives_the_same_of_a_million_lines() {
+        compare(1_000_000);
+    }
 }

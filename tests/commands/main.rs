@@ -17,5 +17,6 @@ mod profiles;
 mod reading;
 mod run;
 mod schema;
+mod steps;
 mod viewer;
 mod ways;

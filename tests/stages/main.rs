@@ -14,6 +14,7 @@ mod motion;
 mod reader;
 mod rounding;
 mod sound;
+mod steps;
 mod stl;
 mod tour;
 mod weak;
