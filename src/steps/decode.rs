@@ -24,9 +24,13 @@ pub enum Item {
         /// Which of all axes go towards lower numbers.
         backwards: u8,
     },
-    /// A move of the file ends here: for each axis how far its true end lies beside the step, in parts of
-    /// 2⁻¹⁶ step.
-    Mark([i16; AXES]),
+    /// A move of the file ends here.
+    Mark {
+        /// How far its true end lies beside each axis's step, in parts of 2⁻¹⁶ step.
+        parts: [i16; AXES],
+        /// Its feed, µm/s.
+        feed: u32,
+    },
 }
 
 /// Reads a stream.
@@ -177,7 +181,8 @@ impl<R: Read> Decoder<R> {
                     for part in &mut parts {
                         *part = i16::from_le_bytes(fields.take()?);
                     }
-                    self.items.push(Item::Mark(parts));
+                    let feed = u32::from_le_bytes(fields.take()?);
+                    self.items.push(Item::Mark { parts, feed });
                 }
                 _ => return None,
             }

@@ -7,7 +7,7 @@ use super::axis::{AXES, nearest};
 use super::coils;
 use super::format::{
     DIRECTIONS, FAR, Form, HEAD, Header, LONGEST, MARK, OF_STEPS, OF_TOTALS, PAUSE, PAYLOAD, SAME,
-    Totals, push_number, seal,
+    Totals, UM, push_number, seal,
 };
 use std::io::{self, Write};
 
@@ -15,7 +15,7 @@ use std::io::{self, Write};
 const MOST: usize = 2 + 1 + 5;
 
 /// Bytes of a mark.
-const MARKED: usize = 1 + 2 * AXES;
+const MARKED: usize = 1 + 2 * AXES + 4;
 
 /// Writes a stream.
 #[derive(Debug)]
@@ -132,11 +132,11 @@ impl<W: Write> Encoder<W> {
         Ok(())
     }
 
-    /// A move of the file ends at these places.
+    /// A move of the file ends at these places; it had this feed, mm/s.
     ///
     /// # Errors
     /// What writing gives.
-    pub fn mark(&mut self, places: [i64; AXES]) -> io::Result<()> {
+    pub fn mark(&mut self, places: [i64; AXES], feed: f64) -> io::Result<()> {
         if matches!(self.form, Form::Coils(_)) {
             return Ok(());
         }
@@ -146,6 +146,7 @@ impl<W: Write> Encoder<W> {
             let part = (place - (nearest(place) << 32)) >> 16;
             self.block.extend((part as i16).to_le_bytes());
         }
+        self.block.extend(((feed * UM).round() as u32).to_le_bytes());
         Ok(())
     }
 

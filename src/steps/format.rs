@@ -49,8 +49,11 @@ pub(super) const DIRECTIONS: u8 = 0x00;
 /// A byte that is followed by a time in which no axis steps.
 pub(super) const PAUSE: u8 = 0x10;
 
-/// A byte that is followed by where a move of the file ends, in parts of a step.
+/// A byte that is followed by where a move of the file ends, in parts of a step, and its feed.
 pub(super) const MARK: u8 = 0x20;
+
+/// Micrometres in a mm: feeds are in µm/s.
+pub(super) const UM: f64 = 1000.0;
 
 /// The longest time of a record, µs; what is longer has pauses before it.
 pub(super) const LONGEST: i64 = (1 << 31) - 1;

@@ -126,7 +126,8 @@ pub fn make(
 
 /// What waits for its plan.
 enum Waiting {
-    Line(Line, f64),
+    /// With its way, mm, and its feed, mm/s.
+    Line(Line, f64, f64),
     /// A dwell.
     Rest,
 }
@@ -303,9 +304,9 @@ impl<'a> Maker<'a> {
         match &mut self.clock {
             Some(clock) => {
                 clock.push(Move { delta, feed: MmPerS(feed), tag: () });
-                self.waiting.push_back(Waiting::Line(steps, way));
+                self.waiting.push_back(Waiting::Line(steps, way, feed));
             }
-            None => self.emit(&steps, way, &Ramp::even(way, feed)),
+            None => self.emit(&steps, way, feed, &Ramp::even(way, feed)),
         }
     }
 
@@ -327,14 +328,16 @@ impl<'a> Maker<'a> {
         let planned: Vec<_> = clock.drain().collect();
         for timed in planned {
             match self.waiting.pop_front() {
-                Some(Waiting::Line(line, way)) => self.emit(&line, way, &Ramp::new(way, &timed)),
+                Some(Waiting::Line(line, way, feed)) => {
+                    self.emit(&line, way, feed, &Ramp::new(way, &timed));
+                }
                 Some(Waiting::Rest) | None => self.pace.pass(timed.seconds * 1e6),
             }
         }
     }
 
     /// Writes the steps of a line.
-    fn emit(&mut self, line: &Line, way: f64, ramp: &Ramp) {
+    fn emit(&mut self, line: &Line, way: f64, feed: f64, ramp: &Ramp) {
         let (encoder, pace) = (&mut self.encoder, &mut self.pace);
         let backwards = line.backwards();
         let (mut any, mut failed) = (false, None);
@@ -346,7 +349,7 @@ impl<'a> Maker<'a> {
             }
         });
         pace.pass(ramp.time());
-        if any && let Err(error) = encoder.mark(line.to) {
+        if any && let Err(error) = encoder.mark(line.to, feed) {
             failed.get_or_insert(error);
         }
         if let (Some(error), None) = (failed, &self.failed) {

@@ -1,18 +1,16 @@
 //! Steps and marks -> moves of G-code: where the nozzle went, for `preview`, `check` and `diff`.
 //!
 //! Moves end where the stream marks the end of a move of the file, at its true end, which is within half
-//! a step of where the axes stand. A stream of coils has no marks: there every step is a move.
-//!
-//! F is the highest speed within the move, by the axis that steps most: its times are whole µs, so that
-//! as many of its steps as there are, up to 64, are looked at together.
+//! a step of where the axes stand, and have its feed. A stream of coils has no marks: there every step is
+//! a move, as fast as it came.
 
 use super::axis::{AXES, LETTERS};
 use super::decode::Item;
-use super::format::{Form, Header};
+use super::format::{Form, Header, UM};
 use std::fmt::Write as _;
 
-/// Steps over which a speed is taken at most.
-const WINDOW: usize = 64;
+/// Parts of a step that a mark counts.
+const PARTS: f64 = 65_536.0;
 
 /// Writes moves.
 #[derive(Debug, Clone)]
@@ -20,42 +18,10 @@ pub struct Path {
     header: Header,
     /// Where the axes stand, in steps.
     steps: [i64; AXES],
-    /// Where the last move ended, mm.
+    /// Where the last move ended, mm, and when the last step was, µs.
     at: [f64; AXES],
-    axes: [Timing; AXES],
-}
-
-/// When an axis has stepped since the move began.
-#[derive(Debug, Clone, Copy)]
-struct Timing {
-    /// The last times, µs, in a ring.
-    times: [i64; WINDOW],
-    count: usize,
-    /// Shortest time of so many steps, for 1, 4, 16 and 63.
-    shortest: [i64; WINDOWS.len()],
-}
-
-const WINDOWS: [usize; 4] = [1, 4, 16, 63];
-
-impl Timing {
-    const NONE: Self = Self { times: [0; WINDOW], count: 0, shortest: [i64::MAX; WINDOWS.len()] };
-
-    fn step(&mut self, at: i64) {
-        for (shortest, window) in self.shortest.iter_mut().zip(WINDOWS) {
-            if self.count >= window {
-                let before = self.times[(self.count - window) % WINDOW];
-                *shortest = (*shortest).min(at - before);
-            }
-        }
-        self.times[self.count % WINDOW] = at;
-        self.count += 1;
-    }
-
-    /// Most steps a second; 0 where there are not two.
-    fn rate(&self) -> f64 {
-        let known = self.shortest.iter().zip(WINDOWS).rev().find(|(time, _)| **time < i64::MAX);
-        known.map_or(0.0, |(time, window)| window as f64 * 1e6 / (*time).max(1) as f64)
-    }
+    time: i64,
+    feed: u32,
 }
 
 impl Path {
@@ -69,7 +35,7 @@ impl Path {
             let _ = write!(text, " {}{:.6}", LETTERS[axis], at[axis]);
         }
         text.push('\n');
-        Self { header: header.clone(), steps: machine.start, at, axes: [Timing::NONE; AXES] }
+        Self { header: header.clone(), steps: machine.start, at, time: 0, feed: 0 }
     }
 
     /// Adds an item, and the move that it ends.
@@ -78,44 +44,44 @@ impl Path {
             Item::Step { at, mask, backwards } => {
                 for axis in (0..AXES).filter(|axis| mask >> axis & 1 == 1) {
                     self.steps[axis] += if backwards >> axis & 1 == 1 { -1 } else { 1 };
-                    self.axes[axis].step(at);
                 }
                 if matches!(self.header.form, Form::Coils(_)) {
-                    self.go([0; AXES], text);
+                    let to = self.place([0; AXES]);
+                    let feed = self.way(to) * UM / ((at - self.time).max(1) as f64 / 1e6);
+                    self.go(to, feed.round() as u32, text);
                 }
+                self.time = at;
             }
-            Item::Mark(parts) => self.go(parts, text),
+            Item::Mark { parts, feed } => self.go(self.place(parts), feed, text),
         }
     }
 
-    /// A move to where the axes stand, and so many parts of a step on.
-    fn go(&mut self, parts: [i16; AXES], text: &mut String) {
+    /// Where the axes stand, and so many parts of a step on, mm.
+    fn place(&self, parts: [i16; AXES]) -> [f64; AXES] {
         let scale = &self.header.machine.scale;
-        let to: [f64; AXES] = std::array::from_fn(|axis| {
-            scale[axis].mm(self.steps[axis] as f64 + f64::from(parts[axis]) / 65_536.0)
-        });
+        std::array::from_fn(|axis| {
+            scale[axis].mm(self.steps[axis] as f64 + f64::from(parts[axis]) / PARTS)
+        })
+    }
+
+    /// How far it is to there: of the nozzle, or of the filament where only that moves, mm.
+    fn way(&self, to: [f64; AXES]) -> f64 {
+        let [x, y, z, e] = std::array::from_fn(|axis| to[axis] - self.at[axis]);
+        let nozzle = (x * x + y * y + z * z).sqrt();
+        if nozzle > 0.0 { nozzle } else { e.abs() }
+    }
+
+    fn go(&mut self, to: [f64; AXES], feed: u32, text: &mut String) {
         text.push_str("G1");
         for axis in 0..AXES {
             if to[axis] != self.at[axis] {
                 let _ = write!(text, " {}{:.6}", LETTERS[axis], to[axis]);
             }
         }
-        if let Some(speed) = self.speed(to) {
-            let _ = write!(text, " F{:.3}", 60.0 * speed);
+        if feed != self.feed {
+            let _ = write!(text, " F{:.3}", f64::from(feed) * 60.0 / UM);
         }
         text.push('\n');
-        self.at = to;
-        self.axes.iter_mut().for_each(|axis| (axis.count, axis.shortest) = (0, Timing::NONE.shortest));
-    }
-
-    /// Highest speed of the move to `to`, mm/s; `None` where no axis makes two steps.
-    fn speed(&self, to: [f64; AXES]) -> Option<f64> {
-        let delta: [f64; AXES] = std::array::from_fn(|axis| to[axis] - self.at[axis]);
-        let nozzle = (delta[0] * delta[0] + delta[1] * delta[1] + delta[2] * delta[2]).sqrt();
-        let way = if nozzle > 0.0 { nozzle } else { delta[3].abs() };
-        let most = (0..AXES).max_by_key(|axis| self.axes[*axis].count)?;
-        let rate = self.axes[most].rate();
-        let steps = delta[most].abs() * self.header.machine.scale[most].per_mm();
-        (rate > 0.0 && steps > 0.0).then(|| rate / steps * way)
+        (self.at, self.feed) = (to, feed);
     }
 }

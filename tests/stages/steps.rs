@@ -325,3 +325,33 @@ fn arcs_inches_homing_and_starts() {
     let small = "G1 X0.0001\n".repeat(200_000);
     near(end(&format!("G90\nG1 X0\nG91\n{small}")), 20.0, 0.0, 0.0);
 }
+
+#[test]
+fn the_example_of_the_format_is_what_is_made() {
+    let page = include_str!("../../src/steps/FORMAT.md");
+    let (_, example) = page.split_once("is this stream:").unwrap();
+    let of_line = |line: &str| -> Vec<u8> {
+        // Bytes end where two blanks begin the explanation.
+        let bytes = line.split("  ").next().unwrap_or_default().split(' ');
+        bytes.map_while(|byte| u8::from_str_radix(byte, 16).ok()).collect()
+    };
+    let told: Vec<u8> = example.lines().skip(3).flat_map(of_line).collect();
+    let motors = [
+        ("steps.x", "10"),
+        ("steps.y", "10"),
+        ("steps.z", "100"),
+        ("steps.e", "20"),
+        ("steps.rate_x", "1000"),
+        ("steps.rate_y", "1000"),
+        ("steps.rate_z", "500"),
+        ("steps.rate_e", "1000"),
+        ("steps.turn", "200"),
+        ("steps.ramps", "false"),
+        ("machine.bed_width", "300"),
+        ("machine.bed_depth", "300"),
+        ("machine.bed_height", "300"),
+    ];
+    let text = "G1 X0.3 Y0.1 F600\nG1 X0.2 E0.1\n";
+    let made = stream(text, &settings(&motors), Form::Steps).bytes;
+    assert_eq!(told, made);
+}
