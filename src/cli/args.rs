@@ -25,13 +25,14 @@ Examples:
   slicer check part.gcode --against part.stl
   slicer preview part.gcode --layer 40 -o part.png
   slicer mesh part.stl -o mended.stl
+  slicer steps part.gcode -p ./mine.toml -o part.steps
 
 A model whose file is named like a subcommand is given as ./profile.";
 
 const EXIT_CODES: &str = "\
 Exit codes:
     0  done
-    1  done, but with findings: warnings with --strict, what `check` or --check found, files
+    1  done, but with findings: warnings with --strict, what `check`, `play` or --check found, files
        that `diff` found unequal
     2  wrong arguments, profile or setting
     3  a model or G-code file cannot be read; a model does not fit, or leaves nothing to print

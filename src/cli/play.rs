@@ -161,7 +161,8 @@ fn play(
             event(item, &mut text.text);
             text.piece(BUFFER);
         }
-        if let (Some(text), Some(path)) = (gcode.borrow_mut().as_mut(), path.borrow_mut().as_mut()) {
+        if let (Some(text), Some(path)) = (gcode.borrow_mut().as_mut(), path.borrow_mut().as_mut())
+        {
             path.item(item, &mut text.text);
             text.piece(BUFFER);
         }

@@ -191,7 +191,10 @@ fn warn(made: &Made) {
     for (axis, beyond) in made.beyond.iter().enumerate() {
         if let Some((line, mm)) = beyond {
             let letter = LETTERS[axis];
-            say_line("warning", format!("{letter} goes {mm:.3} mm beyond its end, first on line {line}"));
+            say_line(
+                "warning",
+                format!("{letter} goes {mm:.3} mm beyond its end, first on line {line}"),
+            );
         }
     }
     if made.slowed > 0 {
@@ -215,13 +218,12 @@ fn notes(made: &Made) -> String {
         plural(u64::from(made.blocks), "block"),
         made.totals.time as f64 / 1e6,
     );
-    let left = [
-        (made.heating, "wait for heat", "waits for heat"),
-        (made.pauses, "pause", "pauses"),
-    ];
-    let left = left.into_iter().filter(|(count, ..)| *count > 0).map(|(count, one, more)| {
-        format!("{count} {}", if count == 1 { one } else { more })
-    });
+    let left =
+        [(made.heating, "wait for heat", "waits for heat"), (made.pauses, "pause", "pauses")];
+    let left = left
+        .into_iter()
+        .filter(|(count, ..)| *count > 0)
+        .map(|(count, one, more)| format!("{count} {}", if count == 1 { one } else { more }));
     let left: Vec<String> = left.collect();
     if !left.is_empty() {
         text.push_str(&format!("motors cannot do, and left out: {}\n", left.join(", ")));

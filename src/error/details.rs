@@ -30,7 +30,11 @@ pub const CODES: &[(&str, u8, &str)] = &[
     ("unreadable", 3, "a model or G-code file cannot be opened or read, or is a device"),
     ("not-a-model", 3, "a file is no STL"),
     ("not-steps", 3, "a file is no stream of steps, or of an unknown version"),
-    ("damaged", 3, "a model's file or a stream of steps is cut off, damaged, or contradicts itself"),
+    (
+        "damaged",
+        3,
+        "a model's file or a stream of steps is cut off, damaged, or contradicts itself",
+    ),
     ("too-large", 3, "more triangles or moves than are allowed"),
     ("broken-mesh", 3, "a mesh that cannot be mended, or has faults with --mesh strict"),
     ("does-not-fit", 3, "the print, or what lies around it, is larger than the machine"),

@@ -37,7 +37,9 @@ pub enum Cause {
         what: Damage,
     },
     /// A move ends farther away than steps are counted.
-    #[error("line {line}: {axis} goes farther than steps can be counted; give a file for this machine")]
+    #[error(
+        "line {line}: {axis} goes farther than steps can be counted; give a file for this machine"
+    )]
     TooFar {
         /// Line of the G-code, from 1.
         line: u64,

@@ -18,6 +18,7 @@
 //! is exact since only the first term is rounded, downwards, and the others are whole.
 
 use super::axis::{AXES, STEP, nearest};
+use std::ops::ControlFlow;
 
 /// A straight line between two places.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,9 +66,9 @@ impl Line {
     }
 
     /// Hands out all steps in their order: how far along the line, as a share of it from 0 to 1, and the
-    /// axes that step there, a bit for each.
+    /// axes that step there, a bit for each. It ends early where `sink` breaks.
     #[inline]
-    pub fn steps(&self, mut sink: impl FnMut(f64, u8)) {
+    pub fn steps(&self, mut sink: impl FnMut(f64, u8) -> ControlFlow<()>) {
         let ways: [Way; AXES] = std::array::from_fn(|axis| self.way(axis));
         if ways.iter().all(|way| way.left == 0) {
             return;
@@ -100,7 +101,9 @@ impl Line {
                 }
                 way.error += way.length;
             }
-            sink(start + step as f64 * pace, mask);
+            if sink(start + step as f64 * pace, mask).is_break() {
+                return;
+            }
         }
         left_over(others, &mut sink);
     }
@@ -127,7 +130,7 @@ fn error(way: &Way, leader: &Way) -> i64 {
 }
 
 /// Steps after the leader's last, each at its own crossing.
-fn left_over(ways: &mut [Way], sink: &mut impl FnMut(f64, u8)) {
+fn left_over(ways: &mut [Way], sink: &mut impl FnMut(f64, u8) -> ControlFlow<()>) {
     let is_before = |a: &Way, b: &Way| {
         i128::from(a.first) * i128::from(b.length) < i128::from(b.first) * i128::from(a.length)
     };
@@ -148,7 +151,9 @@ fn left_over(ways: &mut [Way], sink: &mut impl FnMut(f64, u8)) {
                 way.first += STEP;
             }
         }
-        sink(next.first as f64 / next.length as f64, mask);
+        if sink(next.first as f64 / next.length as f64, mask).is_break() {
+            return;
+        }
     }
 }
 
@@ -168,6 +173,7 @@ mod tests {
                 *at += by * i64::from(mask >> axis & 1);
             }
             found.push((share, at));
+            ControlFlow::Continue(())
         });
         found
     }
@@ -253,7 +259,10 @@ mod tests {
     fn octants_ends_and_a_million_steps() {
         let far = 1_000_000 * STEP;
         for (x, y) in [(3, 1), (1, 3), (-1, 3), (-3, 1), (-3, -1), (-1, -3), (1, -3), (3, -1)] {
-            judge(&Line { from: [STEP / 3, 7, 0, 0], to: [x * STEP * 40, y * STEP * 40, STEP, -STEP] });
+            judge(&Line {
+                from: [STEP / 3, 7, 0, 0],
+                to: [x * STEP * 40, y * STEP * 40, STEP, -STEP],
+            });
         }
         judge(&Line { from: [0; 4], to: [0; 4] });
         judge(&Line { from: [0; 4], to: [STEP / 2, 0, 0, 0] });
@@ -266,14 +275,17 @@ mod tests {
     fn compare(lines: u32) {
         let mut state = 7_u64;
         let mut roll = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             (state >> 20) as i64 % (40 * STEP) - 20 * STEP
         };
         let mut compared = 0_u64;
         for _ in 0..lines {
             let line = Line { from: [(); AXES].map(|()| roll()), to: [(); AXES].map(|()| roll()) };
             let at = |share: f64, axis: usize| {
-                let [from, to] = [line.from[axis], line.to[axis]].map(|place| place as f64 / STEP as f64);
+                let [from, to] =
+                    [line.from[axis], line.to[axis]].map(|place| place as f64 / STEP as f64);
                 from + share * (to - from)
             };
             for (share, stands) in walk(&line) {

@@ -31,6 +31,7 @@ use crate::reader::{self, Event, Motion, Reading, Wait};
 use crate::units::MmPerS;
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Write};
+use std::ops::ControlFlow;
 
 /// How a stream is made, besides the settings.
 #[derive(Debug, Clone, Copy)]
@@ -274,8 +275,9 @@ impl<'a> Maker<'a> {
 
     /// A straight move to these picometres.
     fn go(&mut self, line: u64, to: [i64; AXES], feed: f64) {
-        let delta: [f64; AXES] =
-            std::array::from_fn(|axis| (to[axis] as i128 - self.at[axis] as i128) as f64 / PM as f64);
+        let delta: [f64; AXES] = std::array::from_fn(|axis| {
+            (to[axis] as i128 - self.at[axis] as i128) as f64 / PM as f64
+        });
         let [x, y, z, e] = delta;
         let nozzle = (x * x + y * y + z * z).sqrt();
         let way = if nozzle > 0.0 { nozzle } else { e.abs() };
@@ -297,7 +299,8 @@ impl<'a> Maker<'a> {
         let most = self.machine.most_speed(steps.lengths(), way);
         if most < feed * (1.0 - 1e-9) {
             self.made.slowed += 1;
-            self.made.first_slowed = if self.made.slowed == 1 { line } else { self.made.first_slowed };
+            self.made.first_slowed =
+                if self.made.slowed == 1 { line } else { self.made.first_slowed };
         }
         (self.at, self.place) = (to, place);
         let feed = feed.min(most);
@@ -327,6 +330,9 @@ impl<'a> Maker<'a> {
         let Some(clock) = &mut self.clock else { return };
         let planned: Vec<_> = clock.drain().collect();
         for timed in planned {
+            if self.failed.is_some() {
+                return;
+            }
             match self.waiting.pop_front() {
                 Some(Waiting::Line(line, way, feed)) => {
                     self.emit(&line, way, feed, &Ramp::new(way, &timed));
@@ -344,15 +350,19 @@ impl<'a> Maker<'a> {
         line.steps(|share, mask| {
             any = true;
             let at = pace.step(ramp.at(share * way), mask, backwards);
-            if let Err(error) = encoder.step(at, mask, backwards) {
-                failed.get_or_insert(error);
+            match encoder.step(at, mask, backwards) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(error) => {
+                    failed = Some(error);
+                    ControlFlow::Break(())
+                }
             }
         });
         pace.pass(ramp.time());
-        if any && let Err(error) = encoder.mark(line.to, feed) {
-            failed.get_or_insert(error);
+        if any && failed.is_none() {
+            failed = encoder.mark(line.to, feed).err();
         }
-        if let (Some(error), None) = (failed, &self.failed) {
+        if let Some(error) = failed {
             self.failed = Some(Failed::Write(error));
         }
     }

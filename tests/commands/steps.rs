@@ -8,7 +8,15 @@ use std::fs;
 use tempfile::TempDir;
 
 const MOTORS: [&str; 10] = [
-    "-p", "generic-marlin", "--set", "steps.x=80", "--set", "steps.y=80", "--set", "steps.z=400", "--set",
+    "-p",
+    "generic-marlin",
+    "--set",
+    "steps.x=80",
+    "--set",
+    "steps.y=80",
+    "--set",
+    "steps.z=400",
+    "--set",
     "steps.e=93",
 ];
 
@@ -77,18 +85,24 @@ fn the_path_comes_back_as_moves_that_print_the_same() {
     // The start block primes beside the bed, which is a finding or none.
     slicer(&folder).args(play).assert().stderr("");
     // Commands to the heaters are no steps, and a stream tells no roles.
-    let diff = ["diff", "a.gcode", "b.gcode", "--tolerance", "0.00625", "--json", "-p", "generic-marlin"];
+    let diff =
+        ["diff", "a.gcode", "b.gcode", "--tolerance", "0.00625", "--json", "-p", "generic-marlin"];
     let told = slicer(&folder).args(diff).assert();
     let told = json(&told.get_output().stdout);
-    let kinds: Vec<&str> =
-        told["findings"].as_array().unwrap().iter().map(|one| one["kind"].as_str().unwrap()).collect();
+    let kinds: Vec<&str> = told["findings"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| one["kind"].as_str().unwrap())
+        .collect();
     let about_motion = |kind: &&&str| !["heaters", "commands"].contains(*kind);
     assert_eq!(kinds.iter().filter(about_motion).count(), 0, "{kinds:?}");
     // At most two bytes a step.
     let bytes = fs::metadata(folder.path().join("a.steps")).unwrap().len();
     let played = slicer(&folder).args(["play", "a.steps", "--json"]).assert();
     let played = json(&played.get_output().stdout);
-    let steps: u64 = ["x", "y", "z", "e"].iter().map(|axis| played["steps"][axis].as_u64().unwrap()).sum();
+    let steps: u64 =
+        ["x", "y", "z", "e"].iter().map(|axis| played["steps"][axis].as_u64().unwrap()).sum();
     assert!(bytes <= 2 * steps, "{bytes} bytes for {steps} steps");
 }
 
@@ -120,13 +134,19 @@ fn a_printer_without_steps_is_refused_before_anything_is_made() {
         assert!(!folder.path().join("b.steps").exists());
     }
     for profile in ["replicator", "witbox-1"] {
-        slicer(&folder).args(["steps", "a.gcode", "-o", "c.steps", "-p", profile]).assert().success();
+        slicer(&folder)
+            .args(["steps", "a.gcode", "-o", "c.steps", "-p", profile])
+            .assert()
+            .success();
     }
     let mut far = slicer(&folder);
     far.args(["steps", "-", "-o", "b.steps"]).args(MOTORS);
     let far = far.write_stdin("G1 X1\nG1 Y900000000\n").assert().code(3);
     let said = text(&far.get_output().stderr);
-    assert_eq!(said, "error: <stdin>: line 2: Y goes farther than steps can be counted; give a file for this machine\n");
+    assert_eq!(
+        said,
+        "error: <stdin>: line 2: Y goes farther than steps can be counted; give a file for this machine\n"
+    );
 }
 
 #[test]
@@ -155,7 +175,10 @@ fn damaged_streams_are_refused_with_their_block() {
         (turned, "block 3 is damaged"),
         (with(&[one, &good[blocks[3]..]]), "block 2 is missing: block 3 is in its place"),
         (with(&[one, &block(1), rest]), "block 2 is missing: block 1 is in its place"),
-        (with(&[one, &block(3), &block(2), &good[blocks[4]..]]), "block 2 is missing: block 3 is in its place"),
+        (
+            with(&[one, &block(3), &block(2), &good[blocks[4]..]]),
+            "block 2 is missing: block 3 is in its place",
+        ),
         (with(&[&good, b"\n"]), "is the last, and more bytes follow"),
         (header, "its header is damaged"),
         (newer, "it is of version 2 of the format, and this program knows version 1"),
@@ -170,14 +193,22 @@ fn damaged_streams_are_refused_with_their_block() {
         assert_eq!(said.lines().count(), 1);
         assert!(!folder.path().join("e.txt").exists() && !folder.path().join("g.gcode").exists());
     }
-    slicer(&folder).args(["play", "-", "-q"]).write_stdin(good).assert().success().stdout("").stderr("");
+    slicer(&folder)
+        .args(["play", "-", "-q"])
+        .write_stdin(good)
+        .assert()
+        .success()
+        .stdout("")
+        .stderr("");
 }
 
 #[test]
 fn where_it_begins_is_told_and_asked_for() {
     let folder = made("G1 X20 Y20\n");
-    let words = ["steps", "a.gcode", "-o", "b.steps", "--json", "--start", "10,5,0.5", "--coils", "half"];
-    let told = json(&slicer(&folder).args(words).args(MOTORS).assert().success().get_output().stdout);
+    let words =
+        ["steps", "a.gcode", "-o", "b.steps", "--json", "--start", "10,5,0.5", "--coils", "half"];
+    let told =
+        json(&slicer(&folder).args(words).args(MOTORS).assert().success().get_output().stdout);
     assert_eq!(told["start_mm"], serde_json::json!({"x": 10.0, "y": 5.0, "z": 0.5, "e": 0.0}));
     assert_eq!(told["steps"]["x"], 800);
     assert_eq!(told["steps"]["y"], 1200);
@@ -185,4 +216,41 @@ fn where_it_begins_is_told_and_asked_for() {
     let both = ["steps", "a.gcode", "-o", "-", "--json"];
     slicer(&folder).args(both).args(MOTORS).assert().code(2);
     slicer(&folder).args(["play", "a.steps", "--events", "-", "--json"]).assert().code(2);
+}
+
+#[test]
+fn check_warns_of_a_feed_that_a_motor_cannot_make() {
+    let text = "M104 S210\nM109 S210\nG28\nG1 Z0.2 F600\nG1 X20 Y20 F6000\nG1 X50 E1 F1800\nG1 X50 Y40 E2\n";
+    let folder = made(text);
+    let check = ["check", "a.gcode", "--json", "-p", "generic-marlin"];
+    let found = |set: &[&str]| -> Vec<(String, u64, f64)> {
+        let told = slicer(&folder).args(check).args(set).assert();
+        let told = json(&told.get_output().stdout);
+        let all = told["findings"].as_array().unwrap().clone();
+        let ours = all.iter().filter(|one| one["code"] == "too-many-steps");
+        ours.map(|one| {
+            assert_eq!(one["severity"], "warning");
+            let place = one["line"].as_u64().unwrap();
+            (one["text"].as_str().unwrap().to_owned(), place, one["measure"].as_f64().unwrap())
+        })
+        .collect()
+    };
+    assert_eq!(found(&["--set", "steps.x=80"]), []);
+    assert_eq!(found(&["--set", "steps.x=80", "--set", "steps.rate_x=6000"]), []);
+    let slow = found(&["--set", "steps.x=80", "--set", "steps.rate_x=1000"]);
+    let lines: Vec<u64> = slow.iter().map(|one| one.1).collect();
+    // The travel and the line along x; the line along y takes no step of x.
+    assert!(lines.contains(&5) && lines.contains(&6) && lines.len() == 2, "{slow:?}");
+    let line = slow.iter().find(|one| one.1 == 6).unwrap();
+    assert!((line.2 - 2400.0).abs() < 1.0);
+    assert_eq!(line.0, "2400 steps/s of x, where its motor makes 1000");
+    // What is made of it is slower, and told.
+    let words = ["steps", "a.gcode", "-o", "b.steps", "--json", "--set", "steps.rate_x=1000"];
+    let told = slicer(&folder).args(words).args(MOTORS).assert().success();
+    let told = json(&told.get_output().stdout);
+    assert_eq!(told["warnings"][0]["code"], "too-many-steps");
+    assert_eq!(told["warnings"][0]["line"], 5);
+    assert_eq!(told["warnings"][0]["moves"], 2);
+    let played = slicer(&folder).args(["play", "b.steps", "--json"]).assert().success();
+    assert_eq!(json(&played.get_output().stdout)["highest_rate"]["x"], 1000.0);
 }

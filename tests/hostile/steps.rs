@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use super::{config, damage, damaged, in_time};
+use super::{config, damage, damaged, fixture, in_time, properties};
 use proptest::prelude::*;
 use slicer::profile::{self, Override, ValueOrigin};
 use slicer::reader::Reading;
@@ -61,4 +61,34 @@ fn every_bit_and_every_length_counts() {
             }
         }
     }
+}
+
+proptest! {
+    #![proptest_config(config(500))]
+    #[test]
+    fn blocks_that_are_sealed_may_hold_anything(
+        which in 0_usize..2,
+        kind in 0_u8..3,
+        count in 0_u16..9,
+        payload in prop::collection::vec(prop_oneof![any::<u8>(), 0_u8..64], 0..80),
+    ) {
+        let mut bytes = STREAMS[which][..216].to_vec();
+        let mut block = vec![kind, 0];
+        block.extend((payload.len() as u16).to_le_bytes());
+        block.extend(0_u32.to_le_bytes());
+        block.extend(count.to_le_bytes());
+        block.extend(payload);
+        block.extend(crc32fast::hash(&block).to_le_bytes());
+        bytes.extend(block);
+        properties::stream(&bytes);
+    }
+}
+
+#[test]
+fn damaged_gcode_becomes_a_stream_or_is_refused() {
+    let files = ["clock.gcode", "bent.gcode"].map(fixture);
+    proptest!(config(60), |(which in 0..files.len(), damages in damage())| {
+        let file = damaged(&files[which], &damages, &files);
+        in_time("steps of a file", || properties::steps(&file));
+    });
 }

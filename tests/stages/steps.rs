@@ -52,7 +52,11 @@ fn case(seed: u64, moves: usize, longest: f64) -> Case {
     let mut ends = vec![at];
     let number = |pm: i64| {
         let sign = if pm < 0 { "-" } else { "" };
-        format!("{sign}{}.{:09}", pm.unsigned_abs() / 1_000_000_000, pm.unsigned_abs() % 1_000_000_000)
+        format!(
+            "{sign}{}.{:09}",
+            pm.unsigned_abs() / 1_000_000_000,
+            pm.unsigned_abs() % 1_000_000_000
+        )
     };
     for _ in 0..moves {
         match dice.below(40) {
@@ -81,7 +85,8 @@ fn case(seed: u64, moves: usize, longest: f64) -> Case {
                 continue;
             }
             // In the middle now and then, so that nothing goes too far.
-            let wish = length * (2.0 * dice.share() - 1.0) * PM / if axis == 3 { 10.0 } else { 1.0 };
+            let wish =
+                length * (2.0 * dice.share() - 1.0) * PM / if axis == 3 { 10.0 } else { 1.0 };
             let by = wish as i64 / 1000 * 1000;
             let by = if (at[axis] + by).abs() > 300 * 1_000_000_000 { -by } else { by };
             at[axis] += by;
@@ -140,11 +145,16 @@ fn stream(text: &str, settings: &Settings, form: Form) -> Stream {
     let mut bytes = Vec::new();
     let made = make(&mut text.as_bytes(), "x.gcode", settings, options, &mut bytes).unwrap();
     let mut steps = Vec::new();
-    let played = play(&mut bytes.as_slice(), "x.steps", |_| {}, |_, item| {
-        if let Item::Step { at, mask, backwards } = *item {
-            steps.push((at, mask, backwards));
-        }
-    });
+    let played = play(
+        &mut bytes.as_slice(),
+        "x.steps",
+        |_| {},
+        |_, item| {
+            if let Item::Step { at, mask, backwards } = *item {
+                steps.push((at, mask, backwards));
+            }
+        },
+    );
     let played = played.unwrap();
     assert_eq!((played.totals, played.blocks), (made.totals, u64::from(made.blocks)));
     Stream { made, bytes, played, steps }
@@ -223,7 +233,8 @@ fn rates(stream: &Stream, intervals: [i64; 4], turn: i64, pulse: i64) {
         for axis in (0..4).filter(|axis| mask >> axis & 1 == 1) {
             let back = backwards >> axis & 1 == 1;
             if let Some((was, was_back)) = last[axis] {
-                let least = if back == was_back { intervals[axis] } else { intervals[axis].max(turn) };
+                let least =
+                    if back == was_back { intervals[axis] } else { intervals[axis].max(turn) };
                 assert!(at - was >= least, "axis {axis} steps after {} µs at {at} µs", at - was);
             }
             last[axis] = Some((*at, back));
@@ -308,7 +319,10 @@ fn arcs_inches_homing_and_starts() {
         (machine.mm(stream.played.totals.end), stream.played.totals.steps)
     };
     let near = |(end, _): ([f64; 4], [u64; 4]), x: f64, y: f64, z: f64| {
-        assert!((end[0] - x).abs() < 0.06 && (end[1] - y).abs() < 0.11 && (end[2] - z).abs() < 0.05, "{end:?}");
+        assert!(
+            (end[0] - x).abs() < 0.06 && (end[1] - y).abs() < 0.11 && (end[2] - z).abs() < 0.05,
+            "{end:?}"
+        );
     };
     // A full circle, and what it goes.
     let circle = end("G1 X30 Y0\nG2 X30 Y0 I-20 J0 E3\n");
