@@ -152,7 +152,7 @@ impl Target {
     /// # Errors
     /// A profile that makes no steps, where the name asks for them; [`Output`].
     pub(super) fn open(out: &Path, settings: &Settings) -> Result<Self> {
-        if !out.extension().is_some_and(|ending| ending == ENDING) {
+        if out.extension().is_none_or(|ending| ending != ENDING) {
             return Ok(Self { gcode: Sink::open(out)?, stream: None });
         }
         Machine::new(settings, None)?;
@@ -274,7 +274,7 @@ impl Told {
             let axis = Some(LETTERS[axis].to_ascii_lowercase());
             Some(Warned { code: "beyond-switch", line, axis, beyond_mm: Some(mm), moves: None })
         });
-        let slowed = (made.slowed > 0).then(|| Warned {
+        let slowed = (made.slowed > 0).then_some(Warned {
             code: "too-many-steps",
             line: made.first_slowed,
             axis: None,

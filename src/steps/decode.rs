@@ -200,9 +200,9 @@ impl<R: Read> Decoder<R> {
             let patterns = u16::from_le_bytes(fields.take()?);
             self.at = self.at.checked_add(i64::from(u16::from_le_bytes(fields.take()?)))?;
             let (mut mask, mut backwards) = (0, 0);
-            for axis in 0..AXES {
+            for (axis, full) in full.into_iter().enumerate() {
                 let pattern = (patterns >> (4 * axis) & 15) as u8;
-                let by = coils::went(self.totals.end[axis], pattern, full[axis])?;
+                let by = coils::went(self.totals.end[axis], pattern, full)?;
                 mask |= u8::from(by != 0) << axis;
                 backwards |= u8::from(by < 0) << axis;
             }

@@ -187,9 +187,9 @@ mod tests {
         let mut least = (0_i128, 1_i128);
         for (_, at) in &walked {
             let mut most = (1_i128, 1_i128);
-            for axis in 0..AXES {
+            for (axis, at) in at.iter().enumerate() {
                 let (from, to) = (i128::from(line.from[axis]), i128::from(line.to[axis]));
-                let stands = i128::from(at[axis]) << 32;
+                let stands = i128::from(*at) << 32;
                 let half = i128::from(STEP / 2);
                 let length = (to - from).abs();
                 let (near, far) = if to >= from {

@@ -75,10 +75,9 @@ impl Machine {
     pub fn most_speed(&self, lengths: [i64; AXES], way: f64) -> f64 {
         let longest = lengths.into_iter().max().unwrap_or(0);
         let mut interval = 1.0_f64;
-        for axis in 0..AXES {
-            if lengths[axis] > 0 {
-                let apart = longest / lengths[axis];
-                interval = interval.max(f64::from(self.interval[axis]) / apart as f64);
+        for (length, least) in lengths.into_iter().zip(self.interval) {
+            if length > 0 {
+                interval = interval.max(f64::from(least) / (longest / length) as f64);
             }
         }
         let steps = longest as f64 / STEP as f64;
