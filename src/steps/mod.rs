@@ -14,6 +14,7 @@
 //! | `format`, `encode`, `decode`, `coils` | the bytes of a stream |
 //! | `play` | a stream -> totals, and what its machine would not do |
 //! | `path` | a stream -> moves of G-code |
+//! | `rates` | G-code -> how fast motors would have to step |
 //!
 #![doc = include_str!("FORMAT.md")]
 
@@ -30,6 +31,7 @@ mod pace;
 mod path;
 mod play;
 mod ramp;
+mod rates;
 
 pub use decode::{Decoder, Item};
 pub use encode::Encoder;
@@ -39,3 +41,4 @@ pub use machine::Machine;
 pub use make::{Failure, Made, Options, make};
 pub use path::Path;
 pub use play::{Finding, Played, play};
+pub use rates::highest_rates;

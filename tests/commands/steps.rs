@@ -254,3 +254,25 @@ fn check_warns_of_a_feed_that_a_motor_cannot_make() {
     let played = slicer(&folder).args(["play", "b.steps", "--json"]).assert().success();
     assert_eq!(json(&played.get_output().stdout)["highest_rate"]["x"], 1000.0);
 }
+
+#[test]
+fn estimate_tells_the_highest_rates_where_the_profile_has_steps() {
+    let folder = made("G1 X100 Y50 F3000\nG1 X100 Y0 E10\n");
+    let told = slicer(&folder).args(["estimate", "a.gcode", "--json"]).args(MOTORS).assert();
+    let rates = json(&told.success().get_output().stdout)["highest_rate"].clone();
+    let is = |axis: &str, rate: f64| {
+        let told = rates[axis].as_f64().unwrap();
+        assert!((told - rate).abs() < 1e-6 * rate.max(1.0), "{axis}: {told} is not {rate}");
+    };
+    is("x", 50.0 * 80.0 * 100.0 / 12_500.0_f64.sqrt());
+    is("y", 50.0 * 80.0);
+    is("z", 0.0);
+    is("e", 50.0 * 93.0 * 10.0 / 50.0);
+    let told = slicer(&folder).args(["estimate", "a.gcode"]).args(MOTORS).assert().success();
+    assert!(
+        text(&told.get_output().stdout).contains("steps/s at most: x 3578, y 4000, z 0, e 930\n")
+    );
+    let none =
+        slicer(&folder).args(["estimate", "a.gcode", "--json", "-p", "generic-marlin"]).assert();
+    assert!(json(&none.get_output().stdout)["highest_rate"].is_null());
+}

@@ -369,3 +369,17 @@ fn the_example_of_the_format_is_what_is_made() {
     let made = stream(text, &settings(&motors), Form::Steps).bytes;
     assert_eq!(told, made);
 }
+
+#[test]
+fn relative_moves_add_up_exactly() {
+    let text = format!("G91\n{}", "G1 X0.1 Y-0.001 E0.1\n".repeat(10_000));
+    let mut end = [0.0; 3];
+    slicer::reader::read(&mut text.as_bytes(), Reading::default(), &mut |_, event| {
+        if let slicer::reader::Event::Move(motion) = event {
+            assert_eq!(motion.from, end);
+            end = motion.to;
+        }
+    })
+    .unwrap();
+    assert_eq!(end, [1000.0, -10.0, 0.0]);
+}
