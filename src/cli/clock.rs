@@ -6,13 +6,13 @@
 use super::output;
 use super::profiles::ProfileArgs;
 use super::reading::{Opened, ReadingArgs};
-use super::steps::Axes;
 use anyhow::Result;
 use serde::Serialize;
 use slicer::estimate::{Estimate, Options};
 use slicer::motion::Limits;
 use slicer::profile::{self, Profile, Settings};
 use slicer::reader::Reading;
+use slicer::steps::axis::Axes;
 use std::path::Path;
 
 /// Settings of a file, and what they are called.

@@ -34,7 +34,6 @@ const EVERYDAY: [(&str, &str); 14] = [
     ("set", "Change any setting (see `slicer profile show -v`)"),
     ("rotate", "Turn about x, y, z, degrees"),
     ("copies", "Print each model N times"),
-    ("report", "Write a report as JSON, `-` for standard output"),
     ("check", "Write G-code only if it is found to be good"),
     ("quiet", "Show only warnings and errors"),
 ];

@@ -1,4 +1,11 @@
 //! Arguments -> products and exit code: the only place that prints.
+//!
+//! Words used here: a *product* is what a command is run for, a file or text on standard output; an
+//! *outcome* is that text with the exit code.
+//!
+//! 1. The words become arguments ([`args`]); help, versions and wrong words end here.
+//! 2. The command's own module does the work, and gives an outcome or an error.
+//! 3. An error becomes one line and an exit code ([`failure`]).
 
 mod args;
 mod check;

@@ -1,14 +1,21 @@
 //! `slicer play` -> what a stream of steps does: totals and findings, its steps as text, its path as G-code.
+//!
+//! Words used here: *events* are steps as lines of text; the *path* is the moves that the steps were made
+//! of, as G-code; a *text* is one of the two while it is written.
+//!
+//! 1. No two products may go to one place.
+//! 2. The stream is read block by block; what it holds goes to both texts at once, piece by piece, so that
+//!    memory does not grow with it.
+//! 3. Only when all of it was right are texts put in place, and the totals told.
 
 use super::failure::writing;
 use super::output::{self, Sink};
 use super::publish::publish;
-use super::steps::Axes;
 use super::{Outcome, failure, interrupt, usage};
 use anyhow::{Context as _, Result};
 use clap::Args;
 use serde::Serialize;
-use slicer::steps::axis::{AXES, LETTERS};
+use slicer::steps::axis::{AXES, Axes, LETTERS};
 use slicer::steps::{self, Cause, Finding, Item, Played};
 use slicer::text;
 use slicer::warning::plural;

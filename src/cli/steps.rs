@@ -1,7 +1,12 @@
 //! `slicer steps` and `-o part.steps` -> a stream of steps for motors, made of G-code.
 //!
 //! Words used here: a *stream* is the product, a file of steps; its *notes* are what people are told of
-//! it: where it begins and ends, and what of the G-code it does not have.
+//! it: where it begins and ends, and what of the G-code it does not have; a *target* is where slicing
+//! writes, be it G-code or a stream.
+//!
+//! 1. The profile has to say how far a step goes, before any work is done.
+//! 2. The G-code is read once, and the stream is written beside its place.
+//! 3. It is put in place, and people or programs are told.
 //!
 //! The G-code of `slicer steps` is any slicer's; that of `slicer part.stl -o part.steps` is written to a
 //! file without a name first, and read back. Either way the machine is that of the settings.
@@ -17,7 +22,7 @@ use clap::Args;
 use serde::Serialize;
 use slicer::profile::Settings;
 use slicer::reader::Reading;
-use slicer::steps::axis::{AXES, LETTERS};
+use slicer::steps::axis::{AXES, Axes, LETTERS};
 use slicer::steps::{self, Failure, Form, Machine, Made, Options};
 use slicer::text;
 use slicer::warning::plural;
@@ -72,21 +77,6 @@ fn coils(text: &str) -> Result<[bool; AXES], String> {
         None => None,
     };
     all.ok_or_else(|| "it must be half or full, or four of them with commas between".to_owned())
-}
-
-/// A value for each axis.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub(super) struct Axes<T> {
-    x: T,
-    y: T,
-    z: T,
-    e: T,
-}
-
-impl<T> From<[T; AXES]> for Axes<T> {
-    fn from([x, y, z, e]: [T; AXES]) -> Self {
-        Self { x, y, z, e }
-    }
 }
 
 /// Makes a stream; gives the text for standard output.

@@ -7,6 +7,23 @@
 //!   the picometres for every end of a move, so that its rounding never adds up;
 //! - the *nearest step* to a place is what the motor stands at: half a step is rounded up.
 
+use serde::Serialize;
+
+/// A value for each axis, as programs read it.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Axes<T> {
+    x: T,
+    y: T,
+    z: T,
+    e: T,
+}
+
+impl<T> From<[T; AXES]> for Axes<T> {
+    fn from([x, y, z, e]: [T; AXES]) -> Self {
+        Self { x, y, z, e }
+    }
+}
+
 /// Axes of a machine: x, y, z and the filament.
 pub const AXES: usize = 4;
 

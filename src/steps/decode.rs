@@ -1,7 +1,13 @@
 //! Bytes of a stream -> steps with their times, block by block; anything but what was written is refused.
 //!
-//! A block is handed out only when all of it has been judged: its checksum, its number, every record,
-//! and of the last one the totals. What a board does with a block is the same.
+//! Words used here: an *item* is a step of some axes at one time, or the end of a move of the file; the
+//! *form* is whether a stream holds steps or patterns of coils.
+//!
+//! 1. The header is read, and refused where it is another's or damaged.
+//! 2. A block is read by the length in it, then judged: its checksum, its number, every record, and of the
+//!    last one the totals. Only then its items are handed out, so that nothing of a damaged block is
+//!    played. What a board does with a block is the same.
+//! 3. After the last block nothing may follow.
 
 use super::axis::AXES;
 use super::coils;

@@ -1,7 +1,13 @@
 //! Steps with their times -> blocks of a stream, written as they are full.
 //!
-//! A record takes a byte where its time differs little from the one before, as it does on a move and on
-//! ramps. Each block begins without anything known: the first record has its time in full.
+//! Words used here: an *interval* is the time from one step to the next; a *mark* tells where a move of the
+//! file ends; *room* is what a block has left.
+//!
+//! - A step takes a byte where its interval differs little from the one before, as it does on a move and
+//!   on ramps.
+//! - Other directions and long pauses come before the step that they are for, in the same block.
+//! - Each block begins without anything known: its first step has its interval in full.
+//! - Totals are summed up on the way, for the last block.
 
 use super::axis::{AXES, nearest};
 use super::coils;
