@@ -30,6 +30,7 @@
 //! | [`mod@diff`] | two files -> whether they print the same |
 //! | [`mod@roughness`] | moves and model -> how rough its tops are |
 //! | [`preview`] | moves -> pictures |
+//! | [`steps`] | moves -> steps of motors, and back |
 //!
 //! Beside the flow:
 //!
@@ -71,6 +72,7 @@ pub mod render;
 pub mod report;
 pub mod roughness;
 pub mod slice;
+pub mod steps;
 pub mod text;
 pub mod units;
 pub mod warning;

@@ -19,5 +19,6 @@ mod roughness;
 mod run;
 mod schema;
 mod skins;
+mod steps;
 mod viewer;
 mod ways;
