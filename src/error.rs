@@ -13,7 +13,7 @@ pub mod details;
 
 use crate::profile::ProfileError;
 use crate::warning::plural;
-use crate::{gcode, mesh, progress, reader};
+use crate::{gcode, mesh, progress, reader, steps};
 use std::io;
 
 /// A failure that ends the run. [`Error::exit_code`] gives the exit code of the program.
@@ -32,6 +32,10 @@ pub enum Error {
     /// A G-code file that cannot be read or prints nothing (exit 3).
     #[error(transparent)]
     Reader(#[from] reader::Error),
+
+    /// A stream of steps that cannot be played, or G-code that none can be made of (exit 3).
+    #[error(transparent)]
+    Steps(#[from] steps::Error),
 
     /// The models can be read but not be printed (exit 3).
     #[error(transparent)]
@@ -58,7 +62,7 @@ impl Error {
         match self {
             Self::Profile(_) | Self::Gcode(gcode::Error::Block(_)) => 2,
             Self::Mesh(error) if error.is_usage() => 2,
-            Self::Mesh(_) | Self::Reader(_) | Self::Refused(_) => 3,
+            Self::Mesh(_) | Self::Reader(_) | Self::Steps(_) | Self::Refused(_) => 3,
             Self::Gcode(_) | Self::Thumbnails(_) => 4,
             Self::Cancelled => 130,
         }

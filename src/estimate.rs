@@ -257,7 +257,7 @@ impl Meter {
 
     /// Adds up the times that are known by now.
     fn collect(&mut self) {
-        for Timed { seconds, peak, tag } in self.clock.drain() {
+        for Timed { seconds, peak, tag, .. } in self.clock.drain() {
             match tag.role {
                 Some(role) => self.roles[role as usize].seconds += seconds,
                 None => self.dwell += seconds,
@@ -312,7 +312,7 @@ impl Meter {
 }
 
 /// Limits as the file changes them. What does not fit the machine's rule for corners has no effect.
-fn apply(change: &Change, limits: &mut Limits) {
+pub(crate) fn apply(change: &Change, limits: &mut Limits) {
     let set = |limit: &mut f64, value: Option<f64>| *limit = value.unwrap_or(*limit);
     for axis in 0..4 {
         set(&mut limits.feed[axis], change.feed[axis]);

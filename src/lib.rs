@@ -30,6 +30,7 @@
 //! | [`mod@diff`] | two files -> whether they print the same |
 //! | [`mod@roughness`] | moves and model -> how rough its tops are |
 //! | [`preview`] | moves -> pictures |
+//! | [`steps`] | moves -> steps of motors, and back |
 //!
 //! Beside the flow:
 //!
@@ -71,6 +72,7 @@ pub mod render;
 pub mod report;
 pub mod roughness;
 pub mod slice;
+pub mod steps;
 pub mod text;
 pub mod units;
 pub mod warning;
@@ -168,5 +170,6 @@ pub fn slice_placed(
     report.brim = stuck.brim;
     report.raft = stuck.raft;
     report.nonplanar = found.map(|found| found.report(heights.count(), &lift));
+    report.warnings.extend(report.nonplanar.as_ref().and_then(report::nonplanar::unused));
     Ok(report)
 }

@@ -62,6 +62,11 @@ const LEAST_OPEN: f64 = 0.6;
 /// Loops whose ends lie nearer than this are closed, mm: seams leave gaps.
 const CLOSED: f64 = 1.0;
 
+/// How far told heights may be off, mm; and the share of a layer that a line takes at least that lies lower
+/// than the layer's top.
+const ROUNDED: f64 = 0.02;
+const LEAST_SHARE: f64 = 0.2;
+
 /// Length of the pieces in which plastic is counted, mm.
 const PIECE: f64 = 0.4;
 
@@ -140,6 +145,8 @@ impl Judge<'_> {
         let own = self.filled.window.moves(layer);
         let lines: Vec<(&Step, f64)> =
             self.filled.lines(layer).filter(|(step, _)| !is_thread(step, self.terms)).collect();
+        let lines: Vec<(&Step, f64)> =
+            lines.into_iter().map(|(step, share)| (step, share * self.over(layer, step))).collect();
         let threads = || own.iter().filter(|step| step.is_line() && is_thread(step, self.terms));
         let counts = |step: &Step| is_solid(step) || step.role == Role::Ironing;
         for &(step, share) in lines.iter().filter(|(step, _)| counts(step)) {
@@ -180,6 +187,15 @@ impl Judge<'_> {
             }))
         });
         judged.collect()
+    }
+
+    /// The layer's height over that of the room below a line: more than 1 of one that ends below the layer's
+    /// top, as on a slope, for the room above is not its own.
+    fn over(&self, layer: usize, step: &Step) -> f64 {
+        let (top, height) = (self.filled.top(layer), self.filled.height(layer));
+        let room = 0.5 * f64::from(step.from[2] + step.to[2]) - (top - height);
+        let lies_in = f64::from(step.height) <= room + ROUNDED && room >= LEAST_SHARE * height;
+        if lies_in && room < height - ROUNDED { height / room } else { 1.0 }
     }
 
     /// Adds the share of a line's plastic to the cells that it lies in.

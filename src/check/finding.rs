@@ -40,6 +40,8 @@ pub enum Code {
     ColdExtrusion,
     /// A move is faster than the machine's axes.
     TooFast,
+    /// A move needs more steps a second than a motor makes.
+    TooManySteps,
     /// Plastic goes faster than the hot end melts it.
     TooMuchFlow,
     /// A line is printed with the filament pulled back, or it is pulled back twice.
@@ -85,7 +87,7 @@ pub enum Code {
 
 impl Code {
     /// All of them.
-    pub const ALL: [Self; 27] = [
+    pub const ALL: [Self; 28] = [
         Self::UnknownCode,
         Self::OutsideVolume,
         Self::ThroughPrint,
@@ -93,6 +95,7 @@ impl Code {
         Self::WrongTemperature,
         Self::ColdExtrusion,
         Self::TooFast,
+        Self::TooManySteps,
         Self::TooMuchFlow,
         Self::UnpairedRetraction,
         Self::OddBead,
@@ -126,6 +129,7 @@ impl Code {
             Self::WrongTemperature => "wrong-temperature",
             Self::ColdExtrusion => "cold-extrusion",
             Self::TooFast => "too-fast",
+            Self::TooManySteps => "too-many-steps",
             Self::TooMuchFlow => "too-much-flow",
             Self::UnpairedRetraction => "unpaired-retraction",
             Self::OddBead => "odd-bead",

@@ -308,6 +308,7 @@ impl<'a> Walk<'a> {
         if step.is_line() || printing {
             self.speed(step, printing, found);
         }
+        self.steps(step, found);
         self.through.step(step, is_of_layer, found);
         self.at = step.to.map(f64::from);
         // All of them lie where the move ends.
@@ -463,6 +464,34 @@ impl<'a> Walk<'a> {
             let text =
                 format!("{} mm³/s, where the hot end melts {}", short(flow), short(machine.flow));
             found.add(Finding::of(Code::TooMuchFlow, flow, "mm³/s", text));
+        }
+    }
+
+    /// A feed at which a motor would have to step faster than it can. A planner holds each axis to its
+    /// speed; a board that takes steps is sent fewer of them.
+    fn steps(&self, step: &Step, found: &mut Findings) {
+        let Some(machine) = self.machine.filter(|machine| machine.steps != [None; 4]) else {
+            return;
+        };
+        let way = |axis: usize| (f64::from(step.to[axis]) - f64::from(step.from[axis])).abs();
+        let ways = [way(0), way(1), way(2), f64::from(step.filament).abs()];
+        let length = if step.length() > 0.0 { step.length() } else { ways[3] };
+        if length < LEAST_LENGTH {
+            return;
+        }
+        let feed =
+            ways.iter().zip(machine.speed).fold(f64::from(step.feed), |feed, (way, most)| {
+                if *way > 0.0 { feed.min(most * length / way) } else { feed }
+            });
+        for (axis, motor) in machine.steps.into_iter().enumerate() {
+            let Some([per_mm, most]) = motor else { continue };
+            let rate = ways[axis] / length * feed * per_mm;
+            if rate > most * SPEED_SLACK {
+                let axis = ["x", "y", "z", "e"][axis];
+                let text = format!("{rate:.0} steps/s of {axis}, where its motor makes {most:.0}");
+                found.add(Finding::warning(Code::TooManySteps, rate, "steps/s", text));
+                return;
+            }
         }
     }
 }

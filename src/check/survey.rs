@@ -213,7 +213,7 @@ impl Survey {
             }
             lines = lines.max(if has_roles { 0.0 } else { f64::from(step.height) });
             if step.role == Role::OuterWall {
-                walls = walls.max(f64::from(step.height));
+                walls = walls.max(reach(facts, page.layer, step));
                 of_walls = both(of_walls, Some(covered));
             }
         }
@@ -257,6 +257,14 @@ fn is_skin(facts: &Facts, layer: usize, moves: &[Step]) -> bool {
         }
     }
     level < LEAST_LEVEL * all
+}
+
+/// How far below its layer's height a wall reaches: its own height, unless it lies lower or higher as those
+/// on a slope may.
+fn reach(facts: &Facts, layer: Option<usize>, step: &Step) -> f64 {
+    let (height, top) = (f64::from(step.height), step.heights()[0]);
+    let level = layer.map_or(top, |layer| facts.layers[layer].z);
+    if (top - level).abs() < ROUNDED { height } else { height + level - top }
 }
 
 fn flat(at: [f32; 3]) -> [f64; 2] {

@@ -61,6 +61,8 @@ pub struct Machine {
     pub speed: [f64; 4],
     /// Plastic that it melts, mm³/s.
     pub flow: f64,
+    /// Of motors whose rate is known: steps for a mm, and most steps a second; x, y, z, filament.
+    pub steps: [Option<[f64; 2]>; 4],
 }
 
 /// Keys under which slicers write the nozzle's diameter, mm; with several tools a list.
@@ -212,7 +214,15 @@ impl Machine {
     fn new(settings: &Settings) -> Self {
         let machine = &settings.machine;
         let limits = &settings.limits;
+        let steps = &settings.steps;
+        let motor = |per_mm: Option<f64>, rate: Option<f64>| Some([per_mm?, rate?]);
         Self {
+            steps: [
+                motor(steps.x, steps.rate_x),
+                motor(steps.y, steps.rate_y),
+                motor(steps.z, steps.rate_z),
+                motor(steps.e, steps.rate_e),
+            ],
             dialect: machine.dialect,
             tool: machine.tool,
             volume: machine.volume(),

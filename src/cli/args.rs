@@ -24,13 +24,14 @@ Examples:
   slicer roughness part.gcode --against part.stl
   slicer preview part.gcode --layer 40 -o part.png
   slicer mesh part.stl -o mended.stl
+  slicer steps part.gcode -p ./mine.toml -o part.steps
 
 A model whose file is named like a subcommand is given as ./profile.";
 
 const EXIT_CODES: &str = "\
 Exit codes:
     0  done
-    1  done, but with findings: warnings with --strict, what `check` or --check found, files
+    1  done, but with findings: warnings with --strict, what `check`, `play` or --check found, files
        that `diff` found unequal
     2  wrong arguments, profile or setting
     3  a model or G-code file cannot be read; a model does not fit, or leaves nothing to print
@@ -96,6 +97,10 @@ pub(crate) enum Command {
     Diff(super::diff::DiffArgs),
     /// Measure how rough the tops of a print are, against the model
     Roughness(Box<super::roughness::RoughnessArgs>),
+    /// Turn a G-code file into steps of motors
+    Steps(super::steps::StepsArgs),
+    /// Play a stream of steps: totals, steps as text, its path as G-code
+    Play(super::play::PlayArgs),
     /// Print completions for a shell
     Completions {
         /// The shell
@@ -233,7 +238,7 @@ pub(crate) struct SliceArgs {
     /// STL files, binary or ASCII; `-` reads standard input
     #[arg(value_name = "INPUT", required = true)]
     pub(crate) inputs: Vec<OsString>,
-    /// G-code file to write; `-` writes standard output
+    /// G-code file to write, or OUT.steps for motors; `-` writes standard output
     #[arg(short, long, value_name = "OUT", required = true)]
     pub(crate) output: Option<PathBuf>,
 

@@ -10,8 +10,9 @@ use anyhow::Result;
 use serde::Serialize;
 use slicer::estimate::{Estimate, Options};
 use slicer::motion::Limits;
-use slicer::profile::{self, Profile};
+use slicer::profile::{self, Profile, Settings};
 use slicer::reader::Reading;
+use slicer::steps::axis::Axes;
 use std::path::Path;
 
 /// Settings of a file, and what they are called.
@@ -52,6 +53,8 @@ pub(super) struct Timed {
     pub(super) diameter: f64,
     /// Where the limits are from.
     pub(super) limits: String,
+    /// The settings themselves.
+    pub(super) settings: Box<Settings>,
 }
 
 /// Times a file by the limits that [`of`] gives. `fixed_limits` leaves out what it sets itself.
@@ -78,20 +81,27 @@ pub(super) fn estimate(
     let mut source = file.source.reader();
     let estimate =
         slicer::estimate::estimate(&mut source, &file.name, &Limits::new(settings), options)?;
-    Ok(Timed { estimate, reading, diameter, limits })
+    Ok(Timed { estimate, reading, diameter, limits, settings: Box::new(clock.settings) })
 }
 
-/// A product in JSON, with where the limits are from.
+/// A product in JSON, with where the limits are from, and the highest rates of motors, if they are known.
 ///
 /// # Errors
 /// It cannot be written in JSON.
-pub(super) fn json(product: &impl Serialize, limits: &str) -> Result<String> {
+pub(super) fn json(
+    product: &impl Serialize,
+    limits: &str,
+    highest_rate: Option<Axes<f64>>,
+) -> Result<String> {
     #[derive(Serialize)]
     struct Timed<'a, T> {
         #[serde(flatten)]
         product: &'a T,
         /// Where the limits are from.
         limits: &'a str,
+        /// Steps a second.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        highest_rate: Option<Axes<f64>>,
     }
-    output::json(&Timed { product, limits }, Path::new("-"))
+    output::json(&Timed { product, limits, highest_rate }, Path::new("-"))
 }

@@ -4,6 +4,7 @@ use super::args::EstimateArgs;
 use super::clock;
 use anyhow::Result;
 use slicer::estimate::{Estimate, LayerTime, NotCounted};
+use slicer::steps;
 use slicer::warning::plural;
 
 /// What standard output gets.
@@ -13,11 +14,18 @@ use slicer::warning::plural;
 pub(super) fn run(args: &EstimateArgs) -> Result<String> {
     let opened = args.reading.open(&args.file)?;
     let timed = clock::estimate(&opened, &args.profiles, &args.reading, args.fixed_limits)?;
+    let mut source = opened.source.reader();
+    let rates =
+        steps::highest_rates(&mut source, timed.reading, &timed.settings, args.fixed_limits);
+    let rates = rates.map_err(|error| opened.unreadable(error))?;
     let (found, limits) = (timed.estimate, timed.limits);
     if args.json {
-        return clock::json(&found, &limits);
+        return clock::json(&found, &limits, rates.map(Into::into));
     }
     let mut text = table(&found);
+    if let Some([x, y, z, e]) = rates {
+        text.push_str(&format!("steps/s at most: x {x:.0}, y {y:.0}, z {z:.0}, e {e:.0}\n"));
+    }
     text.push_str(&format!("timed by the limits of {limits}\n"));
     if args.layers {
         text.push_str(&layers(&found.layers));

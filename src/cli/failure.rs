@@ -11,7 +11,7 @@
 use slicer::error::Error;
 use slicer::error::details::Details;
 use slicer::profile::ProfileError;
-use slicer::{mesh, reader, roughness, text};
+use slicer::{mesh, reader, roughness, steps, text};
 use std::error::Error as StdError;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -109,6 +109,9 @@ fn details_of(error: &(dyn StdError + 'static)) -> Option<Details> {
     if let Some(error) = error.downcast_ref::<mesh::Error>() {
         return Some(error.into());
     }
+    if let Some(error) = error.downcast_ref::<steps::Error>() {
+        return Some(error.into());
+    }
     error.downcast_ref::<reader::Error>().map(Details::from)
 }
 
@@ -132,7 +135,8 @@ fn code_of(error: &(dyn StdError + 'static)) -> Option<u8> {
     if let Some(error) = error.downcast_ref::<mesh::Error>() {
         return Some(if error.is_usage() { USAGE } else { INPUT });
     }
-    if error.is::<reader::Error>() || error.is::<roughness::Error>() {
+    let reads = error.is::<reader::Error>() || error.is::<roughness::Error>();
+    if reads || error.is::<steps::Error>() {
         return Some(INPUT);
     }
     error.downcast_ref().map(Error::exit_code)

@@ -22,7 +22,7 @@ use slicer::text;
 use std::path::Path;
 
 /// The flags that `-h` shows, in this order, in words that fit on one line of 80.
-const EVERYDAY: [(&str, &str); 14] = [
+const EVERYDAY: [(&str, &str); 13] = [
     ("output", "G-code file to write, `-` for standard output"),
     ("profile", "Printer: a built-in profile, or your mine.toml"),
     ("dual", "Infill of two layers at once, twice as thick"),
@@ -34,7 +34,6 @@ const EVERYDAY: [(&str, &str); 14] = [
     ("set", "Change any setting (see `slicer profile show -v`)"),
     ("rotate", "Turn about x, y, z, degrees"),
     ("copies", "Print each model N times"),
-    ("report", "Write a report as JSON, `-` for standard output"),
     ("check", "Write G-code only if it is found to be good"),
     ("quiet", "Show only warnings and errors"),
 ];

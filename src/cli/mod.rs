@@ -1,4 +1,11 @@
 //! Arguments -> products and exit code: the only place that prints.
+//!
+//! Words used here: a *product* is what a command is run for, a file or text on standard output; an
+//! *outcome* is that text with the exit code.
+//!
+//! 1. The words become arguments ([`args`]); help, versions and wrong words end here.
+//! 2. The command's own module does the work, and gives an outcome or an error.
+//! 3. An error becomes one line and an exit code ([`failure`]).
 
 mod args;
 mod check;
@@ -17,6 +24,7 @@ mod model;
 mod output;
 mod part;
 mod place;
+mod play;
 mod preview;
 mod profiles;
 mod progress;
@@ -24,6 +32,7 @@ mod publish;
 mod reading;
 mod roughness;
 mod slice;
+mod steps;
 mod summary;
 mod texts;
 mod threads;
@@ -163,6 +172,8 @@ fn other(command: &Command) -> Result<Outcome> {
         Command::Compare(args) => compare::run(args)?,
         Command::Check(args) => return check::run(args),
         Command::Estimate(args) => estimate::run(args)?,
+        Command::Steps(args) => steps::run(args)?,
+        Command::Play(args) => return play::run(args),
         // Its product is a file, unless `-o -` asks for another.
         Command::Preview(args) => preview::run(args).map(|()| String::new())?,
         Command::Diff(args) => return diff::run(args),

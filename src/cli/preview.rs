@@ -3,8 +3,8 @@
 //! What is made depends on the file and on the output's format:
 //! - a model (STL) becomes one picture, a PNG, whatever else is asked;
 //! - `.html` becomes the viewer's page with all layers, for which nothing can be chosen;
-//! - `.svg` and `.png` show one layer, an upright cut (`--cut`), or with `--all` each layer in a
-//!   file of its own.
+//! - `.svg` and `.png` show one layer, a patch of non-planar skin (`--patch`), an upright cut
+//!   (`--cut`), or with `--all` each layer and each patch in a file of its own.
 //!
 //! All pictures of layers have the same frame, so that one can leaf through them, unless `--fit` fills
 //! each with its layer or `--crop` sets the frame. A layer, cut or crop without a line is an error
@@ -21,7 +21,8 @@ use rayon::prelude::*;
 use slicer::mesh::read::DEFAULT_MAX_TRIANGLES;
 use slicer::preview::cut::{Axis, Cut, Plane};
 use slicer::preview::drawing::{Drawing, Frame};
-use slicer::preview::{layer, png, svg};
+use slicer::preview::stages::patches_in;
+use slicer::preview::{layer, patch, png, svg};
 use slicer::reader::{Cause, Print};
 use slicer::text;
 use std::ffi::OsString;
@@ -59,8 +60,11 @@ pub(crate) struct PreviewArgs {
     /// Draw this layer, counted from 1 [default: the middle one, or that above if it has more in it]
     #[arg(long, value_name = "N", help_heading = "Layers")]
     layer: Option<usize>,
+    /// Draw this patch of non-planar skin, coloured by height; the layer below it leaves it out
+    #[arg(long, value_name = "N", conflicts_with = "layer", help_heading = "Layers")]
+    patch: Option<u32>,
     /// Draw every layer; OUT.svg becomes OUT-0001.svg and so on
-    #[arg(long, conflicts_with = "layer", help_heading = "Layers")]
+    #[arg(long, conflicts_with_all = ["layer", "patch"], help_heading = "Layers")]
     all: bool,
     /// Fill the picture with the layer; otherwise all layers have the same frame, that of the print
     #[arg(long, conflicts_with = "crop", help_heading = "Layers")]
@@ -73,7 +77,7 @@ pub(crate) struct PreviewArgs {
     travels: bool,
 
     /// Draw an upright cut through the print instead of a layer, such as x=12.5 (mm on the bed)
-    #[arg(long, value_name = "AXIS=MM", value_parser = plane, conflicts_with_all = ["layer", "all", "fit", "below", "travels"], help_heading = "Cut")]
+    #[arg(long, value_name = "AXIS=MM", value_parser = plane, conflicts_with_all = ["layer", "patch", "all", "fit", "below", "travels"], help_heading = "Cut")]
     cut: Option<Plane>,
 
     #[command(flatten)]
@@ -94,6 +98,7 @@ impl PreviewArgs {
         let flags = [
             ("--crop", self.crop.is_some()),
             ("--layer", self.layer.is_some()),
+            ("--patch", self.patch.is_some()),
             ("--all", self.all),
             ("--fit", self.fit),
             ("--below", self.below > 0),
@@ -216,6 +221,9 @@ fn read(args: &PreviewArgs) -> Result<(String, Print)> {
 }
 
 fn one(args: &PreviewArgs, name: &str, print: &Print) -> Result<Drawing> {
+    if let Some(number) = args.patch {
+        return one_patch(args, name, print, number);
+    }
     let count = print.layers.len();
     let number = args.layer.unwrap_or_else(|| layer::middle(print) + 1);
     if !(1..=count).contains(&number) {
@@ -227,6 +235,23 @@ fn one(args: &PreviewArgs, name: &str, print: &Print) -> Result<Drawing> {
     let drawing = draw_layer(args, print, number - 1, frame(args, print));
     if drawing.scene.is_empty() {
         return Err(nothing_in_crop(name, layer::frame(print, &print.layers)));
+    }
+    Ok(drawing)
+}
+
+fn one_patch(args: &PreviewArgs, name: &str, print: &Print, number: u32) -> Result<Drawing> {
+    let numbers = patch::numbers(print);
+    if !numbers.contains(&number) {
+        let there_is = match numbers.as_slice() {
+            [] => "has no non-planar skin".to_owned(),
+            [only] => format!("has only patch {only}"),
+            [first, .., last] => format!("has patches from {first} to {last}"),
+        };
+        return Err(failure::usage(format!("--patch {number}: {name} {there_is}")));
+    }
+    let drawing = draw_patch(args, print, number, frame(args, print));
+    if drawing.scene.is_empty() {
+        return Err(nothing_in_crop(name, patch::frame(print, number)));
     }
     Ok(drawing)
 }
@@ -249,35 +274,57 @@ fn cut(args: &PreviewArgs, name: &str, print: &Print, plane: Plane) -> Result<Dr
     Ok(drawing)
 }
 
-/// A file for each layer, or none.
+/// A file for each layer and patch, or none.
 fn all(args: &PreviewArgs, encode: Encode, print: &Print) -> Result<()> {
     let frame = frame(args, print);
-    let count = print.layers.len();
     let batch = output::batch(&args.output)?;
-    let products = (0..count).into_par_iter().map(|index| {
-        let name = numbered(&args.output, index + 1, count);
-        usage::replaces(&name, &args.file)?;
-        let mut sink = Sink::open_in(&batch, index, &name)?;
-        let drawing = draw_layer(args, print, index, frame);
-        write(encode, &drawing, &name, &mut sink)?;
+    let pictures = pictures(args, print);
+    let products = pictures.par_iter().enumerate().map(|(place, (name, index, patch))| {
+        usage::replaces(name, &args.file)?;
+        let mut sink = Sink::open_in(&batch, place, name)?;
+        let drawing = match patch {
+            Some(number) => draw_patch(args, print, *number, frame),
+            None => draw_layer(args, print, *index, frame),
+        };
+        write(encode, &drawing, name, &mut sink)?;
         sink.close()
     });
     publish(products.collect::<Result<_>>()?)?;
-    if !args.quiet {
-        let (first, last) =
-            (numbered(&args.output, 1, count), numbered(&args.output, count, count));
+    if !args.quiet
+        && let (Some((first, ..)), Some((last, ..))) = (pictures.first(), pictures.last())
+    {
         say(&format!("{} to {}\n", text::name(first), text::name(last)));
     }
     Ok(())
 }
 
+/// The names of all pictures: of each layer, counted from 0, and of the patches after it.
+fn pictures(args: &PreviewArgs, print: &Print) -> Vec<(PathBuf, usize, Option<u32>)> {
+    let count = print.layers.len();
+    let mut pictures = Vec::with_capacity(count);
+    for (index, layer) in print.layers.iter().enumerate() {
+        let name = |skin: &str| numbered(&args.output, index + 1, count, skin);
+        pictures.push((name(""), index, None));
+        for number in patches_in(print, layer) {
+            pictures.push((name(&format!("-skin-{number}")), index, Some(number)));
+        }
+    }
+    pictures
+}
+
 fn draw_layer(args: &PreviewArgs, print: &Print, index: usize, frame: Frame) -> Drawing {
-    let frame = match print.layers.get(index..=index) {
-        Some(layers) if args.fit => layer::frame(print, layers),
-        _ => frame,
-    };
+    let frame = if args.fit { layer::own_frame(print, index) } else { frame };
+    layer::drawing(print, index, &options(args, frame))
+}
+
+fn draw_patch(args: &PreviewArgs, print: &Print, number: u32, frame: Frame) -> Drawing {
+    let frame = if args.fit { patch::frame(print, number) } else { frame };
+    patch::drawing(print, number, &options(args, frame))
+}
+
+fn options(args: &PreviewArgs, frame: Frame) -> layer::Options {
     let (size, below, travels) = (args.size.unwrap_or(SIZE), args.below, args.travels);
-    layer::drawing(print, index, &layer::Options { size, below, travels, frame })
+    layer::Options { size, below, travels, frame }
 }
 
 /// What pictures of layers show, unless each is to fill its own.
@@ -320,11 +367,11 @@ fn page(args: &PreviewArgs) -> Result<()> {
     Ok(())
 }
 
-/// `a-0007.svg` for `a.svg`.
-fn numbered(name: &Path, number: usize, count: usize) -> PathBuf {
+/// `a-0007.svg` for `a.svg`, and `a-0007-skin-1.svg` with `-skin-1` as what follows.
+fn numbered(name: &Path, number: usize, count: usize, follows: &str) -> PathBuf {
     let digits = count.to_string().len().max(DIGITS);
     let mut file = name.file_stem().unwrap_or_default().to_owned();
-    file.push(format!("-{number:0digits$}"));
+    file.push(format!("-{number:0digits$}{follows}"));
     if let Some(ending) = name.extension() {
         file.push(".");
         file.push(ending);
@@ -363,7 +410,7 @@ mod tests {
 
     #[test]
     fn numbers_stand_before_the_ending() {
-        let named = |name: &str, count| numbered(Path::new(name), 7, count);
+        let named = |name: &str, count| numbered(Path::new(name), 7, count, "");
         assert_eq!(named("a.svg", 120), Path::new("a-0007.svg"));
         assert_eq!(named("dir.x/a.b.png", 12_000), Path::new("dir.x/a.b-00007.png"));
     }

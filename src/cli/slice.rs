@@ -13,6 +13,7 @@ use super::args::SliceArgs;
 use super::failure::Output;
 use super::output::{self, Sink};
 use super::publish::publish;
+use super::steps::Target;
 use super::{check, failed, failure, input, interrupt, progress, say, say_line, summary, usage};
 use anyhow::{Context as _, Result};
 use slicer::check::terms::Terms;
@@ -62,9 +63,9 @@ fn make(
     if args.verbose {
         say(&summary::settings(&profile));
     }
-    let mut sink = Sink::open(out)?;
+    let mut target = Target::open(out, &profile.settings)?;
 
-    let report = work(args, out, profile, &mut sink)?;
+    let report = work(args, out, profile, target.gcode())?;
     let is_good = report.check.as_ref().is_none_or(|verdict| !verdict.fails());
     if !args.quiet {
         say(&summary::notes(&report));
@@ -81,7 +82,7 @@ fn make(
     // The report lists the findings, so that it is written with them, too.
     let mut products = Vec::new();
     if is_good {
-        products.push(sink.whole()?);
+        products.push(target.whole(out, args.quiet)?);
     }
     if let Some((path, sink)) = args.report.as_deref().zip(report_sink.take()) {
         products.push(write_report(path, sink, &report)?.whole()?);

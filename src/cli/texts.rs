@@ -15,6 +15,7 @@ Findings, each with a stable code, a place and a measure:
   cold-extrusion       filament is pushed before the nozzle is told to be hot and waited for
   too-fast             faster than [limits] allow in x or y; in z in files of this program, or over
                        500 mm/s
+  too-many-steps     * more steps a second than steps.rate_x, _y, _z or _e
   too-much-flow        5 % more than the hot end melts
   unpaired-retraction  a line with the filament pulled back, or more pushed out than was pulled
   odd-bead             under 0.55 or over 1.6 times the plastic that the role takes for its size

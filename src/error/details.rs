@@ -12,7 +12,7 @@ use crate::gcode;
 use crate::mesh::{self, read};
 use crate::profile::error::Conflict;
 use crate::profile::{BlockError, ProfileError, ValueOrigin};
-use crate::reader;
+use crate::{reader, steps};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -29,7 +29,12 @@ pub const CODES: &[(&str, u8, &str)] = &[
     ("bad-block", 2, "a start or end block that cannot be filled in, or must not be sent"),
     ("unreadable", 3, "a model or G-code file cannot be opened or read, or is a device"),
     ("not-a-model", 3, "a file is no STL"),
-    ("damaged", 3, "a model's file is cut off or contradicts itself"),
+    ("not-steps", 3, "a file is no stream of steps, or of an unknown version"),
+    (
+        "damaged",
+        3,
+        "a model's file or a stream of steps is cut off, damaged, or contradicts itself",
+    ),
     ("too-large", 3, "more triangles or moves than are allowed"),
     ("broken-mesh", 3, "a mesh that cannot be mended, or has faults with --mesh strict"),
     ("does-not-fit", 3, "the print, or what lies around it, is larger than the machine"),
@@ -117,6 +122,7 @@ impl From<&Error> for Details {
             Error::Profile(error) => error.into(),
             Error::Mesh(error) => error.into(),
             Error::Reader(error) => error.into(),
+            Error::Steps(error) => error.into(),
             Error::Refused(error) => error.into(),
             Error::Cancelled => Self::of("interrupted"),
             Error::Gcode(gcode::Error::Block(error)) => block(None, error),
@@ -224,6 +230,21 @@ impl From<&reader::Error> for Details {
     }
 }
 
+impl From<&steps::Error> for Details {
+    fn from(error: &steps::Error) -> Self {
+        use steps::Cause;
+        let place = |line| Place { line: Some(line), ..Place::default() };
+        match &error.source {
+            Cause::Unreadable(_) => Self::in_file("unreadable", &error.file),
+            Cause::NotSteps | Cause::Version(_) => Self::in_file("not-steps", &error.file),
+            Cause::Header | Cause::Damaged { .. } => Self::in_file("damaged", &error.file),
+            Cause::TooFar { line, .. } => {
+                Self::in_file("does-not-fit", &error.file).at(place(*line))
+            }
+        }
+    }
+}
+
 impl From<&Refusal> for Details {
     fn from(error: &Refusal) -> Self {
         match error {
@@ -274,6 +295,8 @@ mod tests {
             mesh::Error::Unmendable { file: "a".into() }.into(),
             reader::Cause::Unreadable(unreadable()).of("a").into(),
             reader::Cause::NoMove.of("a").into(),
+            steps::Cause::NotSteps.of("a").into(),
+            steps::Cause::Header.of("a").into(),
             ProfileError::TooLarge { file: "a".into() }.into(),
             gcode::Error::Write(unreadable()).into(),
             Error::Cancelled,

@@ -34,6 +34,12 @@ pub struct Timed<T> {
     pub seconds: f64,
     /// Highest speed that it reaches, mm/s; 0 for a dwell.
     pub peak: f64,
+    /// Speed at which it begins, mm/s.
+    pub entry: f64,
+    /// Speed at which it ends, mm/s.
+    pub exit: f64,
+    /// How hard it speeds up and slows down, mm/s²; 0 for what takes no way.
+    pub acceleration: f64,
     /// The tag that the move was pushed with.
     pub tag: T,
 }
@@ -112,7 +118,7 @@ impl<T: Copy> Clock<T> {
     /// The printer stands still for this long, once the moves so far have ended.
     pub fn dwell(&mut self, seconds: f64, tag: T) {
         self.stop();
-        self.done.push(Timed { seconds, peak: 0.0, tag });
+        self.done.push(standing(seconds, tag));
     }
 
     /// The printer comes to rest before anything else happens.
@@ -144,7 +150,7 @@ impl<T: Copy> Clock<T> {
         match self.reach() {
             // It waits for the moves before it, so that the order is kept.
             Some(reach) => self.pending.push(Block::empty(reach, tag)),
-            None => self.done.push(Timed { seconds: 0.0, peak: 0.0, tag }),
+            None => self.done.push(standing(0.0, tag)),
         }
     }
 
@@ -237,11 +243,16 @@ impl<T: Copy> Clock<T> {
 /// The time of a block that begins and ends at these speeds, mm/s.
 fn timed<T>(block: Block<T>, top: Top, [entry, exit]: [f64; 2]) -> Timed<T> {
     if block.distance <= 0.0 {
-        return Timed { seconds: 0.0, peak: 0.0, tag: block.tag };
+        return standing(0.0, block.tag);
     }
     let peak = top.cruise.sqrt();
     let ramps = (2.0 * top.cruise - top.entry - top.exit) / (2.0 * block.acceleration);
     let cruising = (block.distance - ramps).at_least(0.0);
     let seconds = (2.0 * peak - entry - exit) / block.acceleration + cruising / peak;
-    Timed { seconds, peak, tag: block.tag }
+    Timed { seconds, peak, entry, exit, acceleration: block.acceleration, tag: block.tag }
+}
+
+/// So long without a way.
+fn standing<T>(seconds: f64, tag: T) -> Timed<T> {
+    Timed { seconds, peak: 0.0, entry: 0.0, exit: 0.0, acceleration: 0.0, tag }
 }

@@ -1,9 +1,11 @@
 //! Mesh and layers -> Patches: tops of gentle slopes whose skin follows the surface.
 //!
 //! [`find`] makes surfaces of the mesh; [`pass`] decides which places of them become skin, and has the
-//! [`skin`]s laid; [`base`] takes their room from the layers.
+//! [`skin`]s laid; [`base`] takes their room from the layers. Where none can go, [`contour`] bends the lines
+//! of the layers.
 
 pub mod base;
+pub mod contour;
 pub mod find;
 pub mod params;
 pub mod pass;

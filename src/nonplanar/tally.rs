@@ -77,6 +77,13 @@ impl Areas {
         self.flat[reason as usize] += mm2;
     }
 
+    /// So much of what was flat for a reason has lines that rise and fall instead.
+    pub fn contoured(&mut self, reason: Reason, mm2: f64) {
+        let moved = mm2.clamp(0.0, self.flat[reason as usize].max(0.0));
+        self.flat[reason as usize] = (self.flat[reason as usize] - moved).max(0.0);
+        self.contour += moved;
+    }
+
     /// What is printed flat for a reason.
     #[must_use]
     pub fn of(&self, reason: Reason) -> f64 {

@@ -214,7 +214,7 @@ impl Orderer<'_> {
         let first = self.first.unwrap_or(fill);
         let filled = |region: &Region| {
             let paths = fill::paths(region, if region.layer.index == 0 { first } else { fill });
-            (footprint(region, &paths, rules), paths)
+            (footprint(region, &paths, rules), self.bent(region, paths))
         };
         let mut filled: Vec<(Footprint, Vec<Path>)> = regions.par_iter().map(filled).collect();
         for (region, (_, paths)) in regions.iter().zip(&mut filled) {
@@ -245,6 +245,14 @@ impl Orderer<'_> {
             toolpath
         });
         self.lifted(toolpaths.collect())
+    }
+
+    /// Paths of a region that follow its slopes where no skin does.
+    fn bent(&self, region: &Region, mut paths: Vec<Path>) -> Vec<Path> {
+        if let Some(contours) = self.curved.and_then(Curved::contours) {
+            contours.bend(&region.layer, region.above.as_deref(), &mut paths);
+        }
+        paths
     }
 
     /// The toolpaths, lifted by the raft. Before the first of them come those of the raft.

@@ -5,6 +5,7 @@ use crate::fill::Path;
 use crate::mesh::place::Placed;
 use crate::nonplanar;
 use crate::nonplanar::base::Base;
+use crate::nonplanar::contour::Contours;
 use crate::nonplanar::find::{Surfaces, surfaces};
 use crate::nonplanar::params::NonPlanarParams;
 use crate::nonplanar::{Patch, Patches, Props, Scene, support_lines};
@@ -20,6 +21,7 @@ use crate::units::{Coord, to_mm, to_units};
 pub struct Found {
     surfaces: Surfaces,
     patches: Patches,
+    contours: Option<Contours>,
 }
 
 impl Found {
@@ -61,8 +63,14 @@ pub fn find(
         ceiling,
         params: &params,
     };
-    let patches = nonplanar::patches(&scene);
-    Some(Found { surfaces, patches })
+    let mut patches = nonplanar::patches(&scene);
+    let contours = settings.nonplanar.contour.then(|| {
+        let min_height = to_units(settings.nonplanar.min_height);
+        let contours = Contours::new(&placed.mesh, &placed.adjacency, &params, min_height);
+        contours.tell(&surfaces, &mut patches);
+        contours.beside(&patches)
+    });
+    Some(Found { surfaces, patches, contours })
 }
 
 /// Patches, and what is left of the layers below them.
@@ -71,6 +79,7 @@ pub struct Curved<'a> {
     /// The layers that are printed: of those above nothing is left.
     heights: Heights,
     base: Base<'a>,
+    contours: Option<&'a Contours>,
     /// Travels keep so far above patches, grid units.
     clearance: Coord,
 }
@@ -79,12 +88,13 @@ impl<'a> Curved<'a> {
     /// The patches that were `found`, over the layers of `slicer`.
     #[must_use]
     pub fn new(found: &'a Found, slicer: &Slicer<'_>, settings: &Settings) -> Self {
-        let Found { surfaces, patches } = found;
+        let Found { surfaces, patches, contours } = found;
         let base = patches.base(surfaces, to_units(settings.layer_height));
         Self {
             patches,
             heights: slicer.heights().clone().lowest(layers(&base, slicer)),
             base,
+            contours: contours.as_ref(),
             clearance: to_units(settings.nonplanar.clearance),
         }
     }
@@ -93,6 +103,12 @@ impl<'a> Curved<'a> {
     #[must_use]
     pub fn tops(&self) -> &dyn CurvedTops {
         &self.base
+    }
+
+    /// The slopes whose lines rise and fall within their layer.
+    #[must_use]
+    pub fn contours(&self) -> Option<&Contours> {
+        self.contours
     }
 
     /// How many of the layers are printed, from the lowest on; skins take the place of those above.

@@ -144,6 +144,7 @@ pub(super) fn cut(wall: &mut Path, gap: Coord) {
         if step > left {
             last.at =
                 point(along(float(last.at), left / step, way(float(last.at), float(before.at))));
+            last.z = height(last.z, before.z, left / step);
             return;
         }
         left -= step;
@@ -271,11 +272,19 @@ fn begin_at(wall: &mut Path, Place { from, at, .. }: Place) {
         Some(k) => k % last,
         None => {
             // It has the bead of the segment that it lies in.
-            wall.points.insert(from + 1, PathPoint { at: point(at), ..wall.points[from + 1] });
+            let [before, next] = [wall.points[from], wall.points[from + 1]];
+            let share = before.at.distance(point(at)) / before.at.distance(next.at).max(1.0);
+            let z = height(before.z, next.z, share);
+            wall.points.insert(from + 1, PathPoint { at: point(at), z, ..next });
             from + 1
         }
     };
     wall.begin_at(first);
+}
+
+/// The height after a share of the way from one to another.
+fn height(from: Coord, to: Coord, share: f64) -> Coord {
+    from + nearest(f64::from(to - from) * share) as Coord
 }
 
 /// The point of a closed wall furthest back.

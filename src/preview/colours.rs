@@ -6,6 +6,20 @@ use crate::reader::print::{Layer, Step};
 /// A line this many times as high as its layer is printed for more than one layer: half-way to two.
 const THICK: f64 = 1.5;
 
+/// A scale from least to most, as that of the page: lightness rises all the way, so that the order is
+/// seen without colour, too.
+const RAMP: [Colour; 9] = [
+    Colour([72, 40, 120]),
+    Colour([62, 73, 137]),
+    Colour([49, 104, 142]),
+    Colour([38, 130, 142]),
+    Colour([31, 158, 137]),
+    Colour([53, 183, 121]),
+    Colour([110, 206, 88]),
+    Colour([181, 222, 43]),
+    Colour([240, 229, 28]),
+];
+
 /// Red, green and blue, as on a screen (sRGB).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Colour(pub [u8; 3]);
@@ -41,6 +55,14 @@ impl Colour {
         Self(if thick { dark } else { thin })
     }
 
+    /// A colour of the scale; `part` from 0 for the least to 1 for the most.
+    #[must_use]
+    pub fn on_scale(part: f64) -> Self {
+        let at = part.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
+        let below = (at as usize).min(RAMP.len() - 2);
+        RAMP[below].mixed(RAMP[below + 1], at - below as f64)
+    }
+
     /// As `#rrggbb`.
     #[must_use]
     pub fn hex(self) -> String {
@@ -59,10 +81,11 @@ impl Colour {
     }
 }
 
-/// Whether a line is printed for more layers than its own.
+/// Whether a line is printed for more layers than its own. Non-planar skin is not: it is as high as
+/// the room that the steps of the layers below leave.
 #[must_use]
 pub fn is_thick(step: &Step, layer: &Layer) -> bool {
-    f64::from(step.height) > THICK * layer.height
+    step.role != Role::NonPlanar && f64::from(step.height) > THICK * layer.height
 }
 
 #[cfg(test)]
@@ -77,6 +100,18 @@ mod tests {
         colours.sort_unstable();
         colours.dedup();
         assert_eq!(colours.len(), 18);
+    }
+
+    #[test]
+    fn the_scale_is_that_of_the_page_and_grows_lighter() {
+        let script = include_str!("viewer/colour.js");
+        let light = |Colour([r, g, b]): Colour| 3 * u32::from(r) + 6 * u32::from(g) + u32::from(b);
+        for (k, colour) in RAMP.into_iter().enumerate() {
+            assert!(script.contains(&colour.hex()), "{}", colour.hex());
+            assert_eq!(Colour::on_scale(k as f64 / 8.0), colour);
+            assert!(k == 0 || light(RAMP[k - 1]) < light(colour));
+        }
+        assert_eq!(Colour::on_scale(f64::INFINITY), RAMP[8]);
     }
 
     #[test]

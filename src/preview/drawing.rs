@@ -1,4 +1,12 @@
 //! What a picture shows -> Drawing: strokes in mm, and a page of marks around them, for any format.
+//!
+//! Words used here: a *stroke* is a line of some width through some points, mm; a *mark* is what
+//! stands around the scene, pixels; a *look* is a stroke's width, colour and kind; a *coat* is one of the
+//! lines that are painted over each other for a stroke: a dark edge, then the bead.
+//!
+//! A scene's second axis points upwards, a page's downwards: a view holds the way from one to the
+//! other. Neighbours in the scene that look alike are a group, painted together, so that a path of
+//! many strokes has no edges across it. What lies later in a list covers what lies before.
 
 use super::colours::Colour;
 use super::text::TextSize;
@@ -6,6 +14,9 @@ use super::text::TextSize;
 /// Part of a bead's width that each of its two edges takes: enough to separate neighbours at 5
 /// pixels a bead.
 const EDGE: f64 = 0.09;
+
+/// Width of the edge around a filled outline, mm: about as wide as that of a bead of 0.2 mm.
+pub const OUTLINE: f64 = 0.018;
 
 /// How much darker an edge is than its bead.
 const EDGE_DARK: f64 = 0.38;
@@ -75,6 +86,11 @@ pub enum Kind {
     Bead,
     /// Plastic in the background.
     PaleBead,
+    /// Plastic within an outline, whose points it goes through: filled, with a darker edge along them of
+    /// the given width.
+    Outline,
+    /// A stripe without edges.
+    Plain,
     /// Dashes of this many widths, and gaps as long.
     Dashed(u8),
 }
@@ -131,13 +147,22 @@ impl Look {
         match self.kind {
             Kind::Bead => self.bead(EDGE_DARK),
             Kind::PaleBead => self.bead(PALE_EDGE_DARK),
-            Kind::Dashed(_) => vec![(self.width, self.colour)],
+            Kind::Outline => {
+                vec![(self.width, self.colour.mixed(Colour([0; 3]), EDGE_DARK))]
+            }
+            Kind::Dashed(_) | Kind::Plain => vec![(self.width, self.colour)],
         }
+    }
+
+    /// Width of a bead within its edges.
+    #[must_use]
+    pub fn within_edges(&self) -> f64 {
+        self.width * (1.0 - 2.0 * EDGE)
     }
 
     fn bead(&self, dark: f64) -> Vec<(f64, Colour)> {
         let edge = self.colour.mixed(Colour([0; 3]), dark);
-        vec![(self.width, edge), (self.width * (1.0 - 2.0 * EDGE), self.colour)]
+        vec![(self.width, edge), (self.within_edges(), self.colour)]
     }
 }
 

@@ -11,11 +11,15 @@
 //!
 //! Numbers are rounded to thousandths, so that the page stays small and equal files give equal pages.
 //! Times of layers are left out where the estimate divides the file into other layers.
+//!
+//! A patch of non-planar skin is listed after its layer, as it is packed ([`super::stages`]). The estimate
+//! has no time of its own for it: the layer's is shared by what lines take at the feed asked for.
 
 use super::colours::Colour;
+use super::stages::{Stage, stages};
 use crate::estimate::Estimate;
 use crate::reader::Role;
-use crate::reader::print::{Layer, Print, Step};
+use crate::reader::print::{Print, Step};
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -50,8 +54,11 @@ pub struct Facts {
     pub bounds: Option<[[f64; 3]; 2]>,
     /// By role, in the order of [`Role::ALL`].
     pub roles: Vec<RoleFacts>,
-    /// From the bed up.
+    /// From the bed up, each patch of non-planar skin after its layer.
     pub layers: Vec<LayerFacts>,
+    /// Greatest height of a line that is no non-planar skin; nothing in a print without patches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub highest: Option<f64>,
     /// Ends of the scales.
     pub scales: Scales,
     /// Settings in the file's comments, in their order.
@@ -75,15 +82,24 @@ pub struct RoleFacts {
     pub moves: u64,
 }
 
-/// A layer on the page.
+/// A layer or a patch on the page.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LayerFacts {
-    /// Height at which most of its lines lie.
+    /// Height at which most of its lines lie; of a patch the highest place.
     pub z: f64,
     /// Height above the layer below.
     pub height: f64,
     /// Its time; nothing where the estimate divides the file otherwise.
     pub seconds: Option<f64>,
+    /// The layer's number, from 1; nothing in a print without patches, where it is the place in the list.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub number: Option<usize>,
+    /// The patch's number, if it is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub skin: Option<u32>,
+    /// Of a patch the lowest place of the nozzle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub low: Option<f64>,
 }
 
 /// Least and most of what lines are coloured by; nothing without a line.
@@ -99,6 +115,9 @@ pub struct Scales {
     pub width: Option<[f64; 2]>,
     /// mm.
     pub height: Option<[f64; 2]>,
+    /// Of the nozzle on non-planar skin, mm; nothing without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub z: Option<[f64; 2]>,
 }
 
 impl Facts {
@@ -120,6 +139,7 @@ impl Facts {
             roles: Role::ALL.iter().map(|&role| RoleFacts::new(role, estimate)).collect(),
             scales: Scales::new(print, &layers, filament_area),
             layers,
+            highest: highest(print),
             settings: settings(print),
         }
     }
@@ -148,6 +168,10 @@ impl Scales {
             include(&mut scales.height, f64::from(step.height));
             let flow = f64::from(step.filament) * area * f64::from(step.feed) / step.length();
             include(&mut scales.flow, flow);
+            if step.role == Role::NonPlanar {
+                let [low, high] = step.heights();
+                include(&mut scales.z, f64::midpoint(low, high));
+            }
         };
         let (long, short): (Vec<&Step>, Vec<&Step>) =
             lines(print).partition(|step| step.length() >= SHORTEST);
@@ -192,14 +216,56 @@ fn bounds(print: &Print) -> Option<[[f64; 3]; 2]> {
 }
 
 fn layers(print: &Print, estimate: &Estimate) -> Vec<LayerFacts> {
+    let stages = stages(print);
+    let has_patches = stages.iter().any(|stage| stage.patch.is_some());
     let same = print.layers.len() == estimate.layers.len();
-    let seconds = |at: usize| same.then(|| rounded(estimate.layers[at].seconds));
-    let facts = |(at, layer): (usize, &Layer)| LayerFacts {
-        z: rounded(layer.z),
-        height: rounded(layer.height),
-        seconds: seconds(at),
+    let seconds = |stage: &Stage| {
+        let layer = estimate.layers.get(stage.layer).filter(|_| same)?;
+        let whole = print.layers.get(stage.layer)?;
+        let shared = stage.moves != whole.moves;
+        let part = if shared {
+            nominal(&print.moves[stage.moves.clone()]) / nominal(print.moves_of(whole))
+        } else {
+            1.0
+        };
+        Some(rounded(layer.seconds * part))
     };
-    print.layers.iter().enumerate().map(facts).collect()
+    let facts = |stage: &Stage| {
+        let layer = print.layers.get(stage.layer);
+        let reach = stage.patch.and_then(|_| reach(&print.moves[stage.moves.clone()]));
+        let z = reach.map_or(layer.map_or(0.0, |layer| layer.z), |[_, high]| high);
+        LayerFacts {
+            z: rounded(z),
+            height: rounded(layer.map_or(0.0, |layer| layer.height)),
+            seconds: seconds(stage),
+            number: has_patches.then_some(stage.layer + 1),
+            skin: stage.patch,
+            low: reach.map(|[low, _]| rounded(low)),
+        }
+    };
+    stages.iter().map(facts).collect()
+}
+
+/// What moves take at the feed asked for, s; never 0.
+fn nominal(steps: &[Step]) -> f64 {
+    let seconds = |step: &Step| {
+        let way = step.length().max(f64::from(step.filament).abs());
+        way / f64::from(step.feed).max(0.1)
+    };
+    steps.iter().map(seconds).sum::<f64>().max(f64::MIN_POSITIVE)
+}
+
+/// Lowest and highest place of the nozzle on lines, mm.
+fn reach(steps: &[Step]) -> Option<[f64; 2]> {
+    let lines = steps.iter().filter(|step| step.is_line()).map(Step::heights);
+    lines.reduce(|[low, high], [from, to]| [low.min(from), high.max(to)])
+}
+
+/// Greatest height of a line that is no skin of a patch, mm; nothing where there is no patch.
+fn highest(print: &Print) -> Option<f64> {
+    let flat = lines(print).filter(|step| step.role != Role::NonPlanar);
+    let highest = flat.map(|step| f64::from(step.height)).reduce(f64::max);
+    highest.filter(|_| !print.patches.is_empty()).map(rounded)
 }
 
 fn head(print: &Print) -> String {

@@ -1,10 +1,11 @@
 //! Print -> pictures: what a G-code file of any slicer prints, drawn without a window.
 //!
-//! [`layer`], [`cut`] and, of two files, [`both`] make a [`drawing::Drawing`]; [`svg`] and [`png`] write it.
+//! [`layer`], [`patch`], [`cut`] and, of two files, [`both`] make a [`drawing::Drawing`]; [`svg`] and [`png`] write it.
 //! [`html`] writes a page to look through all layers.
 
 pub mod both;
 pub mod colours;
+pub mod course;
 pub mod cut;
 pub mod drawing;
 pub mod facts;
@@ -12,7 +13,9 @@ pub mod html;
 pub mod layer;
 pub mod packed;
 mod page;
+pub mod patch;
 pub mod png;
+pub mod stages;
 pub mod svg;
 pub mod text;
 
@@ -37,9 +40,10 @@ fn measured(step: &Step) -> bool {
 struct Keys([[bool; 2]; Role::ALL.len()]);
 
 impl Keys {
-    /// Adds those of a layer.
+    /// Adds those of a layer, but for its patches.
     fn layer(&mut self, print: &Print, layer: &Layer) {
-        print.moves_of(layer).iter().filter(|s| measured(s)).for_each(|s| self.step(s, layer));
+        let own = stages::own(print, layer).into_iter().flatten();
+        own.filter(|s| measured(s)).for_each(|s| self.step(s, layer));
     }
 
     fn step(&mut self, step: &Step, layer: &Layer) {

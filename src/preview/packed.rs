@@ -1,7 +1,8 @@
 //! Print -> packed bytes: all moves of a G-code file, layer by layer, in few bytes and quick to unpack.
 //!
 //! The bytes are one block for the moves before the first layer (of no moves without a start) and
-//! one for each layer, from the bed up, with nothing before, between or after them. They are meant to
+//! one for each layer, from the bed up, and for each patch of non-planar skin after its layer (each
+//! [stage](super::stages)), with nothing before, between or after them. They are meant to
 //! be deflated.
 //!
 //! An unsigned number is written as LEB128: seven bits a byte, the lowest first, the top bit set on all
@@ -31,6 +32,7 @@
 //! [`Role::ALL`]: crate::reader::Role::ALL
 
 use super::colours::is_thick;
+use super::stages::stages;
 use crate::reader::print::{Layer, Print, Step};
 use crate::units::{MmPerMin, MmPerS};
 use std::io::{self, Write};
@@ -47,7 +49,9 @@ const FARTHEST: f64 = 1e9;
 /// What `out` gives.
 pub fn write(print: &Print, out: &mut dyn Write) -> io::Result<()> {
     let start = (&print.moves[print.start.clone()], None);
-    let layers = print.layers.iter().map(|layer| (print.moves_of(layer), Some(layer)));
+    let stages = stages(print);
+    let layers =
+        stages.iter().map(|one| (&print.moves[one.moves.clone()], print.layers.get(one.layer)));
     for (moves, layer) in std::iter::once(start).chain(layers) {
         let block = block(moves, layer);
         let mut length = Vec::new();

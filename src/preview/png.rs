@@ -6,7 +6,8 @@ use super::text::TextSize;
 use nalgebra::Vector2;
 use std::io;
 use tiny_skia::{
-    LineCap, LineJoin, Paint, PathBuilder, Pixmap, Rect, Stroke as Pen, StrokeDash, Transform,
+    FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Rect, Stroke as Pen, StrokeDash,
+    Transform,
 };
 
 /// Writes a drawing.
@@ -43,8 +44,15 @@ fn strokes(drawing: &Drawing, group: &[Stroke], pixels: &mut Pixmap) {
             let [x, y] = drawing.view.pixel(point).map(|at| at as f32);
             if k == 0 { path.move_to(x, y) } else { path.line_to(x, y) }
         }
+        if look.kind == Kind::Outline {
+            path.close();
+        }
     }
     let Some(path) = path.finish() else { return };
+    if look.kind == Kind::Outline {
+        let (paint, rule) = (paint(look.colour), FillRule::Winding);
+        pixels.fill_path(&path, &paint, rule, Transform::identity(), None);
+    }
     for (width, colour) in look.coats() {
         let width = (width * drawing.view.scale) as f32;
         let (line_cap, dash) = match look.kind {
@@ -52,7 +60,7 @@ fn strokes(drawing: &Drawing, group: &[Stroke], pixels: &mut Pixmap) {
                 let dash = f32::from(dash) * width;
                 (LineCap::Butt, StrokeDash::new(vec![dash, dash], 0.0))
             }
-            Kind::Bead | Kind::PaleBead => (LineCap::Round, None),
+            Kind::Bead | Kind::PaleBead | Kind::Outline | Kind::Plain => (LineCap::Round, None),
         };
         let pen = Pen { width, line_cap, line_join: LineJoin::Round, dash, ..Pen::default() };
         pixels.stroke_path(&path, &paint(colour), &pen, Transform::identity(), None);

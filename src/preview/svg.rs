@@ -1,4 +1,12 @@
 //! Drawing -> SVG: text, in mm of the bed, as short as it can be.
+//!
+//! The scene is a group whose matrix leads from mm to pixels, so that its numbers are places on the
+//! bed, and what is printed can be read from the file. The page around it is in pixels.
+//!
+//! Strokes that look alike are one path, painted once for each coat: `use` repeats it with another width
+//! and colour. A filled outline is such a path, closed, with a fill. Numbers have two decimals, or
+//! three in a picture that shows so much, and no zeros that mean nothing. A path goes from point to
+//! point by differences: they are shorter.
 
 use super::colours::{Colour, INK, PAPER};
 use super::drawing::{Anchor, Drawing, Kind, Mark, Stroke};
@@ -57,16 +65,17 @@ fn paths(group: &[Stroke], number: usize, decimals: usize, out: &mut String) {
             put(out, format_args!("<use href=\"#p{number}\" {paint}/>\n"));
             continue;
         }
-        let dashes = match look.kind {
+        let more = match look.kind {
             Kind::Dashed(dash) => {
                 let dash = short(f64::from(dash) * look.width, 3);
                 format!(" stroke-linecap=\"butt\" stroke-dasharray=\"{dash}\"")
             }
-            Kind::Bead | Kind::PaleBead => String::new(),
+            Kind::Outline => format!(" fill=\"{}\"", look.colour.hex()),
+            Kind::Bead | Kind::PaleBead | Kind::Plain => String::new(),
         };
         // What paints lies around the path, so that its second coat can differ.
         let id = if several { format!(" id=\"p{number}\"") } else { String::new() };
-        put(out, format_args!("<g {paint}{dashes}><path{id} d=\""));
+        put(out, format_args!("<g {paint}{more}><path{id} d=\""));
         group.iter().for_each(|stroke| path(stroke, decimals, out));
         out.push_str("\"/></g>\n");
     }
@@ -84,6 +93,9 @@ fn path(stroke: &Stroke, decimals: usize, out: &mut String) {
     for next in points {
         pair(letter, [number(next[0] - at[0]), number(next[1] - at[1])], out);
         (at, letter) = (next, " ");
+    }
+    if stroke.look.kind == Kind::Outline {
+        out.push('z');
     }
 }
 

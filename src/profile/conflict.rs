@@ -135,6 +135,15 @@ pub enum Conflict {
         /// Where the print volume ends, mm.
         volume: f64,
     },
+    /// Steps are asked for of a machine that takes none.
+    #[error(
+        "{key} is not set: for this printer no steps can be made; set steps.x, y, z and e (steps for \
+         a mm), or choose a printer that has [steps] with -p"
+    )]
+    NoSteps {
+        /// The key that is missing.
+        key: &'static str,
+    },
     /// A brim is asked for by its flag, and a raft.
     #[error("has no effect with a raft, which takes the place of a brim; leave one of them out")]
     BrimAndRaft,

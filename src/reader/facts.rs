@@ -8,8 +8,8 @@
 //! - by the file's comments if any marks a layer, else by the heights of lines (see `layers`). What
 //!   comes before the first mark is no layer: what heights told until then is forgotten;
 //! - a segment without a line is no layer: its moves belong to the one before;
-//! - a layer lies where most of its lines do (see `height`), and is as high as it lies above the
-//!   layer before;
+//! - a layer lies where most of its lines do (see `height`), or where a comment says (`;Z:`) if they lie at
+//!   several heights; it is as high as it lies above the layer before;
 //! - the lines of a patch of non-planar skin belong to the layer in which they stand, and say nothing of
 //!   its height. A patch without other lines belongs to the layer before.
 //!
@@ -188,6 +188,8 @@ pub(super) struct Gatherer {
     drawn: [f64; 2],
     /// Height of the level lines that the segment was found by, mm.
     found: Option<f64>,
+    /// Its height by a comment, mm.
+    told: Option<f64>,
     /// Whether a patch of skin goes on.
     is_in_patch: bool,
     /// Filament for each mm of the lines of each layer, mm.
@@ -279,7 +281,7 @@ impl Gatherer {
         let facts = &mut self.facts;
         facts.marked |= marked;
         facts.begun += 1;
-        self.found = z;
+        (self.found, self.told) = (z, None);
         self.segment = Some(facts.move_count);
     }
 
@@ -289,12 +291,17 @@ impl Gatherer {
         let facts = &mut self.facts;
         let (end, last) = (facts.move_count, facts.layers.last_mut());
         let [length, filament] = std::mem::take(&mut self.drawn);
-        let Some(z) = std::mem::take(&mut self.heights).height(self.found) else {
+        let heights = std::mem::take(&mut self.heights);
+        let told = std::mem::take(&mut self.told).filter(|_| !heights.is_one());
+        let Some(z) = heights.height(self.found) else {
             if let Some(last) = last {
                 last.moves.end = end;
             }
             return;
         };
+        // Lines of a top may all rise and fall within their layer.
+        let is_near = |told: &f64| *told > self.below && (told - z).abs() < told - self.below;
+        let z = told.filter(is_near).unwrap_or(z);
         let lowest = self.lowest.unwrap_or(HIGHEST);
         let lines = std::mem::take(&mut self.lines);
         if last.is_none() {
@@ -315,6 +322,9 @@ impl Gatherer {
 
     fn comment(&mut self, comment: &[u8]) {
         let short = &comment[..comment.len().min(LONGEST_COMMENT)];
+        if let Some(z) = short.trim_ascii().strip_prefix(b"Z:") {
+            self.told = std::str::from_utf8(z).ok().and_then(|z| z.trim().parse().ok());
+        }
         if self.bytes + short.len() > MOST_BYTES {
             return;
         }

@@ -79,6 +79,11 @@ impl Heights {
         middle.map(|one| one.z)
     }
 
+    /// Whether all lines lie at one height.
+    pub(crate) fn is_one(&self) -> bool {
+        self.others.is_empty()
+    }
+
     fn all(&self) -> impl Iterator<Item = Lengths> {
         let has_some = self.last.sum() > 0.0;
         self.others.values().copied().chain(has_some.then_some(self.last))

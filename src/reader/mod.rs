@@ -160,7 +160,21 @@ pub fn read(
     reading: impl Into<Reading>,
     sink: &mut dyn FnMut(u64, Event),
 ) -> io::Result<Summary> {
+    read_from(source, reading, [0.0; 3], sink)
+}
+
+/// As [`read`], of a machine whose nozzle is at `start` when the file begins, mm.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_from(
+    source: &mut dyn BufRead,
+    reading: impl Into<Reading>,
+    start: [f64; 3],
+    sink: &mut dyn FnMut(u64, Event),
+) -> io::Result<Summary> {
     let mut state = state::State::new(reading.into());
+    state.places.at = start.map(Some);
     let mut layers = layers::Layers::default();
     let mut number = 0;
     lines::each(source, lines::Place::default(), &mut |line, _| {

@@ -10,9 +10,18 @@
 //! file names one. A place is *sure* once an absolute number has named it; before that, at the start and
 //! after homing, G92 says where the nozzle is, and shifts nothing: files for machines without end stops
 //! begin so, and people set the height of their first layer so.
+//!
+//! Sums are kept at whole billionths of a mm, finer than any file's decimals: the error of a double does
+//! not add up over any number of relative moves.
 
 /// Zero points that can be chosen, G54 to G59.
 const ZEROS: usize = 6;
+
+/// The nearest whole number of billionths of a mm.
+fn exact(mm: f64) -> f64 {
+    const BILLION: f64 = 1e9;
+    (mm * BILLION).round() / BILLION
+}
 
 /// Where the nozzle is, and how numbers are read.
 #[derive(Debug, Clone)]
@@ -40,10 +49,11 @@ impl Places {
     pub(super) fn end(&mut self, numbers: [Option<f64>; 3], relative: bool) -> [Option<f64>; 3] {
         std::array::from_fn(|axis| match (numbers[axis], self.at[axis]) {
             (None, at) => at,
-            (Some(by), at) if relative => at.map(|at| at + by),
+            (Some(by), at) if relative => at.map(|at| exact(at + by)),
             (Some(number), _) => {
                 self.sure[axis] = true;
-                Some(number + self.shift[axis] + self.zeros[self.zero][axis])
+                let shift = self.shift[axis] + self.zeros[self.zero][axis];
+                Some(if shift == 0.0 { number } else { exact(number + shift) })
             }
         })
     }

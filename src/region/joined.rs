@@ -7,6 +7,8 @@ use super::walls::Wall;
 use super::{Region, Skin, Sparse, SupportLines, tops};
 use crate::geom::polyline::Polyline;
 use crate::geom::spans::Rows;
+use crate::slice::Layer;
+use std::sync::Arc;
 
 /// What is laid on a layer, whatever its block is.
 #[derive(Debug)]
@@ -35,6 +37,8 @@ pub(super) struct Filling {
     pub(super) walls: Vec<u32>,
     /// What is ironed.
     pub(super) ironing: Option<Ironing>,
+    /// The layer above, under curved tops.
+    pub(super) above: Option<Arc<Layer>>,
 }
 
 /// The region of a layer. `seen` tells tops apart: it is the cover of the layer above on the raster of this
@@ -45,7 +49,7 @@ pub(super) fn region(
     laid: Laid,
     seen: Option<Option<&Rows>>,
 ) -> Region {
-    let Filling { mut skins, infill, support, walls: printed, ironing } = filling;
+    let Filling { mut skins, infill, support, walls: printed, ironing, above } = filling;
     let Laid { beads, room_beads, filling, bridges, hanging } = laid;
     // Wall beads are for this layer alone.
     let beads = match seen {
@@ -72,5 +76,5 @@ pub(super) fn region(
     let hangs = hangs.into_iter().zip(&printed).filter_map(of).collect();
     let printed = walls.into_iter().zip(printed).filter(|(_, layers)| *layers > 0);
     let walls = printed.map(|(wall, layers)| Wall { layers, ..wall }).collect();
-    Region { layer, walls, hangs, skins, infill, ironing, support, thin_mm2 }
+    Region { layer, above, walls, hangs, skins, infill, ironing, support, thin_mm2 }
 }

@@ -64,6 +64,8 @@ use walls::Wall;
 pub struct Region {
     /// The layer.
     pub layer: Arc<Layer>,
+    /// The layer above, if lines have to know what it leaves bare.
+    pub above: Option<Arc<Layer>>,
     /// Its walls.
     pub walls: Vec<Wall>,
     /// How far the way to each point of each wall hangs, % of the width; 0 up to half. No list for

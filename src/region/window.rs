@@ -223,12 +223,25 @@ impl<'a> Window<'a> {
             layers.into_par_iter().filter_map(|k| self.skins(k)).unzip();
         let (infill, audit) = self.infill(block, areas);
         let (support, support_audit) = self.share_support(block);
+        let above = block.layers.clone().map(|k| self.above(k));
+        let ironed = ironed.into_iter().zip(above);
         let lines = infill.into_iter().zip(support).zip(self.share_walls(block)).zip(ironed);
-        let fillings =
-            skins.into_iter().zip(lines).map(|(skins, (((infill, support), walls), ironing))| {
-                Filling { skins, infill, support, walls, ironing }
-            });
+        let fillings = skins.into_iter().zip(lines).map(
+            |(skins, (((infill, support), walls), (ironing, above)))| Filling {
+                skins,
+                infill,
+                support,
+                walls,
+                ironing,
+                above,
+            },
+        );
         (fillings.collect(), audit.into_iter().chain(support_audit).collect())
+    }
+
+    /// The layer above layer `k`, if lines have to know what it leaves bare.
+    fn above(&self, k: usize) -> Option<Arc<Layer>> {
+        self.curved.and_then(|_| Some(self.own.get(k + 1)?.layer.clone()))
     }
 
     /// The infill of a block of these areas. Near a curved top it is printed layer by layer.

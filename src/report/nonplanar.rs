@@ -2,6 +2,7 @@
 
 use crate::nonplanar::{Areas, Patch, Patches, Reason};
 use crate::units::to_mm;
+use crate::warning::Warning;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -66,11 +67,7 @@ pub struct PatchReport {
 /// The report on some patches over `count` layers; the layers of a raft, and how far it lifts, mm, come on
 /// top.
 #[must_use]
-pub fn report(
-    patches: &Patches,
-    count: usize,
-    (layers, lift_mm): (usize, f64),
-) -> NonPlanarReport {
+pub fn report(patches: &Patches, count: usize, (layers, lift_mm): (usize, f64)) -> NonPlanarReport {
     let one = |patch: &Patch| {
         let [low, high] = patch.extent;
         let [bottom, top] = patch.bounds.map(|z| to_mm(z) + lift_mm);
@@ -87,6 +84,15 @@ pub fn report(
     };
     let patches_report = patches.patches.iter().map(one).collect();
     NonPlanarReport { areas: areas(&patches.mm2), patches: patches_report }
+}
+
+/// A warning if no top is printed otherwise than without such skins.
+#[must_use]
+pub fn unused(report: &NonPlanarReport) -> Option<Warning> {
+    let why = "no top slopes so that the head can follow it; the report says why";
+    let areas = &report.areas;
+    let is_void = areas.skin_mm2 <= 0.0 && areas.contour_mm2 <= 0.0;
+    is_void.then(|| Warning::void(["nonplanar.enabled"], why))
 }
 
 fn areas(mm2: &Areas) -> TopAreas {

@@ -16,11 +16,6 @@ pub(super) fn warnings(usage: &Usage, settings: &Settings) -> Vec<Warning> {
     if settings.ironing.place != IroningPlace::Off && !ironed {
         found.push(Warning::void(["ironing.where"], "no top is wide enough for its lines"));
     }
-    let curved = usage.roles[Role::NonPlanar].iter().any(|(_, used)| used.length > 0.0);
-    if settings.nonplanar.enabled && !curved {
-        let why = "no top slopes so that the head can follow it; the report says why";
-        found.push(Warning::void(["nonplanar.enabled"], why));
-    }
     found
 }
 

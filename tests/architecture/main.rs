@@ -49,8 +49,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("preview", &["reader", "estimate", "text", "units"]),
     ("diff", &["reader", "estimate", "geom"]),
     ("roughness", &["reader", "mesh", "units"]),
+    // G-code in, steps out: it plans times as an estimate does.
+    ("steps", &["reader", "estimate", "motion", "profile", "units"]),
     // Composed of the stages' own errors: no stage uses it.
-    ("error", &["gcode", "mesh", "profile", "progress", "reader", "warning"]),
+    ("error", &["gcode", "mesh", "profile", "progress", "reader", "steps", "warning"]),
 ];
 
 /// Modules that judge what the others have made.

@@ -178,7 +178,7 @@ fn json_is_stable() {
     let findings = json["findings"].as_array().unwrap();
     assert!(code == 0 && findings.iter().all(|one| one["severity"] == "warning"), "{out}");
     let names = "unknown-code outside-volume through-print changes-the-machine wrong-temperature \
-                 cold-extrusion too-fast too-much-flow unpaired-retraction odd-bead falling-z in-the-air floating unanchored \
+                 cold-extrusion too-fast too-many-steps too-much-flow unpaired-retraction odd-bead falling-z in-the-air floating unanchored \
                  printed-twice overfilled underfilled narrow-bead slender-support loose-infill \
                  wrong-sums wrong-size open-outline open-surface outside-part wrong-infill wrong-volume";
     assert_eq!(Code::ALL.map(Code::name).join(" "), names);

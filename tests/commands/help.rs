@@ -8,7 +8,7 @@ use std::fs;
 use std::process::Command as Process;
 
 /// Every command there is; those below have commands of their own.
-const COMMANDS: [&str; 18] = [
+const COMMANDS: [&str; 20] = [
     "",
     "check",
     "compare",
@@ -17,6 +17,7 @@ const COMMANDS: [&str; 18] = [
     "estimate",
     "man",
     "mesh",
+    "play",
     "preview",
     "profile",
     "profile check",
@@ -27,6 +28,7 @@ const COMMANDS: [&str; 18] = [
     "report",
     "report schema",
     "roughness",
+    "steps",
 ];
 
 fn product(words: &str, flags: &[&str]) -> String {

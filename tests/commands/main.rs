@@ -18,5 +18,7 @@ mod reading;
 mod roughness;
 mod run;
 mod schema;
+mod skins;
+mod steps;
 mod viewer;
 mod ways;

@@ -14,19 +14,19 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-const TILE: &str = "golden/tile@zcube-dual.gcode";
+pub(super) const TILE: &str = "golden/tile@zcube-dual.gcode";
 
 /// A layer of the bracket with skin, thin and thick infill, counted from 1; the layer below
 /// has its infill printed by this one.
 const LAYER: usize = 14;
 
-fn slicer(folder: &TempDir) -> Command {
+pub(super) fn slicer(folder: &TempDir) -> Command {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
     command.current_dir(folder.path());
     command
 }
 
-fn print(text: &str) -> Print {
+pub(super) fn print(text: &str) -> Print {
     Print::read(&mut text.as_bytes(), 1.75).unwrap()
 }
 
@@ -40,7 +40,7 @@ fn drawn(print: &Print, number: usize, size: u32) -> Drawing {
     layer::drawing(print, number - 1, &options)
 }
 
-fn files(folder: &Path) -> Vec<String> {
+pub(super) fn files(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let mut names: Vec<_> =
         entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
@@ -344,15 +344,20 @@ fn the_pictures_of_the_readme_are_as_kept() {
     let model = fixtures().join("bracket.stl");
     let words = ["--dual", "-q", "-o", "bracket.gcode"];
     slicer(&folder).arg(model).args(words).assert().success();
-    for (name, words) in [
-        ("bracket-layer-13.svg", "--layer 13"),
-        ("bracket-layer-14.svg", "--layer 14"),
-        ("bracket-cut.svg", "--cut x=0 --crop 3,0,15.5,7"),
+    crate::skins::wedge(&folder);
+    let flat = ["-q", "-o", "flat.gcode"];
+    slicer(&folder).arg(fixtures().join("wedge.stl")).args(flat).assert().success();
+    for (name, file, words) in [
+        ("bracket-layer-13.svg", "bracket.gcode", "--layer 13"),
+        ("bracket-layer-14.svg", "bracket.gcode", "--layer 14"),
+        ("bracket-cut.svg", "bracket.gcode", "--cut x=0 --crop 3,0,15.5,7"),
+        ("wedge-cut-flat.svg", "flat.gcode", "--cut y=0.1 --crop -12.5,0,0.5,3.4"),
+        ("wedge-cut.svg", "wedge.gcode", "--cut y=0.1 --crop -12.5,0,0.5,3.4"),
     ] {
         let readme = fs::read_to_string(fixtures().join("README.md")).unwrap();
-        assert!(readme.contains(&format!("preview bracket.gcode {words} -o")), "{words}");
+        assert!(readme.contains(&format!("preview {file} {words} -o {name}")), "{words}");
         let words = words.split(' ').chain(["-q", "-o", name]);
-        slicer(&folder).args(["preview", "bracket.gcode"]).args(words).assert().success();
+        slicer(&folder).args(["preview", file]).args(words).assert().success();
         let made = fs::read_to_string(folder.path().join(name)).unwrap();
         assert!(made.len() < 150_000);
         let path = fixtures().join("pictures").join(name);

@@ -195,6 +195,48 @@ fn packed_moves_are_those_of_the_file() {
     assert!(unpack(&page(ODD.as_bytes(), "a.gcode"))[1].iter().any(|one| one.from == [0, 0, 300]));
 }
 
+/// The ramp with non-planar skins.
+fn wedge() -> Vec<u8> {
+    slice("fixtures/wedge.stl", &["--nonplanar", "--head", "long-0.6"])
+}
+
+#[test]
+fn a_patch_is_a_step_after_its_layer() {
+    let gcode = wedge();
+    let (print, page) = (print(&gcode), page(&gcode, "wedge.gcode"));
+    let stages = slicer::preview::stages::stages(&print);
+    let at = stages.iter().position(|stage| stage.patch == Some(1)).unwrap();
+    let home = stages[at].layer;
+    assert_eq!((stages.len(), stages[at - 1].layer), (print.layers.len() + 1, home));
+    let blocks = unpack(&page);
+    assert_eq!(blocks.len(), stages.len() + 1);
+    let is_skin = |one: &&Move| one.role & !packed::THICK == Role::NonPlanar as u8;
+    for (place, block) in blocks.iter().enumerate() {
+        let some = block.iter().filter(is_skin).count();
+        assert!(if place == at + 1 { some > 100 } else { some == 0 }, "block {place}: {some}");
+    }
+    assert!(blocks[at + 1].iter().all(|one| one.role & packed::THICK == 0));
+    let facts: Value = serde_json::from_str(script(&page, "facts-json")).unwrap();
+    let [below, layer, skin] = [0, 1, 2].map(|k| &facts["layers"][at - 2 + k]);
+    assert_eq!((&layer["number"], &layer["skin"]), (&(home + 1).into(), &Value::Null));
+    assert_eq!((&skin["number"], &skin["skin"]), (&(home + 1).into(), &1.into()));
+    assert_eq!(below["number"], home);
+    let (low, high) = (skin["low"].as_f64().unwrap(), skin["z"].as_f64().unwrap());
+    assert!(low < 1.5 && high > 3.5, "from {low} to {high}");
+    // The layer's time is shared.
+    let seconds = |one: &Value| one["seconds"].as_f64().unwrap();
+    assert!(seconds(skin) > seconds(layer) && seconds(layer) > 0.0, "{layer} {skin}");
+    assert_eq!(facts["highest"], 0.2);
+    // A page without skins says nothing of all that.
+    let flat = self::page(ODD.as_bytes(), "a.gcode");
+    let flat = script(&flat, "facts-json");
+    assert!(
+        ["\"number\":", "\"skin\":", "\"low\":", "\"z\":[", "\"highest\":"]
+            .iter()
+            .all(|word| !flat.contains(word))
+    );
+}
+
 #[test]
 fn nothing_in_a_name_or_in_the_file_ends_an_element() {
     let name = "</script><script>alert(1)</script>\"&{{facts}}.gcode";
@@ -340,6 +382,22 @@ fn a_browser_shows_the_layer_the_moves_and_what_is_pointed_at() {
         assert!(said[1].ends_with("mm wide, 0.4 mm high"), "{tip}");
         assert_eq!(*said.last().unwrap(), format!("line {} of the file", line.line), "{tip}");
     }
+    // A layer's number stays what it is after a skin, which has a name of its own and a side.
+    let gcode = wedge();
+    let file = folder.path().join("wedge.html");
+    fs::write(&file, page(&gcode, "wedge.gcode")).unwrap();
+    let skinned = Print::read(&mut &gcode[..], FILAMENT).unwrap();
+    let home = slicer::preview::patch::home(&skinned, 1).unwrap() + 1;
+    let first = skinned.moves.iter().find(|step| step.is_line() && step.role == Role::NonPlanar);
+    let (x, z) = first.map(|step| (step.from[0], step.from[2] - 0.05)).unwrap();
+    let place = format!("layer={home}&skin=1&side=front&colour=z&at={x},{z}");
+    let skin = state(&chromium, &file, "", &place);
+    assert_eq!((&skin["layer"], &skin["skin"]), (&home.into(), &1.into()));
+    assert_eq!((&skin["side"], &skin["colour"]), (&"front".into(), &"z".into()));
+    assert!(skin["tip"].as_str().unwrap().starts_with("non-planar skin\n"), "{skin}");
+    let layer = state(&chromium, &file, "", &format!("layer={home}"));
+    assert_eq!((&layer["layer"], &layer["skin"]), (&home.into(), &Value::Null));
+    assert_eq!(layer["layers"], skinned.layers.len());
     // Beside the part there is nothing, and no move is shown before the first.
     let empty = state(&chromium, &file, "", "layer=999&move=0&at=0,40");
     assert_eq!((&empty["layer"], &empty["move"]), (&print.layers.len().into(), &0.into()));

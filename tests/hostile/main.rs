@@ -9,6 +9,7 @@ mod common;
 mod edits;
 mod properties;
 mod sound;
+mod steps;
 mod witness;
 
 use proptest::prelude::*;

@@ -15,6 +15,7 @@ use slicer::profile::{self, Override, Settings, ValueOrigin};
 use slicer::progress::Progress;
 use slicer::reader::Print;
 use slicer::slice::{Heights, Slicer};
+use slicer::steps;
 
 /// Triangles and layers, at most, so that a case is quick.
 const MOST_TRIANGLES: usize = 3_000;
@@ -180,6 +181,50 @@ pub(crate) fn gcode(bytes: &[u8]) {
     let tolerances = Tolerances { settings: true, ..Tolerances::default() };
     let found = diff(&a, &b, &tolerances).unwrap();
     assert!(found.equal, "a file differs from itself: {:?}", found.findings);
+}
+
+/// Takes a megabyte.
+struct Little(Vec<u8>);
+
+impl std::io::Write for Little {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        if self.0.len() + bytes.len() > 1 << 20 {
+            return Err(std::io::Error::other("it is full"));
+        }
+        self.0.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Any G-code becomes a stream that plays to the end, or is refused.
+pub(crate) fn steps(bytes: &[u8]) {
+    let motors = [("steps.x", "8"), ("steps.y", "8"), ("steps.z", "40"), ("steps.e", "9")];
+    let settings = settings(&motors);
+    let (reading, form) = (slicer::reader::Reading::of(bytes), steps::Form::Steps);
+    let options = steps::Options { reading, form, start: None };
+    let mut out = Little(Vec::new());
+    match steps::make(&mut &*bytes, "x.gcode", &settings, options, &mut out) {
+        Ok(made) => {
+            let played = steps::play(&mut out.0.as_slice(), "x.steps", |_| {}, |_, _| {}).unwrap();
+            assert_eq!(played.totals, made.totals);
+            assert!(played.findings.iter().all(|one| one.code == "beyond-switch"));
+        }
+        Err(steps::Failure::Reader(error)) => is_good_refusal(&error.into(), 3, "x.gcode"),
+        Err(steps::Failure::Steps(error)) => is_good_refusal(&error.into(), 3, "x.gcode"),
+        Err(steps::Failure::Write(_)) => assert!(out.0.len() > 1 << 19),
+        Err(steps::Failure::Profile(error)) => panic!("{error}"),
+    }
+}
+
+/// Any bytes as a stream of steps are refused, or played.
+pub(crate) fn stream(bytes: &[u8]) {
+    if let Err(error) = steps::play(&mut &*bytes, "x.steps", |_| {}, |_, _| {}) {
+        is_good_refusal(&error.into(), 3, "x.steps");
+    }
 }
 
 /// Any triangles on the grid, open, folded and crossing, are cut into layers of contours that

@@ -43,6 +43,7 @@ fn fixtures_are_closed_and_have_their_volume() {
             "two_shells.stl" => (10_000.0, [25.0, 25.0, 20.0]),
             "cavity.stl" => (8000.0 - 512.0, [20.0, 20.0, 20.0]),
             "tile.stl" => (57.6, [6.0, 6.0, 1.6]),
+            "wedge.stl" => (624.0, [24.0, 10.0, 3.6]),
             "bracket.stl" => (16_796.0, [90.0, 30.0, 24.0]),
             _ => panic!("no expectation for {name}"),
         };
@@ -71,6 +72,7 @@ fn fixtures() -> Vec<(&'static str, Vec<u8>)> {
         ("two_shells.stl", binary(&shells)),
         ("cavity.stl", binary(&hollow)),
         ("tile.stl", binary(&cuboid([0.0; 3], [6.0, 6.0, 1.6]))),
+        ("wedge.stl", binary(&wedge())),
     ]
 }
 
@@ -135,6 +137,13 @@ fn cuboid(low: Point, high: Point) -> Triangles {
     let cells = grid(&[low[0], high[0]], &[low[1], high[1]]);
     let columns = Columns { solid: vec![vec![true]; cells.len()], cells };
     columns.skin(|k, _| [low[2], high[2]][k])
+}
+
+/// A ramp that rises by 1 in 12, 4.8°.
+fn wedge() -> Triangles {
+    let cells = grid(&[0.0, 24.0], &[0.0, 10.0]);
+    let columns = Columns { solid: vec![vec![true]; cells.len()], cells };
+    columns.skin(|k, [x, _]| [0.0, 1.6 + x / 12.0][k])
 }
 
 /// A T: arms of 11 mm stand out at both sides.

@@ -16,6 +16,7 @@ mod rounding;
 mod slope;
 mod slopes;
 mod sound;
+mod steps;
 mod stl;
 mod tour;
 mod weak;

@@ -4,7 +4,7 @@
 const RAMP = ["#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#f0e51c"]
   .map(rgbOf);
 
-/** What lines can be coloured by, in the order of the keys 1 to 6. */
+/** What lines can be coloured by, in the order of the keys 1 to 7; the last only where there are skins. */
 const MODES = {
   role: { name: "role" },
   speed: { name: "speed", unit: "mm/s", value: (moves, i) => moves.speed[i] },
@@ -12,7 +12,13 @@ const MODES = {
   time: { name: "layer time", unit: "s", value: (moves, i, layer) => FACTS.layers[layer - 1]?.seconds },
   width: { name: "line width", unit: "mm", value: (moves, i) => moves.width[i] },
   height: { name: "line height", unit: "mm", value: (moves, i) => moves.height[i] },
+  z: {
+    name: "height of skins",
+    unit: "mm",
+    value: (moves, i, layer, part) => moves.z.from[i] + (moves.z.to[i] - moves.z.from[i]) * part,
+  },
 };
+if (!FACTS.scales.z) delete MODES.z;
 
 /** `#rrggbb` as three numbers from 0 to 255. */
 function rgbOf(hex) {
@@ -67,7 +73,18 @@ function rolePalette() {
   }));
 }
 
-/** Gives the function (moves, i, layer) -> colour for a mode. */
+/** Pieces that a line which rises over the whole scale is cut into, to be coloured by z. */
+const BANDS = 24;
+
+/** How many pieces of a move have a colour of their own. */
+function piecesOf(mode, moves, i) {
+  if (mode !== "z" || !isLine(moves, i)) return 1;
+  const [least, most] = FACTS.scales.z;
+  const rise = Math.abs(moves.z.to[i] - moves.z.from[i]) / Math.max(most - least, 1e-3);
+  return Math.min(Math.max(Math.ceil(rise * BANDS), 1), BANDS);
+}
+
+/** Gives the function (moves, i, layer, part of the way along the move) -> colour for a mode. */
 function colouring(mode, palette) {
   const byRole = (moves, i) => {
     const { thin, thick } = palette[roleOf(moves, i)];
@@ -78,9 +95,9 @@ function colouring(mode, palette) {
   if (!value || !scale) return byRole;
   const [least, most] = scale;
   const steps = Array.from({ length: 256 }, (_, k) => onRamp(k / 255));
-  return (moves, i, layer) => {
+  return (moves, i, layer, along) => {
     if (!isLine(moves, i)) return byRole(moves, i);
-    const part = most > least ? ((value(moves, i, layer) ?? least) - least) / (most - least) : 0.5;
+    const part = most > least ? ((value(moves, i, layer, along) ?? least) - least) / (most - least) : 0.5;
     return steps[Math.round(255 * Math.min(Math.max(part, 0), 1)) || 0];
   };
 }

@@ -57,16 +57,15 @@ function drawGround(canvas, view) {
 }
 
 /** The move that is pointed at, and the nozzle where not all moves are shown. */
-function drawMarks(canvas, { view, move }, moves, hit) {
+function drawMarks(canvas, { view, move }, scene, moves, hit) {
   const context = cleared(canvas);
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-  const place = (x, y) => toScreen([x, y], view, width, height);
+  const place = (at) => toScreen(at, view, width, height);
   if (hit >= 0) {
-    const from = place(moves.x.from[hit], moves.y.from[hit]);
-    const to = place(moves.x.to[hit], moves.y.to[hit]);
-    outline(context, from, to, Math.max(moves.width[hit] * view.scale, 4));
+    const [from, to] = scene.endsOf(moves, hit).map(place);
+    outline(context, from, to, Math.max(scene.thicknessOf(moves, hit) * view.scale, 4));
   }
-  if (move > 0 && move < moves.count) nozzle(context, place(moves.x.to[move - 1], moves.y.to[move - 1]));
+  if (move > 0 && move < moves.count) nozzle(context, place(scene.endsOf(moves, move - 1)[1]));
 }
 
 /** A ring about the line, and where it ends. */

@@ -55,6 +55,7 @@ const KEYS = {
   t: () => setHidden([TRAVEL, RETRACTION], !state.hidden.has(TRAVEL)),
   b: () => setBelow(!state.below),
   f: fit,
+  s: turn,
   "+": () => zoom(1.25),
   "=": () => zoom(1.25),
   "-": () => zoom(0.8),
@@ -136,12 +137,13 @@ function listenToPointers(stage) {
 function listen() {
   const on = (id, name, act) => byId(id).addEventListener(name, act);
   on("layer", "input", (event) => goToLayer(Number(event.target.value)));
-  on("which", "change", (event) => goToLayer(Number(event.target.value)));
+  on("which", "change", (event) => goToLayer(stageOf(Math.round(Number(event.target.value)))));
   on("move", "input", (event) => goToMove(Number(event.target.value)));
   on("colour", "change", (event) => setColour(event.target.value));
   on("below", "change", (event) => setBelow(event.target.checked));
   on("play", "click", () => setPlaying(!state.playing));
   on("fit", "click", fit);
+  on("side", "click", turn);
   on("ask", "click", () => byId("help").showModal());
   on("toggle", "click", togglePanel);
   listenToPointers(byId("stage"));

@@ -30,9 +30,11 @@ function grouped(number) {
 
 function showFacts() {
   const { layers, bounds } = FACTS;
+  const skins = layers.filter((one) => one.skin !== undefined).length;
   const rows = [
     ["time", clock(FACTS.seconds), "without heating and homing"],
-    ["layers", grouped(layers.length)],
+    ["layers", grouped(LAYERS)],
+    ...(skins ? [["skins", grouped(skins), "patches of non-planar skin"]] : []),
     ["filament", `${decimals(FACTS.filament_mm / 1000, 2)} m, ${decimals(FACTS.filament_cm3, 2)} cm³`],
     ["moves", grouped(FACTS.moves)],
   ];
@@ -80,7 +82,7 @@ function updateRoles({ hidden, colour }, palette) {
 
 /** Whether lines are higher than layers: then thick ones have a colour of their own. */
 function someThick() {
-  const highest = FACTS.scales.height?.[1] ?? 0;
+  const highest = FACTS.highest ?? FACTS.scales.height?.[1] ?? 0;
   return FACTS.layers.some((layer) => highest > 1.5 * layer.height);
 }
 
@@ -119,9 +121,9 @@ function drawTimes(layer) {
   if (!longest) return;
   const each = height / FACTS.layers.length;
   const [bar, here] = [themeColour("rule"), themeColour("accent")];
-  FACTS.layers.forEach(({ seconds }, k) => {
+  FACTS.layers.forEach(({ seconds, skin }, k) => {
     const now = k + 1 === layer;
-    context.fillStyle = now ? here : bar;
+    context.fillStyle = now ? here : skin === undefined ? bar : FACTS.roles[SKIN].colour;
     const thick = Math.max(each, now ? 2 * devicePixelRatio : 0.5);
     context.fillRect(0, height - (k + 1) * each, (canvas.width * seconds) / longest, thick);
   });

@@ -17,10 +17,11 @@ class Scene {
     this.blocks = findBlocks(bytes);
     this.unpacked = new Map();
     this.unpackedMoves = 0;
+    this.side = "top";
     this.painter = makePainter(canvas);
   }
 
-  /** Number of layers; block 0 is what comes before the first. */
+  /** Number of stages; block 0 is what comes before the first. */
   get layers() {
     return this.blocks.length - 1;
   }
@@ -43,10 +44,12 @@ class Scene {
     return moves;
   }
 
-  /** Colours or what is hidden have changed. */
-  restyle({ colour, hidden }) {
+  /** Colours, what is hidden or the side that is looked at have changed. */
+  restyle({ colour, hidden, side }) {
+    this.side = side;
     this.palette = rolePalette();
     this.paper = rgbOf(themeColour("paper"));
+    this.mode = colour;
     this.colourOf = colouring(colour, this.palette);
     this.hidden = hidden;
     this.painter.forget();
@@ -56,7 +59,7 @@ class Scene {
     this.painter.draw({
       view,
       layer,
-      count,
+      count: this.instancesUpTo(layer, count),
       below: withBelow ? this.layersBelow(layer) : [],
       paper: this.paper,
       fade: FADE,
@@ -67,7 +70,8 @@ class Scene {
   /** As many as can be drawn, the lowest first. */
   layersBelow(layer) {
     const below = [];
-    let left = this.painter.mostBehind;
+    // From above the highest hide the others, from a side they do not.
+    let left = this.painter.mostBehind * (this.side === "top" ? 1 : 5);
     for (let lower = layer - 1; lower >= 1 && left > 0; lower--) {
       left -= this.countOf(lower);
       if (left > 0) below.unshift(lower);
@@ -75,28 +79,54 @@ class Scene {
     return below;
   }
 
+  /** How many instances the first `count` moves of a layer are: one each, but for those that are cut. */
+  instancesUpTo(layer, count) {
+    const moves = this.movesOf(layer);
+    if (this.mode !== "z") return Math.min(count, moves.count);
+    let sum = 0;
+    for (let i = 0; i < Math.min(count, moves.count); i++) sum += piecesOf(this.mode, moves, i);
+    return sum;
+  }
+
   /** What a painter needs of a layer: see INSTANCE. */
   instancesOf(layer) {
     const moves = this.movesOf(layer);
-    const floats = new Float32Array(INSTANCE * moves.count);
+    const floats = new Float32Array(INSTANCE * this.instancesUpTo(layer, Infinity));
     const inks = new Uint8Array(floats.buffer);
+    let at = 0;
     for (let i = 0; i < moves.count; i++) {
-      const at = INSTANCE * i;
-      floats[at] = moves.x.from[i];
-      floats[at + 1] = moves.y.from[i];
-      floats[at + 2] = moves.x.to[i];
-      floats[at + 3] = moves.y.to[i];
-      floats[at + 4] = this.widthOf(moves, i);
-      if (this.hidden.has(roleOf(moves, i))) continue;
-      inks.set(this.colourOf(moves, i, layer), 4 * (at + 5));
-      inks[4 * (at + 5) + 3] = 255;
+      const pieces = piecesOf(this.mode, moves, i);
+      const [[fromX, fromY], [toX, toY]] = this.endsOf(moves, i);
+      const isHidden = this.hidden.has(roleOf(moves, i));
+      for (let k = 0; k < pieces; k++, at += INSTANCE) {
+        for (const [place, part] of [[0, k / pieces], [2, (k + 1) / pieces]]) {
+          floats[at + place] = fromX + (toX - fromX) * part;
+          floats[at + place + 1] = fromY + (toY - fromY) * part;
+        }
+        floats[at + 4] = this.widthOf(moves, i);
+        if (isHidden) continue;
+        inks.set(this.colourOf(moves, i, layer, (k + 0.5) / pieces), 4 * (at + 5));
+        inks[4 * (at + 5) + 3] = 255;
+      }
     }
     return floats;
   }
 
+  /** Where a move begins and ends on the side that is looked at, mm: the middle of a line, from above its top. */
+  endsOf(moves, i) {
+    const [across, up] = SIDES[this.side];
+    const sunk = up === "z" && isLine(moves, i) ? moves.height[i] / 2 : 0;
+    return ["from", "to"].map((end) => [moves[across][end][i], moves[up][end][i] - sunk]);
+  }
+
+  /** How wide a line looks, mm; 0 for what is none. */
+  thicknessOf(moves, i) {
+    return this.side === "top" ? moves.width[i] : moves.height[i];
+  }
+
   /** mm; below 0 in pixels. */
   widthOf(moves, i) {
-    if (isLine(moves, i)) return moves.width[i];
+    if (isLine(moves, i)) return this.thicknessOf(moves, i);
     return -devicePixelRatio * (roleOf(moves, i) === RETRACTION ? RETRACTION_WIDTH : TRAVEL_WIDTH);
   }
 
@@ -109,7 +139,7 @@ class Scene {
     let [found, best] = [-1, 0];
     for (let i = 0; i < Math.min(count, moves.count); i++) {
       if (this.hidden.has(roleOf(moves, i))) continue;
-      const beyond = distance(moves, i, x, y) - moves.width[i] / 2;
+      const beyond = distance(this.endsOf(moves, i), x, y) - this.thicknessOf(moves, i) / 2;
       const beside = Math.max(beyond, 0);
       // Marks and travels lie over lines, but are hit on themselves only.
       if (beside <= reach && (found < 0 || beside <= best)) [found, best] = [i, beside];
@@ -118,10 +148,9 @@ class Scene {
   }
 }
 
-/** Of a point from a move, mm. */
-function distance(moves, i, x, y) {
-  const [fromX, fromY] = [moves.x.from[i], moves.y.from[i]];
-  const [wayX, wayY] = [moves.x.to[i] - fromX, moves.y.to[i] - fromY];
+/** Of a point from a line between two, mm. */
+function distance([[fromX, fromY], [toX, toY]], x, y) {
+  const [wayX, wayY] = [toX - fromX, toY - fromY];
   const square = wayX * wayX + wayY * wayY;
   const along = square > 0 ? ((x - fromX) * wayX + (y - fromY) * wayY) / square : 0;
   const part = Math.min(Math.max(along, 0), 1);

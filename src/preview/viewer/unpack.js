@@ -10,6 +10,32 @@ const THICK = 0x80;
 
 const [TRAVEL, RETRACTION] = ["travel", "retraction"].map((name) => FACTS.roles.findIndex((role) => role.name === name));
 
+const SKIN = FACTS.roles.findIndex((role) => role.name === "non-planar skin");
+
+/**
+ * The page is looked through by stages: layers, and patches of non-planar skin, each after its layer.
+ * Without patches the stages are the layers. Stages and layers are counted from 1.
+ */
+const LAYERS = FACTS.layers.at(-1)?.number ?? FACTS.layers.length;
+
+function layerOf(stage) {
+  return FACTS.layers[stage - 1]?.number ?? stage;
+}
+
+function skinOf(stage) {
+  return FACTS.layers[stage - 1]?.skin ?? null;
+}
+
+/** The first stage of a layer, or the patch `skin` after it. Beyond the layers it is beyond the stages. */
+function stageOf(layer, skin = null) {
+  const at = FACTS.layers.findIndex((_, k) => layerOf(k + 1) === layer && (skin === null || skinOf(k + 1) === skin));
+  if (at >= 0) return at + 1;
+  return layer > LAYERS ? FACTS.layers.length : layer;
+}
+
+/** What a view's two axes are: from above, from the front and from the right. */
+const SIDES = { top: ["x", "y"], front: ["x", "z"], right: ["y", "z"] };
+
 /** Bytes of a base64 text. */
 function bytesOfBase64(text) {
   if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);

@@ -1,12 +1,13 @@
 // The page itself: what is looked at, and what keys, pointer, sliders and address do to it.
 
-/** What is looked at. `move` is how many moves of the layer are shown. */
+/** What is looked at. `layer` is the stage (see unpack.js), `side` the side that is seen, `move` is how many moves of the layer are shown. */
 const state = {
   layer: 1,
   move: 0,
   colour: "role",
   hidden: new Set([TRAVEL, RETRACTION]),
   below: true,
+  side: "top",
   view: null,
   /** Whether the view is to hold the whole print, whatever the window's size. */
   fits: true,
@@ -60,7 +61,7 @@ function draw() {
   });
   drawIfNew("ground", [view, styles, size], () => drawGround(byId("ground"), view));
   const hit = state.at ? scene.pick(layer, move, state.at, 4 / view.scale) : -1;
-  drawMarks(byId("marks"), state, scene.movesOf(layer), hit);
+  drawMarks(byId("marks"), state, scene, scene.movesOf(layer), hit);
   showTip(hit);
   drawIfNew("times", [layer, styles, size], () => drawTimes(layer));
   showState(hit);
@@ -68,7 +69,9 @@ function draw() {
 
 /** The view that holds the whole print. */
 function fitted({ width, height }) {
-  const [[x0, y0], [x1, y1]] = FACTS.bounds ?? [[0, 0], [100, 100]];
+  const bounds = FACTS.bounds ?? [[0, 0, 0], [100, 100, 100]];
+  const axes = SIDES[state.side].map((axis) => "xyz".indexOf(axis));
+  const [[x0, y0], [x1, y1]] = bounds.map((corner) => axes.map((axis) => corner[axis]));
   const margin = 40 * devicePixelRatio;
   const room = [Math.max(width - 2 * margin, 50), Math.max(height - 2 * margin, 50)];
   const scale = Math.min(room[0] / Math.max(x1 - x0, 1), room[1] / Math.max(y1 - y0, 1)) / devicePixelRatio;
@@ -93,18 +96,22 @@ function showState(hit) {
   const count = scene.countOf(layer);
   const facts = FACTS.layers[layer - 1];
   const moves = scene.movesOf(layer);
+  const [number, skin] = [layerOf(layer), skinOf(layer)];
   byId("layer").value = layer;
-  if (document.activeElement !== byId("which")) byId("which").value = layer;
+  if (document.activeElement !== byId("which")) byId("which").value = number;
   Object.assign(byId("move"), { max: count, value: move });
-  const z = facts ? `${decimals(facts.z, 3)} mm` : "start";
+  const least = skin === null ? "" : `skin ${skin}\n${decimals(facts.low, 3)} to\n`;
+  const z = facts ? `${least}${decimals(facts.z, 3)} mm` : "start";
   const time = facts ? clock(facts.seconds) : clock(FACTS.start_seconds);
   byId("top").textContent = `${z}\n${time}`;
-  byId("layer").ariaValueText = facts ? `layer ${layer}, ${z}` : "before the first layer";
+  byId("layer").ariaValueText = facts ? `layer ${number}, ${z.replace(/\n/g, " ")}` : "before the first layer";
   const line = move > 0 ? `, line ${grouped(moves.line[move - 1])}` : "";
   byId("status").textContent = `move ${grouped(move)} of ${grouped(count)}${line}`;
   document.body.dataset.state = JSON.stringify({
-    layers: scene.layers,
-    layer,
+    layers: LAYERS,
+    layer: number,
+    skin,
+    side: state.side,
     moves: count,
     move,
     colour: state.colour,
@@ -120,6 +127,7 @@ function restyle() {
   state.styles++;
   byId("colour").value = state.colour;
   byId("below").checked = state.below;
+  byId("side").textContent = state.side[0].toUpperCase() + state.side.slice(1);
   updateRoles(state, scene.palette);
   updateScale(state.colour);
   redraw();
@@ -148,6 +156,18 @@ function setHidden(roles, hide) {
 function setBelow(on) {
   state.below = on;
   restyle();
+}
+
+/** Looks from above, from the front or from the right. */
+function setSide(side) {
+  if (!(side in SIDES) || side === state.side) return;
+  Object.assign(state, { side, fits: true, at: null });
+  restyle();
+}
+
+function turn() {
+  const sides = Object.keys(SIDES);
+  setSide(sides[(sides.indexOf(state.side) + 1) % sides.length]);
 }
 
 function togglePanel() {
@@ -191,12 +211,14 @@ function readAddress() {
     state.hidden = new Set(hidden);
   }
   state.below = words.get("below") !== "0";
+  setSide(words.get("side") ?? "top");
   const [x, y, scale] = numbers("view", 3) ?? [];
   if (scale > 0) Object.assign(state, { view: { x, y, scale }, fits: false });
   state.at = numbers("at", 2);
   setColour(words.get("colour") ?? state.colour);
-  const [layer] = numbers("layer", 1) ?? [state.layer];
-  goToLayer(layer, numbers("move", 1)?.[0]);
+  const [layer] = numbers("layer", 1) ?? [null];
+  const [skin] = numbers("skin", 1) ?? [null];
+  goToLayer(layer === null ? state.layer : stageOf(layer, skin), numbers("move", 1)?.[0]);
 }
 
 /** Browsers refuse too many changes of the address: only where one rests is written. */
@@ -207,7 +229,9 @@ const writeAddress = (() => {
     timer = setTimeout(() => {
       const { layer, move, view, hidden, fits } = state;
       const names = [...hidden].sort().map((role) => FACTS.roles[role].name.replace(" ", "-"));
-      const words = [`layer=${layer}`, `hide=${names}`];
+      const words = [`layer=${layerOf(layer)}`, `hide=${names}`];
+      if (skinOf(layer) !== null) words.push(`skin=${skinOf(layer)}`);
+      if (state.side !== "top") words.push(`side=${state.side}`);
       if (move < scene.countOf(layer)) words.push(`move=${move}`);
       if (state.colour !== "role") words.push(`colour=${state.colour}`);
       if (!state.below) words.push("below=0");
@@ -238,8 +262,8 @@ function begin() {
   showFacts();
   showRoles(state.hidden, (role, shown) => setHidden([role], !shown));
   showSettings();
-  byId("count").textContent = `of ${grouped(scene.layers)}`;
-  for (const id of ["layer", "which"]) Object.assign(byId(id), { min: lowest(), max: scene.layers });
+  byId("count").textContent = `of ${grouped(LAYERS)}`;
+  for (const [id, max] of [["layer", scene.layers], ["which", LAYERS]]) Object.assign(byId(id), { min: lowest(), max });
   if (matchMedia("(max-width: 700px)").matches) togglePanel();
   listen();
   state.layer = middleLayer();

@@ -36,6 +36,7 @@ mod material;
 mod nonplanar;
 mod output;
 mod speed;
+mod steps;
 mod support;
 mod travel;
 
@@ -56,6 +57,7 @@ pub use output::Output;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 pub use speed::Speed;
+pub use steps::Steps;
 pub use support::{Bridge, Support};
 pub use travel::{Retraction, Travel};
 
@@ -243,4 +245,6 @@ pub struct Settings {
     /// What the printer's planner holds itself to. It changes estimates of time; only max_segment_rate,
     /// and what may be asked for by `[acceleration]`, change the file.
     pub limits: MotionLimits,
+    /// The motors of a machine that takes steps.
+    pub steps: Steps,
 }
