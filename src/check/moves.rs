@@ -445,16 +445,12 @@ impl<'a> Walk<'a> {
             let text = format!("{speed} mm/s in z, where the machine does {most}");
             found.add(Finding::of(Code::TooFast, in_z, "mm/s", text));
         }
-        for axis in 0..2 {
+        for (axis, name) in ["x", "y"].into_iter().enumerate() {
             let way = f64::from(step.to[axis]) - f64::from(step.from[axis]);
             let speed = way.abs() / length * feed;
             if speed > machine.speed[axis] * SPEED_SLACK {
-                let (limit, axis) = (machine.speed[axis], ["x", "y"][axis]);
-                let text = format!(
-                    "{} mm/s in {axis}, where the machine does {}",
-                    short(speed),
-                    short(limit)
-                );
+                let (told, most) = (short(speed), short(machine.speed[axis]));
+                let text = format!("{told} mm/s in {name}, where the machine does {most}");
                 found.add(Finding::of(Code::TooFast, speed, "mm/s", text));
                 return;
             }
@@ -470,19 +466,17 @@ impl<'a> Walk<'a> {
     /// A feed at which a motor would have to step faster than it can. A planner holds each axis to its
     /// speed; a board that takes steps is sent fewer of them.
     fn steps(&self, step: &Step, found: &mut Findings) {
-        let Some(machine) = self.machine.filter(|machine| machine.steps != [None; 4]) else {
-            return;
-        };
+        let Some(machine) = self.machine.filter(|m| m.steps != [None; 4]) else { return };
         let way = |axis: usize| (f64::from(step.to[axis]) - f64::from(step.from[axis])).abs();
         let ways = [way(0), way(1), way(2), f64::from(step.filament).abs()];
         let length = if step.length() > 0.0 { step.length() } else { ways[3] };
         if length < LEAST_LENGTH {
             return;
         }
-        let feed =
-            ways.iter().zip(machine.speed).fold(f64::from(step.feed), |feed, (way, most)| {
-                if *way > 0.0 { feed.min(most * length / way) } else { feed }
-            });
+        let slower = |feed: f64, (way, most): (&f64, f64)| {
+            if *way > 0.0 { feed.min(most * length / way) } else { feed }
+        };
+        let feed = ways.iter().zip(machine.speed).fold(f64::from(step.feed), slower);
         for (axis, motor) in machine.steps.into_iter().enumerate() {
             let Some([per_mm, most]) = motor else { continue };
             let rate = ways[axis] / length * feed * per_mm;
