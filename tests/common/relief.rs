@@ -203,7 +203,7 @@ pub(crate) struct Looks {
     pub(crate) fill: Vec<f64>,
     /// Length of skins that stand over the surface by more than half a layer, mm.
     pub(crate) outside: f64,
-    /// Length of skins with nothing within two layers below their tops, mm.
+    /// Length of skins that have mostly nothing within two layers below their tops, mm.
     pub(crate) in_air: f64,
     /// How deep the head presses where it may, mm.
     pub(crate) press: f64,
@@ -272,7 +272,7 @@ fn lay(
     bead: &Move,
     (layer, surface): (f64, &dyn Fn([f64; 2]) -> f64),
 ) {
-    let (mut all, mut outside, mut in_air) = (0_u32, 0_u32, true);
+    let (mut all, mut outside, mut bare) = (0_u32, 0_u32, 0_u32);
     let mut covered = Vec::new();
     pile.under(bead, |k, z, at| {
         all += 1;
@@ -281,11 +281,12 @@ fn lay(
         if over.abs() <= layer / 2.0 {
             covered.push((k, z));
         }
-        in_air &= !(z - 2.0 * layer..z + layer).contains(&pile.values[k]);
+        bare += u32::from(!(z - 2.0 * layer..z + layer).contains(&pile.values[k]));
     });
     covered.into_iter().for_each(|(k, z)| last.values[k] = z);
     looks.outside += bead.length() * f64::from(outside) / f64::from(all.max(1));
-    looks.in_air += if in_air { bead.length() } else { 0.0 };
+    // It shares squares with the line beside it and the segment before it: of short ones none are told.
+    looks.in_air += if 2 * bare > all { bead.length() } else { 0.0 };
 }
 
 /// Plastic over room of each mm² that is all last skin.
