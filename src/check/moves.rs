@@ -9,7 +9,8 @@
 //!   Speeds of the filament alone are not judged, and speeds in z only of non-planar skin, of lines that
 //!   rise by more than a layer, in files of this program's, or beyond any machine's: firmwares cap them,
 //!   and slicers rely on that. A move that rises is as slow as the cap on z makes it;
-//! - travels through what stands ([`through`](super::through)), and lines on what the start block primed
+//! - travels through what stands ([`through`](super::through)); in files with lines over slopes all that the
+//!   head touches, and the skins there ([`slopes`](super::slopes)); and lines on what the start block primed
 //!   ([`primed`](super::primed)).
 //!
 //! Between the moves are commands: those that change the machine ([`changes`](super::changes)), and those
@@ -25,6 +26,7 @@ use super::finding::{Code, Finding, Findings, Place, short};
 use super::heat::Heat;
 use super::patches::Patches;
 use super::primed::Primed;
+use super::slopes::Slopes;
 use super::terms::{Machine, Terms};
 use super::through::Through;
 use super::warmth::Warmth;
@@ -72,8 +74,10 @@ pub(super) struct Moves<'a> {
 }
 
 impl<'a> Moves<'a> {
-    pub(super) fn new(facts: &'a Facts, terms: &'a Terms) -> Self {
-        let walk = Walk::new(facts, terms);
+    /// `has_slopes` tells whether lines go over slopes.
+    pub(super) fn new(facts: &'a Facts, terms: &'a Terms, has_slopes: bool) -> Self {
+        let mut walk = Walk::new(facts, terms);
+        walk.slopes = has_slopes.then(|| Slopes::new(facts, terms));
         Self { walk, codes: Codes::new(terms.machine.as_ref()), next: 0 }
     }
 
@@ -104,6 +108,9 @@ impl<'a> Moves<'a> {
         walk.warmth.finish(found);
         walk.primed.finish(found);
         walk.patches.finish(walk.facts, found);
+        if let Some(slopes) = walk.slopes {
+            slopes.finish(found);
+        }
         let summary = &walk.facts.summary;
         if summary.coarse_arcs > 0 {
             let (arcs, line) = (summary.coarse_arcs, summary.first_coarse_arc);
@@ -210,6 +217,8 @@ struct Walk<'a> {
     air: Air,
     through: Through,
     primed: Primed,
+    /// In files with lines over slopes.
+    slopes: Option<Slopes<'a>>,
     patches: Patches,
     /// Where the nozzle is.
     at: [f64; 3],
@@ -241,6 +250,7 @@ impl<'a> Walk<'a> {
             air: Air::new(terms),
             through: Through::new(terms),
             primed: Primed::default(),
+            slopes: None,
             patches: Patches::default(),
             at: [0.0; 3],
             layer: None,
@@ -272,6 +282,7 @@ impl<'a> Walk<'a> {
                 self.air.set(order, place);
                 if matches!((order.letter, order.number), (b'G', 161 | 162) | (b'M', 132)) {
                     self.through.lose();
+                    self.slopes.iter_mut().for_each(Slopes::lose);
                 }
                 if let Some(tool) = tool_of(order) {
                     self.warmth.tool(tool);
@@ -309,6 +320,9 @@ impl<'a> Walk<'a> {
             self.speed(step, printing, found);
         }
         self.through.step(step, is_of_layer, found);
+        if let Some(slopes) = &mut self.slopes {
+            slopes.step(step, (self.layer, is_of_layer), found);
+        }
         self.at = step.to.map(f64::from);
         // All of them lie where the move ends.
         let place = Place {
