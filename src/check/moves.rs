@@ -76,8 +76,7 @@ pub(super) struct Moves<'a> {
 impl<'a> Moves<'a> {
     /// `has_slopes` tells whether lines go over slopes.
     pub(super) fn new(facts: &'a Facts, terms: &'a Terms, has_slopes: bool) -> Self {
-        let mut walk = Walk::new(facts, terms);
-        walk.slopes = has_slopes.then(|| Slopes::new(facts, terms));
+        let walk = Walk::new(facts, terms, has_slopes);
         Self { walk, codes: Codes::new(terms.machine.as_ref()), next: 0 }
     }
 
@@ -239,7 +238,7 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    fn new(facts: &'a Facts, terms: &'a Terms) -> Self {
+    fn new(facts: &'a Facts, terms: &'a Terms, has_slopes: bool) -> Self {
         Self {
             facts,
             terms,
@@ -248,9 +247,9 @@ impl<'a> Walk<'a> {
             changes: Changes::new(terms),
             warmth: Warmth::new(terms),
             air: Air::new(terms),
-            through: Through::new(terms),
+            through: Through::new(terms, has_slopes),
             primed: Primed::default(),
-            slopes: None,
+            slopes: has_slopes.then(|| Slopes::new(facts, terms)),
             patches: Patches::default(),
             at: [0.0; 3],
             layer: None,

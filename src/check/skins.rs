@@ -10,7 +10,8 @@
 //!   and from [`LEAST_OPEN`] on: two and a half mm of one missing line.
 //! - In squares of [`WINDOW`] cells the plastic of all lines is compared with the room of the cells that
 //!   they cover. Squares with more than [`MOST_PLASTIC`] times as much count from [`LEAST_DOUBLE`] on in a
-//!   patch. Both skins together are judged: other slicers lay a first skin of one height on the treads of a
+//!   patch, those with less than [`LEAST_PLASTIC`] times as much, as where lines of a lower skin are missing,
+//!   from [`LEAST_THIN`] on. All skins are judged: other slicers lay a first skin of one height on the treads of a
 //!   staircase. Where there is but one, squares are larger than a tread.
 
 use super::finding::{Code, Finding, Findings, Place, short};
@@ -37,6 +38,9 @@ const LEAST_PLY: f64 = 0.1;
 /// Part of a line's height by which it lies at least above what shows between the lines of a patch.
 const SHOWS: f64 = 0.75;
 
+/// Skins that a base leaves room for, where lines of all of them are missing.
+const USUAL_PLIES: u16 = 2;
+
 /// Sides of the squares in which plastic is judged, cells; and of those of a single skin in a file that has
 /// no marks.
 const WINDOW: usize = 10;
@@ -45,11 +49,13 @@ const WIDE: usize = 40;
 /// Part of a square's cells that the patch covers, for it to be judged.
 const LEAST_COVERED: f64 = 0.5;
 
-/// Plastic over room.
+/// Plastic over room, at most and at least: half of it is there where one of two skins is missing.
 const MOST_PLASTIC: f64 = 1.3;
+const LEAST_PLASTIC: f64 = 0.65;
 
-/// Least area with too much, mm².
+/// Least area with too much, and with too little, where the ends of lines are round, mm².
 const LEAST_DOUBLE: f64 = 1.0;
+const LEAST_THIN: f64 = 4.0;
 
 /// Lanes side by side in which a line's plastic is counted.
 const LANES: usize = 4;
@@ -295,51 +301,97 @@ impl Judge<'_> {
     fn shows(&self, cell: usize, ends: [usize; 2], lasts: &[u16]) -> bool {
         let map = &self.map;
         let top = 0.5 * ends.map(|end| f64::from(map.top[end])).iter().sum::<f64>();
-        let plies = f64::from(lasts[ends[0]].max(lasts[ends[1]]));
+        let plies = f64::from(lasts[ends[0]].max(lasts[ends[1]]).max(USUAL_PLIES));
         let depth = top - self.relief.at(map.field.of(cell));
         (SHOWS * map.height..(plies + SHOWS) * map.height).contains(&depth)
     }
 
-    /// Reports too much plastic.
+    /// Reports too much and too little plastic.
     fn double(&self, found: &mut Findings) {
-        let map = &self.map;
-        let [columns, rows] = map.field.count;
-        let is_single = map.plies < 2 && matches!(self.name, Name::Layer(_));
+        let is_single = self.map.plies < 2 && matches!(self.name, Name::Layer(_));
         let side = if is_single { WIDE } else { WINDOW };
-        let (mut plastic, mut room, mut area, mut worst) = (0.0, 0.0, 0.0, (0.0, 0));
+        let [columns, rows] = self.map.field.count;
+        let (mut double, mut thin) = (Sum::default(), Sum::default());
         for row in (0..rows).step_by(side) {
             for column in (0..columns).step_by(side) {
-                let mut own = [0.0; 3];
-                for j in row..(row + side).min(rows) {
-                    for i in column..(column + side).min(columns) {
-                        let cell = i + j * columns;
-                        if map.ply[cell] == 0 {
-                            continue;
-                        }
-                        let before = self.relief.before(map.field.of(cell)).unwrap_or_default();
-                        let room = (f64::from(map.top[cell]) - before).max(0.0) * CELL * CELL;
-                        own = [own[0] + f64::from(map.plastic[cell]), own[1] + room, own[2] + 1.0];
-                    }
-                }
-                let is_judged = own[2] >= LEAST_COVERED * (side * side) as f64;
-                if is_judged && own[0] > MOST_PLASTIC * own[1] {
-                    (plastic, room, area) =
-                        (plastic + own[0], room + own[1], area + own[2] * CELL * CELL);
-                    if own[0] - own[1] > worst.0 {
-                        let (x, y) = (column + side / 2, row + side / 2);
-                        worst = (own[0] - own[1], x.min(columns - 1) + y.min(rows - 1) * columns);
-                    }
+                let own = self.square([column, row], side);
+                let fills = own.plastic / own.room.max(f64::MIN_POSITIVE);
+                if own.area < LEAST_COVERED * (CELL * side as f64).powi(2) {
+                    continue;
+                } else if fills > MOST_PLASTIC {
+                    double.add(own);
+                } else if fills < LEAST_PLASTIC {
+                    thin.add(own);
                 }
             }
         }
-        if area < LEAST_DOUBLE {
-            return;
+        let mut tell = |sum: Sum, code: Code| {
+            let percent = short(100.0 * sum.plastic / sum.room.max(f64::MIN_POSITIVE));
+            let (area, name) = (short(sum.area), self.name());
+            let text = format!(
+                "{area} mm² of {name} take {percent} % of the plastic that they have room for"
+            );
+            found.add(Finding::of(code, area, "mm²", text).at(self.at(sum.middle)));
+        };
+        if double.area >= LEAST_DOUBLE {
+            tell(double, Code::DoubleSkin);
         }
-        let percent = short(100.0 * plastic / room.max(f64::MIN_POSITIVE));
-        let (area, name) = (short(area), self.name());
-        let text =
-            format!("{area} mm² of {name} take {percent} % of the plastic that they have room for");
-        let finding = Finding::of(Code::DoubleSkin, area, "mm²", text);
-        found.add(finding.at(self.at(worst.1)));
+        if thin.area >= LEAST_THIN {
+            tell(thin, Code::UncoveredSkin);
+        }
+    }
+
+    /// How high the base of a cell stands, mm. The relief is an upper bound, and has each line wider by half a
+    /// cell: the least of a cell and those beside it has not.
+    fn before(&self, cell: usize) -> f64 {
+        let [x, y] = self.map.field.of(cell);
+        let beside = [[x, y], [x - 1, y], [x + 1, y], [x, y - 1], [x, y + 1]];
+        let known = beside.into_iter().filter_map(|cell| self.relief.before(cell));
+        known.reduce(f64::min).unwrap_or_default()
+    }
+
+    /// What a square takes, and has room for.
+    fn square(&self, [column, row]: [usize; 2], side: usize) -> Sum {
+        let map = &self.map;
+        let [columns, rows] = map.field.count;
+        let most = (f64::from(map.plies) + SHOWS) * map.height;
+        let middle = [(column + side / 2).min(columns - 1), (row + side / 2).min(rows - 1)];
+        let mut sum = Sum { middle: middle[0] + middle[1] * columns, ..Sum::default() };
+        for j in row..(row + side).min(rows) {
+            for cell in column + j * columns..(column + side).min(columns) + j * columns {
+                if map.ply[cell] == 0 {
+                    continue;
+                }
+                // Over sparse infill there is more room than skins fill.
+                let room = (f64::from(map.top[cell]) - self.before(cell)).clamp(0.0, most);
+                sum.plastic += f64::from(map.plastic[cell]);
+                sum.room += room * CELL * CELL;
+                sum.area += CELL * CELL;
+            }
+        }
+        sum
+    }
+}
+
+/// Plastic and room of a square, or of several, mm³; area, mm²; and the middle of the worst one.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
+    plastic: f64,
+    room: f64,
+    area: f64,
+    middle: usize,
+    /// By how much the worst one is off, mm³.
+    off: f64,
+}
+
+impl Sum {
+    fn add(&mut self, one: Self) {
+        let off = (one.plastic - one.room).abs();
+        if off > self.off {
+            (self.off, self.middle) = (off, one.middle);
+        }
+        self.plastic += one.plastic;
+        self.room += one.room;
+        self.area += one.area;
     }
 }

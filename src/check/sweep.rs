@@ -16,6 +16,7 @@ use super::relief::{Relief, Square};
 use crate::geom::segment;
 use crate::head::{DEEPEST_PRESS, Head, Part};
 use crate::reader::print::Step;
+use std::cell::Cell;
 
 /// Distance of the places that are looked at, mm.
 const STEP: f64 = 0.25;
@@ -25,6 +26,13 @@ const MOST_PLACES: f64 = 20_000.0;
 
 /// Touches that are less deep are rounding, mm.
 const TOLERANCE: f64 = 0.02;
+
+/// How much higher the map may be than what stands: half a cell of a slope of 25 degrees, mm.
+const BOUND: f64 = 0.03;
+
+/// Squares in which no touch can be this many times as deep as one that is known are left out: a flat head
+/// touches all of a slope at once.
+const CLOSE: f64 = 1.05;
 
 /// See the head of this file.
 pub(super) struct Sweep<'a> {
@@ -63,7 +71,6 @@ impl<'a> Sweep<'a> {
             return;
         }
         let mut worst: Option<Hit> = None;
-        let mut length = 0.0;
         let (from, to) = (step.from.map(f64::from), step.to.map(f64::from));
         let way = segment::way(from, to);
         let count = (step.plan_length() / STEP).ceil().clamp(1.0, MOST_PLACES) as usize;
@@ -71,57 +78,63 @@ impl<'a> Sweep<'a> {
         for k in 1..=count {
             let tip = segment::along(from, k as f64 / count as f64, way);
             let may_press = step.is_line() || !is_aside || k == count;
-            let most = if may_press { DEEPEST_PRESS * height } else { 0.0 };
-            if let Some(hit) = self.touch(relief, tip, most) {
-                length += step.plan_length() / count as f64;
-                worst = worst.filter(|worst| worst.depth >= hit.depth).or(Some(hit));
-            }
+            let most = if may_press { DEEPEST_PRESS * height + BOUND } else { TOLERANCE };
+            let deeper = worst.map_or(0.0, |worst| worst.depth);
+            worst = self.touch(relief, tip, (most, deeper)).or(worst);
         }
-        found.extend(worst.map(|hit| told(&hit, step, length)));
+        found.extend(worst.map(|hit| told(&hit, step)));
     }
 
-    /// The deepest touch there, but for those within the flat's diameter that are no deeper than `most`.
-    fn touch(&self, relief: &Relief, [x, y, z]: [f64; 3], most: f64) -> Option<Hit> {
-        let corners = |square: Square| {
+    /// The deepest touch there that is deeper than `least`, but for those within the flat's diameter that are
+    /// no deeper than `most`.
+    fn touch(
+        &self,
+        relief: &Relief,
+        [x, y, z]: [f64; 3],
+        (most, least): (f64, f64),
+    ) -> Option<Hit> {
+        // What is found first lets most other squares be.
+        let deepest = Cell::new(least.max(TOLERANCE));
+        let beside = |square: Square| {
             let low = [square.low[0] - x, square.low[1] - y];
             (low, low.map(|at| at + square.side))
         };
-        let allowed = |(low, high): ([f64; 2], [f64; 2])| {
-            let far = [0, 1].map(|axis: usize| low[axis].abs().max(high[axis].abs()));
-            let is_near = far[0] * far[0] + far[1] * far[1] <= self.press * self.press;
-            if is_near { most.max(TOLERANCE) } else { TOLERANCE }
-        };
         let counts = |square: Square, highest: f64| {
+            let least = CLOSE * deepest.get();
             // Most lies lower than the tip: no look at the head.
-            highest > z + TOLERANCE && {
-                let (low, high) = corners(square);
-                highest > z + self.head.over(low, high) + allowed((low, high))
+            highest > z + least && {
+                let (low, high) = beside(square);
+                highest > z + self.head.over(low, high) + least
             }
         };
-        let mut worst: Option<Hit> = None;
+        let mut worst = None;
         relief.look([x, y], self.reach, &counts, &mut |square, top| {
             if !counts(square, top) {
                 return;
             }
-            let (low, high) = corners(square);
-            let depth = top - z - self.head.over(low, high);
-            if worst.is_some_and(|worst| worst.depth >= depth) {
+            let (low, high) = beside(square);
+            let middle = [0, 1].map(|axis: usize| 0.5 * (low[axis] + high[axis]));
+            let own = self.head.underside(middle);
+            let away = middle[0] * middle[0] + middle[1] * middle[1];
+            let is_near = away <= self.press * self.press;
+            // Near the tip by the cell's middle: its nearest corner would press where nothing does.
+            let under =
+                own.filter(|_| is_near).map_or(self.head.over(low, high), |(under, _)| under);
+            let depth = top - z - under;
+            if depth <= deepest.get() || (is_near && depth <= most) {
                 return;
             }
-            // The place of the cell over which the head hangs lowest: boxes by their overlap.
+            deepest.set(depth);
             let near = [0, 1].map(|axis: usize| 0.0_f64.clamp(low[axis], high[axis]));
-            let middle = [0, 1].map(|axis: usize| 0.5 * (low[axis] + high[axis]));
-            let below = |at: [f64; 2]| self.head.underside(at);
-            let part =
-                below(near).into_iter().chain(below(middle)).min_by(|a, b| a.0.total_cmp(&b.0));
-            let part = part.map_or(Part::Box(0), |(_, part)| part);
+            let lowest = own.or_else(|| self.head.underside(near));
+            let part = lowest.map_or(Part::Box(0), |(_, part)| part);
             worst = Some(Hit { depth, at: [x + middle[0], y + middle[1]], part });
         });
         worst
     }
 }
 
-fn told(hit: &Hit, step: &Step, length: f64) -> Finding {
+fn told(hit: &Hit, step: &Step) -> Finding {
     let part = match hit.part {
         Part::Flat => "the nozzle's flat".to_owned(),
         Part::Cone => "the nozzle's cone".to_owned(),
@@ -129,9 +142,8 @@ fn told(hit: &Hit, step: &Step, length: f64) -> Finding {
         Part::Box(k) => format!("box {} of the head", k + 1),
     };
     let what = if step.is_line() { step.role.name() } else { "travel" };
-    let way =
-        if length > 0.0 { format!(" over {} mm of {what}", short(length)) } else { String::new() };
-    let text = format!("{part} is {} mm deep in what stands{way}", short(hit.depth));
+    let text =
+        format!("{part} is {} mm deep in what stands, on the way of {what}", short(hit.depth));
     // The line and the layer are the move's.
     let place = Place { at_mm: Some(hit.at.map(short)), ..Place::default() };
     Finding::of(Code::HeadHits, hit.depth, "mm", text).at(place)

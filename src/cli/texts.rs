@@ -31,7 +31,8 @@ Findings, each with a stable code, a place and a measure:
   printed-twice        a line on the middle of another of its layer, over 10 mm or most of it; lines on
                        what the start block has primed
   uncovered-skin       1 mm² or more of a patch of non-planar skin, 0.3 mm wide, that its last skin
-                       leaves open: 2.5 mm of a missing line; with the model, that lies lower
+                       leaves open: 2.5 mm of a missing line; or that takes under 0.65 times its plastic
+                       over 4 mm²
   double-skin          over 1.3 times the plastic that a patch has room for on what it lies on, in
                        squares of 1 mm
   overfilled         * over 1.25 times the plastic that walls and skins have room for, on one layer
