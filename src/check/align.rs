@@ -16,7 +16,7 @@ use super::median;
 use super::part::Part;
 use super::raft;
 use super::rows::Lattice;
-use super::survey::{Extent, Survey, both};
+use super::survey::Survey;
 use super::terms::Terms;
 use crate::geom::segment;
 use crate::geom::spans::Rows;
@@ -90,15 +90,8 @@ pub(super) fn place(
         }
     };
     let outlines = survey.outlines.iter().enumerate();
-    // Skins reach the outline where the base below them does not.
-    let with_skins = |index: usize, outline: Extent| {
-        let skins = survey.strays[index].iter().filter(|step| is_of_part(step, has_roles));
-        skins.fold(outline, |all, step| both(all, Some(Capsule::of(step, 1.0).extent())))
-    };
     let offs: Vec<Off> = outlines
-        .filter_map(|(index, outline)| {
-            Some(off(with_skins(index, Some((*outline)?))?, part.extent_of(index)?))
-        })
+        .filter_map(|(index, outline)| Some(off((*outline)?, part.extent_of(index)?)))
         .collect();
     let mut fits = fit(survey, &part, has_roles);
     let usual = |of: fn(&Off) -> Vector2<f64>| {
