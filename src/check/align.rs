@@ -177,7 +177,7 @@ fn fit(survey: &Survey, part: &Part, has_roles: bool) -> f64 {
             let walls = |step: &&Step| step.role == Role::OuterWall || !has_roles;
             steps.clone().filter(|step| step.is_line()).filter(walls)
         };
-        let skins = skins_over(survey, *index, lattice, has_roles);
+        let skins = if has_roles { skins_over(survey, *index, lattice) } else { Rows::default() };
         let band = band.minus(&skins);
         for step in walls() {
             let length = step.length();
@@ -196,9 +196,9 @@ fn fit(survey: &Survey, part: &Part, has_roles: bool) -> f64 {
 }
 
 /// What skins cover over a layer and at its height: what is below them ends inside the model's outline.
-fn skins_over(survey: &Survey, layer: usize, lattice: Lattice, has_roles: bool) -> Rows {
+fn skins_over(survey: &Survey, layer: usize, lattice: Lattice) -> Rows {
     let layers = survey.strays.iter().skip(layer).take(SKINS).flatten();
-    let lines = layers.filter(|step| is_of_part(step, has_roles));
+    let lines = layers.filter(|step| is_of_part(step, true));
     lattice.draw(lines.map(|step| Capsule::of(step, 1.0)))
 }
 

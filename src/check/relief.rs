@@ -48,6 +48,8 @@ struct Tile {
 pub(super) struct Relief {
     tiles: Vec<Tile>,
     map: BTreeMap<[i32; 2], usize>,
+    /// The lowest and the highest column and row of tiles.
+    extent: [[i32; 2]; 2],
     highest: f32,
 }
 
@@ -108,8 +110,12 @@ impl Relief {
         let whole = CELL * SIDE as f64;
         let [low, high] = [-reach, reach]
             .map(|by| [x + by, y + by].map(|at| (at.clamp(-FARTHEST, FARTHEST) / whole).floor()));
-        for row in low[1] as i32..=high[1] as i32 {
-            for column in low[0] as i32..=high[0] as i32 {
+        // A head may reach far beyond all that stands.
+        let [first, last] = self.extent;
+        let span =
+            |axis: usize| (low[axis] as i32).max(first[axis])..=(high[axis] as i32).min(last[axis]);
+        for row in span(1) {
+            for column in span(0) {
                 let Some(&tile) = self.map.get(&[column, row]) else { continue };
                 let tile = &self.tiles[tile];
                 let corner = [column, row].map(|k| f64::from(k) * whole);
@@ -128,6 +134,13 @@ impl Relief {
         }
         if self.tiles.len() >= MOST_TILES {
             return None;
+        }
+        if self.tiles.is_empty() {
+            self.extent = [at; 2];
+        }
+        let [low, high] = &mut self.extent;
+        for axis in 0..2 {
+            (low[axis], high[axis]) = (low[axis].min(at[axis]), high[axis].max(at[axis]));
         }
         self.map.insert(at, self.tiles.len());
         self.tiles.push(Tile {

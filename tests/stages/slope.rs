@@ -215,7 +215,7 @@ fn missing_lines_of_both_skins_show_the_base() {
     let verdict = judge(&slope::file(Form::Marked, false, change), None);
     let open = verdict.findings.iter().find(|found| found.text.contains("not covered")).unwrap();
     assert_eq!(open.code, Code::UncoveredSkin);
-    assert!((open.measure - 23.0).abs() < 3.0, "{open}");
+    assert!((15.0..25.0).contains(&open.measure), "{open}");
 }
 
 #[test]
@@ -229,7 +229,7 @@ fn twice_the_flow_fills_a_skin_twice() {
             assert!(found.measure > 150.0 && found.measure < 215.0, "{found}");
             let percent = found.text.split("take ").nth(1).unwrap().split(' ').next().unwrap();
             let percent: f64 = percent.parse().unwrap();
-            assert!((percent - 100.0 * times).abs() < 10.0, "{found}");
+            assert!((percent - 100.0 * times).abs() < 25.0, "{found}");
         }
         let once = |k| if k == 40 { Change { flow: 2.0, ..SAME } } else { SAME };
         let verdict = judge(&slope::file(form, true, once), None);
