@@ -12,7 +12,7 @@ const SLACK: f64 = 1.01;
 
 /// What a move asks too much of a motor. A planner holds each axis to its speed; a board that takes steps is
 /// sent fewer of them.
-pub(super) fn too_many_steps(step: &Step, machine: Option<Machine>) -> Option<Finding> {
+pub(super) fn too_many_steps(step: &Step, machine: Option<&Machine>) -> Option<Finding> {
     let machine = machine.filter(|machine| machine.steps != [None; 4])?;
     let way = |axis: usize| (f64::from(step.to[axis]) - f64::from(step.from[axis])).abs();
     let ways = [way(0), way(1), way(2), f64::from(step.filament).abs()];
