@@ -460,16 +460,12 @@ impl<'a> Walk<'a> {
             let text = format!("{speed} mm/s in z, where the machine does {most}");
             found.add(Finding::of(Code::TooFast, in_z, "mm/s", text));
         }
-        for axis in 0..2 {
+        for (axis, name) in ["x", "y"].into_iter().enumerate() {
             let way = f64::from(step.to[axis]) - f64::from(step.from[axis]);
             let speed = way.abs() / length * feed;
             if speed > machine.speed[axis] * SPEED_SLACK {
-                let (limit, axis) = (machine.speed[axis], ["x", "y"][axis]);
-                let text = format!(
-                    "{} mm/s in {axis}, where the machine does {}",
-                    short(speed),
-                    short(limit)
-                );
+                let (told, most) = (short(speed), short(machine.speed[axis]));
+                let text = format!("{told} mm/s in {name}, where the machine does {most}");
                 found.add(Finding::of(Code::TooFast, speed, "mm/s", text));
                 return;
             }

@@ -340,8 +340,7 @@ impl<'a> Window<'a> {
                     width,
                     border: None,
                 });
-            let interface = interface.collect();
-            SupportLines { body, interface, outlines: layer.outlines.clone() }
+            SupportLines { body, interface: interface.collect(), outlines: layer.outlines.clone() }
         };
         (layers.iter().zip(bodies).map(lines).collect(), audit)
     }
