@@ -71,7 +71,7 @@ pub fn patches(scene: &Scene<'_>) -> Patches {
 
 /// What stands before the first piece is laid, with room for all of them.
 fn stack<'a>(scene: &'a Scene<'a>, grounds: &[Ground], pieces: &[Piece]) -> Stack<'a> {
-    let (heights, depth) = (scene.slicer.heights(), scene.depth());
+    let (heights, depth) = (scene.slicer.heights(), scene.base_depth());
     let low = pieces.iter().map(|piece| piece.bounds[0]).fold(f64::MAX, f64::min);
     // Two layers more, so that a base is seen.
     let first = heights.planes_up_to((low - f64::from(depth)) as Coord).saturating_sub(2);
@@ -122,7 +122,7 @@ fn patch(
         made(scene, (piece, surface), &trial.ground.field, (areas, strokes))
     });
     let field = &ground.field;
-    let (heights, depth) = (scene.slicer.heights(), scene.depth());
+    let (heights, depth) = (scene.slicer.heights(), scene.base_depth());
     let area: &[Contour] = made.as_ref().and_then(|p: &Patch| p.areas.last()).map_or(&[], |a| a);
     stack.cuts[k] = Cut::new(field, area, heights, (depth, scene.params.height), piece.home + 1);
     for (cell, z) in heights_over(field, &grid::cells(area)) {

@@ -32,11 +32,8 @@ use crate::head::pile::{Hit, Pile};
 use crate::units::{Coord, to_mm, to_units};
 use rayon::prelude::*;
 
-/// More room than this many skin heights is no base.
-const MOST_ROOM: f64 = 1.75;
-
-/// Less room than this share of a skin height is none.
-const LEAST_ROOM: f64 = 0.25;
+/// Rounding of heights, mm.
+const ROUNDING: f64 = 2e-4;
 
 /// What lies lower than the lowest skin by this share of its height is base: a base ends half a skin
 /// height below it at the highest, but for rounding.
@@ -169,14 +166,14 @@ impl<'a> Trial<'a> {
     /// Why skin `i` cannot be laid at a place.
     fn fails(&self, place: Spot, i: usize, is_last: bool, stack: &Stack<'_>) -> Option<Reason> {
         let (field, cell) = (&self.ground.field, cell_of(place));
-        let touch = Touch { scene: self.scene, field };
+        let layer = self.scene.params.press_layer_at_places();
+        let touch = Touch { scene: self.scene, field, layer };
         let z = field.at(cell)?;
         let [x, y] = grid::middle(cell);
         let tip = [x, y, mm(z - f64::from(self.scene.lowered(i)))];
         let head = &self.scene.params.head;
         // Press goes into its own surface alone.
         let pressed = || self.others.hit(head, tip, &|hit| touch.is_press(hit));
-        let layer = to_mm(self.scene.params.height);
         let tried = || stack.pile.hit_printing(head, tip, layer).or_else(pressed);
         let hit = if self.is_clear(cell, tip[2]) { None } else { tried() };
         let of = |hit: &Hit| touch.reason(hit, |cell| stack.is_supported(cell));
@@ -186,8 +183,9 @@ impl<'a> Trial<'a> {
 
     /// Adds places where the lowest skin has no base at its height to those of the last skin.
     fn without_base(&self, stack: &Stack<'_>, refused: &mut [Refused]) {
-        let (height, last) = (to_mm(self.scene.params.height), refused.len() - 1);
-        let room = LEAST_ROOM * height..=MOST_ROOM * height;
+        let last = refused.len() - 1;
+        let heights = self.scene.params.bead_heights();
+        let room = mm(*heights.start()) - ROUNDING..=mm(*heights.end()) + ROUNDING;
         let Some(lowest) = self.areas.iter().position(|area| !area.is_empty()) else { return };
         let inset = self.scene.params.line_width / 2;
         let lacks = |place: &Spot| {
@@ -247,7 +245,8 @@ impl Trial<'_> {
     /// [`super::base`] leaves of it.
     fn base_end(&self, z: f64, i: usize) -> f64 {
         let heights = self.scene.slicer.heights();
-        let count = heights.planes_up_to(to_units(z) - self.scene.lowered(i));
+        let end = to_units(z) - self.scene.lowered(i) + self.scene.params.raised();
+        let count = heights.planes_up_to(end);
         count.checked_sub(1).map_or(0.0, |k| to_mm(heights.top(k)))
     }
 
@@ -276,7 +275,7 @@ fn others(scene: &Scene<'_>, field: &Field, piece: &Piece, stack: &Stack<'_>) ->
     let high = [to.x, to.y].map(|v| v.div_euclid(CELL) + reach);
     let corner = |cell: Spot| grid::middle(cell).map(|v| v - to_mm(CELL) / 2.0);
     let mut pile = Pile::new(corner(low), corner(high), to_mm(CELL));
-    let touch = Touch { scene, field };
+    let touch = Touch { scene, field, layer: scene.params.press_layer() };
     for y in low[1]..high[1] {
         for x in low[0]..high[0] {
             let height = stack.height([x, y]);
@@ -346,7 +345,7 @@ impl Later {
         };
         // A plateau continues the surface; what goes on above it does not.
         let spare =
-            |hit: &Hit| params.head.presses(hit, to_mm(params.height)) && !goes_on(cell_at(hit.at));
+            |hit: &Hit| params.head.presses(hit, touch.layer) && !goes_on(cell_at(hit.at));
         let hit = self.pile.hit(&self.head, [x, y, -mm(z)], &spare)?;
         let is_same = touch.body(hit.at) == touch.body([x, y]);
         Some(if is_same { Reason::Obstacle } else { Reason::Neighbour })
