@@ -180,7 +180,8 @@ fn standing(scene: &Scene<'_>, field: &Field, area: &[Contour]) -> (Pile, Glance
     }
     let known = || heights.iter().copied().filter(|z| z.is_finite()).map(f64::from);
     let most = known().fold(f64::MIN, f64::max) - known().fold(f64::MAX, f64::min);
-    let under = Under::pressing(&scene.params.head, scene.params.press_layer_at_places(), most + SLACK);
+    let under =
+        Under::pressing(&scene.params.head, scene.params.press_layer_at_places(), most + SLACK);
     (pile, Glance::new(low, columns, heights, under))
 }
 

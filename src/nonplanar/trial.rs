@@ -20,7 +20,7 @@ use super::field::Field;
 use super::glance::{Glance, Under};
 use super::grid::{self, CELL, Spot, cell_of};
 use super::scene::Scene;
-use super::shrink::{Refused, refuse, shrink_all};
+use super::shrink::{Refused, most, nearest, refuse, shrink_all, widened};
 use super::stack::{Stack, heights_over};
 use super::tally::Reason;
 use super::touch::{Touch, cell_at, mm};
@@ -78,7 +78,27 @@ impl<'a> Trial<'a> {
         let areas = vec![piece.area.clone(); scene.params.skins as usize];
         let later = Later::new(scene, piece, stack);
         let others = others(scene, &ground.field, piece, stack);
-        Self { scene, ground, piece, areas, others, glance: None, later, fresh: None }
+        let mut trial =
+            Self { scene, ground, piece, areas, others, glance: None, later, fresh: None };
+        trial.cut_beneath(stack);
+        trial
+    }
+
+    /// Cuts out what lies inside of the part: shells of a part may overlap.
+    fn cut_beneath(&mut self, stack: &mut Stack<'_>) {
+        let Piece { area, bounds, .. } = self.piece;
+        let beneath = stack.beneath(&self.ground.field, area, bounds[1]);
+        if beneath.is_empty() {
+            return;
+        }
+        let mut refused = vec![Refused::new(); self.areas.len()];
+        if let Some(last) = refused.last_mut() {
+            let place = |cell: Spot| cell.map(|v| v.div_euclid(2));
+            beneath.into_iter().for_each(|cell| refuse(last, place(cell), Reason::Obstacle));
+        }
+        self.cut(&refused, stack);
+        // Nothing was tried yet.
+        self.fresh = None;
     }
 
     /// Whether nothing is left.
@@ -204,6 +224,12 @@ impl<'a> Trial<'a> {
         }
     }
 
+    /// Cuts places out, with all those within so many places around them.
+    pub(super) fn cut_around(&mut self, refused: &[Refused], by: i32, stack: &mut Stack<'_>) {
+        let wide: Vec<Refused> = refused.iter().map(|own| widened(own, by)).collect();
+        self.cut(&wide, stack);
+    }
+
     /// Cuts places out, and raises what is printed flat there instead.
     pub(super) fn cut(&mut self, refused: &[Refused], stack: &mut Stack<'_>) {
         let old: Vec<Rows> = self.areas.iter().map(|area| grid::cells(area)).collect();
@@ -250,19 +276,26 @@ impl Trial<'_> {
         count.checked_sub(1).map_or(0.0, |k| to_mm(heights.top(k)))
     }
 
-    /// Prints all that is left flat, for the reasons of the last round.
+    /// Prints those pieces of what is left flat that hold refused places; all of it if none does.
     pub(super) fn give_up(&mut self, refused: &[Refused], stack: &mut Stack<'_>) {
-        let reason = refused.iter().flat_map(Refused::values).min().copied();
-        let last = self.areas.len().saturating_sub(1);
-        let area = self.areas.last().map_or(&[][..], |area| area);
-        let all: Refused = grid::places(area, 0)
-            .into_iter()
-            .map(|place| (place, reason.unwrap_or(Reason::Cone)))
-            .collect();
-        let mut refused = vec![Refused::new(); self.areas.len()];
-        refused[last] = all;
-        self.cut(&refused, stack);
-        self.areas.iter_mut().for_each(Vec::clear);
+        let Some(last) = self.areas.len().checked_sub(1) else { return };
+        let all: Refused =
+            refused.iter().flatten().map(|(place, reason)| (*place, *reason)).collect();
+        let most = most(&all);
+        let pieces = grid::pieces(&self.areas[last]);
+        let places = pieces.iter().map(|piece| grid::places(piece, 0)).collect::<Vec<_>>();
+        // A line's end may lie beside the places of its piece.
+        let fails = |piece: &&Vec<Spot>| piece.iter().any(|place| nearest(&all, *place).is_some());
+        let failing: Vec<&Vec<Spot>> = places.iter().filter(fails).collect();
+        let given = if failing.is_empty() { places.iter().collect() } else { failing };
+        let is_all = given.len() == places.len();
+        let told = |place: &Spot| (*place, nearest(&all, *place).unwrap_or(most));
+        let mut out = vec![Refused::new(); self.areas.len()];
+        out[last] = given.into_iter().flatten().map(told).collect();
+        self.cut(&out, stack);
+        if is_all {
+            self.areas.iter_mut().for_each(Vec::clear);
+        }
     }
 }
 
@@ -344,8 +377,7 @@ impl Later {
             row.clone().any(|span| span.start <= x * CELL && x * CELL < span.end)
         };
         // A plateau continues the surface; what goes on above it does not.
-        let spare =
-            |hit: &Hit| params.head.presses(hit, touch.layer) && !goes_on(cell_at(hit.at));
+        let spare = |hit: &Hit| params.head.presses(hit, touch.layer) && !goes_on(cell_at(hit.at));
         let hit = self.pile.hit(&self.head, [x, y, -mm(z)], &spare)?;
         let is_same = touch.body(hit.at) == touch.body([x, y]);
         Some(if is_same { Reason::Obstacle } else { Reason::Neighbour })

@@ -66,11 +66,7 @@ pub struct PatchReport {
 /// The report on some patches over `count` layers; the layers of a raft, and how far it lifts, mm, come on
 /// top.
 #[must_use]
-pub fn report(
-    patches: &Patches,
-    count: usize,
-    (layers, lift_mm): (usize, f64),
-) -> NonPlanarReport {
+pub fn report(patches: &Patches, count: usize, (layers, lift_mm): (usize, f64)) -> NonPlanarReport {
     let one = |patch: &Patch| {
         let [low, high] = patch.extent;
         let [bottom, top] = patch.bounds.map(|z| to_mm(z) + lift_mm);
