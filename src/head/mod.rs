@@ -109,6 +109,16 @@ impl Head {
         discs.chain(boxes).fold(Shape::of(self).nozzle(), f64::max)
     }
 
+    /// How far sideways it can touch what stands no higher than this above the tip, mm.
+    #[must_use]
+    pub fn reach_below(&self, height: f64) -> f64 {
+        let rise = libm::tan(self.cone.min(90.0).to_radians()).max(f64::MIN_POSITIVE);
+        let nozzle = self.flat / 2.0 + height.clamp(0.0, self.cone_length) / rise;
+        let discs = self.discs.iter().filter(|disc| disc[1] < height).map(|disc| disc[0]);
+        let boxes = self.boxes.iter().filter(|area| area[4] < height).map(|&area| furthest(area));
+        discs.chain(boxes).fold(nozzle, f64::max)
+    }
+
     /// The underside over the place `by` beside the tip, mm above it, and its part; `None` beyond its reach.
     #[must_use]
     pub fn underside(&self, by: [f64; 2]) -> Option<(f64, Part)> {

@@ -31,6 +31,10 @@ use crate::head::Head;
 use crate::head::pile::{Hit, Pile};
 use crate::units::{Coord, to_mm, to_units};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// Places are kept in blocks of so many by so many.
+const BLOCK: i32 = 8;
 
 /// Rounding of heights, mm.
 const ROUNDING: f64 = 2e-4;
@@ -51,8 +55,8 @@ pub(super) struct Trial<'a> {
     /// Where what stands leaves room for the head, at a glance; `None` while that changes.
     glance: Option<Glance>,
     later: Option<Later>,
-    /// The lowest and the highest place that may fail now, if some were tried before.
-    fresh: Option<[Spot; 2]>,
+    /// Blocks of places that may fail now, if some were tried before.
+    fresh: Option<BTreeSet<Spot>>,
 }
 
 /// The tips of later lines.
@@ -125,10 +129,11 @@ impl<'a> Trial<'a> {
     fn look(&self, stack: &Stack<'_>) -> Glance {
         let params = self.scene.params;
         let (from, to) = extent(self.piece.area.iter().flatten()).unwrap_or_default();
-        let reach = (params.head.reach() / to_mm(CELL)).ceil() as i32 + 2;
+        let depth = f64::from(self.scene.lowered(0)) + LOWER * f64::from(params.height);
+        let most = stack.pile.highest() - mm(self.piece.bounds[0] - depth);
+        let reach = (params.head.reach_below(most) / to_mm(CELL)).ceil() as i32 + 2;
         let low = [from.x, from.y].map(|v| v.div_euclid(CELL) - reach);
         let high = [to.x, to.y].map(|v| v.div_euclid(CELL) + reach);
-        let depth = f64::from(self.scene.lowered(0)) + LOWER * f64::from(params.height);
         let row = |y: i32| {
             (low[0]..high[0]).map(move |x| {
                 let stands = stack.height([x, y]);
@@ -177,10 +182,8 @@ impl<'a> Trial<'a> {
 
     /// Whether something was raised in reach of a place since it passed.
     fn is_fresh(&self, place: Spot) -> bool {
-        let holds = |[low, high]: [Spot; 2]| {
-            (0..2).all(|axis| low[axis] <= place[axis] && place[axis] <= high[axis])
-        };
-        self.fresh.is_none_or(holds)
+        let block = place.map(|v| v.div_euclid(BLOCK));
+        self.fresh.as_ref().is_none_or(|fresh| fresh.contains(&block))
     }
 
     /// Why skin `i` cannot be laid at a place.
@@ -238,8 +241,7 @@ impl<'a> Trial<'a> {
         let heights = self.scene.slicer.heights();
         let most = to_mm(heights.top(self.piece.home));
         let tread = to_mm(self.scene.params.height) / 2.0;
-        let reach = (self.scene.params.head.reach() / to_mm(grid::STEP)).ceil() as i32 + 1;
-        let mut raised: Option<[Spot; 2]> = None;
+        let mut raised: BTreeSet<Spot> = BTreeSet::new();
         for (i, old) in old.iter().enumerate() {
             let lost = old.minus(&grid::cells(&self.areas[i]));
             let last = i + 1 == self.areas.len();
@@ -247,22 +249,30 @@ impl<'a> Trial<'a> {
                 // The next skin stands on what is left of the base: its room needs the very height.
                 let ends = if last { z + tread } else { self.base_end(z, i) };
                 stack.raise(cell, ends.min(most));
-                let [low, high] = raised.unwrap_or([cell, cell]);
-                self.glance = None;
-                raised = Some([
-                    [low[0].min(cell[0]), low[1].min(cell[1])],
-                    [high[0].max(cell[0]), high[1].max(cell[1])],
-                ]);
+                raised.insert(cell.map(|v| v.div_euclid(2 * BLOCK)));
                 if let Some(later) = self.later.as_mut().filter(|_| last) {
                     later.add(cell, z);
                 }
             }
         }
-        let around = |[low, high]: [Spot; 2]| {
-            [low.map(|v| v.div_euclid(2) - reach), high.map(|v| v.div_euclid(2) + reach)]
+        if !raised.is_empty() {
+            self.glance = None;
+        }
+        // Where nothing was raised in reach, nothing can fail that passed.
+        self.fresh = Some(self.in_reach(&raised));
+    }
+
+    /// The blocks of places from which the head may touch something in some blocks.
+    fn in_reach(&self, raised: &BTreeSet<Spot>) -> BTreeSet<Spot> {
+        let (piece, heights) = (self.piece, self.scene.slicer.heights());
+        let high = piece.bounds[1].max(f64::from(heights.top(piece.home)));
+        let low = piece.bounds[0] - f64::from(self.scene.depth());
+        let reach = self.scene.params.head.reach_below(mm(high - low)) + to_mm(grid::STEP);
+        let by = (reach / (f64::from(BLOCK) * to_mm(grid::STEP))).ceil() as i32;
+        let around = |&[x, y]: &Spot| {
+            (-by..=by).flat_map(move |dx| (-by..=by).map(move |dy| [x + dx, y + dy]))
         };
-        // Nothing was raised: nothing can fail that passed.
-        self.fresh = Some(raised.map_or([[1, 1], [0, 0]], around));
+        raised.iter().flat_map(around).collect()
     }
 }
 
