@@ -171,6 +171,15 @@ mod tests {
     }
 
     #[test]
+    fn what_is_low_is_reached_from_near() {
+        let long = named("long-0.6").unwrap();
+        assert!((long.reach_below(2.0) - 0.5 - 2.0 / 3.0_f64.sqrt()).abs() < 1e-9);
+        assert_eq!((long.reach_below(-1.0), long.reach_below(20.1)), (0.5, long.reach()));
+        let v6 = named("v6").unwrap();
+        assert_eq!([2.1, 5.1].map(|most| v6.reach_below(most)), [4.04, v6.reach()]);
+    }
+
+    #[test]
     fn the_underside_rises_from_flat_to_cone_to_disc_to_box() {
         let head = named("v6").unwrap();
         let at = |x, y| head.underside([x, y]);

@@ -136,12 +136,13 @@ fn layers(mesh: &Mesh) -> Vec<Layer> {
     (0..slicer.blocks()).flat_map(|b| slicer.block(b)).collect()
 }
 
-/// Cuts a body whose whole top is a patch, and compares with the body lowered by two skins.
-fn is_lowered(make: impl Fn(f64) -> Mesh, slopes: RangeInclusive<f64>) {
-    let (whole, lower) = (make(0.0), make(0.4));
+/// Cuts a body whose whole top is a patch, and compares with the body lowered by two skins,
+/// but for what the base is raised by.
+fn is_lowered(make: impl Fn(f64) -> Mesh, slopes: RangeInclusive<f64>, raised: Coord) {
+    let (whole, lower) = (make(0.0), make(0.4 - to_mm(raised)));
     let (surface, _) = only(&whole, slopes);
     let areas = vec![surface.outline().to_vec(); 2];
-    let base = Base::new(vec![Lowered { surface: &surface, areas, height: 2_000, raised: 0 }]);
+    let base = Base::new(vec![Lowered { surface: &surface, areas, height: 2_000, raised }]);
     let expected = layers(&lower);
     let mut cut = 0;
     for layer in layers(&whole) {
@@ -238,8 +239,9 @@ fn bands_of_a_dome_fill_its_outline() {
 
 #[test]
 fn a_base_is_the_part_lowered_by_its_skins() {
-    is_lowered(wedge, 0.5..=26.0);
-    is_lowered(dome, 0.5..=26.0);
+    is_lowered(wedge, 0.5..=26.0, 0);
+    is_lowered(dome, 0.5..=26.0, 0);
+    is_lowered(dome, 0.5..=26.0, 500);
 }
 
 #[test]

@@ -50,7 +50,7 @@ const MOST_ROOM: f64 = 1.5;
 
 /// What a press on a line may be less deep than the rule allows, mm, and at most this share of a layer's
 /// height: a line is looked at every quarter of a millimetre, on cells of a tenth.
-const SPARE: [f64; 2] = [0.02, 0.1];
+const SPARE: [f64; 2] = [0.025, 0.125];
 
 /// By how much more a press at a place is kept off, mm, and at most this share of a layer's height:
 /// places are further apart than the cells are wide, and lines run between them.
@@ -137,6 +137,15 @@ mod tests {
         assert_eq!(most("layer_height", "0.3"), 31.0);
         assert_eq!(most("head.name", "cautious"), 4.3);
         assert_eq!(most("head.cone", "3"), 1.5);
+    }
+
+    #[test]
+    fn a_base_is_raised_where_the_bore_is_too_small_for_its_treads() {
+        let raised = |height: &str| {
+            let made = Profile::builder("generic-marlin").set("layer_height", height);
+            NonPlanarParams::new(&made.load().unwrap().settings).raised()
+        };
+        assert_eq!(["0.1", "0.2", "0.26", "0.3"].map(raised), [0, 0, 0, 500]);
     }
 
     #[test]
