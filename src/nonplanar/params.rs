@@ -50,7 +50,7 @@ const MOST_ROOM: f64 = 1.5;
 
 /// What a press on a line may be less deep than the rule allows, mm, and at most this share of a layer's
 /// height: a line is looked at every quarter of a millimetre, on cells of a tenth.
-const SPARE: [f64; 2] = [0.025, 0.125];
+const SPARE: [f64; 2] = [0.02, 0.1];
 
 /// By how much more a press at a place is kept off, mm, and at most this share of a layer's height:
 /// places are further apart than the cells are wide, and lines run between them.
