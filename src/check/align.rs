@@ -9,7 +9,7 @@
 
 use super::Model;
 use super::against::{PIECE, share_in};
-use super::belongs::SOME_WIDTH;
+use super::belongs::{SOME_WIDTH, is_of_part};
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Findings, short};
 use super::median;
@@ -19,6 +19,7 @@ use super::rows::Lattice;
 use super::survey::Survey;
 use super::terms::Terms;
 use crate::geom::segment;
+use crate::geom::spans::Rows;
 use crate::reader::print::{Layer, Step};
 use crate::reader::{Facts, Role};
 use nalgebra::Vector2;
@@ -36,6 +37,9 @@ const LEAST_FIT: f64 = 0.75;
 
 /// Distance of rows for that, mm, and rows at most.
 const ROWS: (f64, f64) = (0.1, 3000.0);
+
+/// Layers above a wall of a base in which the skins over it lie, at most.
+const SKINS: usize = 6;
 
 /// Sizes that differ by less are the same, mm: a line and a half.
 const SIZE_SLACK: f64 = 0.6;
@@ -173,18 +177,29 @@ fn fit(survey: &Survey, part: &Part, has_roles: bool) -> f64 {
             let walls = |step: &&Step| step.role == Role::OuterWall || !has_roles;
             steps.clone().filter(|step| step.is_line()).filter(walls)
         };
+        let skins = if has_roles { skins_over(survey, *index, lattice) } else { Rows::default() };
+        let band = band.minus(&skins);
         for step in walls() {
             let length = step.length();
+            let free =
+                if skins.is_empty() { 1.0 } else { 1.0 - share_in(step, lattice, &skins, PIECE) };
             shares[0][0] += length * share_in(step, lattice, &band, PIECE);
-            shares[0][1] += length;
+            shares[0][1] += length * free;
         }
         let rim = cut.inside.and(&near);
-        let walled = lattice.draw(walls().map(|step| Capsule::of(step, 1.0)));
+        let walled = lattice.draw(walls().map(|step| Capsule::of(step, 1.0))).or(&skins);
         shares[1][0] += lattice.area(&rim.and(&walled));
         shares[1][1] += lattice.area(&rim);
     }
     let [of_walls, of_rim] = shares.map(|[along, all]| if all > 0.0 { along / all } else { 0.0 });
     if has_roles { of_walls.max(of_rim) } else { of_walls }
+}
+
+/// What skins cover over a layer and at its height: what is below them ends inside the model's outline.
+fn skins_over(survey: &Survey, layer: usize, lattice: Lattice) -> Rows {
+    let layers = survey.strays.iter().skip(layer).take(SKINS).flatten();
+    let lines = layers.filter(|step| is_of_part(step, true));
+    lattice.draw(lines.map(|step| Capsule::of(step, 1.0)))
 }
 
 /// How a layer's lines lie to the model's cut, by what both cover.

@@ -31,6 +31,8 @@ pub enum Code {
     OutsideVolume,
     /// A travel goes below what stands, and through it, by the nozzle's flat end.
     ThroughPrint,
+    /// Part of the head runs into plastic that stands, deeper than it may press.
+    HeadHits,
     /// A command in the print changes what the commands after it do: where 0 is, how far a motor turns,
     /// how much is pushed out, how hot it is; or it stops the print.
     ChangesTheMachine,
@@ -59,6 +61,10 @@ pub enum Code {
     Unanchored,
     /// A line lies on a line of the same layer.
     PrintedTwice,
+    /// The last skin of a patch leaves a place of it open.
+    UncoveredSkin,
+    /// A patch takes more plastic at a place than there is room on what it lies on.
+    DoubleSkin,
     /// Walls and skins take more plastic at a place than they have room.
     Overfilled,
     /// Walls and skins leave room open at a place, or fill it too thinly.
@@ -87,10 +93,11 @@ pub enum Code {
 
 impl Code {
     /// All of them.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 31] = [
         Self::UnknownCode,
         Self::OutsideVolume,
         Self::ThroughPrint,
+        Self::HeadHits,
         Self::ChangesTheMachine,
         Self::WrongTemperature,
         Self::ColdExtrusion,
@@ -104,6 +111,8 @@ impl Code {
         Self::Floating,
         Self::Unanchored,
         Self::PrintedTwice,
+        Self::UncoveredSkin,
+        Self::DoubleSkin,
         Self::Overfilled,
         Self::Underfilled,
         Self::NarrowBead,
@@ -125,6 +134,7 @@ impl Code {
             Self::UnknownCode => "unknown-code",
             Self::OutsideVolume => "outside-volume",
             Self::ThroughPrint => "through-print",
+            Self::HeadHits => "head-hits",
             Self::ChangesTheMachine => "changes-the-machine",
             Self::WrongTemperature => "wrong-temperature",
             Self::ColdExtrusion => "cold-extrusion",
@@ -138,6 +148,8 @@ impl Code {
             Self::Floating => "floating",
             Self::Unanchored => "unanchored",
             Self::PrintedTwice => "printed-twice",
+            Self::UncoveredSkin => "uncovered-skin",
+            Self::DoubleSkin => "double-skin",
             Self::Overfilled => "overfilled",
             Self::Underfilled => "underfilled",
             Self::NarrowBead => "narrow-bead",

@@ -75,7 +75,7 @@ pub(super) fn judge<'a, E: Send>(
     beads::sums(facts, survey.used, &mut found.sums);
     found.sums.extend(absurd);
     let (stacked, sums) = judge.finish(&mut found);
-    let mut not_judged = what_is_missing(facts, terms, model.is_some());
+    let mut not_judged = what_is_missing((facts, &survey), terms, model.is_some());
     let (findings, counts, notes) = found.sorted();
     not_judged.extend(notes);
     let share = |[all, some]: [f64; 2]| if all > 0.0 { some / all } else { 1.0 };
@@ -176,7 +176,7 @@ impl<'a> Judge<'a> {
             terms,
             has_roles,
             is_absurd: false,
-            moves: Moves::new(facts, terms),
+            moves: Moves::new(facts, terms, survey.has_slopes(facts)),
             stack: Stack::new(facts, part),
             surfaces: part.and_then(|part| Surfaces::new(part, (survey, terms), has_roles)),
             field: Field::over(survey).filter(|_| has_roles),
@@ -275,11 +275,19 @@ fn is_absurd(survey: &Survey) -> Option<Finding> {
 }
 
 /// What cannot be judged because the file or the caller does not give it.
-fn what_is_missing(facts: &Facts, terms: &Terms, has_model: bool) -> Vec<String> {
+fn what_is_missing(
+    (facts, survey): (&Facts, &Survey),
+    terms: &Terms,
+    has_model: bool,
+) -> Vec<String> {
     let missing = [
         (
             terms.machine.is_none(),
             "volume, commands, speeds and flow: the file does not tell the machine; give -p",
+        ),
+        (
+            terms.head.is_none() && survey.has_slopes(facts),
+            "what the head touches: no profile says its shape; give --head",
         ),
         (!has_model, "size, outline, surfaces, infill and volume: give the model with --against"),
         (!facts.has(Role::OuterWall), "what lines are for: no comment of the file tells it"),

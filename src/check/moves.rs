@@ -5,11 +5,13 @@
 //! - plastic pushed out before the nozzle was set and waited for (once a file);
 //! - filament that is still pulled back when a line begins, or pushed out more than was pulled back;
 //! - lines outside the machine's volume, other moves beyond the nozzle's reach;
+//! - motors that would have to step too fast ([`motors`](super::motors));
 //! - speeds in x and y beyond the machine's, and more plastic per second than the hot end melts.
 //!   Speeds of the filament alone are not judged, and speeds in z only of non-planar skin, of lines that
 //!   rise by more than a layer, in files of this program's, or beyond any machine's: firmwares cap them,
 //!   and slicers rely on that. A move that rises is as slow as the cap on z makes it;
-//! - travels through what stands ([`through`](super::through)), and lines on what the start block primed
+//! - travels through what stands ([`through`](super::through)); in files with lines over slopes all that the
+//!   head touches, and the skins there ([`slopes`](super::slopes)); and lines on what the start block primed
 //!   ([`primed`](super::primed)).
 //!
 //! Between the moves are commands: those that change the machine ([`changes`](super::changes)), and those
@@ -23,8 +25,10 @@ use super::changes::Changes;
 use super::dialect;
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::heat::Heat;
+use super::motors;
 use super::patches::Patches;
 use super::primed::Primed;
+use super::slopes::Slopes;
 use super::terms::{Machine, Terms};
 use super::through::Through;
 use super::warmth::Warmth;
@@ -72,8 +76,9 @@ pub(super) struct Moves<'a> {
 }
 
 impl<'a> Moves<'a> {
-    pub(super) fn new(facts: &'a Facts, terms: &'a Terms) -> Self {
-        let walk = Walk::new(facts, terms);
+    /// `has_slopes` tells whether lines go over slopes.
+    pub(super) fn new(facts: &'a Facts, terms: &'a Terms, has_slopes: bool) -> Self {
+        let walk = Walk::new(facts, terms, has_slopes);
         Self { walk, codes: Codes::new(terms.machine.as_ref()), next: 0 }
     }
 
@@ -104,6 +109,9 @@ impl<'a> Moves<'a> {
         walk.warmth.finish(found);
         walk.primed.finish(found);
         walk.patches.finish(walk.facts, found);
+        if let Some(slopes) = walk.slopes {
+            slopes.finish(found);
+        }
         let summary = &walk.facts.summary;
         if summary.coarse_arcs > 0 {
             let (arcs, line) = (summary.coarse_arcs, summary.first_coarse_arc);
@@ -210,6 +218,8 @@ struct Walk<'a> {
     air: Air,
     through: Through,
     primed: Primed,
+    /// In files with lines over slopes.
+    slopes: Option<Slopes<'a>>,
     patches: Patches,
     /// Where the nozzle is.
     at: [f64; 3],
@@ -230,7 +240,7 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    fn new(facts: &'a Facts, terms: &'a Terms) -> Self {
+    fn new(facts: &'a Facts, terms: &'a Terms, has_slopes: bool) -> Self {
         Self {
             facts,
             terms,
@@ -239,8 +249,9 @@ impl<'a> Walk<'a> {
             changes: Changes::new(terms),
             warmth: Warmth::new(terms),
             air: Air::new(terms),
-            through: Through::new(terms),
+            through: Through::new(terms, has_slopes),
             primed: Primed::default(),
+            slopes: has_slopes.then(|| Slopes::new(facts, terms)),
             patches: Patches::default(),
             at: [0.0; 3],
             layer: None,
@@ -272,6 +283,7 @@ impl<'a> Walk<'a> {
                 self.air.set(order, place);
                 if matches!((order.letter, order.number), (b'G', 161 | 162) | (b'M', 132)) {
                     self.through.lose();
+                    self.slopes.iter_mut().for_each(Slopes::lose);
                 }
                 if let Some(tool) = tool_of(order) {
                     self.warmth.tool(tool);
@@ -308,8 +320,11 @@ impl<'a> Walk<'a> {
         if step.is_line() || printing {
             self.speed(step, printing, found);
         }
-        self.steps(step, found);
+        motors::too_many_steps(step, self.machine).into_iter().for_each(|one| found.add(one));
         self.through.step(step, is_of_layer, found);
+        if let Some(slopes) = &mut self.slopes {
+            slopes.step(step, (self.layer, is_of_layer), found);
+        }
         self.at = step.to.map(f64::from);
         // All of them lie where the move ends.
         let place = Place {
@@ -460,32 +475,6 @@ impl<'a> Walk<'a> {
             let text =
                 format!("{} mm³/s, where the hot end melts {}", short(flow), short(machine.flow));
             found.add(Finding::of(Code::TooMuchFlow, flow, "mm³/s", text));
-        }
-    }
-
-    /// A feed at which a motor would have to step faster than it can. A planner holds each axis to its
-    /// speed; a board that takes steps is sent fewer of them.
-    fn steps(&self, step: &Step, found: &mut Findings) {
-        let Some(machine) = self.machine.filter(|m| m.steps != [None; 4]) else { return };
-        let way = |axis: usize| (f64::from(step.to[axis]) - f64::from(step.from[axis])).abs();
-        let ways = [way(0), way(1), way(2), f64::from(step.filament).abs()];
-        let length = if step.length() > 0.0 { step.length() } else { ways[3] };
-        if length < LEAST_LENGTH {
-            return;
-        }
-        let slower = |feed: f64, (way, most): (&f64, f64)| {
-            if *way > 0.0 { feed.min(most * length / way) } else { feed }
-        };
-        let feed = ways.iter().zip(machine.speed).fold(f64::from(step.feed), slower);
-        for (axis, motor) in machine.steps.into_iter().enumerate() {
-            let Some([per_mm, most]) = motor else { continue };
-            let rate = ways[axis] / length * feed * per_mm;
-            if rate > most * SPEED_SLACK {
-                let axis = ["x", "y", "z", "e"][axis];
-                let text = format!("{rate:.0} steps/s of {axis}, where its motor makes {most:.0}");
-                found.add(Finding::warning(Code::TooManySteps, rate, "steps/s", text));
-                return;
-            }
         }
     }
 }

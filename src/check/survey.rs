@@ -165,6 +165,11 @@ impl Survey {
         }
     }
 
+    /// Whether lines go over slopes: some are of a patch, or stray from their layers.
+    pub(super) fn has_slopes(&self, facts: &Facts) -> bool {
+        !facts.patches.is_empty() || self.strays.iter().any(|strays| !strays.is_empty())
+    }
+
     /// Whether a layer has an outer wall.
     pub(super) fn has_walls(&self, layer: usize) -> bool {
         self.walls[layer] > 0.0

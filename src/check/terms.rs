@@ -8,6 +8,7 @@
 //! infill, the material and its temperatures; a list has an entry for each tool, and the first counts. What
 //! nobody tells is `None`, empty, or a value that accuses no file.
 
+use crate::head::{Head, named};
 use crate::profile::{DialectName, ExtrusionModel, Settings};
 use crate::reader::print::Step;
 use crate::reader::{Facts, Role};
@@ -27,6 +28,8 @@ pub struct Terms {
     pub flow: [f64; 3],
     /// Diameter of the nozzle, mm, if it is known.
     pub nozzle: Option<f64>,
+    /// What hangs around the nozzle, if somebody tells it.
+    pub head: Option<Head>,
     /// How far the file's own settings move contours: outlines, holes, the first layer; mm.
     pub moved: [f64; 3],
     /// How far a raft lifts the part by settings of the file's own, mm; 0 without one.
@@ -114,6 +117,7 @@ impl Terms {
             filament_area: PI * diameter * diameter / 4.0,
             is_own: own.is_some(),
             flow: own.map_or([1.0; 3], flow),
+            head: head(settings, own),
             moved: own.map_or([0.0; 3], |own| {
                 [own.xy_compensation.abs(), own.hole_compensation.abs(), own.foot_drawn_in()]
             }),
@@ -151,6 +155,13 @@ impl Terms {
         };
         f64::from(step.filament) * self.filament_area / flow
     }
+}
+
+/// See [`Terms::head`]: that of the machine, or else the one that the file was made for. What a profile that
+/// tells none is given for the sake of caution accuses no other's file.
+fn head(settings: Option<&Settings>, own: Option<&Settings>) -> Option<Head> {
+    let told = settings.map(Settings::head).filter(|head| *head != named::cautious());
+    told.or_else(|| own.map(Settings::head))
 }
 
 /// See [`Terms::fan`].

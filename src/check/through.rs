@@ -16,6 +16,10 @@ use crate::reader::print::Step;
 /// How deep the nozzle may lie in what stands, mm: half of a thick layer, and more than skins are bent.
 const DEEP: f64 = 0.16;
 
+/// On a slope the flat end's uphill edge lies in it where a line begins: so much deeper a move that only sinks
+/// may go, by the flat end's radius, up to 31 degrees.
+const UPHILL: f64 = 0.6;
+
 /// The nozzle's flat end by its hole, and its width where nobody tells the hole, mm.
 const FLAT: f64 = 2.5;
 const USUAL_FLAT: f64 = 1.0;
@@ -31,14 +35,18 @@ pub(super) struct Through {
     standing: Standing,
     /// Half the width of the nozzle's flat end, mm.
     radius: f64,
+    /// How deep a move may lie that only sinks, mm.
+    most_sunk: f64,
     /// Whether nobody knows how high the nozzle is: it was sent to an end stop.
     is_lost: bool,
 }
 
 impl Through {
-    pub(super) fn new(terms: &Terms) -> Self {
-        let flat = terms.nozzle.map_or(USUAL_FLAT, |nozzle| FLAT * nozzle);
-        Self { standing: Standing::default(), radius: flat / 2.0, is_lost: false }
+    /// `has_slopes` tells whether lines go over slopes.
+    pub(super) fn new(terms: &Terms, has_slopes: bool) -> Self {
+        let radius = terms.nozzle.map_or(USUAL_FLAT, |nozzle| FLAT * nozzle) / 2.0;
+        let most_sunk = if has_slopes { DEEP + UPHILL * radius } else { DEEP };
+        Self { standing: Standing::default(), radius, most_sunk, is_lost: false }
     }
 
     /// The nozzle is sent to where only the printer knows; the reader takes that for 0.
@@ -72,7 +80,8 @@ impl Through {
                 continue;
             }
             let depth = self.standing.around(sample.at, self.radius) - z;
-            if depth > DEEP {
+            let most = if sample.length > 0.0 { DEEP } else { self.most_sunk };
+            if depth > most {
                 length += sample.length;
                 if depth > deepest {
                     (deepest, at) = (depth, sample.at);

@@ -49,7 +49,16 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let own = profile::recorded_with(&print.values, &of_head)?;
     let judge = given.as_ref().or(own.as_ref());
     let machine = judge.map(|profile| &profile.settings);
-    let terms = Terms::new(machine, own.as_ref().map(|profile| &profile.settings), print);
+    let mut terms = Terms::new(machine, own.as_ref().map(|profile| &profile.settings), print);
+    if !of_head.is_empty() {
+        // Told here it holds for files of other slicers, too, and where it is the most cautious one.
+        let told = if judge.is_none() {
+            Some(profile::load([] as [&str; 0], &of_head)?.settings.head())
+        } else {
+            machine.map(slicer::profile::Settings::head)
+        };
+        terms.head = told;
+    }
     let bed = judge.map_or(Bed::ANY, |profile| slicer::bed(&profile.settings.machine));
     let placed = if args.against.is_empty() {
         None

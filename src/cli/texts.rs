@@ -7,6 +7,9 @@ Findings, each with a stable code, a place and a measure:
   outside-volume       a line or travel beyond the machine's x, y or z
   through-print        a travel, of start and end block too, through what stands by the nozzle's flat
                        end, 2.5 times as wide as its hole, over 0.16 mm deep
+  head-hits            part of [head] runs into plastic of the file, where lines go over slopes: a travel
+                       by 0.02 mm; while printing the flat may press 1.5 layers deep within its
+                       diameter; not judged where nobody tells the head (--head NAME)
   changes-the-machine  a command that changes what the rest relies on: G92 of an axis, steps, offsets,
                        flow, homing or motors off in the print, a tool that is not there, heaters far
                        from what the settings say, hotter after the print; a warning for pauses,
@@ -28,6 +31,11 @@ Findings, each with a stable code, a place and a measure:
                        cross, or, of a wall, in a bow
   printed-twice        a line on the middle of another of its layer, over 10 mm or most of it; lines on
                        what the start block has primed
+  uncovered-skin       1 mm² or more of a patch of non-planar skin, 0.3 mm wide, that its last skin
+                       leaves open: 2.5 mm of a missing line; or that takes under 0.65 times its plastic
+                       over 4 mm²
+  double-skin          over 1.3 times the plastic that a patch has room for on what it lies on, in
+                       squares of 1 mm
   overfilled         * over 1.25 times the plastic that walls and skins have room for, on one layer
                        within 4 by 4 mm; an error where settings ask for over 1.6 times
   underfilled        * under 0.7 times that, or a fifth of the room between them left open

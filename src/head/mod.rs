@@ -109,6 +109,16 @@ impl Head {
         discs.chain(boxes).fold(Shape::of(self).nozzle(), f64::max)
     }
 
+    /// How far sideways it can touch what stands no higher than this above the tip, mm.
+    #[must_use]
+    pub fn reach_below(&self, height: f64) -> f64 {
+        let rise = libm::tan(self.cone.min(90.0).to_radians()).max(f64::MIN_POSITIVE);
+        let nozzle = self.flat / 2.0 + height.clamp(0.0, self.cone_length) / rise;
+        let discs = self.discs.iter().filter(|disc| disc[1] < height).map(|disc| disc[0]);
+        let boxes = self.boxes.iter().filter(|area| area[4] < height).map(|&area| furthest(area));
+        discs.chain(boxes).fold(nozzle, f64::max)
+    }
+
     /// The underside over the place `by` beside the tip, mm above it, and its part; `None` beyond its reach.
     #[must_use]
     pub fn underside(&self, by: [f64; 2]) -> Option<(f64, Part)> {
@@ -158,6 +168,15 @@ mod tests {
             discs: lists.0,
             boxes: lists.1,
         })
+    }
+
+    #[test]
+    fn what_is_low_is_reached_from_near() {
+        let long = named("long-0.6").unwrap();
+        assert!((long.reach_below(2.0) - 0.5 - 2.0 / 3.0_f64.sqrt()).abs() < 1e-9);
+        assert_eq!((long.reach_below(-1.0), long.reach_below(20.1)), (0.5, long.reach()));
+        let v6 = named("v6").unwrap();
+        assert_eq!([2.1, 5.1].map(|most| v6.reach_below(most)), [4.04, v6.reach()]);
     }
 
     #[test]

@@ -5,7 +5,8 @@
 //! is printed level below them: where skins i and higher lie, it ends (n + 1 − i)·h straight below S.
 //!
 //! A layer is cut at its middle, zp. For every skin, it loses the places of Ai where
-//! zp − 2h < S < zp + (n + 1 − i)·h, of all patches. The upper bound is what a slicer would leave of a part
+//! zp − 2h < S < zp + (n + 1 − i)·h, of all patches (less what the base is raised by, see
+//! [`NonPlanarParams::raised`](super::params::NonPlanarParams::raised)). The upper bound is what a slicer would leave of a part
 //! lowered by so much, whose corners at zp count as above it. The lower bound leaves the roof that stands
 //! higher above the patch. The section ends where S = zp, well within what is taken away, so that rounding
 //! leaves nothing there. Where the patch ends at an upright side of the part, the section was simplified
@@ -37,6 +38,8 @@ pub struct Lowered<'a> {
     pub areas: Vec<Vec<Contour>>,
     /// Height of a skin, grid units.
     pub height: Coord,
+    /// The base ends so much higher, grid units.
+    pub raised: Coord,
 }
 
 /// The patches of a print, and what is left of its layers under them.
@@ -113,7 +116,7 @@ impl Lowered<'_> {
     /// How far below the surface the base ends where skin `k`, counted from 0 at the lowest, is the lowest.
     fn up(&self, k: usize) -> Coord {
         let skins = Coord::try_from(self.areas.len() - k.min(self.areas.len())).unwrap_or(0);
-        skins.saturating_mul(self.height)
+        skins.saturating_mul(self.height).saturating_sub(self.raised)
     }
 
     /// The room of the skins at a height, in plan; may overlap.

@@ -180,7 +180,8 @@ fn standing(scene: &Scene<'_>, field: &Field, area: &[Contour]) -> (Pile, Glance
     }
     let known = || heights.iter().copied().filter(|z| z.is_finite()).map(f64::from);
     let most = known().fold(f64::MIN, f64::max) - known().fold(f64::MAX, f64::min);
-    let under = Under::pressing(&scene.params.head, to_mm(scene.params.height), most + SLACK);
+    let under =
+        Under::pressing(&scene.params.head, scene.params.press_layer_at_places(), most + SLACK);
     (pile, Glance::new(low, columns, heights, under))
 }
 
@@ -191,7 +192,7 @@ fn in_its_own_way(
     (own, glance): (&Pile, &Glance),
     area: &[Contour],
 ) -> Refused {
-    let (params, layer) = (scene.params, to_mm(scene.params.height));
+    let (params, layer) = (scene.params, scene.params.press_layer_at_places());
     let tried = |place: &Spot| {
         let cell = cell_of(*place);
         let z = field.at(cell).filter(|z| !glance.is_clear(cell, mm(*z)))?;

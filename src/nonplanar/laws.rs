@@ -136,12 +136,13 @@ fn layers(mesh: &Mesh) -> Vec<Layer> {
     (0..slicer.blocks()).flat_map(|b| slicer.block(b)).collect()
 }
 
-/// Cuts a body whose whole top is a patch, and compares with the body lowered by two skins.
-fn is_lowered(make: impl Fn(f64) -> Mesh, slopes: RangeInclusive<f64>) {
-    let (whole, lower) = (make(0.0), make(0.4));
+/// Cuts a body whose whole top is a patch, and compares with the body lowered by two skins,
+/// but for what the base is raised by.
+fn is_lowered(make: impl Fn(f64) -> Mesh, slopes: RangeInclusive<f64>, raised: Coord) {
+    let (whole, lower) = (make(0.0), make(0.4 - to_mm(raised)));
     let (surface, _) = only(&whole, slopes);
     let areas = vec![surface.outline().to_vec(); 2];
-    let base = Base::new(vec![Lowered { surface: &surface, areas, height: 2_000 }]);
+    let base = Base::new(vec![Lowered { surface: &surface, areas, height: 2_000, raised }]);
     let expected = layers(&lower);
     let mut cut = 0;
     for layer in layers(&whole) {
@@ -238,8 +239,9 @@ fn bands_of_a_dome_fill_its_outline() {
 
 #[test]
 fn a_base_is_the_part_lowered_by_its_skins() {
-    is_lowered(wedge, 0.5..=26.0);
-    is_lowered(dome, 0.5..=26.0);
+    is_lowered(wedge, 0.5..=26.0, 0);
+    is_lowered(dome, 0.5..=26.0, 0);
+    is_lowered(dome, 0.5..=26.0, 500);
 }
 
 #[test]
@@ -291,7 +293,7 @@ fn a_skin_of_less_area_than_the_next_leaves_a_higher_base() {
     let (surface, _) = only(&mesh, 0.5..=26.0);
     let inner = rectangle(at(-25.0, -15.0), at(25.0, 0.0));
     let areas = vec![inner, surface.outline().to_vec()];
-    let base = Base::new(vec![Lowered { surface: &surface, areas, height: 2_000 }]);
+    let base = Base::new(vec![Lowered { surface: &surface, areas, height: 2_000, raised: 0 }]);
     let layer = layers(&mesh).swap_remove(19);
     let plane = to_mm(layer.z - layer.height / 2);
     let reach = |lower: f64| 25.0 - (plane + lower - 4.0) / 0.08;
@@ -310,7 +312,7 @@ fn a_roof_over_a_patch_stays() {
     let (surface, level) = only(&mesh, 0.5..=26.0);
     assert_eq!(level, 100.0);
     let areas = vec![surface.outline().to_vec(); 2];
-    let base = Base::new(vec![Lowered { surface: &surface, areas, height: 2_000 }]);
+    let base = Base::new(vec![Lowered { surface: &surface, areas, height: 2_000, raised: 0 }]);
     for layer in layers(&mesh).into_iter().skip(25) {
         let plane = to_mm(layer.z - layer.height / 2);
         let lowered = 30.0 * (25.0 - (plane + 0.4 - 4.0) / 0.08).max(0.0);

@@ -148,9 +148,9 @@ impl Swept<'_> {
     fn on_way(&self, a: [f64; 3], b: [f64; 3]) -> Vec<(Spot, Reason)> {
         let scene = self.trial.scene;
         let (head, field) = (&scene.params.head, &self.trial.ground.field);
-        let touch = Touch { scene, field };
+        let layer = scene.params.press_layer();
+        let touch = Touch { scene, field, layer };
         let press = |hit: &Hit| touch.is_press(hit);
-        let layer = to_mm(scene.params.height);
         let mut out = Vec::new();
         let mut open = vec![(a, b)];
         while let Some((a, b)) = open.pop() {

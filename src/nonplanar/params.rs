@@ -1,8 +1,9 @@
 //! Settings -> NonPlanarParams: the numbers of non-planar skins, grid units where nothing else is said.
 
-use crate::head::Head;
+use crate::head::{DEEPEST_PRESS, Head};
 use crate::profile::{Directions, Settings};
-use crate::units::{Coord, to_units};
+use crate::units::{Coord, to_mm, to_units};
+use std::ops::RangeInclusive;
 
 /// The numbers of non-planar skins.
 #[derive(Debug, Clone)]
@@ -37,6 +38,24 @@ pub struct NonPlanarParams {
     pub head: Head,
 }
 
+/// A line with less room than this share of a skin's height would be torn by the nozzle.
+const LEAST_HEIGHT: f64 = 0.25;
+
+/// A line with more room than this many heights of a skin, or than the bore of the nozzle, would be laid
+/// in the air.
+const MOST_HEIGHT: f64 = 1.75;
+
+/// A base that ends by the middles of layers leaves room for its lowest skin up to so many layer heights.
+const MOST_ROOM: f64 = 1.5;
+
+/// What a press on a line may be less deep than the rule allows, mm, and at most this share of a layer's
+/// height: a line is looked at every quarter of a millimetre, on cells of a tenth.
+const SPARE: [f64; 2] = [0.02, 0.1];
+
+/// By how much more a press at a place is kept off, mm, and at most this share of a layer's height:
+/// places are further apart than the cells are wide, and lines run between them.
+const SPARE_BETWEEN: [f64; 2] = [0.01, 0.1];
+
 /// The shortest time that a planner may get for a move, s. Sailfish plans 50 moves a second.
 const SHORTEST_MOVE_S: f64 = 0.02;
 
@@ -67,6 +86,39 @@ impl NonPlanarParams {
             head: settings.head(),
         }
     }
+
+    /// How high the bead of a skin may be, grid units.
+    #[must_use]
+    pub fn bead_heights(&self) -> RangeInclusive<f64> {
+        let height = f64::from(self.height);
+        LEAST_HEIGHT * height..=(MOST_HEIGHT * height).min(f64::from(self.nozzle))
+    }
+
+    /// How much higher than its skins are thick the base ends, grid units, so that the treads of its staircase
+    /// leave no more room than a bead may have. None is needed while the bore is wide enough.
+    #[must_use]
+    pub fn raised(&self) -> Coord {
+        let most = MOST_ROOM * f64::from(self.height);
+        (most - self.bead_heights().end()).ceil().max(0.0) as Coord
+    }
+
+    /// The height of layers on which the deepest press would be what lines may have here, mm.
+    #[must_use]
+    pub fn press_layer(&self) -> f64 {
+        let height = to_mm(self.height);
+        height - spare(SPARE, height) / DEEPEST_PRESS
+    }
+
+    /// The same for single places.
+    #[must_use]
+    pub fn press_layer_at_places(&self) -> f64 {
+        self.press_layer() - spare(SPARE_BETWEEN, to_mm(self.height)) / DEEPEST_PRESS
+    }
+}
+
+/// The lesser of a length and a share of a layer's height.
+fn spare([most, share]: [f64; 2], height: f64) -> f64 {
+    most.min(share * height)
 }
 
 #[cfg(test)]
@@ -85,6 +137,15 @@ mod tests {
         assert_eq!(most("layer_height", "0.3"), 31.0);
         assert_eq!(most("head.name", "cautious"), 4.3);
         assert_eq!(most("head.cone", "3"), 1.5);
+    }
+
+    #[test]
+    fn a_base_is_raised_where_the_bore_is_too_small_for_its_treads() {
+        let raised = |height: &str| {
+            let made = Profile::builder("generic-marlin").set("layer_height", height);
+            NonPlanarParams::new(&made.load().unwrap().settings).raised()
+        };
+        assert_eq!(["0.1", "0.2", "0.26", "0.3"].map(raised), [0, 0, 0, 500]);
     }
 
     #[test]

@@ -8,7 +8,8 @@
 //!    ([`lay`](super::lay)). If its lines refuse places, both are done again, a few times.
 //! 5. What is left is a patch: its skins stand from now on.
 //!
-//! A piece that still has faults after the last round is printed flat as a whole.
+//! In each round more is cut out around what fails. What has faults after the last one is printed flat:
+//! those parts of the piece that hang together, and no others.
 
 use super::candidate::{self, Ground, Piece};
 use super::field::Field;
@@ -29,8 +30,8 @@ use crate::units::{Coord, to_mm};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// A piece is laid at most so often.
-const ROUNDS: usize = 5;
+/// What fails when a piece is laid is cut out with so many places around it, round by round.
+const ROUNDS: [i32; 5] = [0, 1, 3, 6, 15];
 
 /// Decides which places of gentle slopes are printed as skins, and lays these.
 #[must_use]
@@ -71,7 +72,7 @@ pub fn patches(scene: &Scene<'_>) -> Patches {
 
 /// What stands before the first piece is laid, with room for all of them.
 fn stack<'a>(scene: &'a Scene<'a>, grounds: &[Ground], pieces: &[Piece]) -> Stack<'a> {
-    let (heights, depth) = (scene.slicer.heights(), scene.depth());
+    let (heights, depth) = (scene.slicer.heights(), scene.base_depth());
     let low = pieces.iter().map(|piece| piece.bounds[0]).fold(f64::MAX, f64::min);
     // Two layers more, so that a base is seen.
     let first = heights.planes_up_to((low - f64::from(depth)) as Coord).saturating_sub(2);
@@ -100,7 +101,8 @@ fn patch(
     let surface = scene.surfaces.surfaces.get(piece.surface)?;
     let mut trial = Trial::new(scene, ground, piece, stack);
     let mut coat = None;
-    for round in 1..=ROUNDS {
+    // After the last round at least one part goes each time: that ends.
+    for round in 0.. {
         trial.settle(stack);
         if trial.is_empty() {
             break;
@@ -110,10 +112,9 @@ fn patch(
             coat = Some(skins);
             break;
         }
-        if round < ROUNDS {
-            trial.cut(&refused, stack);
-        } else {
-            trial.give_up(&refused, stack);
+        match ROUNDS.get(round) {
+            Some(&by) => trial.cut_around(&refused, by, stack),
+            None => trial.give_up(&refused, stack),
         }
     }
     let made = coat.map(|skins| {
@@ -122,7 +123,7 @@ fn patch(
         made(scene, (piece, surface), &trial.ground.field, (areas, strokes))
     });
     let field = &ground.field;
-    let (heights, depth) = (scene.slicer.heights(), scene.depth());
+    let (heights, depth) = (scene.slicer.heights(), scene.base_depth());
     let area: &[Contour] = made.as_ref().and_then(|p: &Patch| p.areas.last()).map_or(&[], |a| a);
     stack.cuts[k] = Cut::new(field, area, heights, (depth, scene.params.height), piece.home + 1);
     for (cell, z) in heights_over(field, &grid::cells(area)) {

@@ -2,6 +2,7 @@
 
 use super::base::{Base, Lowered};
 use super::find::Surfaces;
+use super::params::NonPlanarParams;
 use super::tally::Areas;
 use crate::fill::Path;
 use crate::geom::{Contour, Point};
@@ -59,12 +60,13 @@ impl Patches {
         self.patches[first..].iter().take_while(move |patch| patch.layer == k)
     }
 
-    /// What is left of the layers under the patches; `height` is that of a skin.
+    /// What is left of the layers under the patches; `params` are those they were made with.
     #[must_use]
-    pub fn base<'a>(&self, surfaces: &'a Surfaces, height: Coord) -> Base<'a> {
+    pub fn base<'a>(&self, surfaces: &'a Surfaces, params: &NonPlanarParams) -> Base<'a> {
+        let (height, raised) = (params.height, params.raised());
         let lowered = |patch: &Patch| {
             let surface = surfaces.surfaces.get(patch.surface)?;
-            Some(Lowered { surface, areas: patch.areas.clone(), height })
+            Some(Lowered { surface, areas: patch.areas.clone(), height, raised })
         };
         Base::new(self.patches.iter().filter_map(lowered).collect())
     }

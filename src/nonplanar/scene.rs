@@ -63,6 +63,11 @@ impl Scene<'_> {
         skins.saturating_mul(self.params.height)
     }
 
+    /// How far below the surface the base ends where all skins lie.
+    pub(super) fn base_depth(&self) -> Coord {
+        self.depth() - self.params.raised()
+    }
+
     /// How far skin `i`, counted from 0 at the lowest, lies below the surface.
     pub(super) fn lowered(&self, i: usize) -> Coord {
         let above = (self.params.skins as usize).saturating_sub(i + 1);

@@ -18,6 +18,20 @@ pub(super) fn refuse(refused: &mut Refused, place: Spot, reason: Reason) {
     *known = reason.min(*known);
 }
 
+/// Refused places with all those within so many places around them.
+pub(super) fn widened(refused: &Refused, by: i32) -> Refused {
+    let near = |[x, y]: &Spot| x * x + y * y <= by * by;
+    let disc: Vec<Spot> =
+        (-by..=by).flat_map(|x| (-by..=by).map(move |y| [x, y])).filter(near).collect();
+    let mut out = refused.clone();
+    for ([x, y], reason) in refused {
+        for [dx, dy] in &disc {
+            refuse(&mut out, [x + dx, y + dy], *reason);
+        }
+    }
+    out
+}
+
 /// Cuts refused places out of an area, then what is narrower than three lines, then what is too small.
 /// The same area if nothing is lost.
 pub(super) fn shrink(
@@ -85,7 +99,7 @@ fn rows(area: &[Contour]) -> Rows {
 }
 
 /// The reason of a refused place near another.
-fn nearest(refused: &Refused, [x, y]: Spot) -> Option<Reason> {
+pub(super) fn nearest(refused: &Refused, [x, y]: Spot) -> Option<Reason> {
     let near = |by: i32| {
         let ring = (-by..=by).flat_map(move |dx| (-by..=by).map(move |dy| [x + dx, y + dy]));
         ring.filter_map(|place| refused.get(&place)).min().copied()
@@ -94,7 +108,7 @@ fn nearest(refused: &Refused, [x, y]: Spot) -> Option<Reason> {
 }
 
 /// The most frequent reason.
-fn most(refused: &Refused) -> Reason {
+pub(super) fn most(refused: &Refused) -> Reason {
     let count = |reason: &Reason| refused.values().filter(|one| *one == reason).count();
     Reason::ALL.into_iter().rev().max_by_key(count).unwrap_or(Reason::Thin)
 }

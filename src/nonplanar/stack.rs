@@ -22,9 +22,12 @@ use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::ops::Range;
 
-/// Nothing of a part stands above its surface so near: so many skin heights are taken with it, as
-/// [`super::base`] does.
-const ABOVE: Coord = 2;
+/// A layer's section ends where its middle meets the surface. What of it stands higher above the surface
+/// than this share of a layer is something else: another shell, or a roof.
+const ABOVE: f64 = 0.5;
+
+/// Up to so many layers above the surface there must be nothing of it.
+const FREE: f64 = 1.5;
 
 /// The inside of a layer.
 #[derive(Debug, Clone, Default)]
@@ -188,7 +191,7 @@ impl Cut {
         let reach = |z: f64| -> Range<usize> {
             // The base ends where a part lowered by the skins would; see `base`.
             let first = heights.planes_up_to((z - f64::from(depth)) as Coord).max(from);
-            let last = heights.planes_up_to((z + f64::from(ABOVE * height)) as Coord);
+            let last = heights.planes_up_to((z + ABOVE * f64::from(height)) as Coord);
             first..last.max(first)
         };
         let rows = cells(area);
@@ -223,6 +226,27 @@ impl Cut {
             }
         }
         Self { first, layers }
+    }
+}
+
+impl Stack<'_> {
+    /// The cells of an area up to `high` over which the part goes on in layers that are not piled up yet.
+    pub(super) fn beneath(&mut self, field: &Field, area: &[Contour], high: f64) -> Vec<Spot> {
+        let heights = self.scene.slicer.heights();
+        let h = f64::from(self.scene.params.height);
+        let own = cells(area);
+        let mut out = Vec::new();
+        for k in self.next..heights.planes_up_to((high + FREE * h) as Coord) {
+            let plane = f64::from(heights.plane(k));
+            let Some(section) = self.section(k) else { break };
+            // A wall beside the area may share the cells of its edge.
+            let over = section.solid.and(&own).erode(CELL, CELL);
+            let is_over = |cell: &Spot| {
+                field.at(*cell).is_some_and(|z| (z + ABOVE * h..z + FREE * h).contains(&plane))
+            };
+            out.extend(super::grid::spots(&over, CELL).into_iter().filter(is_over));
+        }
+        out
     }
 }
 

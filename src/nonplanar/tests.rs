@@ -302,6 +302,39 @@ fn a_ramp_goes_up_to_its_plateau() {
 }
 
 #[test]
+fn thick_skins_leave_no_stripes() {
+    let wedge = body([0.0, 0.0], (20, 6, 1.0), |x, _| 2.0 + x * tan(5.0));
+    let params = NonPlanarParams { height: 3_000, ..params(head("long-0.6")) };
+    // Treads of 0.3 mm leave 0.45 mm of room, and the bore is 0.4 mm.
+    assert_eq!(params.raised(), 500);
+    let out = passed(&placed(vec![wedge], 1), &params);
+    assert!(out.mm2.skin > 0.999 * out.mm2.total(), "{:?}", out.mm2);
+}
+
+#[test]
+fn what_is_too_steep_leaves_the_rest() {
+    // A saddle that gets too steep for layers of 0.1 mm at its corners.
+    let saddle = |x: f64, y: f64| 4.0 + 0.016 * (x - 10.0) * (y - 10.0);
+    let head = head("long-0.6");
+    let slopes = 0.5..=head.steepest_press(0.1);
+    let params = NonPlanarParams { height: 1_000, slopes, ..params(head) };
+    let out = passed(&placed(vec![body([0.0, 0.0], (20, 20, 1.0), saddle)], 1), &params);
+    assert!(out.mm2.of(Reason::Press) > 5.0, "{:?}", out.mm2);
+    assert!(out.mm2.skin > 0.5 * out.mm2.total(), "{:?}", out.mm2);
+    assert!(share(&out, 1, [-5.0, -5.0], [5.0, 5.0]) > 0.98);
+}
+
+#[test]
+fn what_lies_inside_of_another_body_is_no_skin() {
+    let post = body([5.0, 0.0], (10, 8, 1.0), |x, _| 7.5 + x * tan(5.0));
+    let mut plate = body([0.0, -2.0], (20, 12, 1.0), |_, _| 5.0);
+    plate.vertices.iter_mut().for_each(|v| v[2] += 5.0);
+    let out = passed(&placed(vec![joined(vec![post, plate])], 1), &params(head("long-0.6")));
+    assert!(out.patches.is_empty(), "{:?}", out.mm2);
+    assert!(out.mm2.of(Reason::Obstacle) > 0.9 * 80.0, "{:?}", out.mm2);
+}
+
+#[test]
 fn a_floor_is_done_before_its_roof() {
     let floor = body([0.0, 0.0], (20, 10, 1.0), |x, _| 2.0 + x * tan(5.0));
     let mut roof = body([8.0, 0.0], (12, 10, 1.0), |_, _| 2.0);

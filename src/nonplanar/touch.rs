@@ -22,6 +22,8 @@ const TREAD: f64 = 0.75;
 pub(super) struct Touch<'a> {
     pub scene: &'a Scene<'a>,
     pub field: &'a Field,
+    /// Press is no deeper than on layers of this height, mm.
+    pub layer: f64,
 }
 
 /// The cell around a place, mm.
@@ -32,8 +34,7 @@ pub(super) fn cell_at(at: [f64; 2]) -> Spot {
 impl Touch<'_> {
     /// Whether a touch is press. The tip is at a place of the surface, or straight below it.
     pub(super) fn is_press(&self, hit: &Hit) -> bool {
-        let params = self.scene.params;
-        params.head.presses(hit, to_mm(params.height)) && self.is_own(hit)
+        self.scene.params.head.presses(hit, self.layer) && self.is_own(hit)
     }
 
     /// Whether a cell that stands so high, mm, is the surface or its base.

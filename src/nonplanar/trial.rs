@@ -20,7 +20,7 @@ use super::field::Field;
 use super::glance::{Glance, Under};
 use super::grid::{self, CELL, Spot, cell_of};
 use super::scene::Scene;
-use super::shrink::{Refused, refuse, shrink_all};
+use super::shrink::{Refused, most, nearest, refuse, shrink_all, widened};
 use super::stack::{Stack, heights_over};
 use super::tally::Reason;
 use super::touch::{Touch, cell_at, mm};
@@ -31,12 +31,13 @@ use crate::head::Head;
 use crate::head::pile::{Hit, Pile};
 use crate::units::{Coord, to_mm, to_units};
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 
-/// More room than this many skin heights is no base.
-const MOST_ROOM: f64 = 1.75;
+/// Places are kept in blocks of so many by so many.
+const BLOCK: i32 = 8;
 
-/// Less room than this share of a skin height is none.
-const LEAST_ROOM: f64 = 0.25;
+/// Rounding of heights, mm.
+const ROUNDING: f64 = 2e-4;
 
 /// What lies lower than the lowest skin by this share of its height is base: a base ends half a skin
 /// height below it at the highest, but for rounding.
@@ -54,8 +55,8 @@ pub(super) struct Trial<'a> {
     /// Where what stands leaves room for the head, at a glance; `None` while that changes.
     glance: Option<Glance>,
     later: Option<Later>,
-    /// The lowest and the highest place that may fail now, if some were tried before.
-    fresh: Option<[Spot; 2]>,
+    /// Blocks of places that may fail now, if some were tried before.
+    fresh: Option<BTreeSet<Spot>>,
 }
 
 /// The tips of later lines.
@@ -81,7 +82,27 @@ impl<'a> Trial<'a> {
         let areas = vec![piece.area.clone(); scene.params.skins as usize];
         let later = Later::new(scene, piece, stack);
         let others = others(scene, &ground.field, piece, stack);
-        Self { scene, ground, piece, areas, others, glance: None, later, fresh: None }
+        let mut trial =
+            Self { scene, ground, piece, areas, others, glance: None, later, fresh: None };
+        trial.cut_beneath(stack);
+        trial
+    }
+
+    /// Cuts out what lies inside of the part: shells of a part may overlap.
+    fn cut_beneath(&mut self, stack: &mut Stack<'_>) {
+        let Piece { area, bounds, .. } = self.piece;
+        let beneath = stack.beneath(&self.ground.field, area, bounds[1]);
+        if beneath.is_empty() {
+            return;
+        }
+        let mut refused = vec![Refused::new(); self.areas.len()];
+        if let Some(last) = refused.last_mut() {
+            let place = |cell: Spot| cell.map(|v| v.div_euclid(2));
+            beneath.into_iter().for_each(|cell| refuse(last, place(cell), Reason::Obstacle));
+        }
+        self.cut(&refused, stack);
+        // Nothing was tried yet.
+        self.fresh = None;
     }
 
     /// Whether nothing is left.
@@ -108,10 +129,11 @@ impl<'a> Trial<'a> {
     fn look(&self, stack: &Stack<'_>) -> Glance {
         let params = self.scene.params;
         let (from, to) = extent(self.piece.area.iter().flatten()).unwrap_or_default();
-        let reach = (params.head.reach() / to_mm(CELL)).ceil() as i32 + 2;
+        let depth = f64::from(self.scene.lowered(0)) + LOWER * f64::from(params.height);
+        let most = stack.pile.highest() - mm(self.piece.bounds[0] - depth);
+        let reach = (params.head.reach_below(most) / to_mm(CELL)).ceil() as i32 + 2;
         let low = [from.x, from.y].map(|v| v.div_euclid(CELL) - reach);
         let high = [to.x, to.y].map(|v| v.div_euclid(CELL) + reach);
-        let depth = f64::from(self.scene.lowered(0)) + LOWER * f64::from(params.height);
         let row = |y: i32| {
             (low[0]..high[0]).map(move |x| {
                 let stands = stack.height([x, y]);
@@ -160,23 +182,21 @@ impl<'a> Trial<'a> {
 
     /// Whether something was raised in reach of a place since it passed.
     fn is_fresh(&self, place: Spot) -> bool {
-        let holds = |[low, high]: [Spot; 2]| {
-            (0..2).all(|axis| low[axis] <= place[axis] && place[axis] <= high[axis])
-        };
-        self.fresh.is_none_or(holds)
+        let block = place.map(|v| v.div_euclid(BLOCK));
+        self.fresh.as_ref().is_none_or(|fresh| fresh.contains(&block))
     }
 
     /// Why skin `i` cannot be laid at a place.
     fn fails(&self, place: Spot, i: usize, is_last: bool, stack: &Stack<'_>) -> Option<Reason> {
         let (field, cell) = (&self.ground.field, cell_of(place));
-        let touch = Touch { scene: self.scene, field };
+        let layer = self.scene.params.press_layer_at_places();
+        let touch = Touch { scene: self.scene, field, layer };
         let z = field.at(cell)?;
         let [x, y] = grid::middle(cell);
         let tip = [x, y, mm(z - f64::from(self.scene.lowered(i)))];
         let head = &self.scene.params.head;
         // Press goes into its own surface alone.
         let pressed = || self.others.hit(head, tip, &|hit| touch.is_press(hit));
-        let layer = to_mm(self.scene.params.height);
         let tried = || stack.pile.hit_printing(head, tip, layer).or_else(pressed);
         let hit = if self.is_clear(cell, tip[2]) { None } else { tried() };
         let of = |hit: &Hit| touch.reason(hit, |cell| stack.is_supported(cell));
@@ -186,8 +206,9 @@ impl<'a> Trial<'a> {
 
     /// Adds places where the lowest skin has no base at its height to those of the last skin.
     fn without_base(&self, stack: &Stack<'_>, refused: &mut [Refused]) {
-        let (height, last) = (to_mm(self.scene.params.height), refused.len() - 1);
-        let room = LEAST_ROOM * height..=MOST_ROOM * height;
+        let last = refused.len() - 1;
+        let heights = self.scene.params.bead_heights();
+        let room = mm(*heights.start()) - ROUNDING..=mm(*heights.end()) + ROUNDING;
         let Some(lowest) = self.areas.iter().position(|area| !area.is_empty()) else { return };
         let inset = self.scene.params.line_width / 2;
         let lacks = |place: &Spot| {
@@ -206,6 +227,12 @@ impl<'a> Trial<'a> {
         }
     }
 
+    /// Cuts places out, with all those within so many places around them.
+    pub(super) fn cut_around(&mut self, refused: &[Refused], by: i32, stack: &mut Stack<'_>) {
+        let wide: Vec<Refused> = refused.iter().map(|own| widened(own, by)).collect();
+        self.cut(&wide, stack);
+    }
+
     /// Cuts places out, and raises what is printed flat there instead.
     pub(super) fn cut(&mut self, refused: &[Refused], stack: &mut Stack<'_>) {
         let old: Vec<Rows> = self.areas.iter().map(|area| grid::cells(area)).collect();
@@ -214,8 +241,7 @@ impl<'a> Trial<'a> {
         let heights = self.scene.slicer.heights();
         let most = to_mm(heights.top(self.piece.home));
         let tread = to_mm(self.scene.params.height) / 2.0;
-        let reach = (self.scene.params.head.reach() / to_mm(grid::STEP)).ceil() as i32 + 1;
-        let mut raised: Option<[Spot; 2]> = None;
+        let mut raised: BTreeSet<Spot> = BTreeSet::new();
         for (i, old) in old.iter().enumerate() {
             let lost = old.minus(&grid::cells(&self.areas[i]));
             let last = i + 1 == self.areas.len();
@@ -223,22 +249,30 @@ impl<'a> Trial<'a> {
                 // The next skin stands on what is left of the base: its room needs the very height.
                 let ends = if last { z + tread } else { self.base_end(z, i) };
                 stack.raise(cell, ends.min(most));
-                let [low, high] = raised.unwrap_or([cell, cell]);
-                self.glance = None;
-                raised = Some([
-                    [low[0].min(cell[0]), low[1].min(cell[1])],
-                    [high[0].max(cell[0]), high[1].max(cell[1])],
-                ]);
+                raised.insert(cell.map(|v| v.div_euclid(2 * BLOCK)));
                 if let Some(later) = self.later.as_mut().filter(|_| last) {
                     later.add(cell, z);
                 }
             }
         }
-        let around = |[low, high]: [Spot; 2]| {
-            [low.map(|v| v.div_euclid(2) - reach), high.map(|v| v.div_euclid(2) + reach)]
+        if !raised.is_empty() {
+            self.glance = None;
+        }
+        // Where nothing was raised in reach, nothing can fail that passed.
+        self.fresh = Some(self.in_reach(&raised));
+    }
+
+    /// The blocks of places from which the head may touch something in some blocks.
+    fn in_reach(&self, raised: &BTreeSet<Spot>) -> BTreeSet<Spot> {
+        let (piece, heights) = (self.piece, self.scene.slicer.heights());
+        let high = piece.bounds[1].max(f64::from(heights.top(piece.home)));
+        let low = piece.bounds[0] - f64::from(self.scene.depth());
+        let reach = self.scene.params.head.reach_below(mm(high - low)) + to_mm(grid::STEP);
+        let by = (reach / (f64::from(BLOCK) * to_mm(grid::STEP))).ceil() as i32;
+        let around = |&[x, y]: &Spot| {
+            (-by..=by).flat_map(move |dx| (-by..=by).map(move |dy| [x + dx, y + dy]))
         };
-        // Nothing was raised: nothing can fail that passed.
-        self.fresh = Some(raised.map_or([[1, 1], [0, 0]], around));
+        raised.iter().flat_map(around).collect()
     }
 }
 
@@ -247,23 +281,31 @@ impl Trial<'_> {
     /// [`super::base`] leaves of it.
     fn base_end(&self, z: f64, i: usize) -> f64 {
         let heights = self.scene.slicer.heights();
-        let count = heights.planes_up_to(to_units(z) - self.scene.lowered(i));
+        let end = to_units(z) - self.scene.lowered(i) + self.scene.params.raised();
+        let count = heights.planes_up_to(end);
         count.checked_sub(1).map_or(0.0, |k| to_mm(heights.top(k)))
     }
 
-    /// Prints all that is left flat, for the reasons of the last round.
+    /// Prints those pieces of what is left flat that hold refused places; all of it if none does.
     pub(super) fn give_up(&mut self, refused: &[Refused], stack: &mut Stack<'_>) {
-        let reason = refused.iter().flat_map(Refused::values).min().copied();
-        let last = self.areas.len().saturating_sub(1);
-        let area = self.areas.last().map_or(&[][..], |area| area);
-        let all: Refused = grid::places(area, 0)
-            .into_iter()
-            .map(|place| (place, reason.unwrap_or(Reason::Cone)))
-            .collect();
-        let mut refused = vec![Refused::new(); self.areas.len()];
-        refused[last] = all;
-        self.cut(&refused, stack);
-        self.areas.iter_mut().for_each(Vec::clear);
+        let Some(last) = self.areas.len().checked_sub(1) else { return };
+        let all: Refused =
+            refused.iter().flatten().map(|(place, reason)| (*place, *reason)).collect();
+        let most = most(&all);
+        let pieces = grid::pieces(&self.areas[last]);
+        let places = pieces.iter().map(|piece| grid::places(piece, 0)).collect::<Vec<_>>();
+        // A line's end may lie beside the places of its piece.
+        let fails = |piece: &&Vec<Spot>| piece.iter().any(|place| nearest(&all, *place).is_some());
+        let failing: Vec<&Vec<Spot>> = places.iter().filter(fails).collect();
+        let given = if failing.is_empty() { places.iter().collect() } else { failing };
+        let is_all = given.len() == places.len();
+        let told = |place: &Spot| (*place, nearest(&all, *place).unwrap_or(most));
+        let mut out = vec![Refused::new(); self.areas.len()];
+        out[last] = given.into_iter().flatten().map(told).collect();
+        self.cut(&out, stack);
+        if is_all {
+            self.areas.iter_mut().for_each(Vec::clear);
+        }
     }
 }
 
@@ -276,7 +318,7 @@ fn others(scene: &Scene<'_>, field: &Field, piece: &Piece, stack: &Stack<'_>) ->
     let high = [to.x, to.y].map(|v| v.div_euclid(CELL) + reach);
     let corner = |cell: Spot| grid::middle(cell).map(|v| v - to_mm(CELL) / 2.0);
     let mut pile = Pile::new(corner(low), corner(high), to_mm(CELL));
-    let touch = Touch { scene, field };
+    let touch = Touch { scene, field, layer: scene.params.press_layer() };
     for y in low[1]..high[1] {
         for x in low[0]..high[0] {
             let height = stack.height([x, y]);
@@ -345,8 +387,7 @@ impl Later {
             row.clone().any(|span| span.start <= x * CELL && x * CELL < span.end)
         };
         // A plateau continues the surface; what goes on above it does not.
-        let spare =
-            |hit: &Hit| params.head.presses(hit, to_mm(params.height)) && !goes_on(cell_at(hit.at));
+        let spare = |hit: &Hit| params.head.presses(hit, touch.layer) && !goes_on(cell_at(hit.at));
         let hit = self.pile.hit(&self.head, [x, y, -mm(z)], &spare)?;
         let is_same = touch.body(hit.at) == touch.body([x, y]);
         Some(if is_same { Reason::Obstacle } else { Reason::Neighbour })

@@ -89,7 +89,7 @@ impl<'a> Curved<'a> {
     #[must_use]
     pub fn new(found: &'a Found, slicer: &Slicer<'_>, settings: &Settings) -> Self {
         let Found { surfaces, patches, contours } = found;
-        let base = patches.base(surfaces, to_units(settings.layer_height));
+        let base = patches.base(surfaces, &NonPlanarParams::new(settings));
         Self {
             patches,
             heights: slicer.heights().clone().lowest(layers(&base, slicer)),

@@ -45,7 +45,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("estimate", &["reader", "motion"]),
     // Independent witnesses: nothing of slice, region, plan or gcode. Of `geom` they use only what
     // knows no contour, raster or offset: see WITNESSES.
-    ("check", &["reader", "mesh", "profile", "units", "geom"]),
+    ("check", &["reader", "mesh", "head", "profile", "units", "geom"]),
     ("preview", &["reader", "estimate", "text", "units"]),
     ("diff", &["reader", "estimate", "geom"]),
     ("roughness", &["reader", "mesh", "units"]),
@@ -55,7 +55,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("error", &["gcode", "mesh", "profile", "progress", "reader", "steps", "warning"]),
 ];
 
-/// Modules that judge what the others have made.
+/// Modules that judge what the others have made. `check` knows the shape of a head, which is what a profile
+/// says of the machine; where it touches something it finds by a map and a sweep of its own.
 const WITNESSES: &[&str] = &["reader", "estimate", "check", "diff", "roughness"];
 
 /// What witnesses may use of `geom`: distances to segments, sorting by counting, booleans of spans on a

@@ -3,12 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use crate::common::damage::{kinds, largest, listed};
-use crate::common::slope::{self, CORNER, Change, Form, LAYER, LAYERS, SAME};
+use crate::common::slope::{self, CORNER, Change, Form, LAYER, LAYERS, SAME, SIDES};
 use slicer::check::finding::Code;
 use slicer::check::terms::Terms;
 use slicer::check::{self, Model, Verdict};
 use slicer::diff::{self, File, Finding, Side, Tolerances};
 use slicer::estimate::{self, Estimate, Options};
+use slicer::head::named::named;
 use slicer::motion::{Junction, Limits};
 use slicer::profile::{self, Settings};
 use slicer::reader::{Print, Role};
@@ -29,9 +30,15 @@ fn good(form: Form, joined: bool) -> String {
 
 /// What is found in a file, by a machine that lifts 5 mm/s; with `against` the tower, or without.
 fn judge(text: &str, against: Option<bool>) -> Verdict {
+    judge_by("long-0.6", text, against)
+}
+
+/// As [`judge`], by the head of this name, or none.
+fn judge_by(head: &str, text: &str, against: Option<bool>) -> Verdict {
     let print = read(text);
     let settings = settings();
-    let terms = Terms::new(Some(&settings), None, &print);
+    let mut terms = Terms::new(Some(&settings), None, &print);
+    terms.head = named(head);
     let mesh = slope::mesh(against == Some(true));
     check::check(&print, &terms, against.map(|_| Model { mesh: &mesh, offset: CORNER }))
 }
@@ -132,6 +139,101 @@ fn a_lowered_line_falls_into_the_skin_below() {
         let verdict = judge(&slope::file(Form::Marked, joined, low), None);
         let found = largest(&verdict, Code::FallingZ);
         assert!((found.measure - 0.4).abs() < 0.1, "{found}");
+    }
+}
+
+#[test]
+fn a_head_that_is_too_flat_hits_the_slope() {
+    for (form, joined) in [(Form::Marked, true), (Form::Bare, false)] {
+        // Its disc allows 4.3 degrees, the slope has 10.
+        let verdict = judge_by("cautious", &good(form, joined), None);
+        let found = largest(&verdict, Code::HeadHits);
+        assert!(found.text.contains("disc 1"), "{found}");
+        // From the lower end it reaches the upper one, or the tower.
+        let most = slope::height(SIDES[0]) - slope::height(0.0) - 3.0;
+        assert!(found.measure > 0.5 * most && found.measure < most + 0.1, "{found} {most}");
+        assert_eq!(kinds(&verdict), [Code::HeadHits], "{}", listed(&verdict));
+        let verdict = judge_by("nobody's", &good(form, joined), None);
+        assert_eq!(kinds(&verdict), [], "{}", listed(&verdict));
+        let is_told = |note: &String| note.starts_with("what the head touches");
+        assert!(verdict.not_judged.iter().any(is_told), "{:?}", verdict.not_judged);
+    }
+    let verdict = judge_by("nobody's", &good(Form::Contoured, true), None);
+    assert!(!verdict.not_judged.iter().any(|note| note.contains("head")), "no slope is crossed");
+}
+
+#[test]
+fn a_travel_through_the_slope_hits_it() {
+    let z = 0.4 * slope::height(SIDES[0]);
+    let (x, y) = (CORNER[0] + SIDES[0] - 4.0, CORNER[1] + 5.1);
+    let travel = format!("G1 Z20 F600\nG1 X{x} Y60 F6000\nG1 Z{z:.3}\nG1 Y{y}\nG1 Z20 F600\n");
+    for form in [Form::Marked, Form::Bare] {
+        let text = good(form, true);
+        let text = match form {
+            Form::Marked => text.replace(";NONPLANAR_END\n", &format!(";NONPLANAR_END\n{travel}")),
+            _ => text + &travel,
+        };
+        let found = judge(&text, None);
+        let found = largest(&found, Code::HeadHits);
+        // By the flat's uphill edge, half a mm further.
+        let deep = slope::height(SIDES[0] - 3.5) - z;
+        assert!((found.measure - deep).abs() < 0.1, "{found} {deep}");
+        assert!(found.text.contains("travel") && found.place.at_mm.is_some(), "{found}");
+    }
+}
+
+#[test]
+fn missing_lines_leave_a_skin_open() {
+    let [along, _] = slope::lines();
+    let all =
+        [(Form::Marked, true), (Form::Marked, false), (Form::Bare, true), (Form::Bare, false)];
+    for (form, joined) in all {
+        // Of the last skin one, and five; of the first five.
+        for (from, count, area) in [(along + 20, 1, 4.0), (along + 20, 5, 20.0), (10, 5, 40.0)] {
+            let change = |k| match k {
+                k if (from..from + count).contains(&k) => Change { left_out: true, ..SAME },
+                _ => SAME,
+            };
+            let verdict = judge(&slope::file(form, joined, change), None);
+            let found = largest(&verdict, Code::UncoveredSkin);
+            let bounds = if from < along { 0.5 * area..1.1 * area } else { 0.8 * area..1.1 * area };
+            assert!(bounds.contains(&found.measure), "{form:?} {joined} {found} {area}");
+        }
+    }
+}
+
+#[test]
+fn missing_lines_of_both_skins_show_the_base() {
+    let [along, _] = slope::lines();
+    // All of the first, and six of the last.
+    let change = |k| match k {
+        k if k < along || (along + 20..along + 26).contains(&k) => {
+            Change { left_out: true, ..SAME }
+        }
+        _ => SAME,
+    };
+    let verdict = judge(&slope::file(Form::Marked, false, change), None);
+    let open = verdict.findings.iter().find(|found| found.text.contains("not covered")).unwrap();
+    assert_eq!(open.code, Code::UncoveredSkin);
+    assert!((15.0..25.0).contains(&open.measure), "{open}");
+}
+
+#[test]
+fn twice_the_flow_fills_a_skin_twice() {
+    for form in [Form::Marked, Form::Bare] {
+        for (from, times) in [(0, 2.0), (25, 1.5)] {
+            let change = |k| if k >= from { Change { flow: 2.0, ..SAME } } else { SAME };
+            let verdict = judge(&slope::file(form, true, change), None);
+            let found = largest(&verdict, Code::DoubleSkin);
+            // All of the slope's 200 mm², but for the ends of lines.
+            assert!(found.measure > 150.0 && found.measure < 215.0, "{found}");
+            let percent = found.text.split("take ").nth(1).unwrap().split(' ').next().unwrap();
+            let percent: f64 = percent.parse().unwrap();
+            assert!((percent - 100.0 * times).abs() < 25.0, "{found}");
+        }
+        let once = |k| if k == 40 { Change { flow: 2.0, ..SAME } } else { SAME };
+        let verdict = judge(&slope::file(form, true, once), None);
+        assert!(!kinds(&verdict).contains(&Code::HeadHits), "{}", listed(&verdict));
     }
 }
 

@@ -32,13 +32,6 @@ use rayon::prelude::*;
 use room::Room;
 use runs::{Bead, Leg};
 
-/// A line with less room than this share of a skin's height would be torn by the nozzle.
-const LEAST_HEIGHT: f64 = 0.25;
-
-/// A line with more room than this many heights of a skin, or than the bore of the nozzle, would be laid
-/// in the air.
-const MOST_HEIGHT: f64 = 1.75;
-
 /// Where a skin lies.
 #[derive(Debug)]
 pub struct Skin<'a> {
@@ -160,9 +153,7 @@ impl Layer<'_> {
 
     /// Whether a bead may be so high.
     fn is_height(&self, height: Coord) -> bool {
-        let h = f64::from(self.params.height);
-        let most = (MOST_HEIGHT * h).min(f64::from(self.params.nozzle));
-        (LEAST_HEIGHT * h..=most).contains(&f64::from(height))
+        self.params.bead_heights().contains(&f64::from(height))
     }
 }
 

@@ -1,0 +1,84 @@
+//! Moves of a file with lines over slopes -> findings of the head, and of skins.
+//!
+//! Both need to know what stands at each moment ([`relief`](super::relief)), which costs time and memory:
+//! files without such lines have none of it. Skins are told by the file's marks, else they are all lines of a
+//! layer from the first to the last that strays from its height.
+
+use super::belongs::is_stray;
+use super::finding::Findings;
+use super::relief::Relief;
+use super::skins::{Name, Skins};
+use super::sweep::Sweep;
+use super::terms::Terms;
+use crate::reader::Facts;
+use crate::reader::print::Step;
+
+/// Height of a layer where nobody tells one, mm.
+const SOME_HEIGHT: f64 = 0.2;
+
+/// What stands, and what judges by it.
+pub(super) struct Slopes<'a> {
+    facts: &'a Facts,
+    terms: &'a Terms,
+    relief: Relief,
+    sweep: Option<Sweep<'a>>,
+    skins: Skins,
+    /// The layer whose lines are those of a skin without marks.
+    skin_of: Option<usize>,
+}
+
+impl<'a> Slopes<'a> {
+    pub(super) fn new(facts: &'a Facts, terms: &'a Terms) -> Self {
+        Self {
+            facts,
+            terms,
+            relief: Relief::default(),
+            sweep: terms.head.as_ref().map(Sweep::new),
+            skins: Skins::default(),
+            skin_of: None,
+        }
+    }
+
+    /// The nozzle is sent to where only the printer knows.
+    pub(super) fn lose(&mut self) {
+        self.sweep.iter_mut().for_each(Sweep::lose);
+    }
+
+    /// The next move of the file, in a layer from 0; `is_of_layer` tells lines of layers from others.
+    pub(super) fn step(
+        &mut self,
+        step: &Step,
+        (layer, is_of_layer): (Option<usize>, bool),
+        found: &mut Findings,
+    ) {
+        let own = layer.and_then(|layer| self.facts.layers.get(layer));
+        let height = own.map(|own| own.height).filter(|height| *height > 0.0);
+        if let Some(sweep) = &mut self.sweep {
+            sweep.step(step, &self.relief, height.unwrap_or(SOME_HEIGHT), found);
+        }
+        if !step.is_line() {
+            return;
+        }
+        let strays = own.is_some_and(|own| is_stray(step, own));
+        let name = if self.facts.patches.is_empty() {
+            if strays {
+                self.skin_of = layer;
+            }
+            layer.filter(|_| layer == self.skin_of).map(Name::Layer)
+        } else {
+            let patch = self.facts.patch_at(u64::from(step.line));
+            patch.map(|patch| Name::Patch(patch.number))
+        };
+        let name = name.filter(|_| is_of_layer);
+        if let Some(name) = name {
+            let counts = strays || matches!(name, Name::Patch(_));
+            self.skins.line(name, step, (layer, counts));
+        }
+        self.relief.lay(step, name.is_some());
+    }
+
+    /// Ends the file.
+    pub(super) fn finish(self, found: &mut Findings) {
+        self.skins.finish(&self.relief, self.terms, found);
+    }
+}

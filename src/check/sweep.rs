@@ -1,0 +1,208 @@
+//! Moves in the file's order + the head -> findings of what of it touches plastic that stands.
+//!
+//! Words used here: the *tip* is the place of the nozzle; a *touch* is a cell of what stands that is
+//! higher than the head's underside over it; *press* is a touch that does no harm.
+//!
+//! - Only files with lines over slopes are swept: in others nothing stands higher than the tip, but for
+//!   what `through-print` and `falling-z` judge. Of such files only moves count whose tip lies below the
+//!   highest plastic.
+//! - While printing, and where the nozzle goes straight down to print, the flat may press into what is soft
+//!   yet: within its diameter of the tip, and no deeper than [`DEEPEST_PRESS`] layers, one for the slope
+//!   and half a one for the tread of a staircase. Where a travel ends a line begins: there that holds, too.
+//! - All other touches of more than [`TOLERANCE`] are hits.
+
+use super::finding::{Code, Finding, Findings, Place, short};
+use super::relief::{Relief, Square};
+use crate::geom::segment;
+use crate::head::{DEEPEST_PRESS, Head, Part};
+use crate::reader::print::Step;
+use std::cell::Cell;
+
+/// Distance of the places that are looked at, mm.
+const STEP: f64 = 0.25;
+
+/// So many places are looked at of one move: of a longer one every so often.
+const MOST_PLACES: f64 = 20_000.0;
+
+/// Touches that are less deep are rounding, mm.
+const TOLERANCE: f64 = 0.02;
+
+/// How much higher the map may be than what stands: half a cell of a slope of 25 degrees, mm.
+const BOUND: f64 = 0.03;
+
+/// Squares in which no touch can be this many times as deep as one that is known are left out: a flat head
+/// touches all of a slope at once.
+const CLOSE: f64 = 1.05;
+
+/// See the head of this file.
+pub(super) struct Sweep<'a> {
+    head: &'a Head,
+    reach: f64,
+    press: f64,
+    /// Whether nobody knows how high the nozzle is.
+    is_lost: bool,
+}
+
+/// The deepest touch of a move that is no press.
+#[derive(Debug, Clone, Copy)]
+struct Hit {
+    depth: f64,
+    at: [f64; 2],
+    part: Part,
+}
+
+impl<'a> Sweep<'a> {
+    pub(super) fn new(head: &'a Head) -> Self {
+        Self { head, reach: head.reach(), press: head.press_radius(), is_lost: false }
+    }
+
+    /// The nozzle is sent to where only the printer knows.
+    pub(super) fn lose(&mut self) {
+        self.is_lost = true;
+    }
+
+    /// The next move of the file, in a layer of this height, mm.
+    pub(super) fn step(&mut self, step: &Step, relief: &Relief, height: f64, found: &mut Findings) {
+        self.is_lost &= step.to[2] == 0.0;
+        let is_aside = step.from[..2] != step.to[..2];
+        let sinks = step.to[2] < step.from[2];
+        let is_low = step.heights()[0] < relief.highest() - TOLERANCE;
+        if self.is_lost || !is_low || !(is_aside || sinks) {
+            return;
+        }
+        let mut worst: Option<Hit> = None;
+        let (from, to) = (step.from.map(f64::from), step.to.map(f64::from));
+        let way = segment::way(from, to);
+        let count = (step.plan_length() / STEP).ceil().clamp(1.0, MOST_PLACES) as usize;
+        // What a way begins with is where the one before has ended.
+        for k in 1..=count {
+            let tip = segment::along(from, k as f64 / count as f64, way);
+            let may_press = step.is_line() || !is_aside || k == count;
+            let most = if may_press { DEEPEST_PRESS * height + BOUND } else { TOLERANCE };
+            let deeper = worst.map_or(0.0, |worst| worst.depth);
+            worst = self.touch(relief, tip, (most, deeper)).or(worst);
+        }
+        found.extend(worst.map(|hit| told(&hit, step)));
+    }
+
+    /// The deepest touch there that is deeper than `least`, but for those within the flat's diameter that are
+    /// no deeper than `most`.
+    fn touch(
+        &self,
+        relief: &Relief,
+        [x, y, z]: [f64; 3],
+        (most, least): (f64, f64),
+    ) -> Option<Hit> {
+        // What is found first lets most other squares be.
+        let deepest = Cell::new(least.max(TOLERANCE));
+        let beside = |square: Square| {
+            let low = [square.low[0] - x, square.low[1] - y];
+            (low, low.map(|at| at + square.side))
+        };
+        let counts = |square: Square, highest: f64| {
+            let least = CLOSE * deepest.get();
+            // Most lies lower than the tip: no look at the head.
+            highest > z + least && {
+                let (low, high) = beside(square);
+                highest > z + self.head.over(low, high) + least
+            }
+        };
+        let mut worst = None;
+        relief.look([x, y], self.reach, &counts, &mut |square, top| {
+            if !counts(square, top) {
+                return;
+            }
+            let (low, high) = beside(square);
+            let middle = [0, 1].map(|axis: usize| 0.5 * (low[axis] + high[axis]));
+            let own = self.head.underside(middle);
+            let away = middle[0] * middle[0] + middle[1] * middle[1];
+            let is_near = away <= self.press * self.press;
+            // Near the tip by the cell's middle: its nearest corner would press where nothing does.
+            let under =
+                own.filter(|_| is_near).map_or(self.head.over(low, high), |(under, _)| under);
+            let depth = top - z - under;
+            if depth <= deepest.get() || (is_near && depth <= most) {
+                return;
+            }
+            deepest.set(depth);
+            let near = [0, 1].map(|axis: usize| 0.0_f64.clamp(low[axis], high[axis]));
+            let lowest = own.or_else(|| self.head.underside(near));
+            let part = lowest.map_or(Part::Box(0), |(_, part)| part);
+            worst = Some(Hit { depth, at: [x + middle[0], y + middle[1]], part });
+        });
+        worst
+    }
+}
+
+fn told(hit: &Hit, step: &Step) -> Finding {
+    let part = match hit.part {
+        Part::Flat => "the nozzle's flat".to_owned(),
+        Part::Cone => "the nozzle's cone".to_owned(),
+        Part::Disc(k) => format!("disc {} of the head", k + 1),
+        Part::Box(k) => format!("box {} of the head", k + 1),
+    };
+    let what = if step.is_line() { step.role.name() } else { "travel" };
+    let text =
+        format!("{part} is {} mm deep in what stands, on the way of {what}", short(hit.depth));
+    // The line and the layer are the move's.
+    let place = Place { at_mm: Some(hit.at.map(short)), ..Place::default() };
+    Finding::of(Code::HeadHits, hit.depth, "mm", text).at(place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::head::named::named;
+    use crate::reader::Role;
+
+    fn step(from: [f32; 3], to: [f32; 3], filament: f32) -> Step {
+        let (feed, width, height) = (30.0, 0.4, 0.2);
+        Step { from, to, filament, feed, width, height, role: Role::NonPlanar, line: 1 }
+    }
+
+    /// What is found of a move beside a wall along y at x = 0, 10 mm high.
+    fn beside(head: &Head, one: Step) -> Vec<Finding> {
+        let mut relief = Relief::default();
+        relief.lay(&step([0.0, 0.0, 10.0], [0.0, 20.0, 10.0], 1.0), false);
+        let mut found = Findings::default();
+        Sweep::new(head).step(&one, &relief, 0.2, &mut found);
+        found.into_iter().collect()
+    }
+
+    #[test]
+    fn each_part_of_the_head_hits_where_it_hangs() {
+        let head = named("v6").unwrap();
+        // The wall's side lies at x = 0.2, and a cell may be as much wider.
+        for (x, z, part, depth) in
+            [(1.25_f32, 9.0_f32, "cone", 0.4), (4.0, 7.5, "disc 1", 0.5), (14.5, 4.5, "box 1", 0.5)]
+        {
+            let one = step([x, 2.0, z], [x, 18.0, z], 0.0);
+            let found = beside(&head, one);
+            let [hit] = &found[..] else { panic!("{found:?}") };
+            assert!(hit.text.contains(part), "{hit}");
+            assert!((hit.measure - depth).abs() < 0.15, "{hit}");
+            let clear = beside(&head, step([x, 2.0, z + 0.6], [x, 18.0, z + 0.6], 0.0));
+            assert_eq!(clear, [], "{part}");
+        }
+        // Over the box, beyond its end and beside it.
+        let at = |x: f32| step([x, 2.0, 1.0], [x, 18.0, 1.0], 0.0);
+        assert_eq!(beside(&head, at(15.4)), []);
+        assert_eq!(beside(&head, at(-8.4)), []);
+        assert!(!beside(&head, at(-8.0)).is_empty());
+    }
+
+    #[test]
+    fn printing_may_press_and_travels_may_not() {
+        let head = named("v6").unwrap();
+        let at = |z: f32, filament: f32| step([0.5, 2.0, z], [0.5, 18.0, z], filament);
+        assert_eq!(beside(&head, at(9.75, 1.0)), []);
+        assert!((beside(&head, at(9.65, 1.0))[0].measure - 0.35).abs() < 1e-3);
+        assert!((beside(&head, at(9.75, 0.0))[0].measure - 0.25).abs() < 1e-3);
+        assert_eq!(beside(&head, at(9.99, 0.0)), []);
+        // Down to a line, and up from anywhere.
+        let sinks = |to: f32| step([0.5, 5.0, 12.0], [0.5, 5.0, to], 0.0);
+        assert_eq!(beside(&head, sinks(9.75)), []);
+        assert!(!beside(&head, sinks(9.0)).is_empty());
+        assert_eq!(beside(&head, step([0.5, 5.0, 9.0], [0.5, 5.0, 12.0], 0.0)), []);
+    }
+}
