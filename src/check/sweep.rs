@@ -126,7 +126,8 @@ impl<'a> Sweep<'a> {
             }
             deepest.set(depth);
             let near = [0, 1].map(|axis: usize| 0.0_f64.clamp(low[axis], high[axis]));
-            let lowest = own.or_else(|| self.head.underside(near));
+            let nearest = || self.head.underside(near).or(own);
+            let lowest = own.filter(|_| is_near).or_else(nearest);
             let part = lowest.map_or(Part::Box(0), |(_, part)| part);
             worst = Some(Hit { depth, at: [x + middle[0], y + middle[1]], part });
         });

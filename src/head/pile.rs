@@ -31,6 +31,8 @@ const SLACK_UNITS: f64 = 1e-3;
 pub struct Pile {
     low: [f64; 2],
     cell: f64,
+    /// What stands may reach so much further sideways than its cells, mm.
+    wider: f64,
     /// The cells, then each level of the pyramid up to a single square.
     levels: Vec<Level>,
 }
@@ -67,7 +69,14 @@ impl Pile {
         while let Some(last) = levels.last().filter(|last| last.columns * last.rows > 1) {
             levels.push(Level::new(last.columns.div_ceil(2), last.rows.div_ceil(2)));
         }
-        Self { low, cell, levels }
+        Self { low, cell, wider: 0.0, levels }
+    }
+
+    /// The same where what stands may reach so much further sideways than its cells, mm. It holds for what
+    /// lies beyond the ring where a touch may be press.
+    #[must_use]
+    pub fn wider(self, by: f64) -> Self {
+        Self { wider: by, ..self }
     }
 
     /// Columns and rows of its cells.
@@ -181,6 +190,7 @@ impl Pile {
             let height = mm(self.levels[level].at(square));
             let [from, to] = self.bounds(level, square);
             let by = [[from[0] - high[0], from[1] - high[1]], [to[0] - low[0], to[1] - low[1]]];
+            let by = [by[0].map(|v| v - self.wider), by[1].map(|v| v + self.wider)];
             if height - low[2] - shape.lowest(by[0], by[1]).0 <= LEAST_TOUCH {
                 continue;
             }
@@ -287,7 +297,8 @@ impl Search<'_> {
             return None;
         }
         let [low, high] = self.beside(level, square);
-        let depth = above - self.shape.lowest(low, high).0;
+        let [from, to] = self.widened([low, high]);
+        let depth = above - self.shape.lowest(from, to).0;
         (depth > LEAST_TOUCH && !self.is_press(depth, low, high)).then_some(depth)
     }
 
@@ -296,9 +307,20 @@ impl Search<'_> {
         self.pile.bounds(level, square).map(|[x, y]| [x - self.tip[0], y - self.tip[1]])
     }
 
+    /// The same, wider by what may stand beside its cells. Where all of a square is near enough for press, its
+    /// cells are as wide as they are.
+    fn widened(&self, [low, high]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+        let wider = self.pile.wider;
+        let near = self.shape.press_radius();
+        if wider <= 0.0 || furthest2(low, high) <= near * near {
+            return [low, high];
+        }
+        [low.map(|v| v - wider), high.map(|v| v + wider)]
+    }
+
     /// A cell that is touched deeper than any other so far.
     fn touch(&mut self, square: [usize; 2], depth: f64) {
-        let [low, high] = self.beside(0, square);
+        let [low, high] = self.widened(self.beside(0, square));
         let Some(part) = self.shape.lowest(low, high).1 else { return };
         let (at, height) = (self.pile.middle(square), self.pile.height(square));
         let hit = Hit { part, depth, at, height, tip: self.tip };
@@ -310,7 +332,12 @@ impl Search<'_> {
     /// Whether a square is only pressed.
     fn is_press(&self, depth: f64, low: [f64; 2], high: [f64; 2]) -> bool {
         let Some([near, most]) = self.press else { return false };
-        let furthest = [0, 1].map(|axis| low[axis].abs().at_least(high[axis].abs()));
-        depth <= most && furthest[0] * furthest[0] + furthest[1] * furthest[1] <= near
+        depth <= most && furthest2(low, high) <= near
     }
+}
+
+/// The squared distance of a square's furthest corner from the tip.
+fn furthest2(low: [f64; 2], high: [f64; 2]) -> f64 {
+    let furthest = [0, 1].map(|axis| low[axis].abs().at_least(high[axis].abs()));
+    furthest[0] * furthest[0] + furthest[1] * furthest[1]
 }

@@ -23,6 +23,11 @@ impl<'a> Shape<'a> {
         Self { head, face, tan, cone_end }
     }
 
+    /// As [`Head::press_radius`].
+    pub(super) fn press_radius(&self) -> f64 {
+        self.head.press_radius()
+    }
+
     /// Radius of flat and cone.
     pub(super) fn nozzle(&self) -> f64 {
         self.face.max(self.cone_end)

@@ -14,14 +14,15 @@
 //! images", CVGIP 34 (1986).
 
 use super::grid::{CELL, Spot};
+use super::stack::WIDER;
 use crate::head::{DEEPEST_PRESS, Head};
 use crate::units::to_mm;
 
 /// A way along rows, columns and diagonals is at most so many times as long as the straight one.
 const LONGER: f64 = 1.083;
 
-/// The tip may lie anywhere in its cell, and plastic in its own, mm: two half diagonals and a little.
-const SLACK: f64 = 0.15;
+/// The tip may lie anywhere in its cell, and plastic in its own or a little beside it, mm.
+const SLACK: f64 = 0.15 + WIDER;
 
 /// A cone that lies below the head.
 #[derive(Debug, Clone, Copy)]

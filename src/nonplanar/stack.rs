@@ -29,6 +29,10 @@ const ABOVE: f64 = 0.5;
 /// Up to so many layers above the surface there must be nothing of it.
 const FREE: f64 = 1.5;
 
+/// Beads may reach so much further out than sections, mm: thin walls are as wide as the nozzle lays them, and
+/// corners are rounded.
+pub(super) const WIDER: f64 = 0.1;
+
 /// The inside of a layer.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Section {
@@ -72,7 +76,8 @@ impl<'a> Stack<'a> {
     ) -> Self {
         let corner = |cell: Spot| middle(cell).map(|v| v - to_mm(CELL) / 2.0);
         let low = [columns.start, rows.start];
-        let pile = Pile::new(corner(low), corner([columns.end, rows.end]), to_mm(CELL));
+        let pile =
+            Pile::new(corner(low), corner([columns.end, rows.end]), to_mm(CELL)).wider(WIDER);
         let (sections, supported) = (VecDeque::new(), Rows::default());
         Self { scene, pile, low, sections, next: first, cuts: Vec::new(), supported }
     }

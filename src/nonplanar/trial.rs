@@ -21,7 +21,7 @@ use super::glance::{Glance, Under};
 use super::grid::{self, CELL, Spot, cell_of};
 use super::scene::Scene;
 use super::shrink::{Refused, most, nearest, refuse, shrink_all, widened};
-use super::stack::{Stack, heights_over};
+use super::stack::{Stack, WIDER, heights_over};
 use super::tally::Reason;
 use super::touch::{Touch, cell_at, mm};
 use crate::geom::Contour;
@@ -317,7 +317,7 @@ fn others(scene: &Scene<'_>, field: &Field, piece: &Piece, stack: &Stack<'_>) ->
     let low = [from.x, from.y].map(|v| v.div_euclid(CELL) - reach);
     let high = [to.x, to.y].map(|v| v.div_euclid(CELL) + reach);
     let corner = |cell: Spot| grid::middle(cell).map(|v| v - to_mm(CELL) / 2.0);
-    let mut pile = Pile::new(corner(low), corner(high), to_mm(CELL));
+    let mut pile = Pile::new(corner(low), corner(high), to_mm(CELL)).wider(WIDER);
     let touch = Touch { scene, field, layer: scene.params.press_layer() };
     for y in low[1]..high[1] {
         for x in low[0]..high[0] {
