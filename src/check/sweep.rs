@@ -117,9 +117,11 @@ impl<'a> Sweep<'a> {
             let own = self.head.underside(middle);
             let away = middle[0] * middle[0] + middle[1] * middle[1];
             let is_near = away <= self.press * self.press;
-            // Near the tip by the cell's middle: its nearest corner would press where nothing does.
+            // Near the tip by the cell's middle: its nearest corner would press where nothing does, and
+            // on a steep slope the flank be deep in what it only comes near to.
+            let is_beside = away <= 4.0 * self.press * self.press;
             let under =
-                own.filter(|_| is_near).map_or(self.head.over(low, high), |(under, _)| under);
+                own.filter(|_| is_beside).map_or(self.head.over(low, high), |(under, _)| under);
             let depth = top - z - under;
             if depth <= deepest.get() || (is_near && depth <= most) {
                 return;
@@ -127,7 +129,7 @@ impl<'a> Sweep<'a> {
             deepest.set(depth);
             let near = [0, 1].map(|axis: usize| 0.0_f64.clamp(low[axis], high[axis]));
             let nearest = || self.head.underside(near).or(own);
-            let lowest = own.filter(|_| is_near).or_else(nearest);
+            let lowest = own.filter(|_| is_beside).or_else(nearest);
             let part = lowest.map_or(Part::Box(0), |(_, part)| part);
             worst = Some(Hit { depth, at: [x + middle[0], y + middle[1]], part });
         });
