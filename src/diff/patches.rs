@@ -12,8 +12,11 @@ use std::collections::BTreeMap;
 /// The moves of the lines of each patch, by its number.
 type Patches = BTreeMap<u32, Vec<Step>>;
 
-/// The patches of both halves, one by one: their numbers and their lines.
-pub(super) fn all(halves: Both<&Half<'_>>) -> Vec<(Both<Option<u32>>, Both<Vec<Step>>)> {
+/// The number of a patch in both halves, where it is in both, and its lines.
+type Pair = (Both<Option<u32>>, Both<Vec<Step>>);
+
+/// The patches of both halves, one by one.
+pub(super) fn all(halves: Both<&Half<'_>>) -> Vec<Pair> {
     let all = halves.map(of_half);
     let steps = |number: Option<u32>, all: &Patches| {
         number.and_then(|number| all.get(&number)).cloned().unwrap_or_default()
