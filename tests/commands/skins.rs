@@ -43,9 +43,14 @@ fn skins_follow_the_surface_in_a_cut_along_them_and_across() {
         assert!(off.abs() < 0.025, "{spot:?}: {off}");
         // It fills the steps of the base, layers of 0.2 mm.
         assert!((0.09..0.31).contains(&spot.height), "{spot:?}");
-        let bottom = spot.top - spot.height;
-        assert!((bottom / 0.2 - (bottom / 0.2).round()).abs() < 0.02, "{spot:?}");
     }
+    // Stretches over a step's edge take the mean of both sides.
+    let on_step = |spot: &&::slicer::preview::course::Spot| {
+        let steps = (spot.top - spot.height) / 0.2;
+        (steps - steps.round()).abs() < 0.02
+    };
+    let on_steps = longest.course.iter().filter(on_step).count();
+    assert!(10 * on_steps > 9 * longest.course.len(), "{longest:?}");
     // Lines across the plane are as high above the bed as the surface is there.
     let across = along(at).sections;
     let skin = Colour::of(Role::NonPlanar, false);

@@ -384,18 +384,18 @@ fn a_browser_shows_the_layer_the_moves_and_what_is_pointed_at() {
     }
     // A layer's number stays what it is after a skin, which has a name of its own and a side.
     let gcode = wedge();
-    let file = folder.path().join("wedge.html");
-    fs::write(&file, page(&gcode, "wedge.gcode")).unwrap();
+    let ramp = folder.path().join("wedge.html");
+    fs::write(&ramp, page(&gcode, "wedge.gcode")).unwrap();
     let skinned = Print::read(&mut &gcode[..], FILAMENT).unwrap();
     let home = slicer::preview::patch::home(&skinned, 1).unwrap() + 1;
     let first = skinned.moves.iter().find(|step| step.is_line() && step.role == Role::NonPlanar);
     let (x, z) = first.map(|step| (step.from[0], step.from[2] - 0.05)).unwrap();
     let place = format!("layer={home}&skin=1&side=front&colour=z&at={x},{z}");
-    let skin = state(&chromium, &file, "", &place);
+    let skin = state(&chromium, &ramp, "", &place);
     assert_eq!((&skin["layer"], &skin["skin"]), (&home.into(), &1.into()));
     assert_eq!((&skin["side"], &skin["colour"]), (&"front".into(), &"z".into()));
     assert!(skin["tip"].as_str().unwrap().starts_with("non-planar skin\n"), "{skin}");
-    let layer = state(&chromium, &file, "", &format!("layer={home}"));
+    let layer = state(&chromium, &ramp, "", &format!("layer={home}"));
     assert_eq!((&layer["layer"], &layer["skin"]), (&home.into(), &Value::Null));
     assert_eq!(layer["layers"], skinned.layers.len());
     // Beside the part there is nothing, and no move is shown before the first.
