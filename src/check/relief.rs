@@ -263,7 +263,7 @@ mod tests {
         relief.lay(&step([50.0, 5.0, 1.0], [60.0, 5.0, 3.0]), true);
         assert_eq!(highest(&relief, [0.05, 5.15], 0.0), 3.0);
         assert_eq!(highest(&relief, [0.05, 5.35], 0.0), 0.0);
-        assert_eq!(highest(&relief, [0.05, 5.95], 0.7), 3.0);
+        assert_eq!(highest(&relief, [0.05, 5.95], 0.85), 3.0);
         // As high as the line is at the cell's upper side, and hardly higher.
         for (x, y) in [(52.05, 5.05), (55.55, 4.85), (59.95, 5.15)] {
             let (z, right) = (highest(&relief, [x, y], 0.0), 1.0 + 0.2 * (x + 0.05 - 50.0));

@@ -22,12 +22,11 @@ use slicer::text;
 use std::path::Path;
 
 /// The flags that `-h` shows, in this order, in words that fit on one line of 80.
-const EVERYDAY: [(&str, &str); 13] = [
+const EVERYDAY: [(&str, &str); 12] = [
     ("output", "G-code file to write, `-` for standard output"),
     ("profile", "Printer: a built-in profile, or your mine.toml"),
     ("dual", "Infill of two layers at once, twice as thick"),
     ("layer_height", "Height of a layer, mm"),
-    ("walls", "Number of walls"),
     ("infill", "Density of the infill, %"),
     ("support", "Print support under overhangs"),
     ("temperature", "Temperature of the nozzle, °C"),
