@@ -251,7 +251,7 @@ mod tests {
         let mut most = 0.0_f64;
         relief.look(at, reach, &|_, _| true, &mut |square, z| {
             let near = [0, 1].map(|axis| (square.low[axis] + CELL / 2.0 - at[axis]).abs());
-            most = if near[0].max(near[1]) <= reach { most.max(z) } else { most };
+            most = if near[0].max(near[1]) <= reach + 1e-6 { most.max(z) } else { most };
         });
         most
     }
