@@ -17,7 +17,7 @@ pub(crate) struct PlaceArgs {
     #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", value_parser = numbers::<3>, allow_hyphen_values = true)]
     rotate: [f64; 3],
     /// Cut this much off the bottom of the models, mm
-    #[arg(long, value_name = "MM", default_value = "0", value_parser = sunk, allow_negative_numbers = true)]
+    #[arg(hide_short_help = true, long, value_name = "MM", default_value = "0", value_parser = sunk, allow_negative_numbers = true)]
     sink: f64,
     /// Put the middle of the layout here, mm [default: middle of the bed]
     #[arg(long, value_name = "X,Y", value_parser = numbers::<2>, allow_hyphen_values = true)]
@@ -32,7 +32,7 @@ pub(crate) struct PlaceArgs {
     #[arg(hide_short_help = true, long, value_name = "N", default_value_t = DEFAULT_MAX_TRIANGLES, value_parser = triangles())]
     max_triangles: usize,
     /// What to do about faults of a mesh: mend it, slice it as it is, or refuse it
-    #[arg(long, value_name = "POLICY", default_value = "repair", value_parser = ["repair", "warn", "strict"])]
+    #[arg(hide_short_help = true, long, value_name = "POLICY", default_value = "repair", value_parser = ["repair", "warn", "strict"])]
     mesh: String,
 }
 

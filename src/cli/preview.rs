@@ -60,13 +60,17 @@ pub(crate) struct PreviewArgs {
     /// Draw this layer, counted from 1 [default: the middle one, or that above if it has more in it]
     #[arg(long, value_name = "N", help_heading = "Layers")]
     layer: Option<usize>,
-    /// Draw this patch of non-planar skin, coloured by height; the layer below it leaves it out
+    /// Draw this patch of non-planar skin, coloured by height
+    ///
+    /// The layer below it leaves it out.
     #[arg(long, value_name = "N", conflicts_with = "layer", help_heading = "Layers")]
     patch: Option<u32>,
     /// Draw every layer; OUT.svg becomes OUT-0001.svg and so on
     #[arg(long, conflicts_with_all = ["layer", "patch"], help_heading = "Layers")]
     all: bool,
-    /// Fill the picture with the layer; otherwise all layers have the same frame, that of the print
+    /// Fill the picture with the layer
+    ///
+    /// Otherwise all layers have the same frame, that of the print.
     #[arg(long, conflicts_with = "crop", help_heading = "Layers")]
     fit: bool,
     /// Draw N layers below pale
