@@ -1,8 +1,8 @@
 //! Mesh -> Surfaces: the tops of a part that slope gently, and what of its tops is none of them, and why.
 //!
 //! A *top* is a facet that faces up by 45° or less. A surface is a group of facets (see
-//! [`facets`](super::facets)) that is large enough, divided where it overlaps itself in plan (see
-//! [`sheets`](super::sheets)). All areas are true areas of the mesh, not areas in plan. What is hidden
+//! `facets`) that is large enough, divided where it overlaps itself in plan (see
+//! `sheets`). All areas are true areas of the mesh, not areas in plan. What is hidden
 //! inside another body counts as it is.
 
 use super::facets::{Groups, Lie, groups};

@@ -1,11 +1,11 @@
 //! Scene -> Patches: the one upward pass over the layers that decides which places become skin.
 //!
 //! 1. Each surface is cut to pieces that may become skin, as far as it is known from the surface alone
-//!    ([`candidate`](super::candidate)). Each has a home layer.
+//!    (`candidate`). Each has a home layer.
 //! 2. Pieces come in the order of their homes; of those with one home, the one with the lower top first.
-//! 3. Layers are piled up to the home ([`stack`](super::stack)), without the room of skins.
-//! 4. The piece shrinks to what passes there ([`trial`](super::trial)), and is laid
-//!    ([`lay`](super::lay)). If its lines refuse places, both are done again, a few times.
+//! 3. Layers are piled up to the home (`stack`), without the room of skins.
+//! 4. The piece shrinks to what passes there (`trial`), and is laid
+//!    (`lay`). If its lines refuse places, both are done again, a few times.
 //! 5. What is left is a patch: its skins stand from now on.
 //!
 //! In each round more is cut out around what fails. What has faults after the last one is printed flat:

@@ -7,7 +7,7 @@
 //!
 //! 1. All gentle slopes of the mesh are found anew, up to the steepest that contouring can follow, whatever
 //!    the head: its cone touches nothing as long as a line stays within its layer.
-//! 2. A layer looks at those that cross it ([`zones`]); its lines are bent where they lie on its tread
+//! 2. A layer looks at those that cross it (`zones`); its lines are bent where they lie on its tread
 //!    ([`line`]). Where a patch has its skins, lines stay as they are.
 //! 3. Of what skins have refused the areas are told anew ([`Contours::tell`]).
 //!
@@ -17,7 +17,7 @@
 //! - On a slope, lines beside each other differ by no more than the slope makes of their distance. It is no
 //!   steeper than the flat may press, nor than the cone.
 //! - Beside an upright wall of the same layer, such as a boss, lines stay at z or above within the reach of
-//!   the flat, and of the cone below the layer's top ([`zones`]).
+//!   the flat, and of the cone below the layer's top (`zones`).
 //! - Lines that rise above z would be new to patches that were tried before. On layers that are printed before
 //!   a patch and reach into its height, none rises.
 

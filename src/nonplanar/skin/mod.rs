@@ -3,13 +3,13 @@
 //! Words: the *base* is what the skin is laid on: a staircase, or the skin below. The *room* of a stretch
 //! is what lies between the two straight below it.
 //!
-//! 1. [`piece`]: each piece of the outline has rows of its own, spread evenly over its width.
-//! 2. [`lines`]: where the lines run on the rows, and how wide each is.
-//! 3. [`runs`]: lines are joined to zigzags, which are put in order, on a slope from below.
-//! 4. [`room`]: how much plastic fits under each part of a line.
-//! 5. [`points`]: where a line is cut to follow the surface and the room.
+//! 1. `piece`: each piece of the outline has rows of its own, spread evenly over its width.
+//! 2. `lines`: where the lines run on the rows, and how wide each is.
+//! 3. `runs`: lines are joined to zigzags, which are put in order, on a slope from below.
+//! 4. `room`: how much plastic fits under each part of a line.
+//! 5. `points`: where a line is cut to follow the surface and the room.
 //!
-//! All but the last two is plane geometry. What is asked of the surface and the base says [`relief`].
+//! All but the last two is plane geometry. What is asked of the surface and the base says `relief`.
 
 mod lines;
 mod piece;
