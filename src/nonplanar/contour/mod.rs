@@ -284,14 +284,9 @@ fn steepest(params: &NonPlanarParams) -> f64 {
 
 /// Whether a path may be one of a top that is seen. What carries or spans nothing, or hangs, is left alone.
 fn may_bend(path: &Path) -> bool {
-    let is_top = match path.role {
-        Role::OuterWall | Role::InnerWall | Role::Skin | Role::TopSkin | Role::Gap => true,
-        Role::Ironing => true,
-        Role::Overhang | Role::Bridge | Role::Infill | Role::NonPlanar => false,
-        Role::Support | Role::SupportInterface | Role::Skirt | Role::Brim => false,
-        Role::RaftBase | Role::RaftInterface => false,
-    };
-    is_top && path.layers == 1
+    let is_wall = matches!(path.role, Role::OuterWall | Role::InnerWall);
+    let is_skin = matches!(path.role, Role::Skin | Role::TopSkin | Role::Gap | Role::Ironing);
+    (is_wall || is_skin) && path.layers == 1
 }
 
 /// What of the tops is in surfaces, mm².
