@@ -139,7 +139,7 @@ pub fn slice_placed(
     let corners = bed_corners(&bed(&settings.machine), placed.offset);
     let support = setup.supports(&slicer, corners);
     let found = curved::find(&settings, placed, &slicer, support.as_ref());
-    let curved = found.as_ref().map(|found| Curved::new(found, &slicer, &settings));
+    let curved = found.as_ref().map(|found| Curved::new(found, &slicer));
     let layers = curved.as_ref().map_or(heights.count(), Curved::layers);
     let (heights, slicer) = (heights.lowest(layers), slicer.lowest(layers));
 

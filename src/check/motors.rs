@@ -4,11 +4,11 @@ use super::finding::{Code, Finding};
 use super::terms::Machine;
 use crate::reader::print::Step;
 
-/// Shorter moves tell no rate, mm.
-const LEAST_LENGTH: f64 = 0.2;
+/// Shorter moves are not judged, mm: their speed and flow are mostly rounding.
+pub(super) const LEAST_LENGTH: f64 = 0.2;
 
-/// Rounding of feeds and lengths.
-const SLACK: f64 = 1.01;
+/// Factor by which speeds may exceed the limit: they are rounded, too.
+pub(super) const SPEED_SLACK: f64 = 1.01;
 
 /// What a move asks too much of a motor. A planner holds each axis to its speed; a board that takes steps is
 /// sent fewer of them.
@@ -29,6 +29,6 @@ pub(super) fn too_many_steps(step: &Step, machine: Option<&Machine>) -> Option<F
         let axis = ["x", "y", "z", "e"][axis];
         let text = format!("{rate:.0} steps/s of {axis}, where its motor makes {most:.0}");
         let finding = Finding::warning(Code::TooManySteps, rate, "steps/s", text);
-        (rate > most * SLACK).then_some(finding)
+        (rate > most * SPEED_SLACK).then_some(finding)
     })
 }

@@ -25,7 +25,7 @@ use super::changes::Changes;
 use super::dialect;
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::heat::Heat;
-use super::motors;
+use super::motors::{self, LEAST_LENGTH, SPEED_SLACK};
 use super::patches::Patches;
 use super::primed::Primed;
 use super::slopes::Slopes;
@@ -40,14 +40,8 @@ use crate::reader::{Facts, Role};
 /// Coordinates are rounded to this or less, mm; a smaller value would report files with two decimals.
 pub(super) const ROUNDING: f64 = 0.01;
 
-/// Factor by which speeds may exceed the limit: they are rounded, too.
-const SPEED_SLACK: f64 = 1.01;
-
 /// Factor by which flow may exceed the limit: E has few decimals.
 const FLOW_SLACK: f64 = 1.05;
-
-/// Shorter moves are not judged, mm: their speed and flow are mostly rounding.
-const LEAST_LENGTH: f64 = 0.2;
 
 /// Lower lifts are not judged, mm.
 const LEAST_LIFT: f64 = 0.05;

@@ -54,12 +54,6 @@ pub struct Patches {
 }
 
 impl Patches {
-    /// The patches that are printed after layer `k`, in their order.
-    pub fn after(&self, k: usize) -> impl Iterator<Item = &Patch> {
-        let first = self.patches.partition_point(|patch| patch.layer < k);
-        self.patches[first..].iter().take_while(move |patch| patch.layer == k)
-    }
-
     /// What is left of the layers under the patches; `params` are those they were made with.
     #[must_use]
     pub fn base<'a>(&self, surfaces: &'a Surfaces, params: &NonPlanarParams) -> Base<'a> {

@@ -19,6 +19,7 @@ use crate::units::{Coord, to_mm, to_units};
 
 /// The surfaces of a mesh, and the patches on them.
 pub struct Found {
+    params: NonPlanarParams,
     surfaces: Surfaces,
     patches: Patches,
     contours: Option<Contours>,
@@ -70,7 +71,7 @@ pub fn find(
         contours.tell(&surfaces, &mut patches);
         contours.beside(&patches)
     });
-    Some(Found { surfaces, patches, contours })
+    Some(Found { params, surfaces, patches, contours })
 }
 
 /// Patches, and what is left of the layers below them.
@@ -87,15 +88,15 @@ pub struct Curved<'a> {
 impl<'a> Curved<'a> {
     /// The patches that were `found`, over the layers of `slicer`.
     #[must_use]
-    pub fn new(found: &'a Found, slicer: &Slicer<'_>, settings: &Settings) -> Self {
-        let Found { surfaces, patches, contours } = found;
-        let base = patches.base(surfaces, &NonPlanarParams::new(settings));
+    pub fn new(found: &'a Found, slicer: &Slicer<'_>) -> Self {
+        let Found { params, surfaces, patches, contours } = found;
+        let base = patches.base(surfaces, params);
         Self {
             patches,
             heights: slicer.heights().clone().lowest(layers(&base, slicer)),
             base,
             contours: contours.as_ref(),
-            clearance: to_units(settings.nonplanar.clearance),
+            clearance: params.clearance,
         }
     }
 

@@ -11,7 +11,6 @@ use super::dual::groups::{Block, Grouping};
 use super::dual::plain;
 use super::scan::Scan;
 use crate::geom::Contour;
-use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
 use crate::pattern::Turns;
 use crate::slice::Layer;
@@ -28,32 +27,23 @@ pub trait CurvedTops: Sync + Debug {
     fn over(&self, from: Coord, below: Coord) -> Vec<Contour>;
 }
 
-/// Where no line of some layers may be printed for several: those from `from` to `to` above the bed. A
-/// curved top lies less than `near` above.
-#[must_use]
-pub fn thin_places(
-    tops: Option<&dyn CurvedTops>,
-    (from, to): (Coord, Coord),
-    near: Coord,
-) -> Vec<Contour> {
-    tops.map(|tops| tops.over(from, to.saturating_add(near))).unwrap_or_default()
-}
-
 /// These areas without the infill within `places`, and with no other infill than that.
 #[must_use]
 pub fn divide(areas: &LayerAreas, places: &[Contour]) -> [LayerAreas; 2] {
-    let on = |raster: Raster| Scan::new(places, raster).inside().clone();
-    let keep = |of: &Rows, rows: &Rows, inside: bool| {
-        if inside { of.and(rows) } else { of.minus(rows) }
-    };
-    [false, true].map(|inside| {
-        areas.clone().map_on(|raster, its| {
-            let rows = on(raster);
-            let infill = keep(&its.infill, &rows, inside);
-            let dense = keep(&its.dense, &rows, inside);
-            Areas { infill, dense, ..its }
-        })
-    })
+    let inside = areas.clone().map_on(|raster, its| {
+        let rows = Scan::new(places, raster);
+        let within = |of: &Rows| of.and(rows.inside());
+        Areas { infill: within(&its.infill), dense: within(&its.dense), ..its }
+    });
+    let outside = areas.clone().map_on(|raster, its| match inside.on(raster) {
+        Some(inside) => Areas {
+            infill: its.infill.minus(&inside.infill),
+            dense: its.dense.minus(&inside.dense),
+            ..its
+        },
+        None => its,
+    });
+    [outside, inside]
 }
 
 /// The infill of each layer of a block that is printed layer by layer whatever the others do.

@@ -268,13 +268,11 @@ impl<'a> Window<'a> {
     /// Where none of these layers may print a line for several: near a curved top.
     fn thin_places(&self, layers: Range<usize>) -> Vec<Contour> {
         // Shares of skin ask for layers above the last one, too.
-        if self.curved.is_none() || layers.is_empty() || layers.end > self.count() {
-            return Vec::new();
-        }
-        let heights = self.slicer.heights();
-        let near = (self.params.skins.top + 1) as Coord * heights.height(layers.end - 1);
-        let ends = (heights.top(layers.start), heights.top(layers.end - 1));
-        curved::thin_places(self.curved, ends, near)
+        let known = !layers.is_empty() && layers.end <= self.count();
+        let Some(tops) = self.curved.filter(|_| known) else { return Vec::new() };
+        let (heights, last) = (self.slicer.heights(), layers.end - 1);
+        let near = (self.params.skins.top + 1) as Coord * heights.height(last);
+        tops.over(heights.top(layers.start), heights.top(last).saturating_add(near))
     }
 
     /// Whether all skins and walls of layer `k` are for it alone: a curved top lies near above it.
