@@ -135,8 +135,8 @@ fn a_command_line_that_is_not_understood_is_reported_where_it_names_a_report() {
 }
 
 #[test]
-fn the_readme_lists_every_code_of_a_failure() {
-    let readme = fs::read_to_string("README.md").unwrap();
+fn the_page_for_scripts_lists_every_code_of_a_failure() {
+    let readme = fs::read_to_string("src/cli/SCRIPTS.md").unwrap();
     for (code, exit, _) in CODES {
         assert!(readme.contains(&format!("`{code}`")), "{code}");
         let row = readme
