@@ -8,7 +8,7 @@
 //! Refused places become an area: the squares around them grow by half a line, so that the lines beside
 //! keep half a line more. Their staircase of sides is smoothed by no more than that.
 
-use super::rim::rim;
+use super::surface::rim::rim;
 use crate::geom::decimate::{decimate, most_missed};
 use crate::geom::frame::Frame;
 use crate::geom::nest::Nest;

@@ -9,9 +9,9 @@
 //! - What no patch reaches stays as it is: layers below, a roof above.
 
 use super::base::{Base, Lowered};
-use super::find::{Surfaces, surfaces};
 use super::params::NonPlanarParams;
 use super::surface::Surface;
+use super::surface::find::{Surfaces, surfaces};
 use crate::geom::{Contour, Point, double_area};
 use crate::head::Head;
 use crate::mesh::Mesh;

@@ -1,12 +1,11 @@
 //! Mesh and layers -> Patches: tops of gentle slopes whose skin follows the surface.
 //!
-//! [`find`] makes surfaces of the mesh; [`pass`] decides which places of them become skin, and has the
+//! [`surface`] makes surfaces of the mesh; [`pass`] decides which places of them become skin, and has the
 //! [`skin`]s laid; [`base`] takes their room from the layers. Where none can go, [`contour`] bends the lines
 //! of the layers.
 
 pub mod base;
 pub mod contour;
-pub mod find;
 pub mod params;
 pub mod pass;
 pub mod patch;
@@ -15,21 +14,11 @@ pub mod skin;
 pub mod surface;
 pub mod tally;
 
-mod candidate;
-mod facets;
 mod field;
-mod glance;
 mod grid;
-mod index;
-mod lay;
-mod marks;
-mod rim;
-mod sheets;
-mod shrink;
-mod stack;
-mod touch;
-mod trial;
 
+#[cfg(test)]
+mod laws;
 #[cfg(test)]
 mod tests;
 

@@ -1,8 +1,8 @@
 //! What the pass gives: patches with their paths, and how much of the top they cover.
 
 use super::base::{Base, Lowered};
-use super::find::Surfaces;
 use super::params::NonPlanarParams;
+use super::surface::find::Surfaces;
 use super::tally::Areas;
 use crate::fill::Path;
 use crate::geom::{Contour, Point};

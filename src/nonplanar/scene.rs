@@ -1,7 +1,7 @@
 //! What the pass looks at.
 
-use super::find::Surfaces;
 use super::params::NonPlanarParams;
+use super::surface::find::Surfaces;
 use crate::geom::Point;
 use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span};

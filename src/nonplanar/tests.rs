@@ -8,8 +8,8 @@
 //! 2. Look at what holds of all patches: numbers in order, outlines within each other, travels above the layer.
 //! 3. Look at the share of a box that is skin, and at the reasons of the rest.
 
-use super::find::surfaces;
 use super::params::NonPlanarParams;
+use super::surface::find::surfaces;
 use super::*;
 use crate::geom::{Point, polygon};
 use crate::head::Head;

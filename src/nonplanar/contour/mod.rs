@@ -26,9 +26,9 @@ mod zones;
 
 use super::Patches;
 use super::field::Field;
-use super::find::{Surfaces, Tops, surfaces};
 use super::grid::{self, CELL};
 use super::params::NonPlanarParams;
+use super::surface::find::{Surfaces, Tops, surfaces};
 use super::tally::Reason;
 use crate::fill::{Path, Role};
 use crate::geom::Point;

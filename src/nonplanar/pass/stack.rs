@@ -8,13 +8,13 @@
 //!   Most layers cover what those below them do.
 //! - What a patch leaves to be printed flat is raised as a whole, see [`Stack::raise`].
 
-use super::field::Field;
-use super::grid::{CELL, Spot, cells, columns, middle, raster};
-use super::scene::Scene;
 use super::touch::mm;
 use crate::geom::Contour;
 use crate::geom::spans::{Rows, Span, merge};
 use crate::head::pile::Pile;
+use crate::nonplanar::field::Field;
+use crate::nonplanar::grid::{self, CELL, Spot, cells, columns, middle, raster};
+use crate::nonplanar::scene::Scene;
 use crate::region::scan::around;
 use crate::slice::{Heights, Layer};
 use crate::units::{Coord, to_mm};
@@ -249,7 +249,7 @@ impl Stack<'_> {
             let is_over = |cell: &Spot| {
                 field.at(*cell).is_some_and(|z| (z + ABOVE * h..z + FREE * h).contains(&plane))
             };
-            out.extend(super::grid::spots(&over, CELL).into_iter().filter(is_over));
+            out.extend(grid::spots(&over, CELL).into_iter().filter(is_over));
         }
         out
     }
@@ -257,6 +257,6 @@ impl Stack<'_> {
 
 /// The cells of an area with their heights above the bed, mm.
 pub(super) fn heights_over(field: &Field, rows: &Rows) -> Vec<(Spot, f64)> {
-    let all = super::grid::spots(rows, CELL).into_iter();
+    let all = grid::spots(rows, CELL).into_iter();
     all.filter_map(|cell| Some((cell, mm(field.at(cell)?)))).collect()
 }

@@ -11,7 +11,9 @@ use crate::geom::{Contour, Point, polygon, side};
 /// What `polygons` cover, as from [`polygon::union`]. They may run clockwise, where a surface folds
 /// under itself: there they take away what another one covers twice.
 #[must_use]
-pub(super) fn rim<P: AsRef<[Point]>>(polygons: impl Iterator<Item = P>) -> Vec<Contour> {
+pub(in crate::nonplanar) fn rim<P: AsRef<[Point]>>(
+    polygons: impl Iterator<Item = P>,
+) -> Vec<Contour> {
     let mut sides = Vec::new();
     for polygon in polygons {
         let corners = polygon.as_ref();

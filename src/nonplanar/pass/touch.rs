@@ -5,12 +5,12 @@
 //! no more than half a layer over the surface, by which a tread of a staircase does. Beside the surface
 //! stands a plateau that continues it, if it is no higher than the slope under the nozzle would go on.
 
-use super::field::Field;
-use super::grid::{CELL, Spot};
-use super::scene::Scene;
-use super::tally::Reason;
 use crate::geom::Point;
 use crate::head::pile::Hit;
+use crate::nonplanar::field::Field;
+use crate::nonplanar::grid::{CELL, Spot};
+use crate::nonplanar::scene::Scene;
+use crate::nonplanar::tally::Reason;
 use crate::units::{Coord, to_mm, to_units};
 
 /// Half a layer, and a quarter for rounding, bends of the surface and the walls of a cell: shares of a

@@ -1,11 +1,11 @@
 //! Areas of skins and places that are refused -> smaller areas, and why each place was lost.
 
-use super::grid::{self, STEP, Spot};
 use super::marks::Marks;
-use super::params::NonPlanarParams;
-use super::tally::Reason;
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, polygon};
+use crate::nonplanar::grid::{self, STEP, Spot};
+use crate::nonplanar::params::NonPlanarParams;
+use crate::nonplanar::tally::Reason;
 use crate::region::scan::Scan;
 use std::collections::BTreeMap;
 

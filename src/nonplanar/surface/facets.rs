@@ -14,7 +14,6 @@
 //! How narrow: an arc of radius r is flatter than an angle a over a strip of 2·r·sin(a) about its top. Eight
 //! lines of 0.4 mm are that strip of half a degree at a radius of 183 mm.
 
-use super::params::NonPlanarParams;
 use super::rim::rim;
 use crate::geom::sets::Sets;
 use crate::geom::{Point, polygon};
@@ -22,6 +21,7 @@ use crate::mesh::Mesh;
 use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::mesh::geometry::measure::corners_of;
 use crate::mesh::geometry::vector::{Corner, distance2, length, normal};
+use crate::nonplanar::params::NonPlanarParams;
 use crate::units::Coord;
 use rayon::prelude::*;
 

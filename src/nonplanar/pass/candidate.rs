@@ -11,20 +11,20 @@
 //! piece's top; and the level lines that come later beside the skins are at most half a layer lower
 //! than these.
 
-use super::field::Field;
 use super::glance::{Glance, Under};
-use super::grid::{self, CELL, STEP, Spot, cell_of};
 use super::marks::Marks;
-use super::scene::Scene;
 use super::shrink::{Refused, refuse, shrink};
 use super::stack::heights_over;
-use super::surface::Surface;
-use super::tally::Reason;
 use super::touch::mm;
 use crate::geom::Contour;
 use crate::geom::boxes::extent;
 use crate::geom::spans::Rows;
 use crate::head::pile::Pile;
+use crate::nonplanar::field::Field;
+use crate::nonplanar::grid::{self, CELL, STEP, Spot, cell_of};
+use crate::nonplanar::scene::Scene;
+use crate::nonplanar::surface::Surface;
+use crate::nonplanar::tally::Reason;
 use crate::region::scan::around;
 use crate::units::{Coord, to_mm};
 use rayon::prelude::*;

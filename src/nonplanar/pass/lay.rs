@@ -9,14 +9,8 @@
 //! above all that it would touch, and by the clearance more. The first one comes from anywhere: it
 //! rises above all that stands.
 
-use super::field::Field;
-use super::grid::{self, CELL, Spot, cell_of, place_at};
-use super::patch::Stroke;
 use super::shrink::{Refused, refuse};
-use super::skin::{self, Base, Laid, Outside, Skin};
 use super::stack::Stack;
-use super::surface::Surface;
-use super::tally::Reason;
 use super::touch::{Touch, cell_at, up};
 use super::trial::Trial;
 use crate::fill::{Path, PathPoint};
@@ -24,6 +18,12 @@ use crate::geom::Point;
 use crate::geom::spans::Rows;
 use crate::head::pile::{Hit, Pile};
 use crate::head::sweep::{SAMPLE, sweep, sweep_printing};
+use crate::nonplanar::field::Field;
+use crate::nonplanar::grid::{self, CELL, Spot, cell_of, place_at};
+use crate::nonplanar::patch::Stroke;
+use crate::nonplanar::skin::{self, Base, Laid, Outside, Skin};
+use crate::nonplanar::surface::Surface;
+use crate::nonplanar::tally::Reason;
 use crate::units::{Coord, to_mm};
 use rayon::prelude::*;
 

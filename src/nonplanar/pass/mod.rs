@@ -11,24 +11,33 @@
 //! In each round more is cut out around what fails. What has faults after the last one is printed flat:
 //! those parts of the piece that hang together, and no others.
 
-use super::candidate::{self, Ground, Piece};
-use super::field::Field;
-use super::grid::{self, STEP, Spot, cell_of};
-use super::lay::{Coat, lay, steepest, strokes};
-use super::patch::{Patch, Patches};
-use super::scene::Scene;
-use super::shrink::Refused;
-use super::stack::{Cut, Stack, heights_over};
-use super::surface::Surface;
-use super::tally::{Areas, Reason};
-use super::trial::Trial;
+mod candidate;
+mod glance;
+mod lay;
+mod marks;
+mod shrink;
+mod stack;
+mod touch;
+mod trial;
+
 use crate::geom::Contour;
 use crate::geom::boxes::extent;
 use crate::geom::spans::Rows;
+use crate::nonplanar::field::Field;
+use crate::nonplanar::grid::{self, STEP, Spot, cell_of};
+use crate::nonplanar::patch::{Patch, Patches, Stroke};
+use crate::nonplanar::scene::Scene;
+use crate::nonplanar::surface::Surface;
+use crate::nonplanar::tally::{Areas, Reason};
 use crate::region::scan::Scan;
 use crate::units::{Coord, to_mm};
+use candidate::{Ground, Piece};
+use lay::{Coat, lay, steepest, strokes};
 use rayon::prelude::*;
+use shrink::Refused;
+use stack::{Cut, Stack, heights_over};
 use std::ops::Range;
+use trial::Trial;
 
 /// What fails when a piece is laid is cut out with so many places around it, round by round.
 const ROUNDS: [i32; 5] = [0, 1, 3, 6, 15];
@@ -137,7 +146,7 @@ fn made(
     scene: &Scene<'_>,
     (piece, surface): (&Piece, &Surface),
     field: &Field,
-    (areas, strokes): (Vec<Vec<Contour>>, Vec<super::patch::Stroke>),
+    (areas, strokes): (Vec<Vec<Contour>>, Vec<Stroke>),
 ) -> Patch {
     let last = areas.last().map_or(&[][..], |area| area);
     let (low, high) = extent(last.iter().flatten()).unwrap_or_default();

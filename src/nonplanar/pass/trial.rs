@@ -16,19 +16,19 @@
 //!   stand beside them. They are tried the other way round: a head upside down over a pile of their tips.
 
 use super::candidate::{Ground, Piece};
-use super::field::Field;
 use super::glance::{Glance, Under};
-use super::grid::{self, CELL, Spot, cell_of};
-use super::scene::Scene;
 use super::shrink::{Refused, most, nearest, refuse, shrink_all, widened};
 use super::stack::{Stack, WIDER, heights_over};
-use super::tally::Reason;
 use super::touch::{Touch, cell_at, mm};
 use crate::geom::Contour;
 use crate::geom::boxes::extent;
 use crate::geom::spans::Rows;
 use crate::head::Head;
 use crate::head::pile::{Hit, Pile};
+use crate::nonplanar::field::Field;
+use crate::nonplanar::grid::{self, CELL, Spot, cell_of};
+use crate::nonplanar::scene::Scene;
+use crate::nonplanar::tally::Reason;
 use crate::units::{Coord, to_mm, to_units};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -278,7 +278,7 @@ impl<'a> Trial<'a> {
 
 impl Trial<'_> {
     /// How high the base stands where skin `i` is not laid, mm, under a surface at `z`: as many layers as
-    /// [`super::base`] leaves of it.
+    /// [`base`](crate::nonplanar::base) leaves of it.
     fn base_end(&self, z: f64, i: usize) -> f64 {
         let heights = self.scene.slicer.heights();
         let end = to_units(z) - self.scene.lowered(i) + self.scene.params.raised();

@@ -13,9 +13,9 @@
 //! (2012), has the idea; the passes are those of G. Borgefors, "Distance transformations in digital
 //! images", CVGIP 34 (1986).
 
-use super::grid::{CELL, Spot};
 use super::stack::WIDER;
 use crate::head::{DEEPEST_PRESS, Head};
+use crate::nonplanar::grid::{CELL, Spot};
 use crate::units::to_mm;
 
 /// A way along rows, columns and diagonals is at most so many times as long as the straight one.

@@ -5,14 +5,14 @@
 //! `sheets`). All areas are true areas of the mesh, not areas in plan. What is hidden
 //! inside another body counts as it is.
 
+use super::Surface;
 use super::facets::{Groups, Lie, groups};
-use super::params::NonPlanarParams;
 use super::sheets::sheets;
-use super::surface::Surface;
 use crate::geom::double_area;
 use crate::mesh::Mesh;
 use crate::mesh::edges::Adjacency;
 use crate::mesh::geometry::measure::corners_of;
+use crate::nonplanar::params::NonPlanarParams;
 use crate::units::UNITS_PER_MM;
 use rayon::prelude::*;
 

@@ -1,9 +1,9 @@
 //! Places of a surface -> why each gets no skin.
 
-use super::field::Field;
-use super::grid::{Spot, cell_of};
-use super::tally::Reason;
 use crate::geom::spans::Rows;
+use crate::nonplanar::field::Field;
+use crate::nonplanar::grid::{self, STEP, Spot, cell_of};
+use crate::nonplanar::tally::Reason;
 
 /// Beside the surface.
 const BESIDE: u8 = 0;
@@ -68,7 +68,7 @@ impl Marks {
 
     /// Marks all places in some rows.
     pub(super) fn mark_all(&mut self, rows: &Rows, reason: impl Fn(Spot) -> Reason) {
-        for place in super::grid::spots(rows, super::grid::STEP) {
+        for place in grid::spots(rows, STEP) {
             self.mark(place, reason(place));
         }
     }

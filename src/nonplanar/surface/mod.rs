@@ -11,11 +11,18 @@
 //!   of the slicer, and both facets of an edge get the same.
 //! - A profile has a point where the way crosses an edge.
 
-use super::index::{Index, NEAR};
-use super::rim::rim;
+pub mod find;
+
+mod facets;
+mod index;
+pub(super) mod rim;
+mod sheets;
+
 use crate::geom::boxes::extent;
 use crate::geom::{Contour, Point, edges, encloses, side};
 use crate::units::{Coord, UNITS_PER_MM, between};
+use index::{Index, NEAR};
+use rim::rim;
 
 /// Distance of the rows that areas are measured along, grid units: 0.05 mm.
 const ROW: f64 = 500.0;
