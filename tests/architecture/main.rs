@@ -261,6 +261,25 @@ fn every_source_begins_with_what_it_is() {
 }
 
 #[test]
+fn every_source_is_a_module_of_the_crate() {
+    let sources = sources();
+    for source in &sources {
+        let path = source.path.trim_end_matches("/mod.rs").trim_end_matches(".rs");
+        let (parent, name) = path.rsplit_once('/').unwrap_or(("", path));
+        if BINARY.contains(&name) || name == "lib" {
+            continue;
+        }
+        let heads = [format!("{parent}.rs"), format!("{parent}/mod.rs")];
+        let tops = ["lib.rs".to_owned(), "main.rs".to_owned()];
+        let declared = sources
+            .iter()
+            .filter(|s| if parent.is_empty() { &tops } else { &heads }.contains(&s.path))
+            .any(|head| bare(&head.text).contains(&format!("mod {name};")));
+        assert!(declared, "src/{}: no file declares it, so it is never compiled", source.path);
+    }
+}
+
+#[test]
 fn sources_are_short() {
     for source in sources() {
         let lines = source.text.lines().count();
