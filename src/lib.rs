@@ -85,12 +85,12 @@ use error::{Error, Refusal, Result};
 use pipeline::batches::{self, Setup};
 use pipeline::curved::{self, Curved};
 use pipeline::footing::Footing;
-use pipeline::lift::Lift;
 use pipeline::place::{bed_corners, print_facts};
 use pipeline::prime;
 use pipeline::refuse;
 use pipeline::sticking::Sticking;
 use pipeline::thumbnails::thumbnails;
+use plan::lift::Lift;
 use units::to_units;
 
 /// Slices `job` and writes the G-code to `out`, which is empty yet.

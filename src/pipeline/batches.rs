@@ -16,12 +16,12 @@
 use super::curved::Curved;
 use super::footing::Footing;
 use super::footprint::{Footprint, Rules, footprint};
-use super::lift::Lift;
 use super::sticking::{Sticking, Stuck};
 use crate::error::{Refusal, Result};
 use crate::fill::{self, FillParams, Path};
 use crate::gcode::Writer;
 use crate::geom::Point;
+use crate::plan::lift::Lift;
 use crate::plan::order::{self, Unordered};
 use crate::plan::{Head, PlanParams, Seams, Toolpath, travel};
 use crate::profile::Settings;

@@ -1,6 +1,5 @@
 //! Mesh and layers -> Curved: the patches of non-planar skin, for the stages that leave room for them and print them.
 
-use super::lift::Lift;
 use crate::fill::Path;
 use crate::mesh::place::Placed;
 use crate::nonplanar;
@@ -9,6 +8,7 @@ use crate::nonplanar::contour::Contours;
 use crate::nonplanar::params::NonPlanarParams;
 use crate::nonplanar::surface::find::{Surfaces, surfaces};
 use crate::nonplanar::{Patch, Patches, Props, Scene, support_lines};
+use crate::plan::lift::Lift;
 use crate::plan::{Head, PlanParams, Toolpath, travel};
 use crate::profile::Settings;
 use crate::region::curved::CurvedTops;

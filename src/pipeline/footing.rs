@@ -16,10 +16,10 @@
 //! stands further up. So a job is refused after its last layer, before its output is complete.
 
 use super::footprint::{Footprint, Island};
-use super::lift::Lift;
 use crate::error::Hanging;
 use crate::geom::Point;
 use crate::geom::sets::Sets;
+use crate::plan::lift::Lift;
 use crate::profile::{Floating, Settings, SupportBase};
 use crate::region::{Region, Sparse, SupportLines};
 use crate::units::{Coord, UNITS_PER_MM, sum_mm, to_mm};

@@ -2,14 +2,13 @@
 //!
 //! Here is all code that names several stages at once: reading and placing ([`place`]), planning
 //! in batches ([`batches`]), what begins in the air ([`footing`]), skirt, brim and raft
-//! ([`sticking`]), skins that follow the surface ([`curved`]), how far a raft lifts all the rest ([`lift`]), the thumbnails ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs that
-//! cannot seek ([`spool`]).
+//! ([`sticking`]), skins that follow the surface ([`curved`]), the thumbnails
+//! ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs that cannot seek ([`spool`]).
 
 pub mod batches;
 pub mod curved;
 pub mod footing;
 pub mod footprint;
-pub mod lift;
 pub mod place;
 pub mod prime;
 pub mod refuse;
@@ -21,6 +20,7 @@ pub mod thumbnails;
 use crate::error::Refusal;
 use crate::mesh::Mesh;
 use crate::mesh::place::Placed;
+use crate::plan::lift::Lift;
 use crate::profile::{Angle, Settings};
 use crate::region::angle;
 use crate::slice::{Compensation, Heights};
@@ -56,6 +56,6 @@ pub fn heights(settings: &Settings, placed: &Placed) -> Result<Heights, Refusal>
     if heights.count() == 0 {
         return Err(Refusal::TooLow { height_mm: placed.size_mm[2] });
     }
-    refuse::tall(settings, &heights, &lift::Lift::new(settings))?;
+    refuse::tall(settings, &heights, &Lift::new(settings))?;
     Ok(heights)
 }

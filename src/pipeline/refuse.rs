@@ -15,11 +15,11 @@
 //!
 //! The other way, to write all and to take it back, needs an output that can be taken back.
 
-use super::lift::Lift;
 use crate::error::{MOST_GAP_MM, Refusal, Result};
 use crate::job::Job;
 use crate::mesh::Policy;
 use crate::mesh::place::Placed;
+use crate::plan::lift::Lift;
 use crate::profile::Settings;
 use crate::progress::Progress;
 use crate::slice::{Heights, Slicer};

@@ -3,7 +3,6 @@
 //! What was asked for and does not fit the bed is refused, like a part; a brim that nobody asked for
 //! is left out with a warning.
 
-use super::lift::Lift;
 use super::rise::rise;
 use crate::error::Refusal;
 use crate::fill::adhesion::{Adhesion, AdhesionParams, Base};
@@ -11,6 +10,7 @@ use crate::fill::{Path, Role};
 use crate::geom::Point;
 use crate::geom::nest::{Nest, extent};
 use crate::mesh::place::Placed;
+use crate::plan::lift::Lift;
 use crate::profile::{BrimPlace, Settings};
 use crate::report::{BrimReport, RaftReport};
 use crate::slice::{Heights, Layer};

@@ -22,7 +22,7 @@ use crate::gcode::times::{LayerTime, Times};
 use crate::gcode::usage::Material;
 use crate::job::{self, Job};
 use crate::mesh::place::Placed;
-use crate::pipeline::lift::Lift;
+use crate::plan::lift::Lift;
 use crate::profile::{DualMode, DualPart, Settings, Sources};
 use crate::region::dual::audit::{Apart, Audit};
 use crate::slice::Heights;

@@ -53,6 +53,25 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("steps", &["reader", "estimate", "motion", "profile", "units"]),
     // Composed of the stages' own errors: no stage uses it.
     ("error", &["gcode", "mesh", "profile", "progress", "reader", "steps", "warning"]),
+    // Tells of what all stages made, and of nothing that composes them.
+    (
+        "report",
+        &[
+            "check",
+            "error",
+            "fill",
+            "gcode",
+            "job",
+            "mesh",
+            "nonplanar",
+            "plan",
+            "profile",
+            "region",
+            "slice",
+            "units",
+            "warning",
+        ],
+    ),
 ];
 
 /// Modules that judge what the others have made. `check` knows the shape of a head, which is what a profile
@@ -65,8 +84,8 @@ const WITNESSES: &[&str] = &["reader", "estimate", "check", "diff", "roughness"]
 /// rasters have a part in what is judged; of these a witness has its own.
 const SHARED_GEOMETRY: &[&str] = &["segment", "cells", "spans", "arc"];
 
-/// Modules that may use all others: the flow itself, and what tells of it.
-const MAY_USE_ALL: &[&str] = &["lib", "pipeline", "report", "compare"];
+/// Modules that may use all others: the flow itself.
+const MAY_USE_ALL: &[&str] = &["lib", "pipeline", "compare"];
 
 /// The binary's own modules.
 const BINARY: &[&str] = &["cli", "main"];

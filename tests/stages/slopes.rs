@@ -11,7 +11,7 @@ use slicer::gcode::reshaped::Bound;
 use slicer::gcode::{Sums, Writer};
 use slicer::geom::Point;
 use slicer::motion::Limits;
-use slicer::pipeline::lift::Lift;
+use slicer::plan::lift::Lift;
 use slicer::plan::{Head, PlanParams, PrintMove, Toolpath, travel};
 use slicer::profile::template::PrintFacts;
 use slicer::profile::{JunctionRule, Override, Settings, ValueOrigin, load};

@@ -3,9 +3,9 @@
 //! Everything up to the toolpaths is planned as if the part stood on the bed, so that its paths and
 //! the groups of dual injection are those of a print without a raft. Only then they are lifted.
 
+use super::Toolpath;
 use crate::fill::adhesion::raft::RaftParams;
 use crate::fill::{Path, Place};
-use crate::plan::Toolpath;
 use crate::profile::Settings;
 use crate::units::{Coord, to_units};
 
