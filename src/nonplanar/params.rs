@@ -30,7 +30,7 @@ pub struct NonPlanarParams {
     pub tolerance: Coord,
     /// Longest segment where the surface bends.
     pub segment: Coord,
-    /// Shortest segment.
+    /// Shortest segment, no longer than a line is wide.
     pub shortest: Coord,
     /// Travels keep so far above all under their way.
     pub clearance: Coord,
@@ -59,6 +59,10 @@ const SPARE_BETWEEN: [f64; 2] = [0.01, 0.1];
 /// The shortest time that a planner may get for a move, s. Sailfish plans 50 moves a second.
 const SHORTEST_MOVE_S: f64 = 0.02;
 
+/// Lines are at most so many bores wide: over a slope one side of a line lies higher than the other, by its
+/// width times the slope, and a wide line stands above its neighbour.
+const WIDEST_LINE: f64 = 1.25;
+
 impl NonPlanarParams {
     /// The numbers that these settings give.
     #[must_use]
@@ -66,11 +70,13 @@ impl NonPlanarParams {
         let skins = &settings.nonplanar;
         let rate = settings.limits.max_segment_rate;
         let seconds = if rate > 0.0 { 1.0 / rate } else { SHORTEST_MOVE_S };
+        let nozzle = settings.machine.nozzle_diameter;
+        let width = settings.line_width.min(WIDEST_LINE * nozzle);
         Self {
             skins: skins.skins,
             height: to_units(settings.layer_height),
-            line_width: to_units(settings.line_width * skins.spacing),
-            nozzle: to_units(settings.machine.nozzle_diameter),
+            line_width: to_units(width * skins.spacing),
+            nozzle: to_units(nozzle),
             slopes: skins.min_slope..=settings.steepest_skin(),
             max_bend: skins.max_bend,
             min_area: skins.min_area,
@@ -81,7 +87,8 @@ impl NonPlanarParams {
             wall: skins.wall,
             tolerance: to_units(skins.tolerance),
             segment: to_units(skins.segment),
-            shortest: to_units(settings.speed.nonplanar * seconds),
+            // A longer chord would leave the surface where it bends: a board with a limit goes slower there.
+            shortest: to_units((settings.speed.nonplanar * seconds).min(width)),
             clearance: to_units(skins.clearance),
             head: settings.head(),
         }
