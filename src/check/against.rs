@@ -7,7 +7,7 @@
 //!
 //! Everything is drawn into rows a twentieth of a mm apart, one set for each layer, and compared there:
 //! - rim less what is printed, in patches that are wide and large enough: an open outline;
-//! - exposed less closed, away from the rim: an open surface;
+//! - exposed less closed, away from the rim: an open surface, where the file's own settings want skins;
 //! - lines less the cut, grown by what lines may stick out: lines outside the part.
 //!
 //! Only places that are wide enough for a line count. Thick lines, and lines that vary in height,
@@ -141,7 +141,11 @@ impl Judge<'_> {
         });
         verdict.findings.extend(patches);
 
-        let bare = here.minus(&above.inside).or(&here.minus(&below.inside));
+        let bare = |other: &Section, counts: bool| {
+            if counts { here.minus(&other.inside) } else { Rows::default() }
+        };
+        let [bottoms, tops] = self.terms.closes;
+        let bare = bare(above, tops).or(&bare(below, bottoms));
         let exposed = bare.and(&printable);
         let open = beside(exposed.minus(&closed));
         verdict.areas.surface = self.shares(&exposed, &open);

@@ -15,6 +15,9 @@ use slicer::report::nonplanar::{FlatReport, NonPlanarReport};
 use slicer::report::{BrimReport, CoolingReport, DriveReport, MotionReport, Report};
 use std::time::Duration;
 
+/// Layers that end nearer to the models' height end there, mm.
+const LEAST_REST: f64 = 0.05;
+
 /// For which printer, material and print, and every file that had a say in it.
 fn chosen(report: &Report) -> String {
     let of = |kind: &str| {
@@ -44,9 +47,10 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
     let dual = report.dual.as_ref().map_or_else(String::new, |dual| {
         format!("; {} of {} groups of layers with thick infill", dual.thick_blocks, dual.blocks)
     });
+    let ends = ends(report);
     format!(
         "{}\n\
-         {} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm{raft}\n\
+         {} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm{ends}{raft}\n\
          filament {:.0} mm, {:.2} cm³, {:.1} g{}\n\
          prints in {}, sliced in {:.2} s{dual}\n{}",
         chosen(report),
@@ -60,6 +64,14 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
         took.as_secs_f64(),
         report.cooling.as_ref().map_or_else(String::new, slower),
     ) + &report.nonplanar.as_ref().map_or_else(String::new, nonplanar)
+}
+
+/// How high the nozzle gets, where that is not the models' height: layers are whole.
+fn ends(report: &Report) -> String {
+    let raft = report.raft.as_ref().map_or(0.0, |raft| raft.height_mm + raft.gap_mm);
+    let top = report.layers.top_mm - raft;
+    let differs = report.nonplanar.is_none() && (top - report.size_mm[2]).abs() >= LEAST_REST;
+    if differs { format!("; the last layer ends at {top:.2} mm") } else { String::new() }
 }
 
 /// How much of the tops follows the surface, and why the rest does not.
