@@ -249,7 +249,12 @@ mod tests {
         let report = Report {
             profiles,
             size_mm: [40.0, 30.0, 20.0],
-            layers: LayersReport { count: 100, height_mm: 0.2, ..LayersReport::default() },
+            layers: LayersReport {
+                count: 100,
+                height_mm: 0.2,
+                top_mm: 19.9,
+                ..LayersReport::default()
+            },
             roles: vec![role("outer wall", 30.0), role("skin", 0.0), role("thick infill", 90.0)],
             filament: FilamentReport {
                 length_mm: 120.0,
@@ -265,7 +270,7 @@ mod tests {
             summary(&report, Duration::from_millis(1230)),
             "printer ender-3, material petg, print standard (none chosen; -p chooses, \
              `slicer profile list` names them); with a/mine.toml\n\
-             100 layers of 0.2 mm, 40.0 x 30.0 x 20.0 mm\n\
+             100 layers of 0.2 mm, 40.0 x 30.0 x 20.0 mm; the last layer ends at 19.90 mm\n\
              filament 120 mm, 0.29 cm³, 0.4 g (outer wall 25 %, thick infill 75 %)\n\
              prints in 1 h 23 min, sliced in 1.23 s; 46 of 47 groups of layers with thick infill\n"
         );
