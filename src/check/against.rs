@@ -141,12 +141,7 @@ impl Judge<'_> {
         });
         verdict.findings.extend(patches);
 
-        let bare = |other: &Section, counts: bool| {
-            if counts { here.minus(&other.inside) } else { Rows::default() }
-        };
-        let [bottoms, tops] = self.terms.closes;
-        let bare = bare(above, tops).or(&bare(below, bottoms));
-        let exposed = bare.and(&printable);
+        let exposed = self.exposed([below, cut, above]).and(&printable);
         let open = beside(exposed.minus(&closed));
         verdict.areas.surface = self.shares(&exposed, &open);
         // What the outline lacks is reported already.
@@ -170,6 +165,15 @@ impl Judge<'_> {
         let solid = solid.or(&strays);
         self.amounts((all, height), here, [&solid, &closed], &mut verdict.areas);
         verdict
+    }
+
+    /// What of a cut has nothing of the model below it or above it, where the file's own settings close that.
+    fn exposed(&self, [below, cut, above]: [&Section; 3]) -> Rows {
+        let bare = |other: &Section, counts: bool| {
+            if counts { cut.inside.minus(&other.inside) } else { Rows::default() }
+        };
+        let [bottoms, tops] = self.terms.closes;
+        bare(above, tops).or(&bare(below, bottoms))
     }
 
     /// The lines at a layer that lie above the model's surface, or beside it: of each line of the file
