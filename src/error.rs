@@ -91,6 +91,20 @@ pub enum Refusal {
         /// Height of the highest model, mm.
         height_mm: f64,
     },
+    /// A model is smaller than the machine prints.
+    #[error(
+        "{file}: the model is {:.2} × {:.2} × {:.2} mm, and the machine prints nothing with a side below \
+         {least_mm} mm (machine.min_part_size); use a larger --scale or another --unit",
+        .size_mm[0], .size_mm[1], .size_mm[2]
+    )]
+    TooSmall {
+        /// The model's file.
+        file: String,
+        /// Its size as placed, mm.
+        size_mm: [f64; 3],
+        /// The least of each side, mm.
+        least_mm: f64,
+    },
     /// The last layer, with the nozzle lifted above it, ends above the machine's height.
     #[error(
         "the print would end at {top_mm:.2} mm{}{}, where the machine ends at {height_mm} mm; use \

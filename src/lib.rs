@@ -85,6 +85,7 @@ use error::{Error, Refusal, Result};
 use pipeline::batches::{self, Setup};
 use pipeline::curved::{self, Curved};
 use pipeline::footing::Footing;
+use pipeline::phase;
 use pipeline::place::{bed_corners, print_facts};
 use pipeline::prime;
 use pipeline::refuse;
@@ -120,6 +121,7 @@ pub fn slice_placed(
     out: &mut dyn gcode::Output,
     progress: &progress::Progress,
 ) -> Result<report::Report> {
+    let placed = &*phase::in_phase(&job.settings, placed);
     // Mesh -> layers; each block of them is cut when the stages after it ask for it.
     let heights = pipeline::heights(&job.settings, placed)?;
     let lift = Lift::new(&job.settings);

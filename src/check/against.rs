@@ -7,7 +7,7 @@
 //!
 //! Everything is drawn into rows a twentieth of a mm apart, one set for each layer, and compared there:
 //! - rim less what is printed, in patches that are wide and large enough: an open outline;
-//! - exposed less closed, away from the rim: an open surface;
+//! - exposed less closed, away from the rim: an open surface, where the file's own settings want skins;
 //! - lines less the cut, grown by what lines may stick out: lines outside the part.
 //!
 //! Only places that are wide enough for a line count. Thick lines, and lines that vary in height,
@@ -141,8 +141,7 @@ impl Judge<'_> {
         });
         verdict.findings.extend(patches);
 
-        let bare = here.minus(&above.inside).or(&here.minus(&below.inside));
-        let exposed = bare.and(&printable);
+        let exposed = self.exposed([below, cut, above]).and(&printable);
         let open = beside(exposed.minus(&closed));
         verdict.areas.surface = self.shares(&exposed, &open);
         // What the outline lacks is reported already.
@@ -166,6 +165,15 @@ impl Judge<'_> {
         let solid = solid.or(&strays);
         self.amounts((all, height), here, [&solid, &closed], &mut verdict.areas);
         verdict
+    }
+
+    /// What of a cut has nothing of the model below it or above it, where the file's own settings close that.
+    fn exposed(&self, [below, cut, above]: [&Section; 3]) -> Rows {
+        let bare = |other: &Section, counts: bool| {
+            if counts { cut.inside.minus(&other.inside) } else { Rows::default() }
+        };
+        let [bottoms, tops] = self.terms.closes;
+        bare(above, tops).or(&bare(below, bottoms))
     }
 
     /// The lines at a layer that lie above the model's surface, or beside it: of each line of the file

@@ -77,19 +77,22 @@ pub(super) fn thick(terms: &Terms, step: &Step) -> f64 {
     f64::from(step.filament) * terms.filament_area / step.plan_length()
 }
 
-/// The plastic of a line by its size.
+/// The plastic of a line by its size, less what the layer on the bed gets more on purpose.
 pub(super) fn ratio(facts: &Facts, terms: &Terms, step: &Step) -> f64 {
-    f64::from(step.filament) * terms.filament_area / room(facts, step)
+    let plastic = f64::from(step.filament) * terms.filament_area;
+    plastic / (room(facts, step) * terms.pressed(step))
 }
 
-/// Lines of a layer that stay too narrow for the nozzle. Their width is that of a box of the same height and
+/// Lines of a layer that stay too narrow for the nozzle. Their width is that of their height and
 /// plastic, whatever the file says.
 pub(super) fn narrow(terms: &Terms, (layer, steps): (usize, &[Step])) -> Vec<Finding> {
     let mut found = Vec::new();
     let Some(nozzle) = terms.nozzle else { return found };
     // What irons is pressed flat on what is there.
     let is_narrow = |step: &Step| {
-        step.is_line() && step.role != Role::Ironing && terms.box_width(step) < NARROW * nozzle
+        step.is_line()
+            && step.role != Role::Ironing
+            && terms.width_by_plastic(step) < NARROW * nozzle
     };
     let runs = steps.chunk_by(|a, b| is_narrow(a) && is_narrow(b) && a.to == b.from);
     for run in runs.filter(|run| is_narrow(&run[0])) {
@@ -97,8 +100,8 @@ pub(super) fn narrow(terms: &Terms, (layer, steps): (usize, &[Step])) -> Vec<Fin
         if length <= LEAST_NARROW {
             continue;
         }
-        let mean =
-            run.iter().map(|step| terms.box_width(step) * step.length()).sum::<f64>() / length;
+        let mean = run.iter().map(|step| terms.width_by_plastic(step) * step.length()).sum::<f64>()
+            / length;
         let role = run[0].role.name();
         let text = format!("{} mm of {role} are {} mm wide", short(length), short(mean));
         let middle = &run[run.len() / 2];

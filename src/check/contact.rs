@@ -76,7 +76,7 @@ impl Contacts {
 
 /// Measures a layer.
 pub(super) fn layer(filled: &Filled<'_>, terms: &Terms, layer: usize) -> Contact {
-    let wide = |step: &Step| terms.box_width(step).min(WIDEST);
+    let wide = |step: &Step| terms.width_by_plastic(step).min(WIDEST);
     let sparse = filled.lines(layer).filter(|(step, _)| step.role == Role::Infill);
     let beads = sparse.map(|(step, _)| Bead { radius: wide(step) / 2.0 + GAP, ..Bead::of(step) });
     let sparse = Laid::of(beads.collect());

@@ -119,7 +119,7 @@ fn is_solid(step: &Step) -> bool {
 
 /// Whether a line is a round thread, as bridges are: it hangs, and fills no room of its layer.
 fn is_thread(step: &Step, terms: &Terms) -> bool {
-    step.height >= 0.9 * step.width && terms.box_width(step) <= ROUND * f64::from(step.width)
+    step.height >= 0.9 * step.width && terms.width_by_plastic(step) <= ROUND * f64::from(step.width)
 }
 
 struct Judge<'a> {

@@ -26,6 +26,12 @@ pub struct Terms {
     /// How much more plastic than width times height lines take by settings of the file's own:
     /// walls, skins, sparse infill.
     pub flow: [f64; 3],
+    /// How much of the box around a line is plastic by settings of the file's own, whatever its role.
+    pub section: f64,
+    /// Plastic of the layer on the bed by settings of the file's own, 1 if it is as much as on others.
+    pub pressed: f64,
+    /// Whether bottoms and tops are closed by skin, as far as the file's own settings go.
+    pub closes: [bool; 2],
     /// Diameter of the nozzle, mm, if it is known.
     pub nozzle: Option<f64>,
     /// What hangs around the nozzle, if somebody tells it.
@@ -67,6 +73,9 @@ pub struct Machine {
     /// Of motors whose rate is known: steps for a mm, and most steps a second; x, y, z, filament.
     pub steps: [Option<[f64; 2]>; 4],
 }
+
+/// A line whose underside is lower than this lies on the bed, mm.
+const ON_BED: f64 = 0.02;
 
 /// Keys under which slicers write the nozzle's diameter, mm; with several tools a list.
 const NOZZLE_KEYS: &[&str] = &["nozzle_diameter"];
@@ -117,6 +126,9 @@ impl Terms {
             filament_area: PI * diameter * diameter / 4.0,
             is_own: own.is_some(),
             flow: own.map_or([1.0; 3], flow),
+            section: own.map_or(1.0, |own| own.extrusion.section()),
+            pressed: own.map_or(1.0, |own| own.extrusion.first_layer / 100.0),
+            closes: own.map_or([true; 2], |own| [own.has_bottom_skins(), own.has_top_skins()]),
             head: head(settings, own),
             moved: own.map_or([0.0; 3], |own| {
                 [own.xy_compensation.abs(), own.hole_compensation.abs(), own.foot_drawn_in()]
@@ -138,10 +150,17 @@ impl Terms {
         outline.max(hole) + (foot - bottom).max(0.0)
     }
 
-    /// Width of a box of a line's height and plastic, mm, whatever the file says.
-    pub(super) fn box_width(&self, step: &Step) -> f64 {
+    /// Width of a line by its height and plastic, mm, whatever the file says of it: of a box, or of an ellipse if
+    /// its own settings make round strands.
+    pub(super) fn width_by_plastic(&self, step: &Step) -> f64 {
         let room = step.plan_length() * f64::from(step.height);
-        f64::from(step.filament) * self.filament_area / room
+        f64::from(step.filament) * self.filament_area / (room * self.section)
+    }
+
+    /// How many times as much plastic as others of its size a line gets since it lies on the bed.
+    pub(super) fn pressed(&self, step: &Step) -> f64 {
+        let is_low = step.heights()[0] - f64::from(step.height) < ON_BED;
+        if is_low { self.pressed } else { 1.0 }
     }
 
     /// A line's plastic, mm³, less what settings make of it on purpose.
@@ -150,10 +169,10 @@ impl Terms {
             Role::OuterWall | Role::InnerWall => self.flow[0],
             Role::Skin | Role::Ironing => self.flow[1],
             Role::Infill => self.flow[2],
-            Role::NonPlanar => self.multiplier,
-            _ => 1.0,
+            Role::NonPlanar => self.multiplier * self.section,
+            _ => self.section,
         };
-        f64::from(step.filament) * self.filament_area / flow
+        f64::from(step.filament) * self.filament_area / (flow * self.pressed(step))
     }
 }
 
@@ -214,7 +233,7 @@ fn flow(own: &Settings) -> [f64; 3] {
     let room = extrusion.factor_width * extrusion.factor_height;
     [extrusion.wall_factor, extrusion.skin_factor, extrusion.infill_factor].map(|factor| {
         let by_size = match extrusion.model {
-            ExtrusionModel::Area => 1.0,
+            ExtrusionModel::Area | ExtrusionModel::Round => extrusion.section(),
             ExtrusionModel::Factor => factor * own.filament_area() / room,
         };
         by_size * extrusion.multiplier

@@ -15,6 +15,9 @@ use slicer::report::nonplanar::{FlatReport, NonPlanarReport};
 use slicer::report::{BrimReport, CoolingReport, DriveReport, MotionReport, Report};
 use std::time::Duration;
 
+/// Layers that end nearer to the models' height end there, mm.
+const LEAST_REST: f64 = 0.05;
+
 /// For which printer, material and print, and every file that had a say in it.
 fn chosen(report: &Report) -> String {
     let of = |kind: &str| {
@@ -44,9 +47,10 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
     let dual = report.dual.as_ref().map_or_else(String::new, |dual| {
         format!("; {} of {} groups of layers with thick infill", dual.thick_blocks, dual.blocks)
     });
+    let ends = ends(report);
     format!(
         "{}\n\
-         {} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm{raft}\n\
+         {} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm{ends}{raft}\n\
          filament {:.0} mm, {:.2} cm³, {:.1} g{}\n\
          prints in {}, sliced in {:.2} s{dual}\n{}",
         chosen(report),
@@ -60,6 +64,14 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
         took.as_secs_f64(),
         report.cooling.as_ref().map_or_else(String::new, slower),
     ) + &report.nonplanar.as_ref().map_or_else(String::new, nonplanar)
+}
+
+/// How high the nozzle gets, where that is not the models' height: layers are whole.
+fn ends(report: &Report) -> String {
+    let raft = report.raft.as_ref().map_or(0.0, |raft| raft.height_mm + raft.gap_mm);
+    let top = report.layers.top_mm - raft;
+    let differs = report.nonplanar.is_none() && (top - report.size_mm[2]).abs() >= LEAST_REST;
+    if differs { format!("; the last layer ends at {top:.2} mm") } else { String::new() }
 }
 
 /// How much of the tops follows the surface, and why the rest does not.
@@ -237,7 +249,12 @@ mod tests {
         let report = Report {
             profiles,
             size_mm: [40.0, 30.0, 20.0],
-            layers: LayersReport { count: 100, height_mm: 0.2, ..LayersReport::default() },
+            layers: LayersReport {
+                count: 100,
+                height_mm: 0.2,
+                top_mm: 19.9,
+                ..LayersReport::default()
+            },
             roles: vec![role("outer wall", 30.0), role("skin", 0.0), role("thick infill", 90.0)],
             filament: FilamentReport {
                 length_mm: 120.0,
@@ -253,7 +270,7 @@ mod tests {
             summary(&report, Duration::from_millis(1230)),
             "printer ender-3, material petg, print standard (none chosen; -p chooses, \
              `slicer profile list` names them); with a/mine.toml\n\
-             100 layers of 0.2 mm, 40.0 x 30.0 x 20.0 mm\n\
+             100 layers of 0.2 mm, 40.0 x 30.0 x 20.0 mm; the last layer ends at 19.90 mm\n\
              filament 120 mm, 0.29 cm³, 0.4 g (outer wall 25 %, thick infill 75 %)\n\
              prints in 1 h 23 min, sliced in 1.23 s; 46 of 47 groups of layers with thick infill\n"
         );

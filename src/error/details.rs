@@ -37,7 +37,11 @@ pub const CODES: &[(&str, u8, &str)] = &[
     ),
     ("too-large", 3, "more triangles or moves than are allowed"),
     ("broken-mesh", 3, "a mesh that cannot be mended, or has faults with --mesh strict"),
-    ("does-not-fit", 3, "the print, or what lies around it, is larger than the machine"),
+    (
+        "does-not-fit",
+        3,
+        "the print, or what lies around it, is larger than the machine, or smaller than it prints",
+    ),
     ("in-the-way", 3, "the first layer lies where the start block primes the nozzle"),
     (
         "nothing-to-print",
@@ -249,6 +253,7 @@ impl From<&Refusal> for Details {
     fn from(error: &Refusal) -> Self {
         match error {
             Refusal::TooLow { .. } | Refusal::TooThin { .. } => Self::of("nothing-to-print"),
+            Refusal::TooSmall { file, .. } => Self::in_file("does-not-fit", file),
             Refusal::TooTall { .. } | Refusal::BesideBed { .. } => Self::of("does-not-fit"),
             Refusal::Open { models, layer, .. } => {
                 let place = Place { layer: Some(*layer), ..Place::default() };

@@ -1,14 +1,15 @@
 //! Job + placed models -> stages: what the flow in `lib.rs` is put together from.
 //!
 //! Here is all code that names several stages at once: reading and placing ([`place`]), planning
-//! in batches ([`batches`]), what begins in the air ([`footing`]), skirt, brim and raft
-//! ([`sticking`]), skins that follow the surface ([`curved`]), the thumbnails
+//! in batches ([`batches`]), where raster lines lie ([`phase`]), what begins in the air ([`footing`]), skirt,
+//! brim and raft ([`sticking`]), skins that follow the surface ([`curved`]), the thumbnails
 //! ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs that cannot seek ([`spool`]).
 
 pub mod batches;
 pub mod curved;
 pub mod footing;
 pub mod footprint;
+pub mod phase;
 pub mod place;
 pub mod prime;
 pub mod refuse;
@@ -49,8 +50,9 @@ pub fn compensation(settings: &Settings) -> Compensation {
 /// The layers that the models are cut into, at least one.
 ///
 /// # Errors
-/// [`Refusal::TooLow`], [`Refusal::TooTall`].
+/// [`Refusal::TooSmall`], [`Refusal::TooLow`], [`Refusal::TooTall`].
 pub fn heights(settings: &Settings, placed: &Placed) -> Result<Heights, Refusal> {
+    refuse::small(settings, placed)?;
     let (first, other) = (to_units(settings.first_layer_height), to_units(settings.layer_height));
     let heights = Heights::even(first, other, placed.mesh.top());
     if heights.count() == 0 {

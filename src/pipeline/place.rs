@@ -78,14 +78,14 @@ pub fn print_facts(
     beside: Option<(Point, Point)>,
 ) -> PrintFacts {
     let half = [placed.size_mm[0] / 2.0, placed.size_mm[1] / 2.0];
-    let (low, high) = beside.map_or(([0.0; 2], [0.0; 2]), |(low, high)| {
-        ([to_mm(low.x), to_mm(low.y)], [to_mm(high.x), to_mm(high.y)])
-    });
+    let both = |at: Point| [to_mm(at.x), to_mm(at.y)];
+    let middle = both(placed.middle);
+    let (low, high) = beside.map_or((middle, middle), |(low, high)| (both(low), both(high)));
     let at = placed.offset;
     PrintFacts {
         layers: heights.count() + lift.layers(),
-        min: [0, 1].map(|axis| at[axis] + low[axis].min(-half[axis])),
-        max: [0, 1].map(|axis| at[axis] + high[axis].max(half[axis])),
+        min: [0, 1].map(|axis| at[axis] + low[axis].min(middle[axis] - half[axis])),
+        max: [0, 1].map(|axis| at[axis] + high[axis].max(middle[axis] + half[axis])),
         height: to_mm(heights.top(heights.count() - 1).max(highest) + lift.by()),
     }
 }

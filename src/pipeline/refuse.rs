@@ -1,7 +1,8 @@
 //! Job + model -> Refusal: jobs that cannot be printed, found out before anything is written.
 //!
-//! There are four causes, and each is known at another time:
+//! There are five causes, and each is known at another time:
 //!
+//! - A model is smaller than the machine prints: known from its size.
 //! - The model is lower than half a layer, or its last layer ends above the machine: known from
 //!   its height, see [`heights`](super::heights).
 //! - The mesh is open, and a contour would have to be closed by a line that is too long. Contours
@@ -24,6 +25,23 @@ use crate::profile::Settings;
 use crate::progress::Progress;
 use crate::slice::{Heights, Slicer};
 use crate::units::{Coord, to_mm, to_units};
+
+/// Refuses models of which a side is below the least that the machine prints.
+///
+/// # Errors
+/// [`Refusal::TooSmall`].
+pub fn small(settings: &Settings, placed: &Placed) -> Result<(), Refusal> {
+    let least_mm = settings.machine.min_part_size;
+    let least = to_units(least_mm);
+    let is_small = |size_mm: &[f64; 3]| size_mm.iter().any(|side| to_units(*side) < least);
+    match placed.reports.iter().find(|report| is_small(&report.size_mm)) {
+        None => Ok(()),
+        Some(report) => {
+            let (file, size_mm) = (report.file.clone(), report.size_mm);
+            Err(Refusal::TooSmall { file, size_mm, least_mm })
+        }
+    }
+}
 
 /// Refuses a print that ends above the machine. The model itself fits, or it would not have been
 /// placed, but its last layer is counted as soon as its middle is inside the model, a raft lifts it,
@@ -90,7 +108,28 @@ pub fn thin(settings: &Settings) -> Refusal {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::MeshReport;
     use crate::profile;
+
+    #[test]
+    fn a_part_has_the_least_side_in_all_directions_or_is_refused() {
+        let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
+        let of = |size_mm: [f64; 3]| {
+            let report = MeshReport { file: "a.stl".to_owned(), size_mm, ..MeshReport::default() };
+            Placed { reports: vec![report], ..Placed::default() }
+        };
+        assert_eq!(small(&settings, &of([0.1; 3])), Ok(()));
+        settings.machine.min_part_size = 5.0;
+        assert_eq!(small(&settings, &of([5.0, 30.0, 5.0])), Ok(()));
+        for axis in 0..3 {
+            let mut size = [30.0; 3];
+            size[axis] = 4.9999;
+            let text = small(&settings, &of(size)).unwrap_err().to_string();
+            for part in ["a.stl", "30.00", "5 mm", "machine.min_part_size", "--scale"] {
+                assert!(text.contains(part) && !text.contains('\n'), "{text}");
+            }
+        }
+    }
 
     #[test]
     fn a_print_ends_below_the_machine_or_is_refused() {

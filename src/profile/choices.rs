@@ -259,6 +259,9 @@ pub enum SupportBase {
 pub enum ExtrusionModel {
     /// Line width × layer height, which is a bead with rounded ends that is `h·(1 − π/4)` wider than its spacing.
     Area,
+    /// Line width × layer height × π/4, an ellipse as wide and as high as the line: a round strand where both
+    /// are the same.
+    Round,
     /// Factors measured on the machine.
     Factor,
 }

@@ -8,7 +8,7 @@
 //!
 //! All of it depends on the settings alone, never on a model.
 
-use super::{BrimPlace, DualRatio, ExtrusionModel, Machine, Origin, Settings};
+use super::{BrimPlace, DualRatio, Extrusion, ExtrusionModel, Machine, Origin, Settings};
 use crate::head::Head;
 use std::f64::consts::PI;
 
@@ -43,6 +43,23 @@ impl Machine {
             [0, 1, 2].map(|axis| set[axis].unwrap_or(volume[axis]))
         };
         [or(low, from), or(high, to)]
+    }
+}
+
+impl Extrusion {
+    /// How much of the box around a line, its width times its height, is plastic by the model.
+    ///
+    /// An ellipse fills π/4 of it. It is the section of a strand that is laid down rather than pressed flat, so
+    /// that it touches what lies beside and below it, and leaves the corners between open: where width and
+    /// height are the same, the round strand that leaves the nozzle. Of other ratios it is still π/4, so
+    /// that lines of two layers at once take the plastic of two, and lines that share a place that of the
+    /// place. A line much wider than high is pressed flat, and takes more: that is what `area` is for.
+    #[must_use]
+    pub fn section(&self) -> f64 {
+        match self.model {
+            ExtrusionModel::Round => PI / 4.0,
+            ExtrusionModel::Area | ExtrusionModel::Factor => 1.0,
+        }
     }
 }
 
@@ -246,7 +263,9 @@ impl Settings {
     fn layer_flow(&self) -> f64 {
         let extrusion = &self.extrusion;
         let area = match extrusion.model {
-            ExtrusionModel::Area => self.line_width * self.layer_height,
+            ExtrusionModel::Area | ExtrusionModel::Round => {
+                self.line_width * self.layer_height * extrusion.section()
+            }
             ExtrusionModel::Factor => {
                 let width = self.line_width / extrusion.factor_width;
                 let height = self.layer_height / extrusion.factor_height;

@@ -68,6 +68,7 @@ const KEYS: &[(&str, Names)] = &[
     ("infill", [&["fill_density"], &["sparse_infill_density"], &["infill_sparse_density", "infill_density"]]),
     ("pattern", [&["fill_pattern"], &["sparse_infill_pattern"], &["infill_pattern"]]),
     ("angle", [&["fill_angle"], &["infill_direction", "solid_infill_direction"], &["infill_angles"]]),
+    ("infill_start", [&[], &[], &["infill_offset_x", "infill_offset_y"]]),
     ("infill_overlap", [&[], &["infill_wall_overlap"], &["infill_overlap_mm", "skin_overlap"]]),
     ("arcs", [&["arc_fitting"], &["enable_arc_fitting"], &["arcwelder_enable"]]),
     ("arc_tolerance", [&["arc_fitting_tolerance"], &[], &["arcwelder_resolution"]]),

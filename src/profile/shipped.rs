@@ -14,9 +14,9 @@ macro_rules! shipped {
 }
 
 const BUILTIN: [&[(ProfileKind, &str, &str)]; 3] = [
-    shipped!(Printer, "printers", "zcube-dual" "replicator" "replicator-2" "replicator-2x" "witbox-1" "witbox-2" "ender-3" "prusa-mk3s" "prusa-mk4" "voron-2.4" "ultimaker-2" "generic-marlin" "generic-klipper" "generic-reprapfirmware"),
-    shipped!(Material, "materials", "pla" "petg" "abs" "asa" "tpu" "pla-thesis"),
-    shipped!(Print, "prints", "standard" "draft" "fine" "strong" "one-wall" "thesis"),
+    shipped!(Printer, "printers", "zcube-dual" "replicator" "replicator-2" "replicator-2x" "witbox-1" "witbox-2" "ender-3" "prusa-mk3s" "prusa-mk4" "voron-2.4" "ultimaker-2" "narino" "generic-marlin" "generic-klipper" "generic-reprapfirmware"),
+    shipped!(Material, "materials", "pla" "petg" "abs" "asa" "tpu" "pla-thesis" "abs-narino"),
+    shipped!(Print, "prints", "standard" "draft" "fine" "strong" "one-wall" "thesis" "strand"),
 ];
 
 fn all() -> impl Iterator<Item = &'static (ProfileKind, &'static str, &'static str)> {

@@ -118,6 +118,17 @@ mod tests {
     }
 
     #[test]
+    fn the_last_layer_ends_within_half_a_layer_of_the_top() {
+        for (first, other) in [(6_000, 10_000), (3_000, 2_000), (2_000, 3_001)] {
+            for top in (first..80_000).step_by(37) {
+                let heights = Heights::even(first, other, top);
+                let rest = heights.top(heights.count() - 1) - top;
+                assert!(2 * rest.abs() <= other + 1, "{first} {other} {top}: {rest}");
+            }
+        }
+    }
+
+    #[test]
     fn layers_stand_on_each_other_whatever_their_heights() {
         let heights = Heights::new([3000, 1000, 2500, 500]);
         assert_eq!([0, 1, 2, 3].map(|k| heights.top(k)), [3000, 4000, 6500, 7000]);

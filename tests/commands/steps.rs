@@ -276,3 +276,103 @@ fn estimate_tells_the_highest_rates_where_the_profile_has_steps() {
         slicer(&folder).args(["estimate", "a.gcode", "--json", "-p", "generic-marlin"]).assert();
     assert!(json(&none.get_output().stdout)["highest_rate"].is_null());
 }
+
+/// What the events of a stream say of strands: lowest and highest x and y while plastic comes, mm; heights at
+/// which it comes, in steps; the last time, s; and the least time between two steps of each axis, µs.
+struct Judged {
+    ends: [[f64; 2]; 2],
+    heights: Vec<i64>,
+    seconds: f64,
+    least: [u64; 4],
+}
+
+/// Judges a text of events by mm of a step alone.
+fn judged(events: &str, mm: f64) -> Judged {
+    let (mut at, mut last) = ([0_i64; 4], [None::<u64>; 4]);
+    let mut judged = Judged {
+        ends: [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]],
+        heights: Vec::new(),
+        seconds: 0.0,
+        least: [u64::MAX; 4],
+    };
+    for line in events.lines().filter(|line| !line.starts_with('#')) {
+        let words: Vec<&str> = line.split(' ').collect();
+        let time: u64 = words[0].parse().unwrap();
+        let axis = ["X", "Y", "Z", "E"].iter().position(|axis| *axis == words[1]).unwrap();
+        at[axis] += if words[2] == "+" { 1 } else { -1 };
+        if let Some(before) = last[axis].replace(time) {
+            judged.least[axis] = judged.least[axis].min(time - before);
+        }
+        judged.seconds = time as f64 / 1e6;
+        if axis < 3 {
+            continue;
+        }
+        for (k, place) in [at[0], at[1]].map(|steps| steps as f64 * mm).into_iter().enumerate() {
+            judged.ends[0][k] = judged.ends[0][k].min(place);
+            judged.ends[1][k] = judged.ends[1][k].max(place);
+        }
+        if judged.heights.last() != Some(&at[2]) {
+            judged.heights.push(at[2]);
+        }
+    }
+    judged
+}
+
+/// The cube of 20 mm on the stepper machine of Nariño, as its motors go.
+fn on_narino(set: &[&str]) -> Judged {
+    let folder = folder();
+    let words = ["cube.stl", "-q", "-p", "narino", "-o", "a.steps"];
+    slicer(&folder).args(words).args(set).assert().success();
+    let play = ["play", "a.steps", "-q", "--events", "e.txt"];
+    slicer(&folder).args(play).assert().success();
+    judged(&fs::read_to_string(folder.path().join("e.txt")).unwrap(), 0.1014)
+}
+
+#[test]
+fn the_stepper_machine_makes_the_size_in_steps_and_the_sources_way_a_strand_more() {
+    for (set, more) in [(&[][..], 0.0), (&["--set", "outer_wall_inset=0"], 1.0)] {
+        let judged = on_narino(set);
+        for axis in 0..2 {
+            // The strand is as wide as 1 mm, half of it on each side.
+            let size = judged.ends[1][axis] - judged.ends[0][axis] + 1.0;
+            assert!((size - 20.0 - more).abs() <= 0.1, "{set:?}: {size}");
+        }
+        // 0.6, 1.6 … 19.6 mm, by steps of 0.01325 mm.
+        let heights: Vec<i64> =
+            (0..20).map(|k| ((0.6 + f64::from(k)) / 0.01325).round() as i64).collect();
+        assert_eq!(judged.heights, heights);
+        assert_eq!(judged.least[..2], [12_500; 2]);
+        assert!(judged.least.iter().all(|least| *least >= 12_500), "{:?}", judged.least);
+    }
+}
+
+#[test]
+fn at_twice_the_rate_the_stepper_machine_takes_half_the_time() {
+    let twice = [
+        "steps.rate_x=160",
+        "steps.rate_y=160",
+        "steps.rate_e=160",
+        "speed.wall=16.2",
+        "speed.infill=16.2",
+        "speed.travel=16.2",
+    ];
+    let twice: Vec<&str> = twice.iter().flat_map(|set| ["--set", *set]).collect();
+    let (usual, twice) = (on_narino(&[]), on_narino(&twice));
+    assert_eq!(twice.least[..2], [6_250; 2]);
+    // All but the way up: 22 mm and back to the plate's edge at about a mm a second.
+    let up = 32.0;
+    let share = (twice.seconds - up) / (usual.seconds - up);
+    assert!((share - 0.5).abs() < 0.005, "{share}");
+    assert_eq!(usual.ends, twice.ends);
+}
+
+#[test]
+fn a_part_too_small_for_the_stepper_machine_is_refused_in_a_line() {
+    let folder = folder();
+    let words = ["cube.stl", "-p", "narino", "--scale", "0.2", "-o", "a.steps"];
+    let refused = slicer(&folder).args(words).assert().code(3).stdout("");
+    let said = text(&refused.get_output().stderr);
+    assert!(said.starts_with("error: cube.stl: the model is 4.00 × 4.00 × 4.00 mm"), "{said}");
+    assert!(said.contains("machine.min_part_size") && said.lines().count() == 1, "{said}");
+    assert!(!folder.path().join("a.steps").exists());
+}

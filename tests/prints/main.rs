@@ -14,6 +14,7 @@ mod library;
 mod metamorphic;
 mod models;
 mod motion;
+mod narino;
 mod nonplanar;
 mod printers;
 mod raft;

@@ -51,7 +51,7 @@ fn hanging_inner_walls_are_no_outline() {
 
 #[test]
 fn the_shipped_profiles_stay_on_their_machines() {
-    let cube = boxes(&[[[0.0; 3], [10.0, 10.0, 2.0]]]);
+    let cube = boxes(&[[[0.0; 3], [10.0, 10.0, 5.0]]]);
     for profile in slicer::profile::builtin_names() {
         sound(&sliced(&cube, profile, &[]));
     }

@@ -37,14 +37,17 @@ pub const TINY_MM: f64 = 3.0;
 /// The models as they lie on the bed, and what was found on the way.
 #[derive(Debug, Clone, Default)]
 pub struct Placed {
-    /// All models and copies; x and y from the middle of the layout, z from the bed.
+    /// All models and copies; x and y from the middle of the layout, or from where it was moved, z from the
+    /// bed.
     pub mesh: Mesh,
     /// Which half-edges of `mesh` are neighbours.
     pub adjacency: Adjacency,
     /// One for each model, in the order given; copies are not counted.
     pub reports: Vec<MeshReport>,
-    /// Where the layout's middle is, in the machine's coordinates, mm.
+    /// Where the mesh's origin is, in the machine's coordinates, mm: the layout's middle, unless it was moved.
     pub offset: [f64; 2],
+    /// Where the layout's middle is in the mesh, grid units: at its origin, unless it was moved.
+    pub middle: Point,
     /// Size of the whole layout, mm.
     pub size_mm: [f64; 3],
     /// The lowest and the highest corner of each body, from the middle of the layout, grid units.

@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Extrusion {
-    /// How the amount is found: line width times layer height, or the factors below.
+    /// How the amount is found: line width times layer height; for a strand that stays round, π/4 of that;
+    /// or the factors below.
     #[schemars(extend("default" = "area"))]
     pub model: ExtrusionModel,
     /// Factor on every amount of filament.

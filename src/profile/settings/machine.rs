@@ -24,6 +24,9 @@ pub struct Machine {
     /// Size of the print volume in z.
     #[schemars(range(min = 1, max = 5_000), extend("unit" = "mm"))]
     pub bed_height: f64,
+    /// Least size of a part in x, y and z; smaller ones are refused. 0 sets no limit.
+    #[schemars(range(min = 0, max = 1_000), extend("unit" = "mm", "default" = 0))]
+    pub min_part_size: f64,
     /// Whether the bed can be heated; if not, filament.bed_temperature is 0 for every material.
     #[schemars(extend("default" = true))]
     pub heated_bed: bool,

@@ -179,6 +179,10 @@ pub struct Settings {
     /// auto takes the direction with the fewest turns.
     #[schemars(extend("unit" = "degrees", "default" = "auto"))]
     pub angle: Angle,
+    /// Where an infill line lies: so far from the lowest coordinate of all parts, across the lines. All others,
+    /// those of skins too, follow it to both sides. Unset, they follow one through the parts' middle.
+    #[schemars(range(min = 0, max = 100), extend("unit" = "mm"))]
+    pub infill_start: Option<f64>,
     /// Whether the first skin above sparse infill runs across the lines below it and ends on one of
     /// them, whatever its layer; off, the direction alternates with the layer alone.
     #[schemars(extend("default" = true))]
