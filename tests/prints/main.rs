@@ -18,6 +18,7 @@ mod nonplanar;
 mod printers;
 mod raft;
 mod roughness;
+mod routes;
 mod seams;
 mod segments;
 mod skins;
