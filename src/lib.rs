@@ -92,7 +92,6 @@ use pipeline::refuse;
 use pipeline::sticking::Sticking;
 use pipeline::thumbnails::thumbnails;
 use plan::lift::Lift;
-use units::to_units;
 
 /// Slices `job` and writes the G-code to `out`, which is empty yet.
 ///
@@ -126,13 +125,9 @@ pub fn slice_placed(
     let heights = pipeline::heights(&job.settings, placed)?;
     let lift = Lift::new(&job.settings);
     progress.set_total(heights.count() + lift.layers());
-    let tolerance = to_units(job.settings.tolerance);
     let (settings, slicer) = rayon::join(
         || pipeline::settle(&job.settings, &placed.mesh),
-        || {
-            slice::Slicer::new(&placed.mesh, &placed.adjacency, heights.clone(), tolerance)
-                .moved(pipeline::compensation(&job.settings))
-        },
+        || pipeline::slicer(&job.settings, placed, heights.clone()),
     );
     refuse::gaps(job, placed, &slicer, progress)?;
 

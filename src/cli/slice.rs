@@ -4,8 +4,9 @@
 //! 2. The report's sink is opened, and a report that is there says that the run has not ended.
 //! 3. Profiles are loaded, the models are sliced into the sink of the G-code, and with `--check` that is
 //!    read back and judged.
-//! 4. What was found is told, and written to the report.
-//! 5. G-code and report are put in place together.
+//! 4. With `[steps]` it is read back for the rates of its motors, too, if anybody gets to see them.
+//! 5. What was found is told, and written to the report.
+//! 6. G-code and report are put in place together.
 //!
 //! From the second step on a failure is reported, where a report is asked for.
 
@@ -19,10 +20,12 @@ use anyhow::{Context as _, Result};
 use slicer::check::terms::Terms;
 use slicer::error::Error;
 use slicer::gcode;
-use slicer::profile::Profile;
+use slicer::profile::{Profile, Settings};
 use slicer::progress::Progress;
-use slicer::reader::Print;
+use slicer::reader::{Print, Reading};
 use slicer::report::Report;
+use slicer::report::steps::StepsReport;
+use slicer::steps;
 use slicer::warning::{Warning, plural};
 use slicer::{Job, Model, text};
 use std::ffi::OsString;
@@ -160,7 +163,24 @@ fn work(args: &SliceArgs, out: &Path, profile: Profile, sink: &mut Sink) -> Resu
     };
     let progress = Arc::new(Progress::default());
     let _meter = progress::Meter::start(&progress, !args.quiet);
-    slice_and_check(&job, args.check, out, sink, &progress)
+    let mut report = slice_and_check(&job, args.check, out, sink, &progress)?;
+    // Reading all of it again is for those who get to see what it gives.
+    if !args.quiet || args.report.is_some() {
+        report.steps = steps_of(&job.settings, out, sink)?;
+    }
+    Ok(report)
+}
+
+/// How fast motors have to step for what was written, where the profile says how far a step goes.
+fn steps_of(settings: &Settings, out: &Path, sink: &mut Sink) -> Result<Option<StepsReport>> {
+    if steps::most_rates(settings).is_none() {
+        return Ok(None);
+    }
+    let reading = Reading::from(input::firmware(settings));
+    let read = sink
+        .read_back()
+        .and_then(|mut source| StepsReport::of_file(&mut source, reading, settings));
+    read.with_context(|| Output { file: out.to_owned(), action: "cannot read back" })
 }
 
 /// Slices; with `check` reads the product back and checks it against the models.

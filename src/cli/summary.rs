@@ -6,12 +6,14 @@
 //! 4. How long it prints, and what dual injection did.
 //! 5. Which layers are printed slower to take their least time, if any are.
 //! 6. How much of the tops has skins that follow the surface, if that was asked for.
+//! 7. How fast motors have to step, if the profile says how far a step goes.
 //!
 //! Notes, such as of what was mended or of a brim that nobody asked for, stand before it.
 
 use slicer::mesh::{MeshReport, faults};
 use slicer::profile::{Profile, dump};
 use slicer::report::nonplanar::{FlatReport, NonPlanarReport};
+use slicer::report::steps::{MotorReport, StepsReport};
 use slicer::report::{BrimReport, CoolingReport, DriveReport, MotionReport, Report};
 use std::time::Duration;
 
@@ -64,6 +66,16 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
         took.as_secs_f64(),
         report.cooling.as_ref().map_or_else(String::new, slower),
     ) + &report.nonplanar.as_ref().map_or_else(String::new, nonplanar)
+        + &report.steps.as_ref().map_or_else(String::new, motors)
+}
+
+/// The highest rate of each motor, and its share of what the motor can make.
+fn motors(steps: &StepsReport) -> String {
+    let motor = |(axis, motor): (char, MotorReport)| {
+        format!("{axis} {:.0} ({:.0} %)", motor.highest_rate_per_s, 100.0 * motor.share)
+    };
+    let all: Vec<String> = steps.motors().into_iter().map(motor).collect();
+    format!("steps/s at most, and of what the motor can: {}\n", all.join(", "))
 }
 
 /// How high the nozzle gets, where that is not the models' height: layers are whole.

@@ -242,6 +242,7 @@ impl From<&steps::Error> for Details {
             Cause::Unreadable(_) => Self::in_file("unreadable", &error.file),
             Cause::NotSteps | Cause::Version(_) => Self::in_file("not-steps", &error.file),
             Cause::Header | Cause::Damaged { .. } => Self::in_file("damaged", &error.file),
+            Cause::TooLong => Self::in_file("too-large", &error.file),
             Cause::TooFar { line, .. } => {
                 Self::in_file("does-not-fit", &error.file).at(place(*line))
             }

@@ -14,6 +14,7 @@ pub mod outline;
 pub mod parallel;
 pub mod polygon;
 pub mod polyline;
+pub mod ranks;
 pub mod raster;
 pub mod section;
 pub mod segment;

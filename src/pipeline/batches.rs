@@ -221,7 +221,7 @@ impl Orderer<'_> {
             paths.extend(self.sticking.layer(&region.layer, paths));
         }
         let unordered = |(region, (footprint, paths)): (&Region, (Footprint, Vec<Path>))| {
-            (footprint, Unordered::new(paths, &region.layer.contours))
+            (footprint, Unordered::new(paths, &region.layer.contours, plan))
         };
         let unordered: Vec<(Footprint, Unordered)> =
             regions.par_iter().zip(filled).map(unordered).collect();
@@ -260,7 +260,7 @@ impl Orderer<'_> {
         self.lift.raise(&mut toolpaths);
         let (mut head, mut seams) = (Head::default(), Seams::default());
         let courses = self.sticking.raft().into_iter().map(|(layer, paths)| {
-            let paths = Unordered::new(paths, &layer.contours);
+            let paths = Unordered::new(paths, &layer.contours, self.plan);
             let paths = order::order(paths, head.at.unwrap_or_default(), &mut seams, self.plan);
             let next = head.after(&layer, &paths);
             travel::toolpath(&layer, paths, std::mem::replace(&mut head, next), self.plan)

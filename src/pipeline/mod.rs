@@ -22,9 +22,9 @@ use crate::error::Refusal;
 use crate::mesh::Mesh;
 use crate::mesh::place::Placed;
 use crate::plan::lift::Lift;
-use crate::profile::{Angle, Settings};
+use crate::profile::{Angle, Settings, TravelOrder};
 use crate::region::angle;
-use crate::slice::{Compensation, Heights};
+use crate::slice::{Compensation, Heights, Slicer};
 use crate::units::to_units;
 
 /// The settings with all that depends on the model decided.
@@ -37,9 +37,17 @@ pub fn settle(settings: &Settings, mesh: &Mesh) -> Settings {
     Settings { angle, ..settings.clone() }
 }
 
-/// How far contours are moved.
+/// The models, to be cut into layers at these heights.
 #[must_use]
-pub fn compensation(settings: &Settings) -> Compensation {
+pub fn slicer<'a>(settings: &Settings, placed: &'a Placed, heights: Heights) -> Slicer<'a> {
+    let tolerance = to_units(settings.tolerance);
+    Slicer::new(&placed.mesh, &placed.adjacency, heights, tolerance)
+        .moved(compensation(settings))
+        .listed(settings.travel.order == TravelOrder::File)
+}
+
+/// How far contours are moved.
+fn compensation(settings: &Settings) -> Compensation {
     Compensation {
         outline: to_units(settings.xy_compensation),
         hole: to_units(settings.hole_compensation),

@@ -14,6 +14,9 @@
 //! 4. With seams in a line, the next layer begins near where this one began. So the last paths are
 //!    also sorted backwards from there, and the shorter order wins.
 //!
+//! As listed, for comparison (`travel.order = "file"`), a layer has no islands: its walls come in the
+//! order of their contours, then all else as the stages before have made it. Nothing is turned round.
+//!
 //! Of equally near paths the first in the list wins, so that the order is always the same.
 
 use super::next::Next;
@@ -22,6 +25,7 @@ use super::{PlanParams, tour};
 use crate::fill::{Path, Place, Role, Shape};
 use crate::geom::boxes::Around;
 use crate::geom::nest::extent;
+use crate::geom::ranks::Ranks;
 use crate::geom::{Contour, Point, double_area};
 use crate::profile::Seam;
 
@@ -62,17 +66,22 @@ impl Island {
 pub fn order(paths: Unordered, mut at: Point, seams: &mut Seams, params: &PlanParams) -> Vec<Path> {
     let Unordered { mut islands, first, helpers, last } = paths;
     let mut out = Vec::new();
-    first.into_iter().for_each(|path| out.push(entered(path, &mut at)));
+    if params.as_listed {
+        out.extend(first);
+        at = out.last().map_or(at, Path::end);
+    } else {
+        first.into_iter().for_each(|path| out.push(entered(path, &mut at)));
+    }
     let mut next = Next::new(islands.iter().map(Island::places));
     while let Some((k, _)) = next.take(at) {
         let Island { mut walls, inside } = std::mem::take(&mut islands[k]);
         seams.place(&mut walls, params.seam);
         order_walls(walls, &mut at, params, &mut out);
-        order_by_role(inside, Place::Inside, &mut at, &mut out);
+        order_by_role(inside, Place::Inside, &mut at, params, &mut out);
     }
-    order_by_role(helpers, Place::Helper, &mut at, &mut out);
-    order_by_role(last, Place::Last, &mut at, &mut out);
-    if matches!(params.seam, Seam::Rear | Seam::Aligned) {
+    order_by_role(helpers, Place::Helper, &mut at, params, &mut out);
+    order_by_role(last, Place::Last, &mut at, params, &mut out);
+    if !params.as_listed && matches!(params.seam, Seam::Rear | Seam::Aligned) {
         lead_back(&mut out);
     }
     seams.next_layer();
@@ -80,7 +89,13 @@ pub fn order(paths: Unordered, mut at: Point, seams: &mut Seams, params: &PlanPa
 }
 
 /// Sorts paths by role, and nearest first within a role. Then come those that have their turns.
-fn order_by_role(mut paths: Vec<Path>, place: Place, at: &mut Point, out: &mut Vec<Path>) {
+fn order_by_role(
+    mut paths: Vec<Path>,
+    place: Place,
+    at: &mut Point,
+    params: &PlanParams,
+    out: &mut Vec<Path>,
+) {
     let turn = |path: &Path| match path.shape {
         Shape::InTurn { turn } => Some(turn),
         Shape::Open | Shape::Loop { .. } => None,
@@ -88,24 +103,40 @@ fn order_by_role(mut paths: Vec<Path>, place: Place, at: &mut Point, out: &mut V
     for role in Role::ALL.into_iter().filter(|role| role.facts().place == place) {
         let mut open: Vec<Path> = paths.extract_if(.., |path| path.role == role).collect();
         let mut in_turn: Vec<Path> = open.extract_if(.., |path| turn(path).is_some()).collect();
-        order_open(open, at, out);
+        if params.as_listed {
+            out.extend(open);
+        } else {
+            order_open(open, at, out);
+        }
         in_turn.sort_by_key(turn);
-        *at = in_turn.last().map_or(*at, Path::end);
         out.extend(in_turn);
+        *at = out.last().map_or(*at, Path::end);
     }
 }
 
 impl Unordered {
-    /// Divides the paths of a layer among its outer contours.
+    /// Divides the paths of a layer among its outer contours; as listed all of them are one island, whose
+    /// walls have the order of the contours.
     #[must_use]
-    pub fn new(mut paths: Vec<Path>, contours: &[Contour]) -> Self {
+    pub fn new(mut paths: Vec<Path>, contours: &[Contour], params: &PlanParams) -> Self {
         let mut take = |place: Place| -> Vec<Path> {
             paths.extract_if(.., |path| path.role.facts().place == place).collect()
         };
         let (first, helpers) = (take(Place::First), take(Place::Helper));
         let last = take(Place::Last);
-        Self { islands: islands(paths, contours), first, helpers, last }
+        let islands =
+            if params.as_listed { listed(paths, contours) } else { islands(paths, contours) };
+        Self { islands, first, helpers, last }
     }
+}
+
+/// All paths, as one island.
+fn listed(mut paths: Vec<Path>, contours: &[Contour]) -> Vec<Island> {
+    let ranks = Ranks::new(contours);
+    let is_wall = |path: &mut Path| path.role.facts().place == Place::Walls;
+    let mut walls: Vec<Path> = paths.extract_if(.., is_wall).collect();
+    walls.sort_by_cached_key(|wall| ranks.of(wall.points.iter().map(|p| p.at)));
+    vec![Island { walls, inside: paths }]
 }
 
 /// Divides paths among the outer contours of a layer.
@@ -152,6 +183,13 @@ fn order_walls(walls: Vec<Path>, at: &mut Point, params: &PlanParams, out: &mut 
             let at = |wall: &Path| entries.iter().map(|&k| wall.points[k].at).collect();
             of(one).map_or_else(Vec::new, at)
         });
+        if params.as_listed {
+            for (one, entries) in group.iter().zip(&entries) {
+                let Some(wall) = walls[one.1].take() else { continue };
+                out.push(begun_wall(wall, entries[0], at, params));
+            }
+            continue;
+        }
         let mut next = Next::new(places);
         while let Some((one, entry)) = next.take(*at) {
             let Some(wall) = walls[group[one].1].take() else { continue };

@@ -1,7 +1,7 @@
 //! Settings -> PlanParams: converts the settings that the plan stage needs.
 
 use super::detour::DetourParams;
-use crate::profile::{RetractWhen, Seam, SeamInner, Settings, WallOrder};
+use crate::profile::{RetractWhen, Seam, SeamInner, Settings, TravelOrder, WallOrder};
 use crate::units::{Bounded as _, Coord, UNITS_PER_MM, to_units};
 
 /// How far seams are moved sideways, in line widths: further than a seam's own bulge is wide, and not so
@@ -11,6 +11,8 @@ const STAGGER: f64 = 4.0;
 /// The settings that the plan stage needs.
 #[derive(Debug, Clone)]
 pub struct PlanParams {
+    /// Paths are printed as the model file has them, not the nearest first.
+    pub(super) as_listed: bool,
     /// The outer wall is printed before the inner walls.
     pub(super) outer_first: bool,
     /// Where walls begin.
@@ -42,6 +44,7 @@ impl PlanParams {
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         Self {
+            as_listed: settings.travel.order == TravelOrder::File,
             outer_first: settings.wall_order == WallOrder::OuterFirst,
             seam: settings.seam,
             stagger: match settings.seam_inner {

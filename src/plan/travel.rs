@@ -122,7 +122,8 @@ fn moves(
 ) -> Vec<PrintMove> {
     let travels = Travels { contours, crossings: Crossings::new(contours), params };
     let mut moves: Vec<PrintMove> = Vec::with_capacity(paths.len());
-    for path in tour::improve(paths, at, &travels) {
+    let paths = if params.as_listed { paths } else { tour::improve(paths, at, &travels) };
+    for path in paths {
         let last = moves.last().map(|last| &last.path);
         let next = travels.to(path, last.map(Path::end).or(at), last);
         moves.push(next);

@@ -266,6 +266,18 @@ pub enum ExtrusionModel {
     Factor,
 }
 
+/// See [`Travel::order`](super::Travel::order).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TravelOrder {
+    /// Island by island, the nearest path each time, then reordered where that saves time.
+    Nearest,
+    /// All walls of a layer in the order in which the file's triangles begin their contours, each from
+    /// its first corner unless a seam is asked for; then skin and infill as they are scanned. No line is
+    /// turned round.
+    File,
+}
+
 /// See [`Retraction::when`](super::Retraction::when).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]

@@ -88,6 +88,7 @@ pub fn report(
         brim: None,
         raft: None,
         nonplanar: None,
+        steps: None,
         check: None,
     }
 }

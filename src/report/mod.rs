@@ -16,6 +16,7 @@ pub mod make;
 pub mod motion;
 pub mod nonplanar;
 mod reshaped;
+pub mod steps;
 pub mod tally;
 mod unused;
 
@@ -28,6 +29,7 @@ use nonplanar::NonPlanarReport;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::Serialize;
+use steps::StepsReport;
 
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
 pub const SCHEMA: u32 = 4;
@@ -105,6 +107,10 @@ pub struct Report {
     /// Skins that follow the surface; absent without `nonplanar.enabled`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nonplanar: Option<NonPlanarReport>,
+    /// How fast motors have to step; absent where the profile has no `[steps]`, and where nobody reads it:
+    /// with `-q` and no report.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steps: Option<StepsReport>,
     /// Findings.
     pub warnings: Vec<Warning>,
     /// The verdict of `--check`; absent without it.

@@ -19,6 +19,7 @@
 use super::simplify::{canonical, simplify};
 use super::{Compensation, Heights, Layer};
 use crate::geom::cells::Cells;
+use crate::geom::ranks::Ranks;
 use crate::geom::{Contour, Point, polygon};
 use crate::mesh::Mesh;
 use crate::mesh::edges::{Adjacency, NONE, parts};
@@ -40,6 +41,8 @@ pub struct Slicer<'a> {
     heights: Heights,
     tolerance: Coord,
     compensation: Compensation,
+    /// Contours keep the order in which triangles begin them.
+    as_listed: bool,
     /// Layers in each block but the last.
     block: usize,
     /// Triangles by block; a triangle is in each block whose planes it crosses.
@@ -95,13 +98,32 @@ impl<'a> Slicer<'a> {
         let cells = Cells::new(blocks, triangles, |t| reach(&mesh.triangles[t as usize]));
         let free = Mutex::default();
         let compensation = Compensation::default();
-        Self { mesh, adjacency, heights, tolerance, compensation, block, cells, below, free }
+        let as_listed = false;
+        Self {
+            mesh,
+            adjacency,
+            heights,
+            tolerance,
+            compensation,
+            as_listed,
+            block,
+            cells,
+            below,
+            free,
+        }
     }
 
     /// The same with contours moved.
     #[must_use]
     pub fn moved(self, compensation: Compensation) -> Self {
         Self { compensation, ..self }
+    }
+
+    /// The same with the contours of each layer in the order in which the triangles of the mesh begin
+    /// them, if `as_listed`, and else in one that does not depend on that.
+    #[must_use]
+    pub fn listed(self, as_listed: bool) -> Self {
+        Self { as_listed, ..self }
     }
 
     /// The same for its lowest `count` layers.
@@ -196,10 +218,15 @@ impl<'a> Slicer<'a> {
             .map(|c| simplify(&canonical(c), self.tolerance))
             .filter(|c| c.len() >= 3)
             .collect();
+        let found = if self.as_listed { contours.clone() } else { Vec::new() };
         // Sorted, so that the union does not depend on the order of the triangles.
         contours.sort_unstable();
         let contours = polygon::union(&contours);
-        let contours = self.compensation.apply(contours, k, &self.heights);
+        let mut contours = self.compensation.apply(contours, k, &self.heights);
+        if self.as_listed {
+            let ranks = Ranks::new(&found);
+            contours.sort_by_cached_key(|contour| ranks.of(contour.iter().copied()));
+        }
         Layer {
             index: k,
             z: self.heights.top(k),

@@ -13,10 +13,13 @@ use super::axis::AXES;
 use super::coils;
 use super::error::{Cause, Damage};
 use super::format::{
-    DIRECTIONS, FAR, Fields, Form, HEAD, HEADER, Header, MAGIC, MARK, OF_STEPS, OF_TOTALS, PAUSE,
-    PAYLOAD, SAME, SUM, Totals, VERSION,
+    DIRECTIONS, FAR, Fields, Form, HEAD, HEADER, Header, LONGEST, MAGIC, MARK, OF_STEPS, OF_TOTALS,
+    PAUSE, PAYLOAD, SAME, SUM, Totals, VERSION,
 };
 use std::io::{self, Read};
+
+/// A bit for each axis.
+const ALL: u8 = (1 << AXES) - 1;
 
 /// What a block holds, in its order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -148,7 +151,8 @@ impl<R: Read> Decoder<R> {
     fn last(&mut self, payload: &[u8], count: u16) -> Result<(), Cause> {
         let told = Totals::read(payload).ok_or_else(|| self.damaged(Damage::Content))?;
         let sums = Totals { time: told.time, ..self.totals };
-        if told != sums || count != 0 || i64::try_from(told.time).is_ok_and(|time| time < self.at) {
+        let is_over = i64::try_from(told.time).is_ok_and(|time| time >= self.at);
+        if told != sums || count != 0 || !is_over {
             return Err(self.damaged(Damage::Totals));
         }
         self.totals = told;
@@ -163,6 +167,9 @@ impl<R: Read> Decoder<R> {
     fn steps(&mut self, payload: &[u8], mut backwards: u8) -> Option<u16> {
         let mut fields = Fields(payload);
         let (mut before, mut count) = (None, 0_u16);
+        if backwards > ALL {
+            return None;
+        }
         while let Some([byte]) = fields.take() {
             let mask = byte & 15;
             if mask != 0 {
@@ -170,7 +177,7 @@ impl<R: Read> Decoder<R> {
                     FAR => fields.number()?,
                     code => before? + i64::from(code) - SAME,
                 };
-                if interval < 0 {
+                if !(0..=LONGEST).contains(&interval) {
                     return None;
                 }
                 before = Some(interval);
@@ -192,7 +199,7 @@ impl<R: Read> Decoder<R> {
                 }
                 _ => return None,
             }
-            if backwards > 15 {
+            if backwards > ALL {
                 return None;
             }
         }

@@ -46,7 +46,16 @@ pub enum Cause {
         /// Letter of the axis.
         axis: char,
     },
+    /// It would take longer than any print.
+    #[error(
+        "it takes more than {days:.0} days; look for a wait (G4) or a feed (F) that is not meant",
+        days = MOST_SECONDS / 86_400.0
+    )]
+    TooLong,
 }
+
+/// A stream takes no longer, s: one wait of a damaged file would make gigabytes of pauses.
+pub(super) const MOST_SECONDS: f64 = 1e7;
 
 /// How a block is damaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

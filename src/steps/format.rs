@@ -193,14 +193,14 @@ impl Fields<'_> {
         Some(*first)
     }
 
-    /// A number in seven bits a byte, the lowest first; none is longer than five bytes.
+    /// A number in seven bits a byte, the lowest first; none is longer than five bytes, or above [`LONGEST`].
     pub(super) fn number(&mut self) -> Option<i64> {
         let mut number = 0;
         for k in 0..5 {
             let [byte] = self.take()?;
             number |= i64::from(byte & 0x7F) << (7 * k);
             if byte < 0x80 {
-                return Some(number);
+                return (number <= LONGEST).then_some(number);
             }
         }
         None

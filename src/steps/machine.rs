@@ -7,6 +7,27 @@ use crate::profile::{ProfileError, Settings};
 /// Microseconds in a second.
 const SECOND: f64 = 1e6;
 
+/// Most steps a second that the motor of each axis can make: `steps.rate_x` …, or what the axis's own speed
+/// makes, and no more than pulses fit. `None` where the settings do not say how far a step of all axes goes.
+#[must_use]
+pub fn most_rates(settings: &Settings) -> Option<[f64; AXES]> {
+    let (steps, limits) = (&settings.steps, &settings.limits);
+    let per_mm = per_mm(settings)?;
+    let speeds = [limits.speed_x, limits.speed_y, limits.speed_z, limits.speed_e];
+    let rates = [steps.rate_x, steps.rate_y, steps.rate_z, steps.rate_e];
+    let by_pulse = SECOND / f64::from(2 * steps.pulse);
+    Some(std::array::from_fn(|axis| {
+        rates[axis].unwrap_or(speeds[axis] * per_mm[axis]).min(by_pulse)
+    }))
+}
+
+/// Steps for a mm of each axis, if all are known.
+pub(super) fn per_mm(settings: &Settings) -> Option<[f64; AXES]> {
+    let steps = &settings.steps;
+    let per_mm = [steps.x?, steps.y?, steps.z?, steps.e?];
+    (!per_mm.contains(&0.0)).then_some(per_mm)
+}
+
 /// A board and its motors. Arrays are x, y, z, e.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Machine {
@@ -31,7 +52,7 @@ impl Machine {
     /// # Errors
     /// [`ProfileError::Conflict`] if they do not say how far a step goes.
     pub fn new(settings: &Settings, start: Option<[f64; 3]>) -> Result<Self, ProfileError> {
-        let (steps, limits) = (&settings.steps, &settings.limits);
+        let steps = &settings.steps;
         let keys = ["steps.x", "steps.y", "steps.z", "steps.e"];
         let per_mm = [steps.x, steps.y, steps.z, steps.e];
         let mut scale = [Scale { steps: 1, mm: 1 }; AXES];
@@ -40,8 +61,7 @@ impl Machine {
             let conflict = Conflict::NoSteps { key: keys[axis] };
             scale[axis] = known.ok_or(ProfileError::Conflict { origin: None, source: conflict })?;
         }
-        let speeds = [limits.speed_x, limits.speed_y, limits.speed_z, limits.speed_e];
-        let rates = [steps.rate_x, steps.rate_y, steps.rate_z, steps.rate_e];
+        let rates = most_rates(settings).unwrap_or([1.0; AXES]);
         let [x, y, z] = start.unwrap_or([steps.home_x, steps.home_y, steps.home_z]);
         let [low, high] = settings.machine.nozzle_reach();
         let end = |ends: [f64; 3], axis: usize, none: i64| {
@@ -51,8 +71,7 @@ impl Machine {
         let start = [x, y, z, 0.0];
         Ok(Self {
             interval: std::array::from_fn(|axis| {
-                let rate = rates[axis].unwrap_or(speeds[axis] * scale[axis].per_mm());
-                let interval = (SECOND / rate - 1e-9).ceil().min(f64::from(u32::MAX)) as u32;
+                let interval = (SECOND / rates[axis] - 1e-9).ceil().min(f64::from(u32::MAX)) as u32;
                 interval.max(2 * steps.pulse)
             }),
             turn: steps.turn,

@@ -18,7 +18,7 @@
 
 use super::axis::{AXES, LETTERS, PM, nearest, picometres};
 use super::encode::Encoder;
-use super::error::{Cause, Error};
+use super::error::{Cause, Error, MOST_SECONDS};
 use super::format::{Form, Header, Totals};
 use super::line::Line;
 use super::machine::Machine;
@@ -32,6 +32,9 @@ use crate::units::MmPerS;
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Write};
 use std::ops::ControlFlow;
+
+/// No feed is slower, mm/s, whatever a file says: a move of any length ends.
+const SLOWEST: f64 = 1e-3;
 
 /// How a stream is made, besides the settings.
 #[derive(Debug, Clone, Copy)]
@@ -118,7 +121,7 @@ pub fn make(
     maker.settle();
     match maker.failed {
         Some(Failed::Write(error)) => return Err(Failure::Write(error)),
-        Some(Failed::TooFar(cause)) => return Err(cause.of(file).into()),
+        Some(Failed::Refused(cause)) => return Err(cause.of(file).into()),
         None if maker.made.moves == 0 => return Err(reader::Cause::NoMove.of(file).into()),
         None => {}
     }
@@ -135,7 +138,7 @@ enum Waiting {
 
 enum Failed {
     Write(io::Error),
-    TooFar(Cause),
+    Refused(Cause),
 }
 
 /// Makes steps of events.
@@ -224,7 +227,20 @@ impl<'a> Maker<'a> {
                 clock.dwell(seconds, ());
                 self.waiting.push_back(Waiting::Rest);
             }
-            None => self.pace.pass(seconds * 1e6),
+            None => self.pass(seconds),
+        }
+    }
+
+    /// Nothing moves for so long, s.
+    fn pass(&mut self, seconds: f64) {
+        self.pace.pass(seconds * 1e6);
+        self.look_at_time();
+    }
+
+    /// What takes too long is refused before the steps after it are written.
+    fn look_at_time(&mut self) {
+        if self.pace.end() as f64 > MOST_SECONDS * 1e6 && self.failed.is_none() {
+            self.failed = Some(Failed::Refused(Cause::TooLong));
         }
     }
 
@@ -303,7 +319,7 @@ impl<'a> Maker<'a> {
                 if self.made.slowed == 1 { line } else { self.made.first_slowed };
         }
         (self.at, self.place) = (to, place);
-        let feed = feed.min(most);
+        let feed = feed.max(SLOWEST).min(most);
         match &mut self.clock {
             Some(clock) => {
                 clock.push(Move { delta, feed: MmPerS(feed), tag: () });
@@ -314,7 +330,7 @@ impl<'a> Maker<'a> {
     }
 
     fn too_far(&mut self, line: u64, axis: usize) {
-        self.failed = Some(Failed::TooFar(Cause::TooFar { line, axis: LETTERS[axis] }));
+        self.failed = Some(Failed::Refused(Cause::TooFar { line, axis: LETTERS[axis] }));
     }
 
     /// Notes what lies beyond the ends of an axis.
@@ -337,7 +353,7 @@ impl<'a> Maker<'a> {
                 Some(Waiting::Line(line, way, feed)) => {
                     self.emit(&line, way, feed, &Ramp::new(way, &timed));
                 }
-                Some(Waiting::Rest) | None => self.pace.pass(timed.seconds * 1e6),
+                Some(Waiting::Rest) | None => self.pass(timed.seconds),
             }
         }
     }
@@ -362,6 +378,7 @@ impl<'a> Maker<'a> {
         if any && failed.is_none() {
             failed = encoder.mark(line.to, feed).err();
         }
+        self.look_at_time();
         if let Some(error) = failed {
             self.failed = Some(Failed::Write(error));
         }

@@ -37,7 +37,7 @@ pub use decode::{Decoder, Item};
 pub use encode::Encoder;
 pub use error::{Cause, Damage, Error};
 pub use format::{BLOCK, Form, Header, Totals};
-pub use machine::Machine;
+pub use machine::{Machine, most_rates};
 pub use make::{Failure, Made, Options, make};
 pub use path::Path;
 pub use play::{Finding, Played, play};

@@ -1,6 +1,7 @@
 //! G-code -> highest rates: how fast each motor would have to step, as the firmware drives the moves.
 
 use super::axis::AXES;
+use super::machine::per_mm;
 use crate::estimate::apply;
 use crate::motion::{Clock, Limits, Move};
 use crate::profile::Settings;
@@ -19,14 +20,7 @@ pub fn highest_rates(
     settings: &Settings,
     fixed_limits: bool,
 ) -> io::Result<Option<[f64; AXES]>> {
-    let steps = &settings.steps;
-    let (Some(x), Some(y), Some(z), Some(e)) = (steps.x, steps.y, steps.z, steps.e) else {
-        return Ok(None);
-    };
-    let per_mm = [x, y, z, e];
-    if per_mm.contains(&0.0) {
-        return Ok(None);
-    }
+    let Some(per_mm) = per_mm(settings) else { return Ok(None) };
     let mut clock: Clock<[f64; AXES]> = Clock::new(Limits::new(settings));
     let mut highest = [0.0_f64; AXES];
     let mut collect = |clock: &mut Clock<[f64; AXES]>| {

@@ -203,7 +203,7 @@ fn fill_and_plan(bench: &Bench, model: &Model) {
     let order = |all: Vec<Vec<fill::Path>>| {
         let (mut head, mut seams) = (Head::default(), Seams::default());
         for (region, paths) in regions.iter().zip(all) {
-            let paths = Unordered::new(paths, &region.layer.contours);
+            let paths = Unordered::new(paths, &region.layer.contours, &plan);
             let paths = order::order(paths, head.at.unwrap_or_default(), &mut seams, &plan);
             head = head.after(&region.layer, &paths);
         }
@@ -217,7 +217,7 @@ fn gcode(bench: &Bench, model: &Model) {
     let (fill, plan) = (fill_params(model), PlanParams::new(&model.settings));
     let (mut head, mut seams) = (Head::default(), Seams::default());
     let toolpath = |region: &Region| {
-        let paths = Unordered::new(fill::paths(region, &fill), &region.layer.contours);
+        let paths = Unordered::new(fill::paths(region, &fill), &region.layer.contours, &plan);
         let paths = order::order(paths, head.at.unwrap_or_default(), &mut seams, &plan);
         let next = head.after(&region.layer, &paths);
         travel::toolpath(&region.layer, paths, std::mem::replace(&mut head, next), &plan)

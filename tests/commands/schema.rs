@@ -76,6 +76,7 @@ fn reports_are_as_their_schema_says() {
     let reports = [
         &["fixtures/bracket.stl", "--dual", "--check"][..],
         &["fixtures/overhang.stl", "--support", "-p", "generic-marlin", "--set", "speed.wall=1"],
+        &["fixtures/tile.stl", "-p", "replicator"],
         // Its middle is thinner than a line of this width, and the flow is more than is molten.
         &["fixtures/tile.stl", "--line-width", "1", "--set", "machine.max_volumetric_speed=1"],
     ];

@@ -376,3 +376,41 @@ fn a_part_too_small_for_the_stepper_machine_is_refused_in_a_line() {
     assert!(said.contains("machine.min_part_size") && said.lines().count() == 1, "{said}");
     assert!(!folder.path().join("a.steps").exists());
 }
+
+#[test]
+fn a_report_tells_the_rates_that_estimate_gives_of_the_file() {
+    let folder = folder();
+    let tile = format!("{}/fixtures/tile.stl", env!("CARGO_MANIFEST_DIR"));
+    for (printer, limits) in
+        [("replicator", [28_235.0, 28_235.0, 7_800.0, 2_567.0]), ("witbox-1", [0.0; 4])]
+    {
+        let words = [tile.as_str(), "-p", printer, "-o", "a.gcode", "--report", "a.json"];
+        let told = slicer(&folder).args(words).assert().success();
+        let told = text(&told.get_output().stderr);
+        let report = json(&fs::read(folder.path().join("a.json")).unwrap());
+        let estimate = slicer(&folder).args(["estimate", "a.gcode", "--json"]).assert().success();
+        let rates = json(&estimate.get_output().stdout)["highest_rate"].clone();
+        for (axis, limit) in ["x", "y", "z", "e"].into_iter().zip(limits) {
+            let motor = &report["steps"][axis];
+            assert_eq!(motor["highest_rate_per_s"], rates[axis], "{printer}, {axis}");
+            let of = |key: &str| motor[key].as_f64().unwrap();
+            assert!(of("highest_rate_per_s") > 0.0 && of("limit_per_s") > 0.0);
+            assert!(
+                (of("share") * of("limit_per_s") / of("highest_rate_per_s") - 1.0).abs() < 1e-9
+            );
+            assert!(limit == 0.0 || of("limit_per_s") == limit, "{printer}, {axis}");
+            let line =
+                format!("{axis} {:.0} ({:.0} %)", of("highest_rate_per_s"), 100.0 * of("share"));
+            assert!(told.contains(&line), "{line}: {told}");
+        }
+        // On the way to a stream it is the same.
+        let words = [tile.as_str(), "-p", printer, "-q", "-o", "a.steps", "--report", "b.json"];
+        slicer(&folder).args(words).assert().success();
+        let other = json(&fs::read(folder.path().join("b.json")).unwrap());
+        assert_eq!(other["steps"], report["steps"]);
+    }
+    let words = [tile.as_str(), "-p", "generic-marlin", "-o", "a.gcode", "--report", "a.json"];
+    let told = slicer(&folder).args(words).assert().success();
+    assert!(!text(&told.get_output().stderr).contains("steps/s"));
+    assert!(json(&fs::read(folder.path().join("a.json")).unwrap())["steps"].is_null());
+}

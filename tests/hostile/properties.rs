@@ -16,6 +16,7 @@ use slicer::progress::Progress;
 use slicer::reader::Print;
 use slicer::slice::{Heights, Slicer};
 use slicer::steps;
+use std::cell::RefCell;
 
 /// Triangles and layers, at most, so that a case is quick.
 const MOST_TRIANGLES: usize = 3_000;
@@ -222,7 +223,17 @@ pub(crate) fn steps(bytes: &[u8]) {
 
 /// Any bytes as a stream of steps are refused, or played.
 pub(crate) fn stream(bytes: &[u8]) {
-    if let Err(error) = steps::play(&mut &*bytes, "x.steps", |_| {}, |_, _| {}) {
+    let (path, mut text) = (RefCell::new(None), String::new());
+    let begin = |header: &steps::Header| {
+        *path.borrow_mut() = Some(steps::Path::new(header, &mut String::new()));
+    };
+    let each = |_, item: &steps::Item| {
+        if let Some(path) = path.borrow_mut().as_mut() {
+            text.clear();
+            path.item(item, &mut text);
+        }
+    };
+    if let Err(error) = steps::play(&mut &*bytes, "x.steps", begin, each) {
         is_good_refusal(&error.into(), 3, "x.steps");
     }
 }

@@ -63,6 +63,159 @@ fn every_bit_and_every_length_counts() {
     }
 }
 
+/// The header of a stream, and each of its blocks.
+fn parts(stream: &[u8]) -> Vec<&[u8]> {
+    let (header, mut rest) = stream.split_at(216);
+    let mut parts = vec![header];
+    while !rest.is_empty() {
+        let length = 14 + usize::from(u16::from_le_bytes([rest[2], rest[3]]));
+        let (block, after) = rest.split_at(length);
+        parts.push(block);
+        rest = after;
+    }
+    parts
+}
+
+/// The part with its checksum made right.
+fn sealed(part: &[u8]) -> Vec<u8> {
+    let mut bytes = part[..part.len() - 4].to_vec();
+    bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+    bytes
+}
+
+#[test]
+fn blocks_that_are_lost_or_come_twice_or_out_of_order_are_seen() {
+    let accepts = |parts: &[&[u8]]| play(&mut &*parts.concat(), "x", |_| {}, |_, _| {}).is_ok();
+    for good in STREAMS.iter() {
+        let parts = parts(good);
+        assert!(parts.len() > 4 && accepts(&parts));
+        for k in 0..parts.len() {
+            let (mut lost, mut twice) = (parts.clone(), parts.clone());
+            lost.remove(k);
+            twice.insert(k, parts[k]);
+            assert!(!accepts(&lost) && !accepts(&twice), "part {k}");
+            for j in 0..k {
+                let mut swapped = parts.clone();
+                swapped.swap(j, k);
+                let mut moved = parts.clone();
+                let part = moved.remove(k);
+                moved.insert(j, part);
+                assert!(!accepts(&swapped) && !accepts(&moved), "parts {j} and {k}");
+            }
+        }
+        for more in [&[0][..], b"\n", parts[1], parts[parts.len() - 1], good] {
+            assert!(!accepts(&[&parts[..], &[more]].concat()), "{} bytes more", more.len());
+        }
+    }
+}
+
+/// Numbers at an edge of something, as the eight bytes of a field or the first of them.
+fn edges() -> impl Strategy<Value = [u8; 8]> {
+    let edges = [0, 1, -1, 7, 1 << 29, 1 << 31, 1 << 32, 1_000_000_000_000_000_000];
+    let edges = edges.into_iter().chain([i64::MIN, i64::MAX]).map(i64::to_le_bytes);
+    prop_oneof![prop::sample::select(edges.collect::<Vec<_>>()), any::<[u8; 8]>()]
+}
+
+proptest! {
+    #![proptest_config(config(500))]
+    #[test]
+    fn headers_that_are_sealed_may_say_anything(
+        which in 0_usize..2,
+        fields in prop::collection::vec((8_usize..212, 1_usize..9, edges()), 1..6),
+    ) {
+        let parts = parts(&STREAMS[which]);
+        let mut header = parts[0].to_vec();
+        for (at, bytes, number) in fields {
+            let end = (at + bytes).min(212);
+            header[at..end].copy_from_slice(&number[..end - at]);
+        }
+        let bytes = [&sealed(&header)[..], &parts[1..].concat()].concat();
+        in_time("a header", || properties::stream(&bytes));
+    }
+
+    #[test]
+    fn blocks_that_are_changed_and_sealed_may_hold_anything(
+        which in 0_usize..2,
+        at in any::<prop::sample::Index>(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), 1_usize..9, edges()), 1..4),
+    ) {
+        let parts = parts(&STREAMS[which]);
+        let k = 1 + at.index(parts.len() - 1);
+        let mut block = parts[k].to_vec();
+        for (at, bytes, number) in changes {
+            let at = at.index(block.len() - 4);
+            let end = (at + bytes).min(block.len() - 4);
+            block[at..end].copy_from_slice(&number[..end - at]);
+        }
+        let sealed = sealed(&block);
+        let bytes = [&parts[..k].concat()[..], &sealed, &parts[k + 1..].concat()].concat();
+        in_time("a block", || properties::stream(&bytes));
+    }
+}
+
+/// The header of a stream of steps, then a block with this payload and these directions.
+fn of_block(payload: &[u8], backwards: u8, count: u8) -> Vec<u8> {
+    let mut block = vec![1, backwards, payload.len() as u8, 0, 0, 0, 0, 0, count, 0];
+    block.extend(payload);
+    block.extend([0; 4]);
+    [&STREAMS[0][..216], &sealed(&block)].concat()
+}
+
+#[test]
+fn numbers_that_no_board_can_hold_are_refused() {
+    let error = |bytes: &[u8]| {
+        play(&mut { bytes }, "x", |_| {}, |_, _| {}).expect_err("it has no end").to_string()
+    };
+    // Without a last block each of them is cut off; what is wrong in the block itself comes first.
+    let far = |high: u8| [0xF1, 0xFF, 0xFF, 0xFF, 0xFF, high];
+    let cut = error(&of_block(&far(7), 0, 1));
+    assert!(error(&of_block(&far(8), 0, 1)) != cut, "2^31 µs");
+    assert!(error(&of_block(&[0x10, 0xFF, 0xFF, 0xFF, 0xFF, 8], 0, 0)) != cut, "a pause");
+    assert!(error(&of_block(&[&far(7)[..], &[0x81]].concat(), 0, 2)) != cut, "one more");
+    assert!(error(&of_block(&far(7), 16, 1)) != cut, "a fifth axis");
+    let mut parts = parts(&STREAMS[0]);
+    let mut last = parts.pop().unwrap().to_vec();
+    last[82..90].copy_from_slice(&u64::MAX.to_le_bytes());
+    let bytes = [parts.concat(), sealed(&last)].concat();
+    assert!(play(&mut &*bytes, "x", |_| {}, |_, _| {}).is_err(), "584 000 years");
+}
+
+#[test]
+fn no_feed_and_no_wait_make_a_stream_without_end() {
+    let set = |(key, value): (&str, &str)| Override {
+        key: key.to_owned(),
+        value: value.to_owned(),
+        origin: ValueOrigin::Set,
+    };
+    let motors = [("steps.x", "8"), ("steps.y", "8"), ("steps.z", "40"), ("steps.e", "9")];
+    for ramps in ["true", "false"] {
+        let keys = motors.into_iter().chain([("steps.ramps", ramps)]).map(set);
+        let settings =
+            profile::load(["generic-marlin"], &keys.collect::<Vec<_>>()).unwrap().settings;
+        for text in [
+            "G1 X10 F0.0000000000000001\nG1 X0\n",
+            "M220 S-50\nG1 X10 F600\nG1 X0\n",
+            "M220 S0\nG1 X10 F600\nG1 X0\n",
+            "G4 S999999999\nG1 X10 F600\nG4 S999999999\nG1 X0\n",
+        ] {
+            let options =
+                Options { reading: Reading::default(), form: Form::Coils([false; 4]), start: None };
+            let mut bytes = Vec::new();
+            in_time("a wait", || {
+                match make(&mut text.as_bytes(), "x", &settings, options, &mut bytes) {
+                    Ok(made) => {
+                        assert!(made.totals.time > 1_000_000, "{text}: {}", made.totals.time)
+                    }
+                    Err(error) => {
+                        assert!(error.to_string().starts_with("x: it takes more than"), "{error}")
+                    }
+                }
+            });
+            assert!(bytes.len() < 1 << 22, "{text}: {} bytes", bytes.len());
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(config(500))]
     #[test]

@@ -19,6 +19,7 @@ mod nonplanar;
 mod printers;
 mod raft;
 mod roughness;
+mod routes;
 mod seams;
 mod segments;
 mod skins;

@@ -1,6 +1,6 @@
 //! `[travel]`, `[retraction]`: moves without print, and the filament around them.
 
-use crate::profile::choices::RetractWhen;
+use crate::profile::choices::{RetractWhen, TravelOrder};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Travel {
+    /// Which path is printed next: `nearest` takes short ways; `file` goes on as the model file does, walls
+    /// first and then lines as they are scanned, to compare with that.
+    #[schemars(extend("default" = "nearest"))]
+    pub order: TravelOrder,
     /// Whether travels go round holes and corners of the part where that saves a retraction.
     #[schemars(extend("default" = true))]
     pub avoid_crossing: bool,

@@ -1,7 +1,7 @@
 //! Bytes -> an edit of a sound file, which `check` or `diff` has to see: `tests/hostile/witness.rs`.
 
 #![no_main]
-#![allow(dead_code, reason = "the target uses one function of each")]
+#![allow(dead_code, unused_imports, reason = "the target uses one function of each")]
 
 #[path = "../../common/mod.rs"]
 mod common;
