@@ -32,6 +32,7 @@ mod path;
 mod play;
 mod ramp;
 mod rates;
+pub mod send;
 
 pub use decode::{Decoder, Item};
 pub use encode::Encoder;
