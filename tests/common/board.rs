@@ -64,6 +64,8 @@ pub(crate) struct Board {
     pub(crate) has_motors_on: bool,
     pub(crate) next: u32,
     pub(crate) done: u32,
+    /// Frames that it heard.
+    pub(crate) heard: u64,
     /// What its motors did, in each of its lives.
     pub(crate) lives: Vec<Vec<Step>>,
     reason: u8,
@@ -129,6 +131,7 @@ impl Board {
             }
             let frame = unstuffed(&std::mem::take(&mut self.line));
             if frame.len() >= 13 && is_whole(&frame) {
+                self.heard += 1;
                 let (run, tag) = (u32_at(&frame, 1), u32_at(&frame, 5));
                 self.take(frame[0], run, &frame[9..frame.len() - 4], now);
                 said.push(self.status(run, tag));
@@ -202,20 +205,20 @@ impl Board {
         let header = &payload[12..];
         let is_known = is_whole(header) && header[..9] == *b"\x89STEPS\r\n\x01" && header[12] == 0;
         let is_other = |scale| scale != (u64_at(header, 20), u64_at(header, 28));
-        let mut refuse = |reason, axis| {
+        let refusal = match () {
+            () if !is_known => Some((1, 255)),
+            () if self.kind.scale.is_some_and(is_other) => Some((2, 0)),
+            () if u32_at(header, 40) < self.kind.interval => Some((3, 0)),
+            () if self.kind.is_lost => Some((4, 255)),
+            () => None,
+        };
+        if let Some((reason, axis)) = refusal {
             self.end(REFUSED, reason);
             self.axis = axis;
-        };
-        match () {
-            () if !is_known => refuse(1, 255),
-            () if self.kind.scale.is_some_and(is_other) => refuse(2, 0),
-            () if u32_at(header, 40) < self.kind.interval => refuse(3, 0),
-            () if self.kind.is_lost => refuse(4, 255),
-            () => {
-                (self.state, self.is_hot, self.has_motors_on) = (PREPARING, true, true);
-                self.due = Some(now + self.kind.heats_for);
-            }
+            return;
         }
+        (self.state, self.is_hot, self.has_motors_on) = (PREPARING, true, true);
+        self.due = Some(now + self.kind.heats_for);
     }
 
     fn end(&mut self, state: u8, reason: u8) {
@@ -345,7 +348,7 @@ fn stuffed(frame: &[u8]) -> Vec<u8> {
     out
 }
 
-fn unstuffed(bytes: &[u8]) -> Vec<u8> {
+pub(crate) fn unstuffed(bytes: &[u8]) -> Vec<u8> {
     let (mut out, mut at) = (Vec::new(), 0);
     while at < bytes.len() {
         let next = at + usize::from(bytes[at]);

@@ -16,6 +16,9 @@ const LEAP: Ms = 1000;
 /// How long the line is waited for at once, ms: wishes are asked for as often.
 const LOOK: Ms = 50;
 
+/// Microseconds in a millisecond.
+const MS: u64 = 1000;
+
 /// Bytes to a board and from it.
 pub trait Line {
     /// Writes of `out` what can be written, takes that away, and appends to `heard` what has come. Waits
@@ -57,37 +60,35 @@ pub fn send<R: Read + Seek>(
     let (mut now, mut looked) = (0, Instant::now());
     let (mut from, mut failed) = (None, None);
     loop {
-        let passed = looked.elapsed().min(Duration::from_millis(LEAP));
-        looked = Instant::now();
         // Parts of a ms count, too.
-        now += passed.as_micros() as u64;
-        let at = now / 1000;
-        let mut actions = Vec::new();
-        hearing.hear(&heard, |answer| sender.take(Event::Heard(answer), at, &mut actions));
+        now += looked.elapsed().as_micros().min(u128::from(LEAP * MS)) as u64;
+        looked = Instant::now();
+        let at = now / MS;
+        let mut events = Vec::new();
+        hearing.hear(&heard, |answer| events.push(Event::Heard(answer)));
         heard.clear();
-        sender.take(wish(&sender).unwrap_or(Event::Pass), at, &mut actions);
-        sender.take(Event::Pass, at, &mut actions);
-        while let Some(action) = (!actions.is_empty()).then(|| actions.remove(0)) {
-            match action {
-                Action::Send(tag, want) => {
-                    if let Want::Block(block) = want {
-                        from.get_or_insert(block);
+        // If the file is another than it was, the board is stopped, and the run ends with that.
+        events.extend(wish(&sender).or(failed.as_ref().map(|_| Event::Stop)));
+        events.push(Event::Pass);
+        // What an event asks for is done before the next: that may tell that a block has arrived.
+        for event in events {
+            let mut actions = Vec::new();
+            sender.take(event, at, &mut actions);
+            for action in actions {
+                let (tag, want) = match action {
+                    Action::Send(tag, want) => (tag, want),
+                    Action::End(ended) => {
+                        let ended = failed.map_or(ended, Err).map_err(|cause| cause.at(port))?;
+                        let (done, repeated) = (sender.done(), sender.repeated());
+                        return Ok(Sent { ended, done, from: from.unwrap_or(done), repeated });
                     }
-                    let request = request(feed, &sender, want);
-                    match request {
-                        Ok(request) => out.extend(request.frame(run, tag)),
-                        // What is in flight is right, and nothing more is to come.
-                        Err(cause) if failed.is_none() => {
-                            failed = Some(cause);
-                            sender.take(Event::Stop, at, &mut actions);
-                        }
-                        Err(_) => {}
-                    }
+                };
+                match request(feed, &sender, want) {
+                    Ok(request) => out.extend(request.frame(run, tag)),
+                    Err(cause) => failed = failed.or(Some(cause)),
                 }
-                Action::End(ended) => {
-                    let ended = failed.map_or(ended, Err).map_err(|cause| cause.at(port))?;
-                    let (done, repeated) = (sender.done(), sender.repeated());
-                    return Ok(Sent { ended, done, from: from.unwrap_or_default(), repeated });
+                if let Want::Block(block) = want {
+                    from.get_or_insert(block);
                 }
             }
         }
