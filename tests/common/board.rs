@@ -5,7 +5,6 @@
 
 use std::collections::VecDeque;
 
-pub(crate) const IDLE: u8 = 0;
 pub(crate) const PREPARING: u8 = 1;
 pub(crate) const RUNNING: u8 = 2;
 pub(crate) const PAUSED: u8 = 3;

@@ -4,8 +4,8 @@
 
 use super::common::board::{self, Board, Kind, Step};
 use proptest::prelude::*;
+use slicer::steps::send::event::{Action, Want};
 use slicer::steps::send::frame::{Hearing, Job, Order, Request};
-use slicer::steps::send::sender::{Action, Want};
 use slicer::steps::send::{Cause, Ended, Event, Feed, Sender};
 use slicer::steps::{Decoder, Encoder, Form, Header, Item, Machine};
 use std::collections::BTreeMap;
@@ -42,8 +42,7 @@ pub(crate) fn stream(steps: u64, seed: u64) -> Vec<u8> {
         ends: [[i64::MIN; 4], [i64::MAX; 4]],
     };
     let (mut bytes, mut dice) = (Vec::new(), Dice(seed));
-    let mut encoder =
-        Encoder::new(&mut bytes, &Header { form: Form::Steps, machine }).unwrap();
+    let mut encoder = Encoder::new(&mut bytes, &Header { form: Form::Steps, machine }).unwrap();
     let mut at = 0;
     for _ in 0..steps {
         at += 500 + dice.below(5000) as i64;
@@ -263,9 +262,8 @@ fn faults(most: u64, delay: u64) -> impl Strategy<Value = Faults> {
 }
 
 fn kind() -> impl Strategy<Value = Kind> {
-    (1_u32..9, prop_oneof![Just(1_u64), Just(20)], prop_oneof![Just(0), Just(9 * SECOND)]).prop_map(
-        |(room, haste, heats_for)| Kind { room, haste, heats_for, ..Kind::default() },
-    )
+    (1_u32..9, prop_oneof![Just(1_u64), Just(20)], prop_oneof![Just(0), Just(9 * SECOND)])
+        .prop_map(|(room, haste, heats_for)| Kind { room, haste, heats_for, ..Kind::default() })
 }
 
 proptest! {

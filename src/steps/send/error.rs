@@ -60,9 +60,7 @@ pub enum Cause {
     )]
     Busy(u32),
     /// There is nothing to resume.
-    #[error(
-        "the board holds no part of this file; home its axes, and send without --resume"
-    )]
+    #[error("the board holds no part of this file; home its axes, and send without --resume")]
     NothingHeld,
     /// It refuses the stream.
     #[error("the board refuses the stream: {}", why(*.reason, *.axis))]
@@ -98,7 +96,9 @@ pub enum Cause {
         done: u32,
     },
     /// It answers, and does nothing.
-    #[error("the board is ready or busy for ever: nothing happened for {seconds} s; it was stopped")]
+    #[error(
+        "the board is ready or busy for ever: nothing happened for {seconds} s; it was stopped"
+    )]
     Stuck {
         /// How long, s.
         seconds: u64,

@@ -4,8 +4,8 @@ use super::super::axis::AXES;
 use super::super::decode::{Decoder, Item};
 use super::super::error::{self as stream, Damage};
 use super::super::format::{HEAD, HEADER, PAYLOAD, SUM};
+use super::event::Ms;
 use super::frame::Job;
-use super::sender::Ms;
 use std::collections::VecDeque;
 use std::io::{Read, Seek, SeekFrom};
 

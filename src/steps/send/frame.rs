@@ -30,7 +30,7 @@ const LONGEST: usize = FRAME_HEAD + BLOCK + HEADER + 8;
 const COBS_RUN: usize = 254;
 
 /// Which stream is sent.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Job {
     /// CRC-32 of the whole file.
     pub sum: u32,
@@ -82,9 +82,10 @@ pub enum Request<'a> {
 }
 
 /// What a board is at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum State {
     /// Nothing was begun since it started.
+    #[default]
     Idle,
     /// It heats, or makes ready otherwise; blocks are taken, and wait.
     Preparing,
@@ -122,7 +123,7 @@ impl State {
 }
 
 /// What a board says of itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Status {
     /// Version of the protocol that it speaks.
     pub version: u16,
@@ -212,7 +213,7 @@ impl Answer {
             return None;
         }
         if version != VERSION {
-            return Some(Self { run, tag, status: Status::unknown(version) });
+            return Some(Self { run, tag, status: Status { version, ..Status::default() } });
         }
         let boot = u32::from_le_bytes(fields.take()?);
         let [state, reason, axis] = fields.take()?;
@@ -223,25 +224,6 @@ impl Answer {
         let status =
             Status { version, boot, state, reason, axis, owner, job, order, next, done, limit };
         fields.0.is_empty().then_some(Self { run, tag, status })
-    }
-}
-
-impl Status {
-    /// Of a board of which no more is known.
-    pub(super) fn unknown(version: u16) -> Self {
-        Self {
-            version,
-            boot: 0,
-            state: State::Idle,
-            reason: 0,
-            axis: 255,
-            owner: 0,
-            job: 0,
-            order: 0,
-            next: 0,
-            done: 0,
-            limit: 0,
-        }
     }
 }
 

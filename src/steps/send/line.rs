@@ -4,9 +4,10 @@
 //! was stopped for an hour has missed no answer.
 
 use super::error::{Cause, Error};
+use super::event::{Action, Ended, Event, Ms, Want};
 use super::feed::Feed;
 use super::frame::{Hearing, Request};
-use super::sender::{Action, Ended, Event, Ms, Sender, Want};
+use super::sender::Sender;
 use std::io::{self, Read, Seek};
 use std::time::{Duration, Instant};
 
@@ -26,8 +27,12 @@ pub trait Line {
     ///
     /// # Errors
     /// If the line is gone.
-    fn exchange(&mut self, out: &mut Vec<u8>, heard: &mut Vec<u8>, wait: Duration)
-    -> io::Result<()>;
+    fn exchange(
+        &mut self,
+        out: &mut Vec<u8>,
+        heard: &mut Vec<u8>,
+        wait: Duration,
+    ) -> io::Result<()>;
 }
 
 /// What a run did.

@@ -3,6 +3,7 @@
 //! | file | what it knows |
 //! |---|---|
 //! | `frame` | the bytes on the line |
+//! | `event` | what happens to a sender, and what it does |
 //! | `sender` | what to send when: a state machine without clock and port |
 //! | `feed` | the blocks of a file that is right |
 //! | `line` | puts what is wanted on a line |
@@ -11,6 +12,7 @@
 #![doc = include_str!("PROTOCOL.md")]
 
 mod error;
+pub mod event;
 mod feed;
 pub mod frame;
 mod line;
@@ -19,8 +21,9 @@ mod port;
 pub mod sender;
 
 pub use error::{Cause, Error};
+pub use event::{Ended, Event};
 pub use feed::Feed;
 pub use line::{Line, Sent, send};
 #[cfg(unix)]
 pub use port::Port;
-pub use sender::{Ended, Event, Sender};
+pub use sender::Sender;

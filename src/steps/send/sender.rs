@@ -21,13 +21,10 @@
 //!   sent again without waiting. Blocks are then sent again from the first that is not acknowledged.
 //! - What does not arrive after [`REPEATS`] repeats, though the board answers, ends the run.
 
-use super::super::axis::AXES;
 use super::error::Cause;
+use super::event::{Action, Ended, Event, Ms, Want, over};
 use super::frame::{Answer, Job, Order, State, Status, VERSION};
 use std::collections::VecDeque;
-
-/// Milliseconds.
-pub type Ms = u64;
 
 /// How long an answer may take.
 pub const TIMEOUT: Ms = 2000;
@@ -47,52 +44,9 @@ const SLACK: Ms = 30_000;
 /// How long a board may heat.
 const HEATING: Ms = 1_800_000;
 
-/// What is to be sent; the frame's tag stands beside it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs, reason = "as in Request")]
-pub enum Want {
-    Ask,
-    Begin { boot: u32 },
-    Join { boot: u32 },
-    Block(u32),
-    Order { number: u32, order: Order },
-}
-
-/// What happens to the sender.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Event {
-    /// Time passes.
-    Pass,
-    /// The board says something.
-    Heard(Answer),
-    /// The board shall stand still.
-    Pause,
-    /// It shall go on.
-    Go,
-    /// Motors and heater off.
-    Stop,
-}
-
-/// What the sender does.
-#[derive(Debug)]
-pub enum Action {
-    /// Sends a frame with this tag.
-    Send(u32, Want),
-    /// It is over.
-    End(Result<Ended, Cause>),
-}
-
-/// How a run ends well.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ended {
-    /// All blocks were executed.
-    Done,
-    /// It was stopped, as was wished.
-    Stopped,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Phase {
+    #[default]
     Asking,
     Beginning,
     Joining,
@@ -109,7 +63,7 @@ struct Sent {
 }
 
 /// See the head of this file.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Sender {
     job: Job,
     run: u32,
@@ -128,8 +82,10 @@ pub struct Sender {
     waits_since: Option<Ms>,
     /// Timeouts since the board was heard.
     timeouts: u32,
-    /// What the phase is about: ask, begin, join.
+    /// What the phase is about: ask, begin, join; in the end the first stop.
     greeting: Sent,
+    /// The board may have the run, or hold the job.
+    has_begun: bool,
     /// What the board says, each number the highest.
     board: Status,
     /// Of the answer that told its state.
@@ -162,33 +118,8 @@ impl Sender {
     /// the longest block takes, ms. With `is_resume` it goes on with what the board has.
     #[must_use]
     pub fn new(job: Job, run: u32, longest: Ms, is_resume: bool) -> Self {
-        Self {
-            job,
-            run,
-            is_resume,
-            patience: longest.saturating_add(SLACK),
-            phase: Phase::Asking,
-            boot: None,
-            boots: 0,
-            tag: 0,
-            sent_at: 0,
-            waits_since: None,
-            timeouts: 0,
-            greeting: Sent::default(),
-            board: Status::unknown(VERSION),
-            state_tag: 0,
-            moved_at: 0,
-            flight: VecDeque::new(),
-            repeats: 0,
-            unsent: 0,
-            hold: false,
-            told: false,
-            number: 0,
-            order: None,
-            is_stop_wished: false,
-            why: None,
-            repeated: 0,
-        }
+        let patience = longest.saturating_add(SLACK);
+        Self { job, run, is_resume, patience, ..Self::default() }
     }
 
     /// The first block that the board does not have.
@@ -263,12 +194,13 @@ impl Sender {
             Phase::Joining => (Want::Join { boot }, "a word"),
             _ => (Want::Ask, "a word"),
         };
+        self.has_begun |= self.phase != Phase::Asking;
         if self.greeting.tag > 0 {
             self.greeting.repeats += 1;
             self.repeated += 1;
         }
         if self.greeting.repeats > REPEATS {
-            return Err(Cause::NotTaken { what, begun: self.is_begun() });
+            return Err(Cause::NotTaken { what, begun: self.has_begun });
         }
         self.greeting.tag = self.send(want, now, out);
         Ok(())
@@ -277,11 +209,6 @@ impl Sender {
     fn enter(&mut self, phase: Phase, now: Ms, out: &mut Vec<Action>) -> Result<(), Cause> {
         (self.phase, self.greeting) = (phase, Sent::default());
         self.greet(now, out)
-    }
-
-    /// The board may hold the job.
-    fn is_begun(&self) -> bool {
-        !matches!(self.phase, Phase::Asking | Phase::Beginning)
     }
 
     /// What time alone makes.
@@ -326,7 +253,7 @@ impl Sender {
         self.waits_since = None;
         if self.timeouts > REPEATS {
             let is_stopping = self.phase == Phase::Stopping;
-            let begun = self.is_begun();
+            let begun = self.has_begun;
             return Err(if is_stopping { Cause::Unstopped } else { Cause::NoAnswer { begun } });
         }
         match self.phase {
@@ -356,22 +283,34 @@ impl Sender {
             let is_last = answer.tag == self.tag;
             self.waits_since = self.waits_since.filter(|_| !is_last).map(|_| now);
         }
-        let boot = *self.boot.get_or_insert(status.boot);
-        if boot != status.boot {
-            return self.restarted(status.boot, now, out);
-        }
         let is_ours = status.owner == self.run;
         // An answer to what was sent before the greeting knows nothing of it.
         let knows = answer.tag >= self.greeting.tag;
+        let boot = *self.boot.get_or_insert(status.boot);
+        if boot != status.boot && self.phase != Phase::Stopping {
+            return self.restarted(status.boot, now, out);
+        }
         match self.phase {
+            // A begin that seemed lost had arrived.
+            Phase::Asking if knows && is_ours && status.state.is_active() => {
+                self.begun(answer, now, out)
+            }
             Phase::Asking if knows => self.found(status, now, out).map(|()| None),
             Phase::Beginning | Phase::Joining if is_ours => self.begun(answer, now, out),
             Phase::Beginning if knows && status.state.is_active() => Err(Cause::Busy(status.next)),
             Phase::Joining if knows && !status.state.is_active() => Err(Cause::NothingHeld),
             Phase::Beginning | Phase::Joining if knows => self.greet(now, out).map(|()| None),
-            Phase::Sending if is_ours => self.told(answer, now, out),
+            Phase::Sending if is_ours => self.sending(answer, now, out),
             Phase::Sending if knows => Err(Cause::Busy(status.next)),
-            Phase::Stopping => self.stopping(answer, is_ours, now, out),
+            Phase::Stopping
+                if is_ours && (knows || answer.tag == 0) && !status.state.is_active() =>
+            {
+                self.board.done = self.board.done.max(status.done);
+                Ok(Some(Ended::Stopped))
+            }
+            Phase::Stopping if self.order.is_some_and(|(_, sent)| answer.tag >= sent.tag) => {
+                self.give(now, out).map(|()| None)
+            }
             _ => Ok(None),
         }
     }
@@ -384,7 +323,6 @@ impl Sender {
         out: &mut Vec<Action>,
     ) -> Result<Option<Ended>, Cause> {
         match self.phase {
-            Phase::Stopping => Ok(Some(Ended::Stopped)),
             Phase::Joining => Err(Cause::NothingHeld),
             Phase::Sending => Err(Cause::Restarted { done: self.board.done }),
             _ => {
@@ -425,18 +363,18 @@ impl Sender {
         if self.is_stop_wished {
             return self.stop(now, out);
         }
-        self.told(answer, now, out)
+        self.sending(answer, now, out)
     }
 
     /// While blocks are sent.
-    fn told(
+    fn sending(
         &mut self,
         answer: &Answer,
         now: Ms,
         out: &mut Vec<Action>,
     ) -> Result<Option<Ended>, Cause> {
         let status = &answer.status;
-        if let Some(ended) = self.over(status)? {
+        if let Some(ended) = over(status, self.job.blocks)? {
             return Ok(Some(ended));
         }
         if status.next > self.unsent || status.done > status.next {
@@ -456,20 +394,6 @@ impl Sender {
         }
         self.fill(now, out)?;
         Ok(None)
-    }
-
-    /// Whether the board says that the job is over.
-    fn over(&self, status: &Status) -> Result<Option<Ended>, Cause> {
-        let axis = Some(usize::from(status.axis)).filter(|axis| *axis < AXES);
-        let (reason, done) = (status.reason, status.done);
-        match status.state {
-            State::Done if done == self.job.blocks => Ok(Some(Ended::Done)),
-            State::Done | State::Idle => Err(Cause::Nonsense(done)),
-            State::Stopped => Err(Cause::StoppedThere { done }),
-            State::Refused => Err(Cause::Refused { reason, axis }),
-            State::Failed => Err(Cause::Failed { reason, axis, done }),
-            State::Preparing | State::Running | State::Paused => Ok(None),
-        }
     }
 
     /// Takes over what is newer than what is known.
@@ -544,7 +468,11 @@ impl Sender {
         if sent.repeats > REPEATS {
             let what = "an order";
             let is_stop = order == Order::Stop;
-            return Err(if is_stop { Cause::Unstopped } else { Cause::NotTaken { what, begun: true } });
+            return Err(if is_stop {
+                Cause::Unstopped
+            } else {
+                Cause::NotTaken { what, begun: true }
+            });
         }
         sent.tag = self.send(Want::Order { number: self.number, order }, now, out);
         self.order = Some((order, sent));
@@ -554,33 +482,14 @@ impl Sender {
     /// Stops the board, unless it has nothing of this run.
     fn stop(&mut self, now: Ms, out: &mut Vec<Action>) -> Result<Option<Ended>, Cause> {
         match self.phase {
-            Phase::Asking => return Ok(Some(Ended::Stopped)),
+            Phase::Asking if !self.has_begun => return Ok(Some(Ended::Stopped)),
             Phase::Joining => self.is_stop_wished = true,
-            Phase::Beginning | Phase::Sending => {
+            Phase::Asking | Phase::Beginning | Phase::Sending => {
                 self.phase = Phase::Stopping;
                 self.new_order(Order::Stop, now, out)?;
+                self.greeting.tag = self.tag;
             }
             Phase::Stopping | Phase::Ended => {}
-        }
-        Ok(None)
-    }
-
-    /// While the board is stopped.
-    fn stopping(
-        &mut self,
-        answer: &Answer,
-        is_ours: bool,
-        now: Ms,
-        out: &mut Vec<Action>,
-    ) -> Result<Option<Ended>, Cause> {
-        let status = &answer.status;
-        let sent = self.order.map_or(0, |(_, sent)| sent.tag);
-        if is_ours && !status.state.is_active() {
-            self.board.done = self.board.done.max(status.done);
-            return Ok(Some(Ended::Stopped));
-        }
-        if answer.tag >= sent {
-            self.give(now, out)?;
         }
         Ok(None)
     }
