@@ -320,7 +320,8 @@ proptest! {
         let script = Script { cut: Some(cut), ..Script::default() };
         let mut end = world.send(&bytes, false, &script);
         world.settle();
-        if let Err(Cause::NoAnswer { begun: true }) = end && world.board.state != board::DONE {
+        let holds = [board::RUNNING, board::PAUSED].contains(&world.board.state);
+        if holds && let Err(Cause::NoAnswer { begun: true }) = end {
             prop_assert!(!world.board.is_off());
             // Who begins anew is refused, and so is another file.
             let anew = world.send(&bytes, false, &Script::default());
@@ -417,6 +418,18 @@ fn a_pause_stands_still_and_a_stop_turns_all_off() {
         world.board.pass(world.now + 9 * SECOND);
         assert!(world.board.is_off());
     }
+}
+
+#[test]
+fn who_joins_a_board_that_stands_still_lets_it_go_on() {
+    let script = Script { pauses: vec![(900, 999_000)], cut: Some(2000), ..Script::default() };
+    let (end, mut world, _) = on_a_good_line(Kind::default(), 3000, &script);
+    assert!(matches!(end, Err(Cause::NoAnswer { begun: true })), "{end:?}");
+    assert_eq!(world.board.state, board::PAUSED);
+    let bytes = stream(3000, 5);
+    let end = world.send(&bytes, true, &Script::default());
+    world.judge(&bytes, &end);
+    assert!(matches!(end, Ok(Ended::Done)), "{end:?}");
 }
 
 #[test]

@@ -83,7 +83,8 @@ pub fn send<R: Read + Seek>(
                 let (tag, want) = match action {
                     Action::Send(tag, want) => (tag, want),
                     Action::End(ended) => {
-                        let ended = failed.map_or(ended, Err).map_err(|cause| cause.at(port))?;
+                        let ended = ended.and_then(|ended| failed.map_or(Ok(ended), Err));
+                        let ended = ended.map_err(|cause| cause.at(port))?;
                         let (done, repeated) = (sender.done(), sender.repeated());
                         return Ok(Sent { ended, done, from: from.unwrap_or(done), repeated });
                     }

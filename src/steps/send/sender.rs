@@ -140,10 +140,11 @@ impl Sender {
         self.repeated
     }
 
-    /// Whether the board stands still, as was wished.
+    /// Whether the board stands still, as was wished, or will as soon as it is hot.
     #[must_use]
     pub fn is_paused(&self) -> bool {
-        self.told && self.order.is_none() && self.board.state == State::Paused
+        let stands = matches!(self.board.state, State::Paused | State::Preparing);
+        self.told && self.order.is_none() && stands
     }
 
     /// When time alone makes a difference, ms.
