@@ -34,7 +34,9 @@ pub(crate) struct Kind {
     pub(crate) is_lost: bool,
     /// It fails at this block.
     pub(crate) fails_at: Option<u32>,
-    /// It hears asking, and nothing else.
+    /// It says that it has blocks that were never sent.
+    pub(crate) lies: bool,
+    /// It hears asking and beginning, and nothing else.
     pub(crate) is_deaf: bool,
 }
 
@@ -49,6 +51,7 @@ impl Default for Kind {
             interval: 1,
             is_lost: false,
             fails_at: None,
+            lies: false,
             is_deaf: false,
         }
     }
@@ -320,8 +323,9 @@ impl Board {
         frame.extend(self.kind.version.to_le_bytes());
         frame.extend(self.boot().to_le_bytes());
         frame.extend([self.state, self.reason, self.axis]);
+        let next = self.next + if self.kind.lies { 7 } else { 0 };
         let numbers =
-            [self.owner, self.job, self.order, self.next, self.done, self.done + self.kind.room];
+            [self.owner, self.job, self.order, next, self.done, self.done + self.kind.room];
         frame.extend(numbers.map(u32::to_le_bytes).as_flattened());
         frame.extend(crc32fast::hash(&frame).to_le_bytes());
         stuffed(&frame)

@@ -267,7 +267,7 @@ fn kind() -> impl Strategy<Value = Kind> {
 }
 
 proptest! {
-    #![proptest_config(config(1500))]
+    #![proptest_config(config(1000))]
 
     /// A line that is poor, and all that a person may do: it ends well.
     #[test]
@@ -378,6 +378,8 @@ fn boards_that_refuse_fail_or_do_nothing_are_told_apart() {
     assert!(world.board.is_off());
     let (end, _, seconds) = kind(|kind| kind.is_deaf = true);
     assert!(matches!(end, Err(Cause::NotTaken { begun: true, .. })) && seconds < 12, "{end:?}");
+    let (end, world, _) = kind(|kind| kind.lies = true);
+    assert!(matches!(end, Err(Cause::Nonsense(_))) && world.board.is_off(), "{end:?}");
     let (end, world, seconds) = kind(|kind| kind.haste = 0);
     assert!(matches!(end, Err(Cause::Stuck { .. })), "{end:?}");
     assert!(world.board.is_off() && seconds < 40);

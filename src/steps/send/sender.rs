@@ -289,7 +289,8 @@ impl Sender {
         let knows = answer.tag >= self.greeting.tag;
         let boot = *self.boot.get_or_insert(status.boot);
         if boot != status.boot && self.phase != Phase::Stopping {
-            return self.restarted(status.boot, now, out);
+            // What does not know the greeting is of a life before.
+            return if knows { self.restarted(status.boot, now, out) } else { Ok(None) };
         }
         match self.phase {
             // A begin that seemed lost had arrived.
@@ -357,7 +358,7 @@ impl Sender {
     ) -> Result<Option<Ended>, Cause> {
         self.board = answer.status;
         self.state_tag = answer.tag;
-        self.unsent = self.board.next;
+        self.unsent = if self.is_resume { self.board.next.min(self.job.blocks) } else { 0 };
         self.moved_at = now;
         self.told = self.board.state == State::Paused;
         self.phase = Phase::Sending;
@@ -379,7 +380,8 @@ impl Sender {
             return Ok(Some(ended));
         }
         if status.next > self.unsent || status.done > status.next {
-            return Err(Cause::Nonsense(status.next.max(status.done)));
+            self.why = Some(Cause::Nonsense(status.next.max(status.done)));
+            return self.stop(now, out);
         }
         self.learn(answer, now);
         let is_lost = |sent: u32| answer.tag >= sent;
