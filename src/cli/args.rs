@@ -58,7 +58,6 @@ nothing, or a model does not fit the machine. What could not be judged is listed
 #[command(
     name = "slicer",
     version,
-    after_help = "`slicer --help` says more, with examples and exit codes.",
     after_long_help = format!("{EXAMPLES}\n\n{EXIT_CODES}"),
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,

@@ -30,12 +30,15 @@ use std::time::Instant;
 const SCHEMA: u32 = 1;
 
 const SEND_RULES: &str = "\
-Ctrl-Z, or kill -TSTP, pauses the board; fg, or kill -CONT, goes on. Ctrl-C stops it: motors and
-heater off, exit code 130. After a failure of the line the board holds the job: go on with --resume.
-A board that restarted has lost its place: that print is over. Heating is the board's own affair.
+Ctrl-Z, or kill -TSTP, pauses the board; fg, or kill -CONT, goes on.
+Ctrl-C stops it: motors and heater off, exit code 130; again, at once.
+After a failure of the line the board holds the job: go on with --resume.
+A board that restarted has lost its place: that print is over.
+A board that has a heater heats by itself.
 
-Exit codes: 0 the board has executed all of it, 2 wrong arguments, 3 a file that is no stream or is
-damaged, or that the board refuses, 4 the port, the line or the board fails, 130 stopped.";
+Exit codes: 0 the board has executed all of it, 2 wrong arguments, 3 a file
+that is no stream or is damaged, or that the board refuses, 4 the port, the
+line or the board fails, 130 stopped.";
 
 /// Arguments of `send`.
 #[derive(Debug, Args)]

@@ -68,6 +68,8 @@ pub(crate) struct Board {
     pub(crate) done: u32,
     /// Frames that it heard.
     pub(crate) heard: u64,
+    /// Of these, orders.
+    pub(crate) orders: u64,
     /// What its motors did, in each of its lives.
     pub(crate) lives: Vec<Vec<Step>>,
     reason: u8,
@@ -156,6 +158,7 @@ impl Board {
 
     fn take(&mut self, kind: u8, run: u32, payload: &[u8], now: u64) {
         let is_own = run == self.owner;
+        self.orders += u64::from(kind == 5);
         match kind {
             _ if self.kind.is_deaf && kind != 1 && kind != 2 => {}
             2 if payload.len() == 228 && !is_own && !self.is_active() => {

@@ -376,6 +376,9 @@ impl Sender {
         out: &mut Vec<Action>,
     ) -> Result<Option<Ended>, Cause> {
         let status = &answer.status;
+        if status.done > self.board.done {
+            (self.board.done, self.moved_at) = (status.done, now);
+        }
         if let Some(ended) = over(status, self.job.blocks)? {
             return Ok(Some(ended));
         }
@@ -407,9 +410,6 @@ impl Sender {
             self.flight.drain(..arrived.min(self.flight.len()));
             self.repeats = 0;
         }
-        if status.done > board.done {
-            self.moved_at = now;
-        }
         if answer.tag == 0 || answer.tag >= self.state_tag {
             if board.state != status.state {
                 self.moved_at = now;
@@ -418,7 +418,6 @@ impl Sender {
             self.state_tag = self.state_tag.max(answer.tag);
         }
         board.next = board.next.max(status.next);
-        board.done = board.done.max(status.done);
         board.limit = board.limit.max(status.limit);
     }
 
