@@ -161,12 +161,15 @@ impl Board {
         self.orders += u64::from(kind == 5);
         match kind {
             _ if self.kind.is_deaf && kind != 1 && kind != 2 => {}
-            2 if payload.len() == 228 && !is_own && !self.is_active() => {
-                if u32_at(payload, 0) == self.boot() {
-                    self.begin(run, payload, now);
-                }
+            2 if payload.len() == 228
+                && u32_at(payload, 0) == self.boot()
+                && !is_own
+                && !self.is_active() =>
+            {
+                self.begin(run, payload, now);
             }
-            3 if u32_at(payload, 0) == self.boot()
+            3 if !is_own
+                && u32_at(payload, 0) == self.boot()
                 && u32_at(payload, 4) == self.job
                 && self.is_active() =>
             {
