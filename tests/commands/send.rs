@@ -198,7 +198,7 @@ fn an_interrupt_turns_motors_and_heater_off_and_says_nothing() {
 fn a_second_interrupt_ends_at_once() {
     let bench = Bench::new(Kind::default(), 0);
     let child = bench.begin(&[]);
-    bench.board().kind.is_deaf = true;
+    bench.board().kind.is_stubborn = true;
     signal(&child, Signal::INT);
     bench.until(|board| board.orders > 0);
     let began = Instant::now();
@@ -212,7 +212,7 @@ fn a_second_interrupt_ends_at_once() {
 fn a_board_that_does_not_stop_is_told() {
     let bench = Bench::new(Kind::default(), 0);
     let child = bench.begin(&[]);
-    bench.board().kind.is_deaf = true;
+    bench.board().kind.is_stubborn = true;
     signal(&child, Signal::INT);
     let (code, out, told) = end(child);
     assert_eq!((code, out.as_str(), told.lines().count()), (Some(4), "", 1));

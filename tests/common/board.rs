@@ -36,8 +36,10 @@ pub(crate) struct Kind {
     pub(crate) fails_at: Option<u32>,
     /// It says that it has blocks that were never sent.
     pub(crate) lies: bool,
-    /// It hears asking and beginning, and nothing else.
+    /// Blocks do not reach it.
     pub(crate) is_deaf: bool,
+    /// It obeys no order.
+    pub(crate) is_stubborn: bool,
 }
 
 impl Default for Kind {
@@ -53,6 +55,7 @@ impl Default for Kind {
             fails_at: None,
             lies: false,
             is_deaf: false,
+            is_stubborn: false,
         }
     }
 }
@@ -82,6 +85,8 @@ pub(crate) struct Board {
     held: VecDeque<Vec<u8>>,
     /// What is left of the block that is executed: time since the step before, and the step.
     todo: Option<VecDeque<(u64, Option<Step>)>>,
+    /// When the step before was made; nothing while it stands.
+    at: Option<u64>,
     /// When the first of that, or the heat, is due.
     due: Option<u64>,
     /// Time of the stream that was executed.
@@ -160,7 +165,8 @@ impl Board {
         let is_own = run == self.owner;
         self.orders += u64::from(kind == 5);
         match kind {
-            _ if self.kind.is_deaf && kind != 1 && kind != 2 => {}
+            4 if self.kind.is_deaf => {}
+            5 if self.kind.is_stubborn => {}
             2 if payload.len() == 228
                 && u32_at(payload, 0) == self.boot()
                 && !is_own
@@ -232,7 +238,7 @@ impl Board {
     fn end(&mut self, state: u8, reason: u8) {
         (self.state, self.reason) = (state, reason);
         (self.is_hot, self.has_motors_on) = (false, false);
-        (self.todo, self.due) = (None, None);
+        (self.todo, self.at, self.due) = (None, None, None);
     }
 
     /// Does what is due.
@@ -243,14 +249,17 @@ impl Board {
         }
         while self.state == RUNNING && self.kind.haste > 0 {
             if self.wants_pause {
-                (self.state, self.due) = (PAUSED, None);
+                (self.state, self.at, self.due) = (PAUSED, None, None);
                 said.push(self.status(self.owner, 0));
                 return;
             }
             let Some(todo) = &mut self.todo else {
                 match self.held.pop_front() {
                     Some(block) => self.todo = Some(self.records(&block)),
-                    None => return,
+                    None => {
+                        self.at = None;
+                        return;
+                    }
                 }
                 continue;
             };
@@ -258,11 +267,13 @@ impl Board {
                 self.executed(said);
                 continue;
             };
-            if *self.due.get_or_insert(now + wait / self.kind.haste) > now {
+            let due = *self.at.get_or_insert(now) + wait / self.kind.haste;
+            self.due = Some(due);
+            if due > now {
                 return;
             }
             todo.pop_front();
-            self.due = None;
+            (self.at, self.due) = (Some(due), None);
             self.elapsed += wait;
             assert!(self.has_motors_on && self.is_hot);
             self.lives.last_mut().unwrap().extend(step);
