@@ -37,6 +37,10 @@ pub enum Error {
     #[error(transparent)]
     Steps(#[from] steps::Error),
 
+    /// A stream that could not be sent to a board, or not to its end (exit 3 if the board refuses it, else 4).
+    #[error(transparent)]
+    Send(#[from] steps::send::Error),
+
     /// The models can be read but not be printed (exit 3).
     #[error(transparent)]
     Refused(#[from] Refusal),
@@ -63,6 +67,7 @@ impl Error {
             Self::Profile(_) | Self::Gcode(gcode::Error::Block(_)) => 2,
             Self::Mesh(error) if error.is_usage() => 2,
             Self::Mesh(_) | Self::Reader(_) | Self::Steps(_) | Self::Refused(_) => 3,
+            Self::Send(error) => error.exit_code(),
             Self::Gcode(_) | Self::Thumbnails(_) => 4,
             Self::Cancelled => 130,
         }

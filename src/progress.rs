@@ -1,4 +1,4 @@
-//! Run -> Progress: layers done so far, and the wish to stop, shared between threads.
+//! Run -> Progress: layers (of a stream: blocks) done so far, and the wish to stop, shared between threads.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 

@@ -25,6 +25,7 @@ Examples:
   slicer preview part.gcode --layer 40 -o part.png
   slicer mesh part.stl -o mended.stl
   slicer steps part.gcode -p ./mine.toml -o part.steps
+  slicer send part.steps --port /dev/ttyUSB0
 
 A model whose file is named like a subcommand is given as ./profile.";
 
@@ -35,7 +36,7 @@ Exit codes:
        that `diff` found unequal
     2  wrong arguments, profile or setting
     3  a model or G-code file cannot be read; a model does not fit, or leaves nothing to print
-    4  an output cannot be written
+    4  an output cannot be written; `send`: the port, the line or the board fails
   101  a fault of the slicer itself
   130  interrupted
   134  no memory to be had
@@ -57,7 +58,6 @@ nothing, or a model does not fit the machine. What could not be judged is listed
 #[command(
     name = "slicer",
     version,
-    after_help = "`slicer --help` says more, with examples and exit codes.",
     after_long_help = format!("{EXAMPLES}\n\n{EXIT_CODES}"),
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
@@ -101,6 +101,8 @@ pub(crate) enum Command {
     Steps(super::steps::StepsArgs),
     /// Play a stream of steps: totals, steps as text, its path as G-code
     Play(super::play::PlayArgs),
+    /// Send a stream of steps to a board over a serial port
+    Send(super::send::SendArgs),
     /// Print completions for a shell
     Completions {
         /// The shell
@@ -119,7 +121,11 @@ impl Command {
     pub(crate) fn computes(&self) -> bool {
         !matches!(
             self,
-            Self::Profile(_) | Self::Report(_) | Self::Completions { .. } | Self::Man { .. }
+            Self::Profile(_)
+                | Self::Report(_)
+                | Self::Send(_)
+                | Self::Completions { .. }
+                | Self::Man { .. }
         )
     }
 }

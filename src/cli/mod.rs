@@ -31,6 +31,7 @@ mod progress;
 mod publish;
 mod reading;
 mod roughness;
+mod send;
 mod slice;
 mod steps;
 mod summary;
@@ -174,6 +175,7 @@ fn other(command: &Command) -> Result<Outcome> {
         Command::Estimate(args) => estimate::run(args)?,
         Command::Steps(args) => steps::run(args)?,
         Command::Play(args) => return play::run(args),
+        Command::Send(args) => return send::run(args),
         // Its product is a file, unless `-o -` asks for another.
         Command::Preview(args) => preview::run(args).map(|()| String::new())?,
         Command::Diff(args) => return diff::run(args),

@@ -22,8 +22,13 @@ pub(crate) struct Meter {
 }
 
 impl Meter {
-    /// Starts drawing `progress`, if standard error is a terminal and `wanted`.
+    /// Starts drawing `progress` in layers, if standard error is a terminal and `wanted`.
     pub(crate) fn start(progress: &Arc<Progress>, wanted: bool) -> Self {
+        Self::of("layers", progress, wanted)
+    }
+
+    /// As [`start`](Self::start), in other units.
+    pub(crate) fn of(unit: &'static str, progress: &Arc<Progress>, wanted: bool) -> Self {
         if !wanted || !std::io::stderr().is_terminal() {
             return Self { stop: None, thread: None };
         }
@@ -34,7 +39,7 @@ impl Meter {
             while stopped.recv_timeout(INTERVAL) == Err(RecvTimeoutError::Timeout) {
                 let (done, total) = progress.get();
                 if total > 0 {
-                    let bar = bar(done, total);
+                    let bar = bar(done, total, unit);
                     shown = shown.max(bar.len());
                     write(&format!("\r{bar:shown$}"));
                 }
@@ -58,9 +63,9 @@ impl Drop for Meter {
 
 /// A bar of [`CELLS`] cells and the count. No colours at all, so that NO_COLOR needs no thought,
 /// and no escape codes, so that any terminal shows it.
-fn bar(done: usize, total: usize) -> String {
+fn bar(done: usize, total: usize, unit: &str) -> String {
     let full = CELLS * done.min(total) / total;
-    format!("{:#<full$}{:-<rest$} {done}/{total} layers", "", "", rest = CELLS - full)
+    format!("{:#<full$}{:-<rest$} {done}/{total} {unit}", "", "", rest = CELLS - full)
 }
 
 /// A bar that cannot be drawn is no reason to fail the work.
@@ -74,8 +79,8 @@ mod tests {
 
     #[test]
     fn the_bar_is_as_long_from_first_to_last() {
-        assert_eq!(bar(0, 7), format!("{} 0/7 layers", "-".repeat(40)));
-        assert_eq!(bar(3, 7), format!("{}{} 3/7 layers", "#".repeat(17), "-".repeat(23)));
-        assert_eq!(bar(7, 7), format!("{} 7/7 layers", "#".repeat(40)));
+        assert_eq!(bar(0, 7, "layers"), format!("{} 0/7 layers", "-".repeat(40)));
+        assert_eq!(bar(3, 7, "layers"), format!("{}{} 3/7 layers", "#".repeat(17), "-".repeat(23)));
+        assert_eq!(bar(7, 7, "layers"), format!("{} 7/7 layers", "#".repeat(40)));
     }
 }

@@ -49,7 +49,23 @@ pub const CODES: &[(&str, u8, &str)] = &[
         "a model is empty, flat, or too thin for a line; a G-code file prints nothing",
     ),
     ("floats", 3, "the print would begin in the air"),
-    ("unwritable", 4, "an output cannot be opened or written"),
+    ("board-refuses", 3, "a board refuses a stream: another form, resolution, rate or place"),
+    (
+        "unwritable",
+        4,
+        "an output cannot be opened or written, a port cannot be opened, or went away",
+    ),
+    (
+        "no-answer",
+        4,
+        "a board does not answer, or what is sent does not get through; it holds the job",
+    ),
+    ("board-busy", 4, "a board is in the middle of a job, or has none to resume"),
+    (
+        "board-failed",
+        4,
+        "a board restarted, failed or was stopped: the job is over, and the place lost",
+    ),
     ("fault", 101, "a fault of the slicer itself"),
     ("interrupted", 130, "the run was interrupted by a signal"),
     ("unfinished", 137, "the run goes on, or was killed"),
@@ -127,6 +143,7 @@ impl From<&Error> for Details {
             Error::Mesh(error) => error.into(),
             Error::Reader(error) => error.into(),
             Error::Steps(error) => error.into(),
+            Error::Send(error) => error.into(),
             Error::Refused(error) => error.into(),
             Error::Cancelled => Self::of("interrupted"),
             Error::Gcode(gcode::Error::Block(error)) => block(None, error),
@@ -250,6 +267,27 @@ impl From<&steps::Error> for Details {
     }
 }
 
+impl From<&steps::send::Error> for Details {
+    fn from(error: &steps::send::Error) -> Self {
+        use steps::send::Cause;
+        let code = match &error.source {
+            Cause::File(error) => return error.into(),
+            Cause::Open(_) | Cause::NotPort | Cause::NoPorts | Cause::Gone(_) => "unwritable",
+            Cause::NoAnswer { .. } | Cause::NotTaken { .. } => "no-answer",
+            Cause::Busy(_) | Cause::NothingHeld => "board-busy",
+            Cause::Refused { .. } => "board-refuses",
+            Cause::Protocol(_)
+            | Cause::Unstopped
+            | Cause::Failed { .. }
+            | Cause::Restarted { .. }
+            | Cause::StoppedThere { .. }
+            | Cause::Stuck { .. }
+            | Cause::Nonsense(_) => "board-failed",
+        };
+        Self::in_file(code, &error.port)
+    }
+}
+
 impl From<&Refusal> for Details {
     fn from(error: &Refusal) -> Self {
         match error {
@@ -303,6 +341,11 @@ mod tests {
             reader::Cause::NoMove.of("a").into(),
             steps::Cause::NotSteps.of("a").into(),
             steps::Cause::Header.of("a").into(),
+            steps::send::Cause::NotPort.at("a").into(),
+            steps::send::Cause::NothingHeld.at("a").into(),
+            steps::send::Cause::Nonsense(7).at("a").into(),
+            steps::send::Cause::Refused { reason: 2, axis: None }.at("a").into(),
+            steps::send::Cause::File(steps::Cause::Header.of("a")).at("b").into(),
             ProfileError::TooLarge { file: "a".into() }.into(),
             gcode::Error::Write(unreadable()).into(),
             Error::Cancelled,

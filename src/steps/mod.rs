@@ -15,6 +15,7 @@
 //! | `play` | a stream -> totals, and what its machine would not do |
 //! | `path` | a stream -> moves of G-code |
 //! | `rates` | G-code -> how fast motors would have to step |
+//! | `send` | a stream -> a board that executes it |
 //!
 #![doc = include_str!("FORMAT.md")]
 
@@ -32,6 +33,7 @@ mod path;
 mod play;
 mod ramp;
 mod rates;
+pub mod send;
 
 pub use decode::{Decoder, Item};
 pub use encode::Encoder;

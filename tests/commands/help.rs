@@ -8,7 +8,7 @@ use std::fs;
 use std::process::Command as Process;
 
 /// Every command there is; those below have commands of their own.
-const COMMANDS: [&str; 20] = [
+const COMMANDS: [&str; 21] = [
     "",
     "check",
     "compare",
@@ -28,6 +28,7 @@ const COMMANDS: [&str; 20] = [
     "report",
     "report schema",
     "roughness",
+    "send",
     "steps",
 ];
 

@@ -18,6 +18,8 @@ mod reading;
 mod roughness;
 mod run;
 mod schema;
+#[cfg(unix)]
+mod send;
 mod skins;
 mod steps;
 mod viewer;

@@ -4,6 +4,7 @@
 #![allow(unused_imports, reason = "no test uses all of it")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+pub(crate) mod board;
 pub(crate) mod checks;
 pub(crate) mod damage;
 pub(crate) mod gcode;

@@ -13,6 +13,7 @@ mod mend;
 mod motion;
 mod reader;
 mod rounding;
+mod send;
 mod slope;
 mod slopes;
 mod sound;
