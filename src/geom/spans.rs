@@ -255,6 +255,20 @@ impl Rows {
         out
     }
 
+    /// The union of many sets of rows.
+    #[must_use]
+    pub fn united(all: &[&Self]) -> Self {
+        match all {
+            [] => Self::default(),
+            [only] => (*only).clone(),
+            _ => {
+                // Halves, so that none is copied more often than the halves can be halved.
+                let (some, others) = all.split_at(all.len() / 2);
+                Self::united(some).or(&Self::united(others))
+            }
+        }
+    }
+
     /// These rows with only the spans that `keep` accepts.
     #[must_use]
     pub fn filter(&self, keep: impl Fn(i32, Span) -> bool) -> Self {
@@ -415,6 +429,7 @@ mod tests {
             for j in -8..16 {
                 let (ma, mb) = (mask(ra.row(j)), mask(rb.row(j)));
                 prop_assert_eq!(mask(ra.or(&rb).row(j)), ma | mb);
+                prop_assert_eq!(mask(Rows::united(&[&ra, &rb, &ra]).row(j)), ma | mb);
                 prop_assert_eq!(mask(ra.and(&rb).row(j)), ma & mb);
                 prop_assert_eq!(mask(ra.minus(&rb).row(j)), ma & !mb);
             }

@@ -69,6 +69,23 @@ proptest! {
     }
 
     #[test]
+    fn cells_of_a_row_rise_as_one_by_one(
+        pile in any_pile(), row in 0..32_usize, column in 0..42_usize,
+        heights in prop::collection::vec(prop::option::of(-1.0..6.0_f64), 0..50),
+        head in any_head(), tip in [-1.0..5.0_f64, -1.0..5.0_f64, -0.5..3.0_f64],
+    ) {
+        let (mut one, mut other) = (pile.clone(), pile);
+        one.raise_cells([column, row], heights.iter().map(|z| z.unwrap_or(f64::NAN)));
+        for (by, z) in heights.iter().enumerate().filter_map(|(by, z)| Some((by, (*z)?))) {
+            other.raise([column + by, row], z);
+        }
+        let of = |pile: &Pile| pile.hit(&head, tip, &|_| false);
+        prop_assert_eq!((of(&one), one.highest()), (of(&other), other.highest()));
+        let heights = |pile: &Pile| (0..40 * 30).map(|k| pile.height([k % 40, k / 40])).collect::<Vec<_>>();
+        prop_assert_eq!(heights(&one), heights(&other));
+    }
+
+    #[test]
     fn a_square_is_as_high_as_its_highest_cell(pile in any_pile()) {
         let [columns, rows] = pile.size();
         let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));

@@ -133,7 +133,7 @@ impl Pile {
         if row >= rows || from >= to || z.is_nan() || z == f64::NEG_INFINITY {
             return;
         }
-        let z = (z * UNITS_PER_MM - SLACK_UNITS).ceil() as Coord;
+        let z = raised(z);
         for level in &mut self.levels {
             let start = row * level.columns;
             let mut rises = false;
@@ -146,6 +146,48 @@ impl Pile {
                 return;
             }
             (from, to, row) = (from / 2, to.div_ceil(2), row / 2);
+        }
+    }
+
+    /// The cells from `column` on of a row stand at least as high as these, mm; where one is not a number, nothing
+    /// is told.
+    pub fn raise_cells(&mut self, [column, row]: [usize; 2], heights: impl Iterator<Item = f64>) {
+        let Some((cells, above)) = self.levels.split_first_mut() else { return };
+        if row >= cells.rows {
+            return;
+        }
+        let start = row * cells.columns;
+        let line = &mut cells.heights[start..start + cells.columns];
+        // The columns that rise.
+        let (mut from, mut to) = (line.len(), 0);
+        for ((column, height), z) in line.iter_mut().enumerate().skip(column).zip(heights) {
+            let z = if z.is_nan() { EMPTY } else { raised(z) };
+            if z > *height {
+                *height = z;
+                (from, to) = (from.min(column), column + 1);
+            }
+        }
+        let mut row = row;
+        let mut below: &Level = cells;
+        for level in above {
+            if from >= to {
+                // All above them are as high already.
+                return;
+            }
+            let line = &below.heights[row * below.columns..(row + 1) * below.columns];
+            row /= 2;
+            let squares = from / 2..to.div_ceil(2);
+            (from, to) = (squares.end, squares.start);
+            for square in squares {
+                let two = &line[2 * square..(2 * square + 2).min(line.len())];
+                let highest = two.iter().copied().max().unwrap_or(EMPTY);
+                let height = &mut level.heights[row * level.columns + square];
+                if highest > *height {
+                    *height = highest;
+                    (from, to) = (from.min(square), square + 1);
+                }
+            }
+            below = level;
         }
     }
 
@@ -173,11 +215,37 @@ impl Pile {
     ) -> Option<Hit> {
         let shape = Shape::of(head);
         let mut search = Search { pile: self, shape, tip, press, spare, best: None };
-        let top = self.levels.len() - 1;
-        if let Some(depth) = search.depth(top, [0, 0]) {
-            search.down(top, [0, 0], depth);
+        let mut open: Vec<(f64, usize, [usize; 2])> = Vec::new();
+        self.in_reach(&shape, tip, |level, square| {
+            open.extend(search.depth(level, square).map(|depth| (depth, level, square)));
+        });
+        open.sort_by(|one, other| other.0.total_cmp(&one.0));
+        for (depth, level, square) in open {
+            search.down(level, square, depth);
         }
         search.best.map(|(hit, _)| hit)
+    }
+
+    /// The squares, four at most, under all of the head that may touch anything.
+    fn in_reach(&self, shape: &Shape<'_>, tip: [f64; 3], mut with: impl FnMut(usize, [usize; 2])) {
+        let most = self.highest() - tip[2];
+        if most <= LEAST_TOUCH {
+            return;
+        }
+        // A cell more, for rounding.
+        let reach = shape.reach_below(most) + self.wider + self.cell;
+        let top = self.levels.len() - 1;
+        let side = |level: usize| self.cell * (1_u64 << level) as f64;
+        let level = (0..top).find(|&level| side(level) >= 2.0 * reach).unwrap_or(top);
+        let Level { columns, rows, .. } = self.levels[level];
+        let along = |axis: usize, count: usize| {
+            let at = |by: f64| ((tip[axis] + by - self.low[axis]) / side(level)).floor();
+            let (first, last) = (at(-reach).max(0.0), at(reach).min(count as f64 - 1.0));
+            if first > last { 0..0 } else { first as usize..last as usize + 1 }
+        };
+        for row in along(1, rows) {
+            along(0, columns).for_each(|column| with(level, [column, row]));
+        }
     }
 
     /// Whether `head` touches nothing, press neither, wherever its tip is in the box from `low` to `high`,
@@ -234,6 +302,11 @@ impl Level {
     fn at(&self, [column, row]: [usize; 2]) -> Coord {
         self.heights[row * self.columns + column]
     }
+}
+
+/// The height of a cell that stands so high, mm.
+fn raised(z: f64) -> Coord {
+    (z * UNITS_PER_MM - SLACK_UNITS).ceil() as Coord
 }
 
 fn mm(height: Coord) -> f64 {

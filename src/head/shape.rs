@@ -1,6 +1,6 @@
 //! Head -> Shape: the head with what its underside is computed from, for many questions in a row.
 
-use super::{Head, Part, length};
+use super::{Head, Part, furthest, length};
 
 /// A head, and the numbers of its nozzle.
 #[derive(Debug, Clone, Copy)]
@@ -31,6 +31,16 @@ impl<'a> Shape<'a> {
     /// Radius of flat and cone.
     pub(super) fn nozzle(&self) -> f64 {
         self.face.max(self.cone_end)
+    }
+
+    /// How far sideways it can touch what stands no higher than this above the tip, or further.
+    pub(super) fn reach_below(&self, height: f64) -> f64 {
+        let cone =
+            if self.cone_end > self.face { self.face + height / self.tan } else { self.face };
+        let discs = self.head.discs.iter().filter(|disc| disc[1] < height).map(|disc| disc[0]);
+        let boxes = self.head.boxes.iter().filter(|area| area[4] < height);
+        let boxes = boxes.map(|&area| furthest(area));
+        discs.chain(boxes).fold(cone.min(self.nozzle()), f64::max)
     }
 
     /// The cone's height at this distance from the axis, which lies beside the flat.

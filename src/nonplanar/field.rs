@@ -3,9 +3,13 @@
 use super::grid::{CELL, Spot, cells, columns};
 use super::surface::Surface;
 use crate::geom::Point;
-use crate::geom::spans::Span;
+use crate::geom::spans::{Rows, Span};
 use crate::units::Coord;
 use rayon::prelude::*;
+use std::sync::Arc;
+
+/// So many rows of cells are filled in one go.
+const BAND: usize = 16;
 
 /// How high a surface lies over the cells inside its outline, grid units.
 #[derive(Debug)]
@@ -16,8 +20,31 @@ pub(super) struct Field {
     heights: Vec<f32>,
 }
 
+/// The fields of some surfaces, in their order.
+#[derive(Debug, Default)]
+pub struct Fields(Vec<(Arc<Surface>, Field)>);
+
+impl Fields {
+    /// Of these surfaces.
+    pub(super) fn new(known: impl Iterator<Item = (Arc<Surface>, Field)>) -> Self {
+        Self(known.collect())
+    }
+
+    /// The fields of `surfaces`, in their order: those that are known, if they come in the same order, and
+    /// new ones of the others.
+    pub(super) fn of(self, surfaces: &[Arc<Surface>]) -> Vec<Field> {
+        let mut known = self.0.into_iter().peekable();
+        let known = surfaces.iter().map(|surface| {
+            known.next_if(|(other, _)| Arc::ptr_eq(other, surface)).map(|(_, field)| field)
+        });
+        let known: Vec<Option<Field>> = known.collect();
+        let all = known.into_par_iter().zip(surfaces);
+        all.map(|(field, surface)| field.unwrap_or_else(|| Field::new(surface))).collect()
+    }
+}
+
 impl Field {
-    /// One walk over the surface for each row of cells.
+    /// One walk over the surface for some rows of cells at a time.
     pub(super) fn new(surface: &Surface) -> Self {
         let rows = cells(surface.outline());
         let all = || rows.iter().flat_map(|(_, row)| row.iter());
@@ -26,8 +53,11 @@ impl Field {
         let range = rows.range();
         let size = [usize::try_from(end - start).unwrap_or(0), range.len()];
         let mut heights = vec![f32::NAN; size[0] * size[1]];
-        let lines = heights.par_chunks_mut(size[0].max(1)).zip(range.clone().into_par_iter());
-        lines.for_each(|(line, j)| fill(line, surface, (start, j), rows.row(j)));
+        let bands = heights.par_chunks_mut(BAND * size[0].max(1)).enumerate();
+        bands.for_each(|(k, band)| {
+            let first = range.start + (k * BAND) as i32;
+            fill(band, surface, [start, first], size[0].max(1), &rows);
+        });
         Self { low: [start, range.start], size, heights }
     }
 
@@ -39,35 +69,65 @@ impl Field {
 
     /// How high the surface lies over a cell; `None` beside it.
     pub(super) fn at(&self, cell: Spot) -> Option<f64> {
-        let [x, y] = [0, 1].map(|axis| usize::try_from(cell[axis] - self.low[axis]).ok());
-        let (x, y) = (x.filter(|x| *x < self.size[0])?, y.filter(|y| *y < self.size[1])?);
-        let z = self.heights[y * self.size[0] + x];
+        let z = self.known(cell);
         (!z.is_nan()).then_some(f64::from(z))
     }
 
     /// How it rises along x and y at a cell, from those beside it.
     pub(super) fn rise(&self, [x, y]: Spot) -> [f64; 2] {
-        let across = |before: Spot, after: Spot| {
-            let (here, before, after) = (self.at([x, y]), self.at(before), self.at(after));
-            let (from, to, cells) = match (before, here, after) {
-                (Some(a), _, Some(b)) => (a, b, 2.0),
-                (Some(a), Some(b), None) | (None, Some(a), Some(b)) => (a, b, 1.0),
+        let across = |before: f32, here: f32, after: f32| {
+            let (from, to, cells) = match [before, here, after].map(f32::is_nan) {
+                [false, _, false] => (before, after, 2.0),
+                [false, false, true] => (before, here, 1.0),
+                [true, false, false] => (here, after, 1.0),
                 _ => return 0.0,
             };
-            (to - from) / (cells * f64::from(CELL))
+            (f64::from(to) - f64::from(from)) / (cells * f64::from(CELL))
         };
-        [across([x - 1, y], [x + 1, y]), across([x, y - 1], [x, y + 1])]
+        let here = self.known([x, y]);
+        [
+            across(self.known([x - 1, y]), here, self.known([x + 1, y])),
+            across(self.known([x, y - 1]), here, self.known([x, y + 1])),
+        ]
+    }
+
+    /// How high the surface lies over a cell; not a number beside it.
+    fn known(&self, cell: Spot) -> f32 {
+        // What lies before the first one is far beyond the last one as a number without sign.
+        let [x, y] = [0, 1].map(|axis| cell[axis].wrapping_sub(self.low[axis]) as u32 as usize);
+        if x < self.size[0] && y < self.size[1] {
+            self.heights[y * self.size[0] + x]
+        } else {
+            f32::NAN
+        }
     }
 }
 
-/// The heights along a row of cells from column `start` on.
-fn fill(line: &mut [f32], surface: &Surface, (start, j): (i32, i32), row: &[Span]) {
-    let ends = row.first().zip(row.last());
-    let Some((first, last)) = ends else { return };
-    let point = |x: Coord| Point { x, y: j * CELL };
-    let (a, b) = (first.start - CELL, last.end + CELL);
+/// The heights in some rows of so many cells, from the cell `low` on.
+fn fill(band: &mut [f32], surface: &Surface, low: Spot, columns: usize, rows: &Rows) {
+    let lines = || (low[1]..).take(BAND).map(|j| (j, rows.row(j)));
+    let ends = |(_, row): (i32, &[Span])| {
+        let (first, last) = row.first().zip(row.last())?;
+        Some([first.start - CELL, last.end + CELL])
+    };
+    let ways: Vec<Option<[Coord; 2]>> = lines().map(ends).collect();
+    let profiles = surface.profiles((low[1], CELL), &ways);
+    let all = band.chunks_mut(columns).zip(lines()).zip(ways).zip(profiles);
+    for (((line, (j, row)), way), profile) in all {
+        if let Some(way) = way {
+            fill_row(line, (surface, &profile), (way, [low[0], j]), row);
+        }
+    }
+}
+
+/// The heights along a row of cells from the cell `low` on. The profile is that of the way from `a` to `b`.
+fn fill_row(
+    line: &mut [f32],
+    (surface, profile): (&Surface, &[(f64, f64)]),
+    ([a, b], low): ([Coord; 2], Spot),
+    row: &[Span],
+) {
     let length = f64::from(b - a);
-    let profile = surface.profile(point(a), point(b));
     let mut k = 0;
     for column in row.iter().flat_map(|&span| columns(span, CELL)) {
         let x = column * CELL;
@@ -81,9 +141,9 @@ fn fill(line: &mut [f32], surface: &Surface, (start, j): (i32, i32), row: &[Span
             {
                 Some(low + (high - low) * (share - from) / (to - from))
             }
-            _ => surface.z(point(x)),
+            _ => surface.z(Point { x, y: low[1] * CELL }),
         };
-        let at = usize::try_from(column - start).ok();
+        let at = usize::try_from(column - low[0]).ok();
         if let (Some(place), Some(z)) = (at.and_then(|at| line.get_mut(at)), z) {
             *place = z as f32;
         }

@@ -19,6 +19,7 @@ use crate::mesh::edges::adjacency;
 use crate::slice::{Heights, Layer, Slicer};
 use crate::units::{Coord, to_mm, to_units};
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
 fn params(slopes: RangeInclusive<f64>) -> NonPlanarParams {
     let head = Head { flat: 1.0, cone: 45.0, cone_length: 3.0, discs: vec![], boxes: vec![] };
@@ -110,7 +111,7 @@ fn found(mesh: &Mesh, slopes: RangeInclusive<f64>) -> Surfaces {
 }
 
 /// The only surface, and what is level.
-fn only(mesh: &Mesh, slopes: RangeInclusive<f64>) -> (Surface, f64) {
+fn only(mesh: &Mesh, slopes: RangeInclusive<f64>) -> (Arc<Surface>, f64) {
     let mut found = found(mesh, slopes);
     assert_eq!(found.surfaces.len(), 1, "{:?}", found.tops);
     (found.surfaces.remove(0), found.tops.level)

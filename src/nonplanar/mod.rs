@@ -22,7 +22,8 @@ mod laws;
 #[cfg(test)]
 mod tests;
 
-pub use pass::patches;
+pub use field::Fields;
+pub use pass::{patches, patches_and_fields};
 pub use patch::{Patch, Patches, Stroke};
 pub use scene::{Props, Scene, support_lines};
 pub use tally::{Areas, Reason};

@@ -4,9 +4,9 @@ use crate::fill::Path;
 use crate::mesh::place::Placed;
 use crate::nonplanar;
 use crate::nonplanar::base::Base;
-use crate::nonplanar::contour::Contours;
+use crate::nonplanar::contour::{self, Contours};
 use crate::nonplanar::params::NonPlanarParams;
-use crate::nonplanar::surface::find::{Surfaces, surfaces};
+use crate::nonplanar::surface::find::{Surfaces, surfaces, surfaces_for};
 use crate::nonplanar::{Patch, Patches, Props, Scene, support_lines};
 use crate::plan::lift::Lift;
 use crate::plan::{Head, PlanParams, Toolpath, travel};
@@ -45,7 +45,13 @@ pub fn find(
         return None;
     }
     let params = NonPlanarParams::new(settings);
-    let surfaces = surfaces(&placed.mesh, &placed.adjacency, &params);
+    let (mesh, adjacency) = (&placed.mesh, &placed.adjacency);
+    let (surfaces, slopes) = if settings.nonplanar.contour {
+        let [own, slopes] = surfaces_for(mesh, adjacency, [&params, &contour::gentle(&params)]);
+        (own, Some(slopes))
+    } else {
+        (surfaces(mesh, adjacency, &params), None)
+    };
     let lines = |k: usize| {
         let support = support.and_then(|support| Some((support.layers.get(k)?, &support.patterns)));
         support.map_or_else(Vec::new, |(layer, patterns)| support_lines(layer, patterns))
@@ -64,10 +70,10 @@ pub fn find(
         ceiling,
         params: &params,
     };
-    let mut patches = nonplanar::patches(&scene);
-    let contours = settings.nonplanar.contour.then(|| {
+    let (mut patches, fields) = nonplanar::patches_and_fields(&scene);
+    let contours = slopes.map(|slopes| {
         let min_height = to_units(settings.nonplanar.min_height);
-        let contours = Contours::new(&placed.mesh, &placed.adjacency, &params, min_height);
+        let contours = Contours::new(&slopes, fields, &params, min_height);
         contours.tell(&surfaces, &mut patches);
         contours.beside(&patches)
     });

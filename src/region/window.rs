@@ -41,7 +41,7 @@ use crate::units::Coord;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Makes the regions of a print in batches, from the bed upwards.
 #[derive(Debug)]
@@ -52,6 +52,8 @@ pub struct Window<'a> {
     support: Option<Support>,
     /// Tops that are laid along the surface.
     curved: Option<&'a dyn CurvedTops>,
+    /// Whether a curved top lies near above each layer, once it was asked for; nothing if there is none.
+    thin: Vec<OnceLock<bool>>,
     /// The next batch to be sliced.
     batch: usize,
     /// The last layer that is prepared, where that above decides about its walls.
@@ -95,6 +97,7 @@ impl<'a> Window<'a> {
             grouping,
             support,
             curved: None,
+            thin: Vec::new(),
             batch: 0,
             held: None,
             own: Queue::default(),
@@ -110,7 +113,8 @@ impl<'a> Window<'a> {
     /// The same under tops that are laid along the surface.
     #[must_use]
     pub fn under(self, curved: Option<&'a dyn CurvedTops>) -> Self {
-        Self { curved, ..self }
+        let count = if curved.is_some() { self.slicer.heights().count() } else { 0 };
+        Self { curved, thin: vec![OnceLock::new(); count], ..self }
     }
 
     /// Takes the audits of dual injection, block by block.
@@ -253,8 +257,9 @@ impl<'a> Window<'a> {
         let (turns, line_width) = (&self.params.sparse, self.params.walls.line_width);
         let shared =
             |areas: Vec<&LayerAreas>| dual::infill(block, &areas, self.grouping, turns, line_width);
-        let places = self.thin_places(block.layers.clone());
-        if places.is_empty() || !self.grouping.shares(DualPart::Infill) {
+        let shares = self.grouping.shares(DualPart::Infill);
+        let places = if shares { self.thin_places(block.layers.clone()) } else { Vec::new() };
+        if places.is_empty() {
             return shared(areas.iter().map(Cow::as_ref).collect());
         }
         let divided = areas.iter().map(|areas| curved::divide(areas, &places));
@@ -277,7 +282,8 @@ impl<'a> Window<'a> {
 
     /// Whether all skins and walls of layer `k` are for it alone: a curved top lies near above it.
     fn is_thin(&self, k: usize) -> bool {
-        !self.thin_places(k..k + 1).is_empty()
+        let known = self.thin.get(k);
+        known.is_some_and(|known| *known.get_or_init(|| !self.thin_places(k..k + 1).is_empty()))
     }
 
     /// What of layer `k` is ironed.

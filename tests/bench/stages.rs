@@ -5,6 +5,7 @@
 //! holds them. Words behind `--` pick some, such as `-- femur` or `-- whole`.
 
 #![allow(clippy::print_stderr, reason = "says what is not measured")]
+#![allow(clippy::print_stdout, reason = "the result of a bench is what it prints")]
 
 mod stopwatch;
 
@@ -18,6 +19,7 @@ use slicer::gcode::write::{Before, WriteParams};
 use slicer::mesh::place::{Placed, place};
 use slicer::mesh::{Bed, Placement, read};
 use slicer::motion::Limits;
+use slicer::pipeline;
 use slicer::plan::order::{self, Unordered};
 use slicer::plan::{Head, PlanParams, Seams, Toolpath, travel};
 use slicer::profile::{self, Override, Settings, ValueOrigin};
@@ -33,7 +35,8 @@ use std::path::{Path, PathBuf};
 use stopwatch::Bench;
 
 /// Name in the results and file in the folder of large models.
-const LARGE: [(&str, &str); 4] = [
+const LARGE: [(&str, &str); 5] = [
+    ("saddle", "thesis/surf_hypar.stl"),
     ("femur", "scan_femur.stl"),
     ("liver", "scan_liver.stl"),
     ("benchy", "calib_3dbenchy.stl"),
@@ -54,11 +57,6 @@ struct Model {
 
 impl Model {
     fn new(name: &'static str, file: PathBuf) -> Self {
-        let set = |key: &str, value: &str| Override {
-            key: key.to_owned(),
-            value: value.to_owned(),
-            origin: ValueOrigin::Set,
-        };
         let overrides = [set("walls", "1"), set("dual.mode", "pair")];
         let settings =
             profile::load(["generic-marlin", PLAIN], &overrides).expect("they are here").settings;
@@ -94,6 +92,10 @@ impl Model {
         let grouping = Grouping::new(&self.settings.dual, self.settings.dual_ratio());
         Window::new(&slicer, &self.params, &grouping, None).flatten().collect()
     }
+}
+
+fn set(key: &str, value: &str) -> Override {
+    Override { key: key.to_owned(), value: value.to_owned(), origin: ValueOrigin::Set }
 }
 
 fn placement() -> Placement {
@@ -241,19 +243,49 @@ fn gcode(bench: &Bench, model: &Model) {
     });
 }
 
-/// From the file to G-code that nobody keeps, on all cores and on one.
-fn whole(bench: &Bench, model: &Model) {
-    let job = Job {
+/// A print of a model.
+fn job(model: &Model, settings: Settings) -> Job {
+    Job {
         models: vec![slicer::Model::path(model.file.clone())],
         placement: placement(),
-        settings: model.settings.clone(),
+        settings,
         sources: slicer::profile::Sources::default(),
-    };
+    }
+}
+
+/// From the file to G-code that nobody keeps, on all cores and on one.
+fn whole(bench: &Bench, model: &Model) {
+    let job = job(model, model.settings.clone());
     let run = || slicer::slice(&job, &mut std::io::empty(), &Default::default());
     let group = bench.group("whole", model.name);
     group.time("all cores", run);
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
     one.install(|| group.time("one core", run));
+}
+
+/// What skins that follow the surface cost, on one core, as shipped: finding them, and the whole print beside
+/// the flat one.
+fn skins(bench: &Bench, model: &Model) {
+    let settings = |on: &str| {
+        let overrides = [set("nonplanar.enabled", on), set("head.name", "long-0.6")];
+        profile::load(["generic-marlin"], &overrides).expect("it is here").settings
+    };
+    let [flat, curved] = ["false", "true"].map(settings);
+    let placed = model.place();
+    let slicer = model.slicer(&placed);
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("one thread");
+    let group = bench.group("skins", model.name);
+    one.install(|| {
+        group.time("find", || pipeline::curved::find(&curved, &placed, &slicer, None).is_some());
+    });
+    let [flat, curved] = [("flat", &flat), ("curved", &curved)].map(|(name, settings)| {
+        let job = job(model, settings.clone());
+        let run = || slicer::slice(&job, &mut std::io::empty(), &Default::default());
+        one.install(|| group.time(name, run))
+    });
+    if let (Some(flat), Some(curved)) = (flat, curved) {
+        println!("{:<44} {:8.2}", format!("skins/curved : flat/{}", model.name), curved / flat);
+    }
 }
 
 fn main() {
@@ -264,5 +296,6 @@ fn main() {
         fill_and_plan(&bench, &model);
         gcode(&bench, &model);
         whole(&bench, &model);
+        skins(&bench, &model);
     }
 }

@@ -40,9 +40,9 @@ pub(crate) struct Group<'a> {
 }
 
 impl Group<'_> {
-    /// Times `call`.
-    pub(crate) fn time<T>(&self, name: &str, mut call: impl FnMut() -> T) {
-        self.time_with(name, || (), |()| call());
+    /// Times `call`; gives the middle of its seconds if it was asked for.
+    pub(crate) fn time<T>(&self, name: &str, mut call: impl FnMut() -> T) -> Option<f64> {
+        self.time_with(name, || (), |()| call())
     }
 
     /// Times `call` on what `make` makes; making is not timed.
@@ -51,10 +51,10 @@ impl Group<'_> {
         name: &str,
         mut make: impl FnMut() -> I,
         mut call: impl FnMut(I) -> T,
-    ) {
+    ) -> Option<f64> {
         let id = format!("{}/{name}/{}", self.stage, self.model);
         if !self.bench.words.is_empty() && !self.bench.words.iter().any(|word| id.contains(word)) {
-            return;
+            return None;
         }
         let mut sample = |calls: u32| {
             let inputs: Vec<I> = (0..calls).map(|_| make()).collect();
@@ -73,6 +73,7 @@ impl Group<'_> {
         let (least, most) = (times[0], times[SAMPLES - 1]);
         let middle = (times[SAMPLES / 2 - 1] + times[SAMPLES / 2]) / 2.0;
         println!("{id:<44} {}  ({} to {})", told(middle), told(least), told(most));
+        Some(middle)
     }
 }
 

@@ -25,19 +25,19 @@ mod line;
 mod zones;
 
 use super::Patches;
-use super::field::Field;
+use super::field::{Field, Fields};
 use super::grid::{self, CELL};
 use super::params::NonPlanarParams;
-use super::surface::find::{Surfaces, Tops, surfaces};
+use super::surface::Surface;
+use super::surface::find::{Surfaces, Tops};
 use super::tally::Reason;
 use crate::fill::{Path, Role};
 use crate::geom::Point;
 use crate::geom::boxes::{extent, meet};
 use crate::geom::spans::Rows;
-use crate::mesh::Mesh;
-use crate::mesh::edges::Adjacency;
 use crate::slice::Layer;
 use crate::units::{Coord, UNITS_PER_MM, to_mm};
+use std::sync::Arc;
 use zones::Zones;
 
 /// A line rises no higher above the top of its layer, grid units: 0.06 mm, so that what is printed over it
@@ -85,6 +85,17 @@ struct Skinned {
     home: usize,
 }
 
+/// The parameters that find the slopes for contouring, of those for skins.
+#[must_use]
+pub fn gentle(params: &NonPlanarParams) -> NonPlanarParams {
+    let degrees = libm::atan(steepest(params)).to_degrees();
+    NonPlanarParams {
+        slopes: *params.slopes.start()..=degrees.max(*params.slopes.start()),
+        min_area: LEAST_AREA,
+        ..params.clone()
+    }
+}
+
 /// The slopes of a print whose lines are bent.
 pub struct Contours {
     grounds: Vec<Ground>,
@@ -95,36 +106,31 @@ pub struct Contours {
 }
 
 impl Contours {
-    /// The slopes of a mesh on which no patch lies yet. `min_height` is the least height of a line, grid
-    /// units.
+    /// The slopes that were found with [`gentle`] parameters, on which no patch lies yet. `known` are the
+    /// heights of some of them; `params` are those of skins, and `min_height` is the least height of a line,
+    /// grid units.
     #[must_use]
     pub fn new(
-        mesh: &Mesh,
-        adjacency: &Adjacency,
+        slopes: &Surfaces,
+        known: Fields,
         params: &NonPlanarParams,
         min_height: Coord,
     ) -> Self {
-        let steepest = steepest(params);
-        let degrees = libm::atan(steepest).to_degrees();
-        let gentle = NonPlanarParams {
-            slopes: *params.slopes.start()..=degrees.max(*params.slopes.start()),
-            min_area: LEAST_AREA,
-            ..params.clone()
-        };
-        let Surfaces { surfaces, tops } = surfaces(mesh, adjacency, &gentle);
-        let ground = |surface: &super::surface::Surface| Ground {
-            field: Field::new(surface),
+        let ground = |(surface, field): (&Arc<Surface>, Field)| Ground {
+            field,
             extent: surface.extent(),
             bounds: surface.bounds().map(f64::from),
         };
+        let Surfaces { surfaces, tops } = slopes;
+        let fields = known.of(surfaces);
         let (head, below) = (&params.head, to_mm((params.height - min_height).max(0)));
         let flank = below / libm::tan(head.cone.clamp(1.0, 89.0).to_radians());
         let keep = (head.flat / 2.0 + flank) * UNITS_PER_MM + f64::from(params.line_width) / 2.0;
         Self {
-            grounds: surfaces.iter().map(ground).collect(),
+            grounds: surfaces.iter().zip(fields).map(ground).collect(),
             skins: Vec::new(),
             limits: Limits {
-                steepest,
+                steepest: steepest(params),
                 min_height,
                 line_width: params.line_width,
                 keep: keep as Coord + CELL / 2,
@@ -132,7 +138,7 @@ impl Contours {
                 segment: f64::from(params.segment),
                 shortest: f64::from(params.shortest.max(1)),
             },
-            tops,
+            tops: *tops,
             depth: f64::from(params.skins) * f64::from(params.height),
         }
     }

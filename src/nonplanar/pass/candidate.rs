@@ -14,7 +14,6 @@
 use super::glance::{Glance, Under};
 use super::marks::Marks;
 use super::shrink::{Refused, refuse, shrink};
-use super::stack::heights_over;
 use super::touch::mm;
 use crate::geom::Contour;
 use crate::geom::boxes::extent;
@@ -173,10 +172,17 @@ fn standing(scene: &Scene<'_>, field: &Field, area: &[Contour]) -> (Pile, Glance
     let mut pile = Pile::new(corner(low), corner(high), to_mm(CELL));
     let [columns, rows] = pile.size();
     let mut heights = vec![f32::NEG_INFINITY; columns * rows];
-    for (cell, z) in heights_over(field, &grid::cells(area)) {
-        let [x, y] = [0, 1].map(|axis| usize::try_from(cell[axis] - low[axis]).unwrap_or(0));
-        pile.raise([x, y], z);
-        heights[y * columns + x] = z as f32;
+    for (j, row) in grid::cells(area).iter() {
+        for &span in row {
+            let over = grid::columns(span, CELL);
+            let at = [over.start - low[0], j - low[1]].map(|v| usize::try_from(v).unwrap_or(0));
+            let z = |column: i32| field.at([column, j]).map_or(f64::NAN, mm);
+            pile.raise_cells(at, over.clone().map(z));
+            let line = &mut heights[at[1] * columns + at[0]..];
+            for (height, z) in line.iter_mut().zip(over.map(z)).filter(|(_, z)| !z.is_nan()) {
+                *height = z as f32;
+            }
+        }
     }
     let known = || heights.iter().copied().filter(|z| z.is_finite()).map(f64::from);
     let most = known().fold(f64::MIN, f64::max) - known().fold(f64::MAX, f64::min);

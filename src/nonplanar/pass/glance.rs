@@ -124,20 +124,32 @@ fn pass(
     columns: usize,
     [side, across]: [f32; 2],
 ) {
-    let start = row * columns;
-    if let Some(beside) = beside.map(|beside| beside * columns) {
-        for x in 0..columns {
-            let straight = heights[beside + x] - side;
-            let before = x.checked_sub(1).map_or(f32::MIN, |x| heights[beside + x] - across);
-            let after = if x + 1 < columns { heights[beside + x + 1] - across } else { f32::MIN };
-            heights[start + x] = heights[start + x].max(straight).max(before).max(after);
-        }
+    let line = |row: usize| row * columns..(row + 1) * columns;
+    if let Some(beside) = beside {
+        let lines = [line(row), line(beside)];
+        let Ok([own, beside]) = heights.get_disjoint_mut(lines) else { return };
+        // One kind of step at a time: each is then done for many cells at once.
+        carry(own, beside, side);
+        carry(&mut own[1..], beside, across);
+        carry(own, &beside[1..], across);
     }
-    for x in 1..columns {
-        heights[start + x] = heights[start + x].max(heights[start + x - 1] - side);
+    let own = &mut heights[line(row)];
+    let mut last = f32::NEG_INFINITY;
+    for height in own.iter_mut() {
+        last = height.max(last - side);
+        *height = last;
     }
-    for x in (1..columns).rev() {
-        heights[start + x - 1] = heights[start + x - 1].max(heights[start + x] - side);
+    last = f32::NEG_INFINITY;
+    for height in own.iter_mut().rev() {
+        last = height.max(last - side);
+        *height = last;
+    }
+}
+
+/// Raises cells to what those beside them allow.
+fn carry(cells: &mut [f32], beside: &[f32], step: f32) {
+    for (height, beside) in cells.iter_mut().zip(beside) {
+        *height = height.max(beside - step);
     }
 }
 

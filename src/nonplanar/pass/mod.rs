@@ -23,7 +23,7 @@ mod trial;
 use crate::geom::Contour;
 use crate::geom::boxes::extent;
 use crate::geom::spans::Rows;
-use crate::nonplanar::field::Field;
+use crate::nonplanar::field::{Field, Fields};
 use crate::nonplanar::grid::{self, STEP, Spot, cell_of};
 use crate::nonplanar::patch::{Patch, Patches, Stroke};
 use crate::nonplanar::scene::Scene;
@@ -35,7 +35,7 @@ use candidate::{Ground, Piece};
 use lay::{Coat, lay, steepest, strokes};
 use rayon::prelude::*;
 use shrink::Refused;
-use stack::{Cut, Stack, heights_over};
+use stack::{Cut, Stack};
 use std::ops::Range;
 use trial::Trial;
 
@@ -45,6 +45,12 @@ const ROUNDS: [i32; 5] = [0, 1, 3, 6, 15];
 /// Decides which places of gentle slopes are printed as skins, and lays these.
 #[must_use]
 pub fn patches(scene: &Scene<'_>) -> Patches {
+    patches_and_fields(scene).0
+}
+
+/// As [`patches`], with the heights of the surfaces, which are known then.
+#[must_use]
+pub fn patches_and_fields(scene: &Scene<'_>) -> (Patches, Fields) {
     let surfaces = &scene.surfaces.surfaces;
     let found: Vec<(Ground, Vec<Piece>)> = surfaces
         .par_iter()
@@ -76,7 +82,8 @@ pub fn patches(scene: &Scene<'_>) -> Patches {
         }
     }
     out.mm2 = tally(scene, &grounds, &mut out.patches, &from);
-    out
+    let fields = grounds.into_iter().map(|ground| ground.field);
+    (out, Fields::new(surfaces.iter().cloned().zip(fields)))
 }
 
 /// What stands before the first piece is laid, with room for all of them.
@@ -135,9 +142,7 @@ fn patch(
     let (heights, depth) = (scene.slicer.heights(), scene.base_depth());
     let area: &[Contour] = made.as_ref().and_then(|p: &Patch| p.areas.last()).map_or(&[], |a| a);
     stack.cuts[k] = Cut::new(field, area, heights, (depth, scene.params.height), piece.home + 1);
-    for (cell, z) in heights_over(field, &grid::cells(area)) {
-        stack.raise(cell, z);
-    }
+    stack.raise_over(field, &grid::cells(area));
     made
 }
 
@@ -177,11 +182,11 @@ fn tally(scene: &Scene<'_>, grounds: &[Ground], patches: &mut [Patch], from: &[&
     for (number, (ground, surface)) in grounds.iter().zip(&scene.surfaces.surfaces).enumerate() {
         let lists = patches.iter().filter(|patch| patch.surface == number);
         let skins: Vec<Rows> = lists.filter_map(|patch| Some(rows(patch.areas.last()?))).collect();
-        let is_skin = |[x, y]: Spot| skins.iter().any(|rows| holds(rows, [x, y]));
+        let skins = Rows::united(&skins.iter().collect::<Vec<_>>());
         let places: Vec<Spot> = ground.marks.places().collect();
         let mut own = Areas::default();
         for &place in &places {
-            count(&mut own, ground, place, is_skin(place));
+            count(&mut own, ground, place, holds(&skins, place));
         }
         // Places are counted; the surface's area is known.
         let share = surface.area_mm2(surface.outline()) / own.total().max(f64::MIN_POSITIVE);
@@ -220,5 +225,7 @@ fn rows(area: &[Contour]) -> Rows {
 }
 
 fn holds(rows: &Rows, [x, y]: Spot) -> bool {
-    rows.row(y).iter().any(|span| span.start <= x * STEP && x * STEP < span.end)
+    let (row, x) = (rows.row(y), x * STEP);
+    let after = row.partition_point(|span| span.start <= x);
+    after > 0 && x < row[after - 1].end
 }

@@ -142,13 +142,10 @@ impl<'a> Stack<'a> {
 
     /// What of a section is printed flat: the part without the room of skins, and support.
     pub(super) fn standing(&self, k: usize, section: &Section) -> Rows {
-        let mut solid = section.solid.clone();
-        for cut in &self.cuts {
-            let rows = k.checked_sub(cut.first).and_then(|at| cut.layers.get(at));
-            if let Some(rows) = rows.filter(|rows| !rows.is_empty()) {
-                solid = solid.minus(rows);
-            }
-        }
+        let rows = self.cuts.iter().filter_map(|cut| cut.layers.get(k.checked_sub(cut.first)?));
+        let rows: Vec<&Rows> = rows.filter(|rows| !rows.is_empty()).collect();
+        let cut = Rows::united(&rows);
+        let solid = if cut.is_empty() { section.solid.clone() } else { section.solid.minus(&cut) };
         if section.support.is_empty() { solid } else { solid.or(&section.support) }
     }
 
@@ -166,6 +163,20 @@ impl<'a> Stack<'a> {
         let at = (usize::try_from(x - self.low[0]), usize::try_from(y - self.low[1]));
         if let (Ok(x), Ok(y)) = at {
             self.pile.raise([x, y], z);
+        }
+    }
+
+    /// The cells of an area stand at least as high as a surface over them.
+    pub(super) fn raise_over(&mut self, field: &Field, rows: &Rows) {
+        for (j, row) in rows.iter() {
+            for &span in row {
+                let columns = columns(span, CELL);
+                let at = (columns.start - self.low[0], j - self.low[1]);
+                if let (Ok(x), Ok(y)) = (usize::try_from(at.0), usize::try_from(at.1)) {
+                    let z = |column: i32| field.at([column, j]).map_or(f64::NAN, mm);
+                    self.pile.raise_cells([x, y], columns.map(z));
+                }
+            }
         }
     }
 
@@ -193,10 +204,12 @@ impl Cut {
         (depth, height): (Coord, Coord),
         from: usize,
     ) -> Self {
-        let reach = |z: f64| -> Range<usize> {
-            // The base ends where a part lowered by the skins would; see `base`.
-            let first = heights.planes_up_to((z - f64::from(depth)) as Coord).max(from);
-            let last = heights.planes_up_to((z + ABOVE * f64::from(height)) as Coord);
+        // The base ends where a part lowered by the skins would; see `base`.
+        let mut ends =
+            [-f64::from(depth), ABOVE * f64::from(height)].map(|by| Planes::new(heights, by));
+        let mut reach = |z: f64| -> Range<usize> {
+            let [first, last] = ends.each_mut().map(|end| end.up_to(z));
+            let first = first.max(from);
             first..last.max(first)
         };
         let rows = cells(area);
@@ -231,6 +244,33 @@ impl Cut {
             }
         }
         Self { first, layers }
+    }
+}
+
+/// The number of planes up to a height that is so much higher than asked for. Most questions in a row have the
+/// same answer.
+struct Planes<'a> {
+    heights: &'a Heights,
+    by: f64,
+    /// The last answer, and the heights that have it.
+    last: (usize, Range<Coord>),
+}
+
+impl<'a> Planes<'a> {
+    fn new(heights: &'a Heights, by: f64) -> Self {
+        Self { heights, by, last: (0, 0..0) }
+    }
+
+    fn up_to(&mut self, z: f64) -> usize {
+        let z = (z + self.by) as Coord;
+        if !self.last.1.contains(&z) {
+            let count = self.heights.planes_up_to(z);
+            let below = count.checked_sub(1).map_or(Coord::MIN, |k| self.heights.plane(k));
+            let is_last = count == self.heights.count();
+            let above = if is_last { Coord::MAX } else { self.heights.plane(count) };
+            self.last = (count, below..above);
+        }
+        self.last.0
     }
 }
 

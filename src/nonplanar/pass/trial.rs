@@ -159,22 +159,37 @@ impl<'a> Trial<'a> {
             && surface.is_some_and(|z| self.piece.glance.is_clear(cell, z))
     }
 
-    /// The places of each skin that fail.
+    /// The places of each skin that fail. Where the lowest one touches nothing, those above do not either: their
+    /// tips are higher.
     fn refused(&self, stack: &Stack<'_>) -> Vec<Refused> {
         let last = self.areas.len() - 1;
         let inset = self.scene.params.line_width / 2;
         let mut out: Vec<Refused> = Vec::new();
-        let mut same: Option<(&Vec<Contour>, Vec<Spot>)> = None;
+        // The places of the skin below, row by row, and whether each is known to touch nothing.
+        let mut below: (Vec<Spot>, Vec<bool>) = Default::default();
         for (i, area) in self.areas.iter().enumerate() {
-            let places = match same.take() {
-                Some((other, places)) if other == area => places,
-                _ => grid::places(area, inset),
+            let same = i.checked_sub(1).is_some_and(|below| self.areas[below] == *area);
+            let places = if same { below.0.clone() } else { grid::places(area, inset) };
+            let by_row = |[x, y]: &Spot| [*y, *x];
+            let is_known = |k: usize| {
+                let at = || below.0.binary_search_by_key(&by_row(&places[k]), by_row).ok();
+                let at = if same { Some(k) } else { at() };
+                at.is_some_and(|at| below.1[at])
             };
-            let fails = |place: &Spot| Some((*place, self.fails(*place, i, i == last, stack)?));
-            let asked = places.par_iter().filter(|place| self.is_fresh(**place));
-            let failed: Vec<(Spot, Reason)> = asked.filter_map(fails).collect();
-            out.push(failed.into_iter().collect());
-            same = Some((area, places));
+            let tried = |k: usize| {
+                let place = places[k];
+                if !self.is_fresh(place) {
+                    return (true, None);
+                }
+                let hit = if is_known(k) { None } else { self.touches(place, i, stack) };
+                (hit.is_none(), hit.or_else(|| self.hinders(place).filter(|_| i == last)))
+            };
+            let tried: Vec<(bool, Option<Reason>)> =
+                (0..places.len()).into_par_iter().map(tried).collect();
+            let failed =
+                places.iter().zip(&tried).filter_map(|(place, (_, why))| Some((*place, (*why)?)));
+            out.push(failed.collect());
+            below = (places, tried.into_iter().map(|(clear, _)| clear).collect());
         }
         self.without_base(stack, &mut out);
         out
@@ -186,22 +201,31 @@ impl<'a> Trial<'a> {
         self.fresh.as_ref().is_none_or(|fresh| fresh.contains(&block))
     }
 
-    /// Why skin `i` cannot be laid at a place.
-    fn fails(&self, place: Spot, i: usize, is_last: bool, stack: &Stack<'_>) -> Option<Reason> {
-        let (field, cell) = (&self.ground.field, cell_of(place));
-        let layer = self.scene.params.press_layer_at_places();
-        let touch = Touch { scene: self.scene, field, layer };
-        let z = field.at(cell)?;
+    /// What the head touches that lays skin `i` at a place.
+    fn touches(&self, place: Spot, i: usize, stack: &Stack<'_>) -> Option<Reason> {
+        let cell = cell_of(place);
+        let z = self.ground.field.at(cell)?;
         let [x, y] = grid::middle(cell);
         let tip = [x, y, mm(z - f64::from(self.scene.lowered(i)))];
-        let head = &self.scene.params.head;
+        if self.is_clear(cell, tip[2]) {
+            return None;
+        }
+        let (head, touch) = (&self.scene.params.head, self.touch());
         // Press goes into its own surface alone.
         let pressed = || self.others.hit(head, tip, &|hit| touch.is_press(hit));
-        let tried = || stack.pile.hit_printing(head, tip, layer).or_else(pressed);
-        let hit = if self.is_clear(cell, tip[2]) { None } else { tried() };
-        let of = |hit: &Hit| touch.reason(hit, |cell| stack.is_supported(cell));
-        let later = || self.later.as_ref().filter(|_| is_last)?.fails(&touch, [x, y], z);
-        hit.map(|hit| of(&hit)).or_else(later)
+        let hit = stack.pile.hit_printing(head, tip, touch.layer).or_else(pressed)?;
+        Some(touch.reason(&hit, |cell| stack.is_supported(cell)))
+    }
+
+    /// Why the skins at a place are in the way of later lines.
+    fn hinders(&self, place: Spot) -> Option<Reason> {
+        let (later, cell) = (self.later.as_ref()?, cell_of(place));
+        later.fails(&self.touch(), grid::middle(cell), self.ground.field.at(cell)?)
+    }
+
+    fn touch(&self) -> Touch<'_> {
+        let layer = self.scene.params.press_layer_at_places();
+        Touch { scene: self.scene, field: &self.ground.field, layer }
     }
 
     /// Adds places where the lowest skin has no base at its height to those of the last skin.

@@ -471,7 +471,9 @@ fn the_facets_of_a_mesh_are_followed_exactly() {
         let [a, b, c, d] = [z(i, j), z(i + 1, j), z(i + 1, j + 1), z(i, j + 1)];
         [[a, b, c], [a, c, d]]
     });
-    let surface = Surface::new(facets.collect());
+    let facets: Vec<_> = facets.collect();
+    let open = vec![[true; 3]; facets.len()];
+    let surface = Surface::new(facets, open);
     let area = surface.outline();
     let params = NonPlanarParams { shortest: 1_000, ..params() };
     for direction in [0.0, 30.0] {

@@ -55,27 +55,17 @@ impl Lie {
     }
 }
 
-/// Triangles of gentle slopes, by what hangs together.
-#[derive(Debug)]
-pub(super) struct Groups {
-    /// How each triangle lies.
-    pub lies: Vec<Lie>,
-    /// The triangles of each group, in their order; groups in the order of their first triangles.
-    pub members: Vec<Vec<u32>>,
-}
-
 /// Of what use a triangle is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Class {
+pub(super) enum Class {
     Sloped,
     Level,
     Other,
 }
 
-/// Groups the triangles of a mesh.
+/// Of what use triangles that lie so are.
 #[must_use]
-pub(super) fn groups(mesh: &Mesh, adjacency: &Adjacency, params: &NonPlanarParams) -> Groups {
-    let lies = lies(mesh, adjacency);
+pub(super) fn classes(lies: &[Lie], params: &NonPlanarParams) -> Vec<Class> {
     let tangent = |degrees: f64| libm::tan(degrees.to_radians());
     let slopes = tangent(*params.slopes.start())..=tangent(*params.slopes.end());
     let class = |lie: &Lie| match lie.slope() {
@@ -83,7 +73,18 @@ pub(super) fn groups(mesh: &Mesh, adjacency: &Adjacency, params: &NonPlanarParam
         slope if slope < *slopes.start() => Class::Level,
         _ => Class::Other,
     };
-    let mut classes: Vec<Class> = lies.par_iter().map(class).collect();
+    lies.par_iter().map(class).collect()
+}
+
+/// Triangles of gentle slopes by what hangs together: those of each group in their order, groups in the order
+/// of their first triangles.
+#[must_use]
+pub(super) fn groups(
+    mesh: &Mesh,
+    adjacency: &Adjacency,
+    (lies, mut classes): (&[Lie], Vec<Class>),
+    params: &NonPlanarParams,
+) -> Vec<Vec<u32>> {
     let most = libm::cos(params.max_bend.to_radians());
     let joins = |t: usize, u: usize| {
         let ([ax, ay, az], [bx, by, bz]) = (lies[t].normal, lies[u].normal);
@@ -98,9 +99,8 @@ pub(super) fn groups(mesh: &Mesh, adjacency: &Adjacency, params: &NonPlanarParam
             }
         }
     }
-    adopt(mesh, adjacency, params, (&lies, &mut classes, &mut sets), joins);
-    let members = gathered(&mut sets, |t| classes[t] == Class::Sloped);
-    Groups { lies, members }
+    adopt(mesh, adjacency, params, (lies, &mut classes, &mut sets), joins);
+    gathered(&mut sets, |t| classes[t] == Class::Sloped)
 }
 
 /// The triangles of each set that `holds` for, in their order.
@@ -122,7 +122,8 @@ fn gathered(sets: &mut Sets, holds: impl Fn(usize) -> bool) -> Vec<Vec<u32>> {
 }
 
 /// How the triangles lie.
-fn lies(mesh: &Mesh, adjacency: &Adjacency) -> Vec<Lie> {
+#[must_use]
+pub(super) fn lies(mesh: &Mesh, adjacency: &Adjacency) -> Vec<Lie> {
     let lie = |&triangle: &[u32; 3]| {
         let corners = corners_of(&mesh.vertices, triangle);
         let across = normal(corners);

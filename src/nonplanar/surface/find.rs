@@ -6,15 +6,16 @@
 //! inside another body counts as it is.
 
 use super::Surface;
-use super::facets::{Groups, Lie, groups};
+use super::facets::{Lie, classes, groups, lies};
 use super::sheets::sheets;
 use crate::geom::double_area;
 use crate::mesh::Mesh;
-use crate::mesh::edges::Adjacency;
+use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::mesh::geometry::measure::corners_of;
 use crate::nonplanar::params::NonPlanarParams;
 use crate::units::UNITS_PER_MM;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Grid units² in a mm².
 const UNITS2: f64 = UNITS_PER_MM * UNITS_PER_MM;
@@ -27,7 +28,7 @@ const OVERLAP: f64 = 0.1;
 #[derive(Debug)]
 pub struct Surfaces {
     /// The surfaces, in the order of their first triangles.
-    pub surfaces: Vec<Surface>,
+    pub surfaces: Vec<Arc<Surface>>,
     /// The areas of all tops.
     pub tops: Tops,
 }
@@ -50,31 +51,98 @@ pub struct Tops {
 /// The surfaces of a mesh that lies on the bed.
 #[must_use]
 pub fn surfaces(mesh: &Mesh, adjacency: &Adjacency, params: &NonPlanarParams) -> Surfaces {
-    let Groups { lies, members } = groups(mesh, adjacency, params);
-    let is_large = |group: &[u32]| {
-        let plan: f64 = group.iter().map(|&t| lies[t as usize].plan).sum();
-        plan >= params.min_area * UNITS2
-    };
-    let pieces = members.par_iter().filter(|group| is_large(group));
-    let pieces = pieces.flat_map_iter(|group| {
-        let whole = surface(mesh, group);
-        if !overlaps(&whole, &lies, group) {
-            return vec![(whole, group.clone())];
-        }
-        let sheets = sheets(mesh, adjacency, group).into_iter().filter(|sheet| is_large(sheet));
-        sheets.map(|sheet| (surface(mesh, &sheet), sheet)).collect()
-    });
-    let (surfaces, used): (Vec<Surface>, Vec<Vec<u32>>) =
-        pieces.collect::<Vec<_>>().into_iter().unzip();
-    let mut is_used = vec![false; lies.len()];
-    used.iter().flatten().for_each(|&t| is_used[t as usize] = true);
-    Surfaces { surfaces, tops: tops(&lies, &is_used, params) }
+    let lies = lies(mesh, adjacency);
+    let members = groups(mesh, adjacency, (&lies, classes(&lies, params)), params);
+    let found = found(mesh, adjacency, (&lies, &members), params.min_area);
+    large(&found, &lies, params)
 }
 
-/// The surface of some triangles.
-fn surface(mesh: &Mesh, group: &[u32]) -> Surface {
+/// The same for two ways of looking at a mesh, which differ in slopes and least area. Surfaces that are the
+/// same in both are made once.
+#[must_use]
+pub fn surfaces_for(
+    mesh: &Mesh,
+    adjacency: &Adjacency,
+    [one, other]: [&NonPlanarParams; 2],
+) -> [Surfaces; 2] {
+    let lies = lies(mesh, adjacency);
+    let [first, second] = [one, other].map(|params| classes(&lies, params));
+    let is_same = first == second && one.max_bend == other.max_bend;
+    let members = groups(mesh, adjacency, (&lies, first), one);
+    if is_same {
+        let least = one.min_area.min(other.min_area);
+        let found = found(mesh, adjacency, (&lies, &members), least);
+        return [one, other].map(|params| large(&found, &lies, params));
+    }
+    let of = |members: &[Vec<u32>], params: &NonPlanarParams| {
+        let found = found(mesh, adjacency, (&lies, members), params.min_area);
+        large(&found, &lies, params)
+    };
+    let own = groups(mesh, adjacency, (&lies, second), other);
+    [of(&members, one), of(&own, other)]
+}
+
+/// A surface with what it is made of.
+struct Found {
+    surface: Arc<Surface>,
+    triangles: Vec<u32>,
+    /// Area in plan, grid units²: the lesser of its own and that of the group that it is a sheet of.
+    plan: f64,
+}
+
+/// The surfaces of some groups that are so large in plan, mm².
+fn found(
+    mesh: &Mesh,
+    adjacency: &Adjacency,
+    (lies, members): (&[Lie], &[Vec<u32>]),
+    least: f64,
+) -> Vec<Found> {
+    let plan = |group: &[u32]| group.iter().map(|&t| lies[t as usize].plan).sum::<f64>();
+    let made = |triangles: Vec<u32>, surface: Surface, plan: f64| Found {
+        surface: Arc::new(surface),
+        triangles,
+        plan,
+    };
+    let groups = members.par_iter().map(|group| (group, plan(group)));
+    let large = groups.filter(|(_, plan)| *plan >= least * UNITS2);
+    let found = large.flat_map_iter(|(group, all)| {
+        let whole = surface(mesh, adjacency, group);
+        if !overlaps(&whole, lies, group) {
+            return vec![made(group.clone(), whole, all)];
+        }
+        let sheets = sheets(mesh, adjacency, group).into_iter().map(|sheet| (plan(&sheet), sheet));
+        let sheets = sheets.filter(|(own, _)| *own >= least * UNITS2);
+        let sheet = |(own, sheet): (f64, Vec<u32>)| {
+            let surface = surface(mesh, adjacency, &sheet);
+            made(sheet, surface, all.min(own))
+        };
+        sheets.map(sheet).collect()
+    });
+    found.collect()
+}
+
+/// Those of some surfaces that are large enough, and the areas of all tops.
+fn large(found: &[Found], lies: &[Lie], params: &NonPlanarParams) -> Surfaces {
+    let large = || found.iter().filter(|one| one.plan >= params.min_area * UNITS2);
+    let mut is_used = vec![false; lies.len()];
+    large().flat_map(|one| &one.triangles).for_each(|&t| is_used[t as usize] = true);
+    let surfaces = large().map(|one| Arc::clone(&one.surface)).collect();
+    Surfaces { surfaces, tops: tops(lies, &is_used, params) }
+}
+
+/// The surface of some triangles, in their order.
+fn surface(mesh: &Mesh, adjacency: &Adjacency, group: &[u32]) -> Surface {
     let corners = |&t: &u32| corners_of(&mesh.vertices, mesh.triangles[t as usize]);
-    Surface::new(group.iter().map(corners).collect())
+    // Most neighbours are the triangles before and after.
+    let holds = |u: u32, k: usize| {
+        let near = k.saturating_sub(1)..(k + 2).min(group.len());
+        group[near].contains(&u) || group.binary_search(&u).is_ok()
+    };
+    let open = |(k, &t): (usize, &u32)| {
+        adjacency.neighbour[t as usize].map(|side| side == NONE || !holds(parts(side).0 as u32, k))
+    };
+    let open = group.iter().enumerate().map(open).collect();
+    Surface::new(group.iter().map(corners).collect(), open)
 }
 
 /// Whether a surface lies above itself somewhere.

@@ -55,8 +55,13 @@ impl Index {
     /// The triangles that may lie over the straight way from `a` to `b`, in their order.
     #[must_use]
     pub(super) fn along(&self, a: Point, b: Point) -> Vec<u32> {
-        let way = [a, b];
-        let cells = self.grid.under(&way);
+        self.near(&[a, b])
+    }
+
+    /// The triangles that may have a place in common with a polygon without dents, in their order.
+    #[must_use]
+    pub(super) fn near(&self, polygon: &[Point]) -> Vec<u32> {
+        let cells = self.grid.under(polygon);
         let mut found: Vec<u32> =
             cells.flat_map(|cell| self.cells.of(cell..cell + 1)).copied().collect();
         found.sort_unstable();

@@ -15,14 +15,18 @@ pub mod find;
 
 mod facets;
 mod index;
+mod levels;
 pub(super) mod rim;
 mod sheets;
+#[cfg(test)]
+mod tests;
 
 use crate::geom::boxes::extent;
 use crate::geom::{Contour, Point, edges, encloses, side};
 use crate::units::{Coord, UNITS_PER_MM, between};
 use index::{Index, NEAR};
-use rim::rim;
+use levels::Levels;
+use rim::of_sides;
 
 /// Distance of the rows that areas are measured along, grid units: 0.05 mm.
 const ROW: f64 = 500.0;
@@ -31,6 +35,9 @@ const ROW: f64 = 500.0;
 #[derive(Debug)]
 pub struct Surface {
     facets: Vec<[[Coord; 3]; 3]>,
+    /// Which sides of each facet have no other facet beside them.
+    open: Vec<[bool; 3]>,
+    levels: Levels,
     index: Index,
     outline: Vec<Contour>,
     extent: (Point, Point),
@@ -41,9 +48,10 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The surface of some facets, counter-clockwise seen from above.
+    /// The surface of some facets, counter-clockwise seen from above. `open` are those of their sides, from
+    /// each corner to the next, along which no other of them runs the other way.
     #[must_use]
-    pub(super) fn new(facets: Vec<[[Coord; 3]; 3]>) -> Self {
+    pub(super) fn new(facets: Vec<[[Coord; 3]; 3]>, open: Vec<[bool; 3]>) -> Self {
         let plans: Vec<[Point; 3]> = facets.iter().map(plan).collect();
         let zs = || facets.as_flattened().iter().map(|corner| corner[2]);
         let bounds = [zs().min().unwrap_or(0), zs().max().unwrap_or(0)];
@@ -61,15 +69,20 @@ impl Surface {
             }
         }
         let turn = libm::atan2(axis[1], axis[0]).to_degrees() / 2.0;
+        let rim = plans.iter().zip(&open).flat_map(|(plan, open)| {
+            edges(plan).zip(open).filter(|(_, open)| **open).map(|(side, _)| side)
+        });
         Self {
+            outline: of_sides(rim),
+            levels: Levels::new(&facets),
             index: Index::new(&plans),
-            outline: rim(plans.iter()),
             extent: extent(plans.as_flattened()).unwrap_or_default(),
             bounds,
             area_mm2: area / (UNITS_PER_MM * UNITS_PER_MM),
             steepest: libm::atan(steepest).to_degrees(),
             direction: turn.rem_euclid(180.0),
             facets,
+            open,
         }
     }
 
@@ -151,12 +164,11 @@ impl Surface {
         if high < from || below <= low {
             return Vec::new();
         }
-        let cut = self.facets.iter().filter_map(|facet| {
-            let [a, b, c] = facet.map(|corner| corner[2]);
-            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-            (high >= from && low < below).then(|| band(facet, [from, below]))
+        let mut sides = Vec::new();
+        self.levels.each(&self.facets, [from, below], |k| {
+            band(&self.facets[k], self.open[k], [from, below], &mut sides);
         });
-        rim(cut)
+        of_sides(sides.into_iter())
     }
 
     /// Where the straight way from `a` to `b` crosses its edges: the share of the way and the height,
@@ -179,20 +191,44 @@ impl Surface {
                 crossings(facet, (a, b), &mut found);
             }
         }
-        found.sort_by(|one, other| one.0.total_cmp(&other.0).then(other.1.total_cmp(&one.1)));
-        // Both facets of an edge give the same point. Points nearer than a grid unit are one.
-        let mut out: Vec<(f64, f64)> = Vec::with_capacity(found.len());
-        for point in found {
-            match out.last_mut() {
-                Some(last) if (point.0 - last.0) * length < 1.0 => {
-                    if point.0 >= 1.0 && last.0 > 0.0 {
-                        *last = point;
-                    }
+        in_order(found, length)
+    }
+
+    /// As [`Self::profile`], along many ways that run to the right along rows: from and to these x at
+    /// `y = j · pitch`, with j from `first` on. Ways may be missing.
+    #[must_use]
+    pub(super) fn profiles(
+        &self,
+        (first, pitch): (i32, Coord),
+        ways: &[Option<[Coord; 2]>],
+    ) -> Vec<Vec<(f64, f64)>> {
+        let y = |k: usize| (first + k as i32) * pitch;
+        let ends = |(k, way): (usize, &Option<[Coord; 2]>)| {
+            let z = |(x, share): (Coord, f64)| Some((share, self.z(Point { x, y: y(k) })?));
+            way.iter().flat_map(|&[a, b]| [(a, 0.0), (b, 1.0)]).filter_map(z).collect()
+        };
+        let mut found: Vec<Vec<(f64, f64)>> = ways.iter().enumerate().map(ends).collect();
+        let xs = || ways.iter().flatten().flatten().copied();
+        let (Some(left), Some(right)) = (xs().min(), xs().max()) else { return found };
+        let (low, high) = (y(0), y(ways.len().saturating_sub(1)));
+        let around =
+            [(left, low), (right, low), (right, high), (left, high)].map(|(x, y)| Point { x, y });
+        for facet in self.index.near(&around).into_iter().map(|k| &self.facets[k as usize]) {
+            if across(facet)[2] <= 0.0 {
+                continue;
+            }
+            let [a, b, c] = facet.map(|corner| corner[1]);
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            let rows = (-(-low).div_euclid(pitch)).max(first)..=high.div_euclid(pitch);
+            for k in rows.map(|j| (j - first) as usize).take_while(|&k| k < ways.len()) {
+                if let Some(way) = ways[k] {
+                    level_crossings(facet, (way, y(k)), &mut found[k]);
                 }
-                _ => out.push(point),
             }
         }
-        out
+        let length = |way: &Option<[Coord; 2]>| way.map_or(0.0, |[a, b]| f64::from(b - a));
+        let lengths = ways.iter().map(length);
+        found.into_iter().zip(lengths).map(|(found, length)| in_order(found, length)).collect()
     }
 
     /// Its lowest and highest z over an area in plan, as from a union; `None` if they have no place in
@@ -283,6 +319,24 @@ fn row_crossings(sides: impl Iterator<Item = (Point, Point)>, y: f64) -> Vec<f64
     found
 }
 
+/// Places of a way with their heights, in order. Both facets of an edge give the same place. Places nearer
+/// than a grid unit are one.
+fn in_order(mut found: Vec<(f64, f64)>, length: f64) -> Vec<(f64, f64)> {
+    found.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(other.1.total_cmp(&one.1)));
+    let mut out: Vec<(f64, f64)> = Vec::with_capacity(found.len());
+    for point in found {
+        match out.last_mut() {
+            Some(last) if (point.0 - last.0) * length < 1.0 => {
+                if point.0 >= 1.0 && last.0 > 0.0 {
+                    *last = point;
+                }
+            }
+            _ => out.push(point),
+        }
+    }
+    out
+}
+
 /// The corners of a facet in plan.
 fn plan(facet: &[[Coord; 3]; 3]) -> [Point; 3] {
     facet.map(|[x, y, _]| Point { x, y })
@@ -311,13 +365,25 @@ fn height(facet: &[[Coord; 3]; 3], at: Point) -> f64 {
     over.clamp(f64::from(low), f64::from(high))
 }
 
-/// What of a facet is not lower than the first height and lower than the second: a polygon in plan.
-fn band(facet: &[[Coord; 3]; 3], heights: [Coord; 2]) -> Vec<Point> {
-    let mut out = Vec::with_capacity(7);
+/// Adds the sides of what of a facet is not lower than the first height and lower than the second, in plan:
+/// those along its open sides, and those at both heights. The others are those of the facets beside it, too.
+fn band(
+    facet: &[[Coord; 3]; 3],
+    open: [bool; 3],
+    heights: [Coord; 2],
+    sides: &mut Vec<(Point, Point)>,
+) {
+    let is_in = |corner: &[Coord; 3]| corner[2] >= heights[0] && corner[2] < heights[1];
+    if open == [false; 3] && facet.iter().all(is_in) {
+        return;
+    }
+    // The corners of what is left, each with whether the side from it to the next one is wanted.
+    let mut corners: Vec<(Point, bool)> = Vec::with_capacity(9);
     for k in 0..3 {
         let (p, q) = (facet[k], facet[(k + 1) % 3]);
-        if p[2] >= heights[0] && p[2] < heights[1] {
-            out.push(Point { x: p[0], y: p[1] });
+        let before = corners.len();
+        if is_in(&p) {
+            corners.push((Point { x: p[0], y: p[1] }, open[k]));
         }
         let rises = p[2] < q[2];
         let (low, high) = if rises { (p, q) } else { (q, p) };
@@ -326,12 +392,17 @@ fn band(facet: &[[Coord; 3]; 3], heights: [Coord; 2]) -> Vec<Point> {
             // A corner at the height counts as above it, as in slicing.
             if low[2] < v && v <= high[2] {
                 let along = |axis: usize| between(low[axis], high[axis], (v, low[2], high[2]));
-                out.push(Point { x: along(0), y: along(1) });
+                corners.push((Point { x: along(0), y: along(1) }, open[k]));
             }
         }
+        // Where the facet's side leaves the band, a side at that height begins.
+        if let Some(last) = corners[before..].last_mut().filter(|_| !is_in(&q)) {
+            last.1 = true;
+        }
     }
-    out.dedup();
-    out
+    let next = corners.iter().cycle().skip(1);
+    let pairs = corners.iter().zip(next).filter(|((_, wanted), _)| *wanted);
+    sides.extend(pairs.map(|(a, b)| (a.0, b.0)));
 }
 
 /// Where a straight way crosses the sides of a facet: the share of the way and the height.
@@ -362,6 +433,38 @@ fn crossings(facet: &[[Coord; 3]; 3], (a, b): (Point, Point), found: &mut Vec<(f
                 from + by * (to - from)
             };
             add([at(0), at(1), at(2)]);
+        }
+    }
+}
+
+/// The same on a way to the right along x, at y: to the last digit, since the distances from such a way are all
+/// multiplied by its length there.
+fn level_crossings(
+    facet: &[[Coord; 3]; 3],
+    ([left, right], y): ([Coord; 2], Coord),
+    found: &mut Vec<(f64, f64)>,
+) {
+    let asides = facet.map(|corner| i64::from(corner[1]) - i64::from(y));
+    let (left, way) = (f64::from(left), f64::from(right) - f64::from(left));
+    let mut add = |x: f64, z: f64| {
+        let t = (x - left) * way / (way * way);
+        if t > 0.0 && t < 1.0 {
+            found.push((t, z));
+        }
+    };
+    for k in 0..3 {
+        let next = (k + 1) % 3;
+        if asides[k] == 0 {
+            add(f64::from(facet[k][0]), f64::from(facet[k][2]));
+        }
+        if (asides[k] < 0 && asides[next] > 0) || (asides[k] > 0 && asides[next] < 0) {
+            let (p, q) = if facet[k] < facet[next] { (k, next) } else { (next, k) };
+            let by = asides[p] as f64 / (asides[p] - asides[q]) as f64;
+            let at = |axis: usize| {
+                let (from, to) = (f64::from(facet[p][axis]), f64::from(facet[q][axis]));
+                from + by * (to - from)
+            };
+            add(at(0), at(2));
         }
     }
 }

@@ -17,13 +17,19 @@ pub(in crate::nonplanar) fn rim<P: AsRef<[Point]>>(
     let mut sides = Vec::new();
     for polygon in polygons {
         let corners = polygon.as_ref();
-        for (k, &from) in corners.iter().enumerate() {
-            let to = corners[(k + 1) % corners.len()];
-            if from != to {
-                sides.push(if from < to { (from, to, 1) } else { (to, from, -1) });
-            }
-        }
+        sides.extend((0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()])));
     }
+    of_sides(sides.into_iter())
+}
+
+/// As [`rim`], of the sides of such polygons. Both of a pair that cancels may be left out.
+#[must_use]
+pub(super) fn of_sides(sides: impl Iterator<Item = (Point, Point)>) -> Vec<Contour> {
+    let directed = |(from, to): (Point, Point)| {
+        if from < to { (from, to, 1) } else { (to, from, -1) }
+    };
+    let mut sides: Vec<(Point, Point, i32)> =
+        sides.filter(|(from, to)| from != to).map(directed).collect();
     sides.sort_unstable();
     let mut left: Vec<(Point, Point)> = Vec::new();
     for same in sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
