@@ -21,7 +21,8 @@ const LEAST_STROKE: f64 = 1.0;
 /// Part of its length by which a stroke lies on others.
 const MOST: f64 = 0.5;
 
-/// Part of a stroke's length that something lies on, if anything does.
+/// Part of a stroke's length that something lies on, if anything does; but for its ends, as long as it is wide,
+/// over which the next line may lead.
 const SOME: f64 = 0.1;
 
 /// Part of a line's width that its neighbours do not reach.
@@ -110,7 +111,7 @@ pub(super) fn strokes(lines: &[Step], field: &Field) -> Vec<Stroke> {
     for k in 0..strokes.len() {
         let own = &lines[strokes[k].lines.clone()];
         let is_long = strokes[k].length >= LEAST_STROKE;
-        if is_long && map.share(own, |cell| cell == ply, true) > MOST && ply < u16::MAX {
+        if is_long && map.share((own, 0.0), |cell| cell == ply, true) > MOST && ply < u16::MAX {
             ply += 1;
             starts.push(k);
         }
@@ -120,7 +121,8 @@ pub(super) fn strokes(lines: &[Step], field: &Field) -> Vec<Stroke> {
     for start in starts {
         for k in (0..start).rev() {
             let Stroke { lines: ref range, length, ply } = strokes[k];
-            let covered = || map.share(&lines[range.clone()], |cell| cell > ply, false);
+            let own = &lines[range.clone()];
+            let covered = || map.share((own, f64::from(own[0].width)), |cell| cell > ply, false);
             if length >= LEAST_STROKE && covered() > SOME {
                 break;
             }
@@ -138,21 +140,33 @@ struct Map<'a> {
 }
 
 impl Map<'_> {
-    /// The part of some lines' length at which the map's ply is such; `is_over`: and lower than they are.
-    fn share(&self, lines: &[Step], is_such: impl Fn(u16) -> bool, is_over: bool) -> f64 {
+    /// The part of some lines' length, but for their `ends`, mm, at which the map's ply is such; `is_over`: and
+    /// lower than they are.
+    fn share(
+        &self,
+        (lines, ends): (&[Step], f64),
+        is_such: impl Fn(u16) -> bool,
+        is_over: bool,
+    ) -> f64 {
         let (mut such, mut all) = (0_u32, 0_u32);
+        let whole: f64 = lines.iter().map(Step::plan_length).sum();
+        let mut before = 0.0;
         for step in lines {
             let (from, to) = (step.from.map(f64::from), step.to.map(f64::from));
-            let way = segment::way(from, to);
-            let count = (step.plan_length() / EVERY).ceil().max(1.0) as u32;
-            for k in 0..count {
-                let [x, y, z] = segment::along(from, (f64::from(k) + 0.5) / f64::from(count), way);
+            let (way, length) = (segment::way(from, to), step.plan_length());
+            let count = (length / EVERY).ceil().max(1.0) as u32;
+            for part in (0..count).map(|k| (f64::from(k) + 0.5) / f64::from(count)) {
+                if !(ends..=whole - ends).contains(&(before + part * length)) {
+                    continue;
+                }
                 all += 1;
+                let [x, y, z] = segment::along(from, part, way);
                 let Some(cell) = self.field.cell([x, y]) else { continue };
                 let least = z - HIGHER * f64::from(step.height);
                 let is_higher = !is_over || f64::from(self.top[cell]) < least;
                 such += u32::from(is_such(self.ply[cell]) && is_higher);
             }
+            before += length;
         }
         f64::from(such) / f64::from(all.max(1))
     }

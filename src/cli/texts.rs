@@ -43,6 +43,8 @@ Findings, each with a stable code, a place and a measure:
   slender-support    * support over 10 times as high as it is thick
   loose-infill       * the sparse infill touches under a quarter of the innermost walls
   wrong-sums           the file states another amount of filament or number of layers
+  wrong-marks          a patch of non-planar skin has no end, or, in files of this program, its number
+                       comes twice
   wrong-size           the walls do not lie along the part's outline, or the height differs
   open-outline         0.6 mm² or more of the outline is not printed
   open-surface         0.6 mm² or more of a top or bottom surface is not printed

@@ -180,7 +180,7 @@ fn json_is_stable() {
     let names = "unknown-code outside-volume through-print head-hits changes-the-machine wrong-temperature \
                  cold-extrusion too-fast too-many-steps too-much-flow unpaired-retraction odd-bead falling-z in-the-air floating unanchored \
                  printed-twice uncovered-skin double-skin overfilled underfilled narrow-bead slender-support loose-infill \
-                 wrong-sums wrong-size open-outline open-surface outside-part wrong-infill wrong-volume";
+                 wrong-sums wrong-marks wrong-size open-outline open-surface outside-part wrong-infill wrong-volume";
     assert_eq!(Code::ALL.map(Code::name).join(" "), names);
 }
 
