@@ -16,8 +16,8 @@ use super::common::relief::Relief;
 use super::common::{self, Solid};
 use super::sound::{Chance, Sound, word};
 use super::witness::{is_new, judge, read};
-use slicer::check::finding::Code;
 use slicer::check::Verdict;
+use slicer::check::finding::Code;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -317,7 +317,8 @@ fn every_fault_of_skins_has_its_code() {
             let Some(text) = sound.slant(slant, &mut Chance(seed)) else { continue };
             let verdict = judged(&text);
             tried += 1;
-            let is_one = |verdict: &Verdict| verdict.counts.iter().any(|one| codes.contains(&one.code));
+            let is_one =
+                |verdict: &Verdict| verdict.counts.iter().any(|one| codes.contains(&one.code));
             if is_new(&verdict, &good) && is_one(&verdict) {
                 seen += 1;
             } else {
