@@ -104,8 +104,8 @@ impl Relief {
         tile.before.as_ref().map(|before| f64::from(before[index])).filter(|z| !z.is_nan())
     }
 
-    /// Hands cells within `reach` mm of a place to `sink`, each with its height. Of tiles and blocks those
-    /// are left out for which `counts` says no to their square and their highest place.
+    /// Hands cells of blocks within `reach` mm of a place to `sink`, each with its height. Of tiles and blocks
+    /// those are left out for which `counts` says no to their square and their highest place.
     pub(super) fn look(
         &self,
         [x, y]: [f64; 2],
@@ -113,44 +113,62 @@ impl Relief {
         counts: &dyn Fn(Square, f64) -> bool,
         sink: &mut dyn FnMut(Square, f64),
     ) {
-        let whole = CELL * SIDE as f64;
-        let [low, high] = [-reach, reach]
-            .map(|by| [x + by, y + by].map(|at| (at.clamp(-FARTHEST, FARTHEST) / whole).floor()));
-        // A head may reach far beyond all that stands.
-        let [first, last] = self.extent;
-        let span =
-            |axis: usize| (low[axis] as i32).max(first[axis])..=(high[axis] as i32).min(last[axis]);
-        for row in span(1) {
-            for column in span(0) {
-                let Some(&tile) = self.map.get(&[column, row]) else { continue };
-                let tile = &self.tiles[tile];
-                let corner = [column, row].map(|k| f64::from(k) * whole);
-                let square = Square { low: corner, side: whole };
-                if counts(square, f64::from(tile.highest)) {
-                    tile.look(corner, counts, sink);
+        let area = [-reach, reach].map(|by| [x + by, y + by]);
+        self.blocks(area, counts, &mut |tile, corner, [column, row]| {
+            for j in row..row + BLOCK {
+                for i in column..column + BLOCK {
+                    let low = [corner[0] + CELL * i as f64, corner[1] + CELL * j as f64];
+                    sink(Square { low, side: CELL }, f64::from(tile.cells[j * SIDE + i]));
                 }
             }
-        }
+            false
+        });
     }
 
     /// Whether `counts` says yes to a block of an area from its lowest to its highest corner, mm: to its square
     /// and its highest place, and to its tile's.
     pub(super) fn any(&self, area: [[f64; 2]; 2], counts: &dyn Fn(Square, f64) -> bool) -> bool {
-        let whole = CELL * SIDE as f64;
-        let [low, high] =
-            area.map(|corner| corner.map(|at| (at.clamp(-FARTHEST, FARTHEST) / whole).floor()));
+        self.blocks(area, counts, &mut |_, _, _| true)
+    }
+
+    /// Hands blocks of an area that `counts` to `sink` until that says that it is enough: each with its tile, that
+    /// one's lowest corner, and its first column and row of cells there.
+    fn blocks(
+        &self,
+        [low, high]: [[f64; 2]; 2],
+        counts: &dyn Fn(Square, f64) -> bool,
+        sink: &mut dyn FnMut(&Tile, [f64; 2], [usize; 2]) -> bool,
+    ) -> bool {
+        let (whole, side) = (CELL * SIDE as f64, CELL * BLOCK as f64);
+        let tile_of =
+            |corner: [f64; 2]| corner.map(|at| (at.clamp(-FARTHEST, FARTHEST) / whole).floor());
+        let (from, to) = (tile_of(low), tile_of(high));
+        // A head may reach far beyond all that stands.
         let [first, last] = self.extent;
         let span =
-            |axis: usize| (low[axis] as i32).max(first[axis])..=(high[axis] as i32).min(last[axis]);
-        span(1).any(|row| {
-            span(0).any(|column| {
-                let Some(&tile) = self.map.get(&[column, row]) else { return false };
-                let tile = &self.tiles[tile];
-                let corner = [column, row].map(|k| f64::from(k) * whole);
-                counts(Square { low: corner, side: whole }, f64::from(tile.highest))
-                    && tile.any(corner, counts)
-            })
-        })
+            |axis: usize| (from[axis] as i32).max(first[axis])..=(to[axis] as i32).min(last[axis]);
+        for (row, column) in span(1).flat_map(|row| span(0).map(move |column| (row, column))) {
+            let Some(&tile) = self.map.get(&[column, row]) else { continue };
+            let tile = &self.tiles[tile];
+            let corner = [column, row].map(|k| f64::from(k) * whole);
+            if !counts(Square { low: corner, side: whole }, f64::from(tile.highest)) {
+                continue;
+            }
+            let block_of = |at: f64| ((at / side).max(0.0) as usize).min(BLOCKS - 1);
+            let span = |axis: usize| {
+                block_of(low[axis] - corner[axis])..=block_of(high[axis] - corner[axis])
+            };
+            for (j, i) in span(1).flat_map(|j| span(0).map(move |i| (j, i))) {
+                let low = [corner[0] + side * i as f64, corner[1] + side * j as f64];
+                let highest = f64::from(tile.blocks[j * BLOCKS + i]);
+                if counts(Square { low, side }, highest)
+                    && sink(tile, corner, [i * BLOCK, j * BLOCK])
+                {
+                    return true;
+                }
+            }
+        }
+        false
     }
 
     /// The tile there, which begins if there is none; `None` if there are too many.
@@ -217,38 +235,6 @@ impl Tile {
                 let block = &mut self.blocks[index / SIDE / BLOCK * BLOCKS + index % SIDE / BLOCK];
                 *block = block.max(z);
                 self.highest = self.highest.max(z);
-            }
-        }
-    }
-
-    fn any(&self, low: [f64; 2], counts: &dyn Fn(Square, f64) -> bool) -> bool {
-        let side = CELL * BLOCK as f64;
-        self.blocks.iter().enumerate().any(|(k, &highest)| {
-            let by = [k % BLOCKS, k / BLOCKS].map(|at| side * at as f64);
-            let square = Square { low: [low[0] + by[0], low[1] + by[1]], side };
-            counts(square, f64::from(highest))
-        })
-    }
-
-    fn look(
-        &self,
-        low: [f64; 2],
-        counts: &dyn Fn(Square, f64) -> bool,
-        sink: &mut dyn FnMut(Square, f64),
-    ) {
-        let side = CELL * BLOCK as f64;
-        let corner =
-            |column: usize, row: usize| [low[0] + CELL * column as f64, low[1] + CELL * row as f64];
-        for (k, &highest) in self.blocks.iter().enumerate() {
-            let (column, row) = (k % BLOCKS * BLOCK, k / BLOCKS * BLOCK);
-            if !counts(Square { low: corner(column, row), side }, f64::from(highest)) {
-                continue;
-            }
-            for j in row..row + BLOCK {
-                for i in column..column + BLOCK {
-                    let height = f64::from(self.cells[j * SIDE + i]);
-                    sink(Square { low: corner(i, j), side: CELL }, height);
-                }
             }
         }
     }

@@ -48,8 +48,8 @@ const FEW: usize = 3;
 
 /// See the head of this file.
 pub(super) struct Sweep<'a> {
-    head: Shape<'a>,
-    reach: f64,
+    head: &'a Head,
+    shape: Shape<'a>,
     press: f64,
     hits: usize,
     /// Whether nobody knows how high the nozzle is.
@@ -62,6 +62,8 @@ struct Way {
     way: [f64; 3],
     /// Places, of which the last is its end.
     count: usize,
+    /// How far the head reaches with what may touch anything, mm.
+    reach: f64,
     /// How deep a press may be on it, and at its end, mm.
     most: [f64; 2],
 }
@@ -83,8 +85,8 @@ struct Hit {
 
 impl<'a> Sweep<'a> {
     pub(super) fn new(head: &'a Head) -> Self {
-        let (reach, press) = (head.reach(), head.press_radius());
-        Self { head: Shape::of(head), reach, press, hits: 0, is_lost: false }
+        let (shape, press) = (Shape::of(head), head.press_radius());
+        Self { head, shape, press, hits: 0, is_lost: false }
     }
 
     /// The nozzle is sent to where only the printer knows.
@@ -108,6 +110,8 @@ impl<'a> Sweep<'a> {
             from,
             way: segment::way(from, to),
             count,
+            // Nothing stands higher than this above the tip.
+            reach: self.head.reach_below(relief.highest() - step.heights()[0]),
             // Down to a line, and where a travel ends: there one begins.
             most: [if step.is_line() || !is_aside { most } else { TOLERANCE }, most],
         };
@@ -141,7 +145,7 @@ impl<'a> Sweep<'a> {
             }
             let deeper = worst.map_or(0.0, |worst| worst.depth);
             let most = way.most[usize::from(k == way.count)];
-            worst = self.touch(relief, way.place(k), (most, deeper)).or(worst);
+            worst = self.touch(relief, (way.place(k), way.reach), (most, deeper)).or(worst);
         }
         worst
     }
@@ -151,20 +155,20 @@ impl<'a> Sweep<'a> {
         let [a, b] = [way.place(places.start), way.place(places.end - 1)];
         let low = [0, 1, 2].map(|axis: usize| a[axis].min(b[axis]));
         let high = [0, 1].map(|axis: usize| a[axis].max(b[axis]));
-        let reach = self.reach;
+        let reach = way.reach;
         let area = [[low[0] - reach, low[1] - reach], high.map(|at| at + reach)];
         relief.any(area, &|square, highest| {
             highest > low[2] + TOLERANCE && {
                 let near = [0, 1].map(|axis: usize| square.low[axis] - high[axis]);
                 let far = [0, 1].map(|axis: usize| square.low[axis] + square.side - low[axis]);
-                highest > low[2] + self.head.lowest(near, far).0 + TOLERANCE
+                highest > low[2] + self.shape.lowest(near, far).0 + TOLERANCE
             }
         })
     }
 
     /// The underside over a place beside the tip, mm above it, and its part.
     fn underside(&self, by: [f64; 2]) -> Option<(f64, Part)> {
-        let (z, part) = self.head.lowest(by, by);
+        let (z, part) = self.shape.lowest(by, by);
         part.map(|part| (z, part))
     }
 
@@ -173,7 +177,7 @@ impl<'a> Sweep<'a> {
     fn touch(
         &self,
         relief: &Relief,
-        [x, y, z]: [f64; 3],
+        ([x, y, z], reach): ([f64; 3], f64),
         (most, least): (f64, f64),
     ) -> Option<Hit> {
         // What is found first lets most other squares be.
@@ -187,11 +191,11 @@ impl<'a> Sweep<'a> {
             // Most lies lower than the tip: no look at the head.
             highest > z + least && {
                 let (low, high) = beside(square);
-                highest > z + self.head.lowest(low, high).0 + least
+                highest > z + self.shape.lowest(low, high).0 + least
             }
         };
         let mut worst = None;
-        relief.look([x, y], self.reach, &counts, &mut |square, top| {
+        relief.look([x, y], reach, &counts, &mut |square, top| {
             if !counts(square, top) {
                 return;
             }
@@ -203,8 +207,9 @@ impl<'a> Sweep<'a> {
             // Near the tip by the cell's middle: its nearest corner would press where nothing does, and
             // on a steep slope the flank be deep in what it only comes near to.
             let is_beside = away <= 4.0 * self.press * self.press;
-            let under =
-                own.filter(|_| is_beside).map_or(self.head.lowest(low, high).0, |(under, _)| under);
+            let under = own
+                .filter(|_| is_beside)
+                .map_or(self.shape.lowest(low, high).0, |(under, _)| under);
             let depth = top - z - under;
             if depth <= deepest.get() || (is_near && depth <= most) {
                 return;

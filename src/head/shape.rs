@@ -45,6 +45,7 @@ impl<'a> Shape<'a> {
     /// it hangs lowest at the rectangle's nearest point. The distance of that is monotone in its bounds, even
     /// as rounded, so what is told of a rectangle holds for each one inside it, to the last digit.
     #[must_use]
+    #[inline]
     pub fn lowest(&self, low: [f64; 2], high: [f64; 2]) -> (f64, Option<Part>) {
         let near = |axis: usize| {
             let (low, high) = (low[axis], high[axis]);
