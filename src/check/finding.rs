@@ -408,9 +408,9 @@ mod tests {
     }
 
     #[test]
-    fn of_a_hundred_thousand_the_largest_are_kept_and_all_counted() {
+    fn of_many_the_largest_are_kept_and_all_counted() {
         let (mut bound, mut all) = (Findings::default(), Findings::default());
-        for k in 0..100_000_u32 {
+        for k in 0..12_000_u32 {
             let measure = f64::from(k.wrapping_mul(2_654_435_761) >> 20);
             let one = match k % 3 {
                 0 => Finding::warning(Code::HeadHits, measure, "mm", k.to_string()),
@@ -419,8 +419,10 @@ mod tests {
             };
             all.add(one.clone());
             bound.add(one);
-            bound.bound();
-            assert!(bound.len() <= 4 * MOST_KEPT, "{}", bound.len());
+            if k % 500 == 0 {
+                bound.bound();
+                assert!(bound.len() <= 3 * MOST_KEPT, "{}", bound.len());
+            }
         }
         assert_eq!(bound.sorted(), all.sorted());
     }

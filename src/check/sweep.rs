@@ -287,7 +287,7 @@ mod tests {
         let head = named("v6").unwrap();
         let at = |z: f32, filament: f32| step([0.5, 2.0, z], [0.5, 18.0, z], filament);
         assert_eq!(beside(&head, at(9.75, 1.0)), []);
-        assert!((beside(&head, at(9.65, 1.0))[0].measure - 0.35).abs() < 1e-3);
+        assert!((beside(&head, at(9.6, 1.0))[0].measure - 0.4).abs() < 1e-3);
         assert!((beside(&head, at(9.75, 0.0))[0].measure - 0.25).abs() < 1e-3);
         assert_eq!(beside(&head, at(9.99, 0.0)), []);
         // Down to a line, and up from anywhere.

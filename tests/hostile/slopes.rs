@@ -18,7 +18,6 @@ use super::sound::{Chance, Sound, word};
 use super::witness::{is_new, judge, read};
 use slicer::check::Verdict;
 use slicer::check::finding::Code;
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// What befalls skins.
@@ -291,11 +290,13 @@ pub(crate) fn part() -> Solid {
 }
 
 /// Settings of the sound file.
-pub(crate) const SET: [(&str, &str); 4] = [
+pub(crate) const SET: [(&str, &str); 5] = [
     ("machine.thumbnails", "[]"),
     ("machine.relative_e", "true"),
     ("nonplanar.enabled", "true"),
     ("head.name", "long-0.6"),
+    // The last skin up the slope: plastic by the length in space is hardly more on level lines.
+    ("nonplanar.directions", "auto"),
 ];
 
 #[test]
