@@ -1,4 +1,12 @@
 //! Print + Terms -> findings of amounts: lines with odd plastic, narrow lines, and the file's own sums.
+//!
+//! Words used here: the *ratio* of a line is its plastic over the room of its size; what is *usual* is the
+//! middle one of the ratios of a role; a *fade* is lines at an end of a chain that take more and more plastic.
+//!
+//! - A line is odd whose ratio is far from the usual one of its role.
+//! - A line is narrow that, as high as it is, takes too little plastic to be as wide as the nozzle's hole.
+//! - Fades of other slicers are neither: they are seams.
+//! - The file's own sums are compared with those of its moves.
 
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::terms::Terms;
