@@ -5,10 +5,10 @@
 //! that the file tells: lines are spaced from above, and their heights are those of upright room.
 //!
 //! - Plastic far from that room is told for the whole patch.
-//! - Plastic by the lines' length in space grows as their slope does. Told heights are rounded to 0.02 mm, and
-//!   drift between two tellings; lines of the usual height hardly do. Over those the plastic is compared with
-//!   `1 + k · (secant of the slope - 1)` by least squares: sound files of scans and of machine parts have k
-//!   from -0.06 to 0.06 where lines are steep enough, wrong ones 1.
+//! - Plastic by the lines' length in space grows as their slope does. Told heights drift by up to 0.02 mm until
+//!   the next telling, so that only the first line after each counts here. Over those the plastic is compared
+//!   with `1 + k · (secant of the slope - 1)` by least squares: sound files of scans and of machine parts
+//!   have k from -0.3 to 0.2 where lines are steep enough, wrong ones 1.
 //! - Marks: a patch ends before another begins, and before the file does. This program gives each number once.
 
 use super::finding::{Code, Finding, Findings, Place, short};
@@ -23,30 +23,52 @@ const BOUNDS: [f64; 2] = [0.7, 1.3];
 /// Least room by which a patch is judged, mm³: some lines.
 const LEAST_ROOM: f64 = 2.0;
 
-/// Part of the usual height by which heights differ that are the usual one.
-const USUAL: f64 = 0.05;
-
-/// The root of the mean square of secant - 1 from which on slopes count: lines of 11 degrees.
-const LEAST_SECANT: f64 = 0.02;
+/// The root of the mean square of secant - 1 from which on slopes count: lines of 8 degrees.
+const LEAST_SECANT: f64 = 0.01;
 
 /// From here on plastic grows with the slope.
 const LEAST_GROWTH: f64 = 0.5;
 
-/// A line: height, room, plastic, secant of its slope - 1.
-type Line = [f32; 4];
-
-/// Lines of a patch.
-#[derive(Debug)]
-struct Own {
-    lines: Vec<Line>,
+/// Sums of a patch.
+#[derive(Debug, Clone, Copy)]
+struct Sums {
+    /// mm³.
+    plastic: f64,
+    room: f64,
+    /// Of lines whose heights are told anew: room; that times the square of secant - 1; and what they take more
+    /// than their room, times secant - 1.
+    told: [f64; 3],
+    /// Height of the last line, mm.
+    height: f32,
     /// Line of the file and layer, from 1, of its first line.
     first: (u32, Option<usize>),
+}
+
+impl Sums {
+    fn add(&mut self, step: &Step, terms: &Terms) {
+        let (plastic, room, plan) = (terms.plastic(step), step.room(), step.plan_length());
+        self.plastic += plastic;
+        self.room += room;
+        if step.height != self.height {
+            let secant = step.length() / plan - 1.0;
+            let own = [room, room * secant * secant, (plastic - room) * secant];
+            self.told.iter_mut().zip(own).for_each(|(sum, one)| *sum += one);
+        }
+        self.height = step.height;
+    }
+
+    /// Whether the plastic of lines grows with their slope. See the head of this file.
+    fn grows(&self) -> bool {
+        let [room, square, more] = self.told;
+        let is_steep = square > LEAST_SECANT * LEAST_SECANT * room && room >= LEAST_ROOM;
+        is_steep && more > LEAST_GROWTH * square
+    }
 }
 
 /// All patches so far, by their numbers.
 #[derive(Debug, Default)]
 pub(super) struct Patches {
-    all: BTreeMap<u32, Own>,
+    all: BTreeMap<u32, Sums>,
 }
 
 impl Patches {
@@ -59,14 +81,9 @@ impl Patches {
     ) {
         let Some(patch) = facts.patch_at(u64::from(step.line)) else { return };
         let first = (step.line, layer.map(|layer| layer + 1));
-        let own = self.all.entry(patch.number);
-        let own = own.or_insert_with(|| Own { lines: Vec::new(), first });
-        let plan = step.plan_length();
-        if plan > 0.0 {
-            let secant = step.length() / plan - 1.0;
-            let line = [f64::from(step.height), step.room(), terms.plastic(step), secant];
-            own.lines.push(line.map(|value| value as f32));
-        }
+        let sums = self.all.entry(patch.number);
+        let nothing = Sums { plastic: 0.0, room: 0.0, told: [0.0; 3], height: 0.0, first };
+        sums.or_insert(nothing).add(step, terms);
     }
 
     /// Judges all patches: their marks, and their plastic if the file tells widths and heights.
@@ -75,20 +92,18 @@ impl Patches {
         if !facts.has_widths || !facts.has_heights {
             return;
         }
-        for (number, own) in self.all {
-            let (line, layer) = own.first;
+        for (number, sums) in self.all {
+            let (line, layer) = sums.first;
             let place = Place { line: Some(u64::from(line)), layer, ..Place::default() };
-            found.extend(judged(number, &own.lines).map(|finding| finding.at(place)));
+            found.extend(judged(number, &sums).map(|finding| finding.at(place)));
         }
     }
 }
 
 /// What is wrong with a patch's plastic.
-fn judged(number: u32, lines: &[Line]) -> Option<Finding> {
-    let sum = |of: usize| lines.iter().map(|line| f64::from(line[of])).sum::<f64>();
-    let (room, plastic) = (sum(1), sum(2));
-    let fills = plastic / room;
-    if room < LEAST_ROOM {
+fn judged(number: u32, sums: &Sums) -> Option<Finding> {
+    let fills = sums.plastic / sums.room;
+    if sums.room < LEAST_ROOM {
         return None;
     }
     let percent = short(100.0 * fills);
@@ -97,30 +112,13 @@ fn judged(number: u32, lines: &[Line]) -> Option<Finding> {
         let code = if fills > 1.0 { Code::Overfilled } else { Code::Underfilled };
         return Some(Finding::of(code, percent, "%", text));
     }
-    grows(lines).then(|| {
+    sums.grows().then(|| {
         let text = format!(
             "patch {number} takes {percent} % of the plastic that it has room for: as much as its lines are \
              long in space, not from above"
         );
         Finding::of(Code::Overfilled, percent, "%", text)
     })
-}
-
-/// Whether the plastic of lines of the usual height grows with their slope. See the head of this file.
-fn grows(lines: &[Line]) -> bool {
-    let heights = lines.iter().map(|line| f64::from(line[0])).collect();
-    let Some(usual) = super::median(heights) else { return false };
-    let (mut room, mut square, mut more) = (0.0, 0.0, 0.0);
-    for line in lines {
-        let [height, own, plastic, secant] = line.map(f64::from);
-        if (height - usual).abs() <= USUAL * usual {
-            room += own;
-            square += own * secant * secant;
-            more += (plastic - own) * secant;
-        }
-    }
-    let is_steep = square > LEAST_SECANT * LEAST_SECANT * room && room >= LEAST_ROOM;
-    is_steep && more > LEAST_GROWTH * square
 }
 
 /// Patches that have no end, and numbers that come twice in a file of this program's.
