@@ -245,6 +245,7 @@ mod tests {
     use super::*;
     use crate::head::named::named;
     use crate::reader::Role;
+    use proptest::prelude::*;
 
     fn step(from: [f32; 3], to: [f32; 3], filament: f32) -> Step {
         let (feed, width, height) = (30.0, 0.4, 0.2);
@@ -295,5 +296,56 @@ mod tests {
         assert_eq!(beside(&head, sinks(9.75)), []);
         assert!(!beside(&head, sinks(9.0)).is_empty());
         assert_eq!(beside(&head, step([0.5, 5.0, 9.0], [0.5, 5.0, 12.0], 0.0)), []);
+    }
+
+    #[test]
+    fn hits_are_counted_on_where_they_are_not_measured_any_more() {
+        let head = named("v6").unwrap();
+        let mut relief = Relief::default();
+        relief.lay(&step([0.0, 0.0, 10.0], [0.0, 20.0, 10.0], 1.0), false);
+        let (mut sweep, mut found) = (Sweep::new(&head), Findings::default());
+        let all = MOST_MEASURED + 50;
+        for _ in 0..all {
+            sweep.step(&step([0.5, 2.0, 9.0], [0.5, 18.0, 5.0], 0.0), &relief, 0.2, &mut found);
+        }
+        assert_eq!(found.len(), all);
+        let depths: Vec<f64> = found.into_iter().map(|hit| hit.measure).collect();
+        assert!(depths[0] > 4.9 && depths[all - 1] > 1.0 && depths[all - 1] < 1.2, "{depths:?}");
+    }
+
+    /// A place in a box of 20 mm, 5 mm high.
+    fn any_place() -> impl Strategy<Value = [f32; 3]> {
+        (0.0..20.0_f32, 0.0..20.0_f32, 0.0..5.0_f32).prop_map(|(x, y, z)| [x, y, z])
+    }
+
+    proptest! {
+        #[test]
+        fn a_glance_overlooks_nothing(
+            lines in prop::collection::vec((any_place(), any_place()), 1..6),
+            (from, to) in (any_place(), any_place()),
+            prints in any::<bool>(),
+            name in prop::sample::select(vec!["v6", "cautious", "long-0.6"]),
+        ) {
+            let head = named(name).unwrap();
+            let mut relief = Relief::default();
+            lines.iter().for_each(|(from, to)| relief.lay(&step(*from, *to, 1.0), false));
+            let one = step(from, to, if prints { 1.0 } else { 0.0 });
+            let (mut sweep, mut found) = (Sweep::new(&head), Findings::default());
+            sweep.step(&one, &relief, 0.2, &mut found);
+            let count = (one.plan_length() / STEP).ceil().max(1.0) as usize;
+            let (start, end) = (one.from.map(f64::from), one.to.map(f64::from));
+            let way = Way { from: start, way: segment::way(start, end), count, reach: 99.0, most: [0.0; 2] };
+            let press = DEEPEST_PRESS * 0.2 + BOUND;
+            let mut worst: Option<Hit> = None;
+            for k in 1..=count {
+                let most = if prints || k == count { press } else { TOLERANCE };
+                let deeper = worst.map_or(0.0, |worst| worst.depth);
+                worst = sweep.touch(&relief, (way.place(k), way.reach), (most, deeper)).or(worst);
+            }
+            let depth = found.into_iter().next().map(|hit| hit.measure);
+            // A move above all that stands is not looked at.
+            let is_low = one.heights()[0] < relief.highest() - TOLERANCE;
+            prop_assert_eq!(depth, worst.filter(|_| is_low).map(|hit| hit.depth));
+        }
     }
 }
