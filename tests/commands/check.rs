@@ -401,3 +401,21 @@ fn scarf_seams_of_other_slicers_are_no_fault() {
         assert!(out.contains(": 1 finding "), "{words:?} {out}");
     }
 }
+
+/// The thesis's machine lays 1.2 times the plastic that a box of a line's size holds, on flat skins and others.
+#[test]
+fn skins_are_held_against_the_factors_of_their_settings() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
+    let words = ["--nonplanar", "--head", "long-0.6", "-q", "-o", "wedge.gcode"];
+    command.current_dir(folder.path()).arg(fixtures().join("wedge.stl")).args(words);
+    command.assert().success();
+    let (code, out, _) = check(&folder, &["wedge.gcode"], b"");
+    assert!(code == 0 && out.contains("wedge.gcode: clean"), "{out}");
+    // The same plastic is too much by settings that ask for less.
+    let text = fs::read_to_string(folder.path().join("wedge.gcode")).unwrap();
+    let less =
+        text.replace("; extrusion.skin_factor = 0.04\n", "; extrusion.skin_factor = 0.025\n");
+    let (code, out, _) = check(&folder, &["-"], less.as_bytes());
+    assert!(code == 1 && out.contains("double-skin: ") && out.contains("overfilled: "), "{out}");
+}
