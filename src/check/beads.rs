@@ -1,9 +1,18 @@
 //! Print + Terms -> findings of amounts: lines with odd plastic, narrow lines, and the file's own sums.
+//!
+//! Words used here: the *ratio* of a line is its plastic over the room of its size; what is *usual* is the
+//! middle one of the ratios of a role; a *fade* is lines at an end of a chain that take more and more plastic.
+//!
+//! - A line is odd whose ratio is far from the usual one of its role.
+//! - A line is narrow that, as high as it is, takes too little plastic to be as wide as the nozzle's hole.
+//! - Fades of other slicers are neither: they are seams.
+//! - The file's own sums are compared with those of its moves.
 
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::terms::Terms;
 use crate::reader::print::Step;
 use crate::reader::{Facts, Role};
+use std::ops::Range;
 
 /// Shorter lines are not judged, mm: their plastic is mostly rounding.
 const LEAST_LENGTH: f64 = 0.5;
@@ -29,6 +38,10 @@ const NARROW: f64 = 0.7;
 /// So much of a line may be narrow, mm: where it tapers.
 const LEAST_NARROW: f64 = 1.0;
 
+/// Lines of a fade at least, and the plastic of its faintest as a part of that of the line it leads to.
+const LEAST_FADE: usize = 4;
+const FAINT: f64 = 0.4;
+
 /// How far the file's own sums may be off: a part of 1, and mm. Some count primed filament.
 const SUM_SLACK: (f64, f64) = (0.01, 1.0);
 
@@ -40,7 +53,10 @@ pub(super) fn odd(
     usual: &[Option<Usual>; Role::ALL.len()],
 ) -> Vec<(Role, Finding)> {
     let mut found = Vec::new();
-    for step in moves.iter().filter(|step| is_judged(step)) {
+    let fades = fades((facts, terms), moves);
+    let is_known = |k: &usize| fades.iter().any(|fade| fade.contains(k));
+    let judged = moves.iter().enumerate().filter(|(k, step)| is_judged(step) && !is_known(k));
+    for (_, step) in judged {
         let Some(usual) = usual[step.role as usize] else { continue };
         let times = ratio(facts, terms, step) / usual.ratio;
         let is_odd = if facts.has_widths {
@@ -85,7 +101,10 @@ pub(super) fn ratio(facts: &Facts, terms: &Terms, step: &Step) -> f64 {
 
 /// Lines of a layer that stay too narrow for the nozzle. Their width is that of their height and
 /// plastic, whatever the file says.
-pub(super) fn narrow(terms: &Terms, (layer, steps): (usize, &[Step])) -> Vec<Finding> {
+pub(super) fn narrow(
+    (facts, terms): (&Facts, &Terms),
+    (layer, steps): (usize, &[Step]),
+) -> Vec<Finding> {
     let mut found = Vec::new();
     let Some(nozzle) = terms.nozzle else { return found };
     // What irons is pressed flat on what is there.
@@ -94,8 +113,14 @@ pub(super) fn narrow(terms: &Terms, (layer, steps): (usize, &[Step])) -> Vec<Fin
             && step.role != Role::Ironing
             && terms.width_by_plastic(step) < NARROW * nozzle
     };
-    let runs = steps.chunk_by(|a, b| is_narrow(a) && is_narrow(b) && a.to == b.from);
-    for run in runs.filter(|run| is_narrow(&run[0])) {
+    let fades = fades((facts, terms), steps);
+    let mut first = 0;
+    for run in steps.chunk_by(|a, b| is_narrow(a) && is_narrow(b) && a.to == b.from) {
+        let at = first;
+        first += run.len();
+        if !is_narrow(&run[0]) || fades.iter().any(|fade| fade.contains(&at)) {
+            continue;
+        }
         let length: f64 = run.iter().map(Step::length).sum();
         if length <= LEAST_NARROW {
             continue;
@@ -109,6 +134,32 @@ pub(super) fn narrow(terms: &Terms, (layer, steps): (usize, &[Step])) -> Vec<Fin
         found.push(finding.at(place(layer, middle)));
     }
     found
+}
+
+/// Lines by which walls of other slicers fade in and out where a scarf seam laps over itself: at the beginning
+/// or the end of a chain, from little plastic on each line takes more than the one nearer to its end.
+fn fades((facts, terms): (&Facts, &Terms), moves: &[Step]) -> Vec<Range<usize>> {
+    let mut fades = Vec::new();
+    if terms.is_own {
+        return fades;
+    }
+    let mut first = 0;
+    for chain in moves.chunk_by(|a, b| a.is_line() && b.is_line() && a.to == b.from) {
+        let count = chain.len();
+        let ratio = |k: usize| ratio(facts, terms, &chain[k]);
+        let grows = |at: &dyn Fn(usize) -> usize| {
+            let steps = (1..count).take_while(|&k| ratio(at(k - 1)) < ratio(at(k))).count();
+            let is_fade = steps >= LEAST_FADE && ratio(at(0)) < FAINT * ratio(at(steps));
+            if is_fade { steps } else { 0 }
+        };
+        if count > LEAST_FADE {
+            let (up, down) = (grows(&|k| k), grows(&|k| count - 1 - k));
+            fades.extend([first..first + up, first + count - down..first + count]);
+        }
+        first += count;
+    }
+    fades.retain(|fade| !fade.is_empty());
+    fades
 }
 
 /// Whether a line is long enough to be judged.

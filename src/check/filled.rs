@@ -7,6 +7,10 @@ use crate::reader::print::Step;
 /// Heights that differ by less are the same, mm.
 const SAME_HEIGHT: f64 = 1e-3;
 
+/// How far a line of a layer above reaches down into another at least, mm: told heights of bent lines are rounded
+/// to 0.02 mm.
+const LEAST_WITHIN: f64 = 0.021;
+
 /// Some layers of a print by what fills them.
 pub(super) struct Filled<'a> {
     pub(super) window: &'a Window<'a>,
@@ -32,12 +36,14 @@ impl<'a> Filled<'a> {
         let above =
             (layer + 1..window.end()).take_while(move |&above| floors[above] < top - SAME_HEIGHT);
         let layers = std::iter::once(layer).chain(above);
-        let steps = layers.flat_map(move |one| window.moves(one));
-        steps.filter(|step| step.is_line()).filter_map(move |step| {
+        let steps =
+            layers.flat_map(move |one| window.moves(one).iter().map(move |step| (one, step)));
+        steps.filter(|(_, step)| step.is_line()).filter_map(move |(one, step)| {
+            let least = if one == layer { SAME_HEIGHT } else { LEAST_WITHIN };
             let height = f64::from(step.height);
             let z = 0.5 * f64::from(step.from[2] + step.to[2]);
             let within = top.min(z) - bottom.max(z - height);
-            (within > SAME_HEIGHT).then_some((step, (within / height).min(1.0)))
+            (within > least).then_some((step, (within / height).min(1.0)))
         })
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! Each finding has a code, a place as far as it is known, a measure with its unit, and a text. Of each
 //! code the findings with the largest measures are listed, at most [`MOST_LISTED`], and all are
-//! counted: a wrong file has thousands, and the first hundred show what is wrong.
+//! counted: a wrong file has thousands, and the first hundred show what is wrong. Of moves, which may be
+//! millions, so many are kept and the rest counted.
 //!
 //! Most are errors: the print would fail, or is not the part. A *warning* is a weak place of a print
 //! that can be made: it fails no run.
@@ -16,10 +17,14 @@
 
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// Findings of a kind that are listed; the rest are only counted.
 pub const MOST_LISTED: usize = 100;
+
+/// Findings of a kind that are kept while a file is read.
+const MOST_KEPT: usize = 1000;
 
 /// Kinds of findings. Their names are stable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, JsonSchema)]
@@ -77,6 +82,8 @@ pub enum Code {
     LooseInfill,
     /// The file's own sums of filament or layers are wrong.
     WrongSums,
+    /// A patch of non-planar skin has no end, or its number comes twice.
+    WrongMarks,
     /// The print is larger or smaller than the part.
     WrongSize,
     /// Something of the part's outline is not printed.
@@ -93,7 +100,7 @@ pub enum Code {
 
 impl Code {
     /// All of them.
-    pub const ALL: [Self; 31] = [
+    pub const ALL: [Self; 32] = [
         Self::UnknownCode,
         Self::OutsideVolume,
         Self::ThroughPrint,
@@ -119,6 +126,7 @@ impl Code {
         Self::SlenderSupport,
         Self::LooseInfill,
         Self::WrongSums,
+        Self::WrongMarks,
         Self::WrongSize,
         Self::OpenOutline,
         Self::OpenSurface,
@@ -156,6 +164,7 @@ impl Code {
             Self::SlenderSupport => "slender-support",
             Self::LooseInfill => "loose-infill",
             Self::WrongSums => "wrong-sums",
+            Self::WrongMarks => "wrong-marks",
             Self::WrongSize => "wrong-size",
             Self::OpenOutline => "open-outline",
             Self::OpenSurface => "open-surface",
@@ -263,6 +272,8 @@ pub(super) fn short(mm: f64) -> f64 {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Findings {
     found: Vec<Finding>,
+    /// How many were only counted.
+    counted: BTreeMap<(Code, Severity), usize>,
 }
 
 impl Findings {
@@ -292,6 +303,28 @@ impl Findings {
         self.found.extend(findings);
     }
 
+    /// Where there are many, keeps the largest of each kind and counts the rest.
+    pub(super) fn bound(&mut self) {
+        if self.found.len() <= 2 * MOST_KEPT {
+            return;
+        }
+        let mut kinds: BTreeMap<(Code, Severity), Vec<usize>> = BTreeMap::new();
+        for (k, one) in self.found.iter().enumerate() {
+            kinds.entry((one.code, one.severity)).or_default().push(k);
+        }
+        let mut stays = vec![true; self.found.len()];
+        for (kind, mut all) in kinds {
+            // Stable: of equals the first of the file.
+            all.sort_by(|a, b| self.found[*b].measure.total_cmp(&self.found[*a].measure));
+            for &less in all.iter().skip(MOST_KEPT) {
+                stays[less] = false;
+                *self.counted.entry(kind).or_default() += 1;
+            }
+        }
+        let mut next = stays.into_iter();
+        self.found.retain(|_| next.next().unwrap_or_default());
+    }
+
     /// The findings by kind, in each errors first and the largest first, and of how many each kind
     /// was.
     pub(super) fn sorted(mut self) -> (Vec<Finding>, Vec<Count>) {
@@ -311,6 +344,13 @@ impl Findings {
                 last.count <= MOST_LISTED
             })
         });
+        for ((code, severity), more) in self.counted {
+            // Of each that was counted some are kept.
+            for count in counts.iter_mut().filter(|count| count.code == code) {
+                count.count += more;
+                count.errors += if severity == Severity::Error { more } else { 0 };
+            }
+        }
         (self.found, counts)
     }
 }
@@ -365,6 +405,26 @@ mod tests {
         let (listed, counts) = findings.sorted();
         assert_eq!((listed.len(), listed[0].measure), (MOST_LISTED, 149.0));
         assert_eq!(counts, [Count { code: Code::OddBead, count: 150, errors: 150 }]);
+    }
+
+    #[test]
+    fn of_many_the_largest_are_kept_and_all_counted() {
+        let (mut bound, mut all) = (Findings::default(), Findings::default());
+        for k in 0..12_000_u32 {
+            let measure = f64::from(k.wrapping_mul(2_654_435_761) >> 20);
+            let one = match k % 3 {
+                0 => Finding::warning(Code::HeadHits, measure, "mm", k.to_string()),
+                1 => Finding::of(Code::HeadHits, measure, "mm", k.to_string()),
+                _ => Finding::of(Code::TooFast, measure, "mm", k.to_string()),
+            };
+            all.add(one.clone());
+            bound.add(one);
+            if k % 500 == 0 {
+                bound.bound();
+                assert!(bound.len() <= 3 * MOST_KEPT, "{}", bound.len());
+            }
+        }
+        assert_eq!(bound.sorted(), all.sorted());
     }
 
     #[test]

@@ -212,7 +212,7 @@ impl<'a> Judge<'a> {
         Judged {
             layer,
             odd: beads::odd((self.facts, terms), (layer, moves), &self.survey.usual),
-            narrow: beads::narrow(terms, (layer, moves)),
+            narrow: beads::narrow((self.facts, terms), (layer, moves)),
             stacked: looks.then(|| self.stack.judged(filled, layer)),
             fills: field.map_or(Vec::new(), |field| fills::layer(filled, (field, terms), layer)),
             contact: (looks && self.has_roles).then(|| contact::layer(filled, terms, layer)),

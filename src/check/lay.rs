@@ -55,6 +55,10 @@ const CLOSED: f64 = 0.03;
 const OVER: f64 = 0.25;
 const LEAST_STRAY: f64 = 2.0;
 
+/// A skin over a slope lies on a staircase whose treads stand over its base by so many layers: at its edge a line
+/// may begin in one.
+const TREAD: f64 = 0.5;
+
 /// Lines this near to each other touch, mm: a sixth of a line.
 const BESIDE: f64 = 0.07;
 
@@ -332,7 +336,8 @@ impl<'a> Judge<'a> {
         let strays = is_stray(step, self.level);
         let is_free = |at| strays || !self.laid.covers(at, |k, _| k < before);
         let fall = self.ground.depth(bead, CORE, &mut self.seen_below, is_free);
-        if fall > self.fall.map_or(ROUNDING, |(most, _)| most) {
+        let least = if strays { TREAD * self.level.height } else { ROUNDING };
+        if fall > self.fall.map_or(least, |(most, _)| most.max(least)) {
             self.fall = Some((fall, *step));
         }
     }

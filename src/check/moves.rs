@@ -87,6 +87,7 @@ impl<'a> Moves<'a> {
             self.next += 1;
         }
         notes.for_each(|note| self.note(note, found));
+        found.bound();
     }
 
     fn note(&mut self, note: &Note, found: &mut Findings) {
@@ -102,7 +103,7 @@ impl<'a> Moves<'a> {
         walk.changes.finish(found);
         walk.warmth.finish(found);
         walk.primed.finish(found);
-        walk.patches.finish(walk.facts, found);
+        walk.patches.finish((walk.facts, walk.terms), found);
         if let Some(slopes) = walk.slopes {
             slopes.finish(found);
         }

@@ -1,11 +1,12 @@
 //! Lines of a patch in the file's order -> Plies: which of them are laid on which.
 //!
 //! Words used here: a *stroke* is lines one after the other in about one direction; a *ply* is strokes of
-//! which none lies on another, a skin mostly, or the same skin of several places.
+//! which none lies on another, a skin mostly; plies are counted from what they lie on.
 //!
-//! No file tells where a skin ends. A stroke that lies for most of its length on strokes of the last ply
-//! begins a new one. What was laid just before it and has nothing of the new ply on it belongs to that,
-//! too: where a patch ends, its upper skin may reach further than the lower one.
+//! No file tells where a skin ends, and the skins of one place may be laid before or after those of another.
+//! So each stroke is judged by itself: it is of the ply above that on which most of its length lies. Where a
+//! patch ends, its upper skin may reach further than the lower one: a stroke beside one of a higher ply, in the
+//! file's order, that has nothing of a higher ply on it is of that ply, too.
 
 use super::relief::{CELL, footprint};
 use crate::geom::segment;
@@ -21,7 +22,8 @@ const LEAST_STROKE: f64 = 1.0;
 /// Part of its length by which a stroke lies on others.
 const MOST: f64 = 0.5;
 
-/// Part of a stroke's length that something lies on, if anything does.
+/// Part of a stroke's length that something lies on, if anything does: without its ends, as long as it is wide,
+/// over which the next line may lead.
 const SOME: f64 = 0.1;
 
 /// Part of a line's width that its neighbours do not reach.
@@ -105,29 +107,34 @@ pub(super) fn strokes(lines: &[Step], field: &Field) -> Vec<Stroke> {
     let mut strokes = cut(lines);
     let mut map = Map { ply: vec![0; field.cells()], top: vec![0.0; field.cells()], field };
     let mut ply = 1;
-    // Where each ply but the first begins.
-    let mut starts = Vec::new();
-    for k in 0..strokes.len() {
-        let own = &lines[strokes[k].lines.clone()];
-        let is_long = strokes[k].length >= LEAST_STROKE;
-        if is_long && map.share(own, |cell| cell == ply, true) > MOST && ply < u16::MAX {
-            ply += 1;
-            starts.push(k);
+    for stroke in &mut strokes {
+        let own = &lines[stroke.lines.clone()];
+        if stroke.length >= LEAST_STROKE {
+            ply = map.below(own).saturating_add(1);
         }
-        strokes[k].ply = ply;
+        stroke.ply = ply;
         map.lay(own, ply);
     }
-    for start in starts {
-        for k in (0..start).rev() {
-            let Stroke { lines: ref range, length, ply } = strokes[k];
-            let covered = || map.share(&lines[range.clone()], |cell| cell > ply, false);
-            if length >= LEAST_STROKE && covered() > SOME {
-                break;
-            }
-            strokes[k].ply = strokes[start].ply;
-        }
+    // What is laid just before and just after a stroke of a higher ply.
+    let is_bare = |stroke: &Stroke| {
+        let own = &lines[stroke.lines.clone()];
+        stroke.length < LEAST_STROKE || map.covered(own, stroke.ply) <= SOME
+    };
+    for k in (1..strokes.len()).rev() {
+        raise(&mut strokes, [k, k - 1], is_bare);
+    }
+    for k in 1..strokes.len() {
+        raise(&mut strokes, [k - 1, k], is_bare);
     }
     strokes
+}
+
+/// Raises a stroke to the ply of another, if that is higher, and nothing lies on it.
+fn raise(strokes: &mut [Stroke], [high, low]: [usize; 2], is_bare: impl Fn(&Stroke) -> bool) {
+    let ply = strokes[high].ply;
+    if strokes[low].ply < ply && is_bare(&strokes[low]) {
+        strokes[low].ply = ply;
+    }
 }
 
 /// Which ply covers each cell last, and how high it is.
@@ -138,23 +145,46 @@ struct Map<'a> {
 }
 
 impl Map<'_> {
-    /// The part of some lines' length at which the map's ply is such; `is_over`: and lower than they are.
-    fn share(&self, lines: &[Step], is_such: impl Fn(u16) -> bool, is_over: bool) -> f64 {
-        let (mut such, mut all) = (0_u32, 0_u32);
+    /// The highest ply that lies under most of some lines' length; 0 for none.
+    fn below(&self, lines: &[Step]) -> u16 {
+        let mut plies: Vec<u16> = Vec::new();
+        self.places(lines, 0.0, |cell, least| {
+            let is_lower = |cell: &usize| f64::from(self.top[*cell]) < least;
+            plies.push(cell.filter(is_lower).map_or(0, |cell| self.ply[cell]));
+        });
+        // More than a part lies on what comes after that part from the highest on.
+        plies.sort_unstable_by(|a, b| b.cmp(a));
+        let most = (MOST * plies.len() as f64) as usize;
+        plies.get(most).copied().unwrap_or_default()
+    }
+
+    /// The part of some lines' length, but for their ends, that higher plies cover.
+    fn covered(&self, lines: &[Step], ply: u16) -> f64 {
+        let (mut covered, mut all) = (0_u32, 0_u32);
+        self.places(lines, f64::from(lines[0].width), |cell, _| {
+            all += 1;
+            covered += u32::from(cell.is_some_and(|cell| self.ply[cell] > ply));
+        });
+        f64::from(covered) / f64::from(all.max(1))
+    }
+
+    /// Hands the places of some lines, but for their `ends`, mm, to `sink`: the cell, if it is on the map, and
+    /// how high the top of what is below may be there, mm.
+    fn places(&self, lines: &[Step], ends: f64, mut sink: impl FnMut(Option<usize>, f64)) {
+        let whole: f64 = lines.iter().map(Step::plan_length).sum();
+        let mut before = 0.0;
         for step in lines {
             let (from, to) = (step.from.map(f64::from), step.to.map(f64::from));
-            let way = segment::way(from, to);
-            let count = (step.plan_length() / EVERY).ceil().max(1.0) as u32;
-            for k in 0..count {
-                let [x, y, z] = segment::along(from, (f64::from(k) + 0.5) / f64::from(count), way);
-                all += 1;
-                let Some(cell) = self.field.cell([x, y]) else { continue };
-                let least = z - HIGHER * f64::from(step.height);
-                let is_higher = !is_over || f64::from(self.top[cell]) < least;
-                such += u32::from(is_such(self.ply[cell]) && is_higher);
+            let (way, length) = (segment::way(from, to), step.plan_length());
+            let count = (length / EVERY).ceil().max(1.0) as u32;
+            for part in (0..count).map(|k| (f64::from(k) + 0.5) / f64::from(count)) {
+                if (ends..=whole - ends).contains(&(before + part * length)) {
+                    let [x, y, z] = segment::along(from, part, way);
+                    sink(self.field.cell([x, y]), z - HIGHER * f64::from(step.height));
+                }
             }
+            before += length;
         }
-        f64::from(such) / f64::from(all.max(1))
     }
 
     fn lay(&mut self, lines: &[Step], ply: u16) {
@@ -224,6 +254,17 @@ mod tests {
                 let right = if stroke.lines.start < first { 1 } else { 2 };
                 assert_eq!(stroke.ply, right, "{stroke:?}");
             }
+        }
+        // Beside them all of it again, in the file after them: the same two plies.
+        let beside = |step: &Step| {
+            let by = |[x, y, z]: [f32; 3]| [x + 11.0, y, z];
+            Step { from: by(step.from), to: by(step.to), ..*step }
+        };
+        let both: Vec<Step> = lines.iter().copied().chain(lines.iter().map(beside)).collect();
+        let field = Field::around(&both, 0).unwrap();
+        for stroke in strokes(&both, &field).iter().filter(|one| one.length >= LEAST_STROKE) {
+            let right = if stroke.lines.start % lines.len() < first { 1 } else { 2 };
+            assert_eq!(stroke.ply, right, "{stroke:?}");
         }
         // Printed again at the same height it is no other ply.
         let twice = [lines[0], lines[0]];

@@ -10,9 +10,11 @@
 //! [`Standing`](super::standing) is coarser and knows only the middles of lines: it is for files of which
 //! nobody says what hangs around the nozzle, and judges what lies under its flat end alone.
 
+use super::capsule::Capsule;
 use crate::geom::segment;
 use crate::reader::print::Step;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Side of a cell, mm.
 pub(super) const CELL: f64 = 0.1;
@@ -30,9 +32,6 @@ const MOST_TILES: usize = 16_384;
 
 /// Places further from 0 are on no machine, mm.
 const FARTHEST: f64 = 10_000.0;
-
-/// Length of the pieces in which a line is drawn, mm.
-const PIECE: f64 = 1.0;
 
 /// See the head of this file.
 struct Tile {
@@ -73,15 +72,22 @@ impl Relief {
         }
         self.highest = self.highest.max(step.from[2]).max(step.to[2]);
         let mut known: Option<([i32; 2], usize)> = None;
-        footprint(step, CORNER, |cell, z| {
-            let (at, index) = place(cell);
-            let tile = match known {
-                Some((last, tile)) if last == at => Some(tile),
-                _ => self.tile(at),
-            };
-            let Some(tile) = tile else { return };
-            known = Some((at, tile));
-            self.tiles[tile].raise(index, z as f32, is_skin);
+        strips(step, CORNER, |strip| {
+            let mut column = strip.columns.start;
+            while column < strip.columns.end {
+                let (at, index) = place([column, strip.row]);
+                // Up to the end of the tile.
+                let count = (SIDE - index % SIDE).min((strip.columns.end - column) as usize);
+                let tile = match known {
+                    Some((last, tile)) if last == at => Some(tile),
+                    _ => self.tile(at),
+                };
+                let Some(tile) = tile else { return };
+                known = Some((at, tile));
+                let after = column - strip.columns.start;
+                self.tiles[tile].raise((index, count), (strip, after), is_skin);
+                column += count as i32;
+            }
         });
     }
 
@@ -98,8 +104,8 @@ impl Relief {
         tile.before.as_ref().map(|before| f64::from(before[index])).filter(|z| !z.is_nan())
     }
 
-    /// Hands cells within `reach` mm of a place to `sink`, each with its height. Of tiles and blocks those
-    /// are left out for which `counts` says no to their square and their highest place.
+    /// Hands cells of blocks within `reach` mm of a place to `sink`, each with its height. Of tiles and blocks
+    /// those are left out for which `counts` says no to their square and their highest place.
     pub(super) fn look(
         &self,
         [x, y]: [f64; 2],
@@ -107,24 +113,62 @@ impl Relief {
         counts: &dyn Fn(Square, f64) -> bool,
         sink: &mut dyn FnMut(Square, f64),
     ) {
-        let whole = CELL * SIDE as f64;
-        let [low, high] = [-reach, reach]
-            .map(|by| [x + by, y + by].map(|at| (at.clamp(-FARTHEST, FARTHEST) / whole).floor()));
+        let area = [-reach, reach].map(|by| [x + by, y + by]);
+        self.blocks(area, counts, &mut |tile, corner, [column, row]| {
+            for j in row..row + BLOCK {
+                for i in column..column + BLOCK {
+                    let low = [corner[0] + CELL * i as f64, corner[1] + CELL * j as f64];
+                    sink(Square { low, side: CELL }, f64::from(tile.cells[j * SIDE + i]));
+                }
+            }
+            false
+        });
+    }
+
+    /// Whether `counts` says yes to a block of an area from its lowest to its highest corner, mm: to its square
+    /// and its highest place, and to its tile's.
+    pub(super) fn any(&self, area: [[f64; 2]; 2], counts: &dyn Fn(Square, f64) -> bool) -> bool {
+        self.blocks(area, counts, &mut |_, _, _| true)
+    }
+
+    /// Hands blocks of an area that `counts` to `sink` until that says that it is enough: each with its tile, that
+    /// one's lowest corner, and its first column and row of cells there.
+    fn blocks(
+        &self,
+        [low, high]: [[f64; 2]; 2],
+        counts: &dyn Fn(Square, f64) -> bool,
+        sink: &mut dyn FnMut(&Tile, [f64; 2], [usize; 2]) -> bool,
+    ) -> bool {
+        let (whole, side) = (CELL * SIDE as f64, CELL * BLOCK as f64);
+        let tile_of =
+            |corner: [f64; 2]| corner.map(|at| (at.clamp(-FARTHEST, FARTHEST) / whole).floor());
+        let (from, to) = (tile_of(low), tile_of(high));
         // A head may reach far beyond all that stands.
         let [first, last] = self.extent;
         let span =
-            |axis: usize| (low[axis] as i32).max(first[axis])..=(high[axis] as i32).min(last[axis]);
-        for row in span(1) {
-            for column in span(0) {
-                let Some(&tile) = self.map.get(&[column, row]) else { continue };
-                let tile = &self.tiles[tile];
-                let corner = [column, row].map(|k| f64::from(k) * whole);
-                let square = Square { low: corner, side: whole };
-                if counts(square, f64::from(tile.highest)) {
-                    tile.look(corner, counts, sink);
+            |axis: usize| (from[axis] as i32).max(first[axis])..=(to[axis] as i32).min(last[axis]);
+        for (row, column) in span(1).flat_map(|row| span(0).map(move |column| (row, column))) {
+            let Some(&tile) = self.map.get(&[column, row]) else { continue };
+            let tile = &self.tiles[tile];
+            let corner = [column, row].map(|k| f64::from(k) * whole);
+            if !counts(Square { low: corner, side: whole }, f64::from(tile.highest)) {
+                continue;
+            }
+            let block_of = |at: f64| ((at / side).max(0.0) as usize).min(BLOCKS - 1);
+            let span = |axis: usize| {
+                block_of(low[axis] - corner[axis])..=block_of(high[axis] - corner[axis])
+            };
+            for (j, i) in span(1).flat_map(|j| span(0).map(move |i| (j, i))) {
+                let low = [corner[0] + side * i as f64, corner[1] + side * j as f64];
+                let highest = f64::from(tile.blocks[j * BLOCKS + i]);
+                if counts(Square { low, side }, highest)
+                    && sink(tile, corner, [i * BLOCK, j * BLOCK])
+                {
+                    return true;
                 }
             }
         }
+        false
     }
 
     /// The tile there, which begins if there is none; `None` if there are too many.
@@ -154,43 +198,43 @@ impl Relief {
 }
 
 impl Tile {
-    fn raise(&mut self, index: usize, z: f32, is_skin: bool) {
-        let cell = &mut self.cells[index];
+    /// Raises some cells of a row from one on to a line, as much of it as lies `after` its strip's first.
+    fn raise(
+        &mut self,
+        (first, count): (usize, usize),
+        (strip, after): (&Strip, i32),
+        is_skin: bool,
+    ) {
+        let cells = &mut self.cells[first..first + count];
         if is_skin {
             let nothing = || vec![f32::NAN; SIDE * SIDE].into_boxed_slice();
-            let before = &mut self.before.get_or_insert_with(nothing)[index];
-            if before.is_nan() {
-                *before = *cell;
+            let before = &mut self.before.get_or_insert_with(nothing)[first..first + count];
+            for (before, cell) in before.iter_mut().zip(&*cells) {
+                if before.is_nan() {
+                    *before = *cell;
+                }
             }
         }
-        if z <= *cell {
+        if strip.by == 0.0 {
+            let z = strip.height(0) as f32;
+            cells.iter_mut().for_each(|cell| *cell = cell.max(z));
+            let row = first / SIDE / BLOCK * BLOCKS;
+            let columns = first % SIDE / BLOCK..=(first + count - 1) % SIDE / BLOCK;
+            for column in columns {
+                let block = &mut self.blocks[row + column];
+                *block = block.max(z);
+            }
+            self.highest = self.highest.max(z);
             return;
         }
-        *cell = z;
-        let block = &mut self.blocks[index / SIDE / BLOCK * BLOCKS + index % SIDE / BLOCK];
-        *block = block.max(z);
-        self.highest = self.highest.max(z);
-    }
-
-    fn look(
-        &self,
-        low: [f64; 2],
-        counts: &dyn Fn(Square, f64) -> bool,
-        sink: &mut dyn FnMut(Square, f64),
-    ) {
-        let side = CELL * BLOCK as f64;
-        let corner =
-            |column: usize, row: usize| [low[0] + CELL * column as f64, low[1] + CELL * row as f64];
-        for (k, &highest) in self.blocks.iter().enumerate() {
-            let (column, row) = (k % BLOCKS * BLOCK, k / BLOCKS * BLOCK);
-            if !counts(Square { low: corner(column, row), side }, f64::from(highest)) {
-                continue;
-            }
-            for j in row..row + BLOCK {
-                for i in column..column + BLOCK {
-                    let height = f64::from(self.cells[j * SIDE + i]);
-                    sink(Square { low: corner(i, j), side: CELL }, height);
-                }
+        for (k, cell) in cells.iter_mut().enumerate() {
+            let z = strip.height(after + k as i32) as f32;
+            if z > *cell {
+                *cell = z;
+                let index = first + k;
+                let block = &mut self.blocks[index / SIDE / BLOCK * BLOCKS + index % SIDE / BLOCK];
+                *block = block.max(z);
+                self.highest = self.highest.max(z);
             }
         }
     }
@@ -203,38 +247,64 @@ fn place(cell: [i32; 2]) -> ([i32; 2], usize) {
     (cell.map(|k| k.div_euclid(side)), y * SIDE + x)
 }
 
-/// Hands the cells that a line covers to `sink`, each with the line's height there: those whose middles lie
-/// within `grow` mm of it. Some cells come more than once. With half a cell's diagonal they are all cells
-/// of which it covers something, as high as it is anywhere in them.
-pub(super) fn footprint(step: &Step, grow: f64, mut sink: impl FnMut([i32; 2], f64)) {
+/// Cells of a row that a line covers, and its height over the first of them and how it changes, mm.
+#[derive(Debug, Clone)]
+struct Strip {
+    row: i32,
+    columns: Range<i32>,
+    first: f64,
+    by: f64,
+    /// The line's own lowest and highest place.
+    ends: [f64; 2],
+}
+
+impl Strip {
+    /// The line's height over a cell, as many columns after the first, mm.
+    fn height(&self, after: i32) -> f64 {
+        (self.first + f64::from(after) * self.by).clamp(self.ends[0], self.ends[1])
+    }
+}
+
+/// Hands the cells that a line covers to `sink`, row by row: those whose middles lie within `grow` mm of
+/// it. With half a cell's diagonal they are all cells of which it covers something, as high as it is
+/// anywhere in them.
+fn strips(step: &Step, grow: f64, mut sink: impl FnMut(&Strip)) {
     let (from, to) = (step.from.map(f64::from), step.to.map(f64::from));
     let way = segment::way(from, to);
     let square = way[0] * way[0] + way[1] * way[1];
-    let length = square.sqrt();
+    let (rise, slope) = if square > 0.0 {
+        ((way[2].abs() / square.sqrt()) * grow, way.map(|by| by * way[2] / square))
+    } else {
+        (0.0, [0.0; 3])
+    };
+    let ends = step.heights().map(|z| z + rise);
     let radius = f64::from(step.width) / 2.0 + grow;
-    let rise = if length > 0.0 { (way[2] / length).abs() * grow } else { 0.0 };
-    let count = (length / PIECE).ceil().max(1.0);
-    let cell = |at: f64| (at / CELL).floor() as i32;
-    for k in 0..count as u32 {
-        let ends =
-            [f64::from(k), f64::from(k) + 1.0].map(|at| segment::along(from, at / count, way));
-        let span = |axis: usize| {
-            let [a, b] = [ends[0][axis], ends[1][axis]];
-            cell(a.min(b) - radius)..=cell(a.max(b) + radius)
-        };
-        for row in span(1) {
-            for column in span(0) {
-                let middle = [column, row].map(|k| (f64::from(k) + 0.5) * CELL);
-                let by = [middle[0] - from[0], middle[1] - from[1]];
-                let along = by[0] * way[0] + by[1] * way[1];
-                let part = if square > 0.0 { (along / square).clamp(0.0, 1.0) } else { 0.0 };
-                let off = [by[0] - part * way[0], by[1] - part * way[1]];
-                if off[0] * off[0] + off[1] * off[1] <= radius * radius {
-                    sink([column, row], from[2] + part * way[2] + rise);
-                }
-            }
-        }
+    let line = Capsule { from: [from[0], from[1]], to: [to[0], to[1]], radius };
+    let ((low, high), flanks) = (line.extent(), line.flanks());
+    // Cells whose middles lie from one place to another.
+    let first = |at: f64| (at / CELL - 0.5).ceil() as i32;
+    for row in first(low[1])..first(high[1]) {
+        let y = middle(row);
+        let Some((left, right)) = flanks.chord(y) else { continue };
+        let columns = first(left)..first(right);
+        let by = [middle(columns.start) - from[0], y - from[1]];
+        let first = from[2] + rise + by[0] * slope[0] + by[1] * slope[1];
+        sink(&Strip { row, columns, first, by: CELL * slope[0], ends });
     }
+}
+
+/// As [`strips`], cell by cell, each with the line's height there.
+pub(super) fn footprint(step: &Step, grow: f64, mut sink: impl FnMut([i32; 2], f64)) {
+    strips(step, grow, |strip| {
+        for (after, column) in strip.columns.clone().enumerate() {
+            sink([column, strip.row], strip.height(after as i32));
+        }
+    });
+}
+
+/// Where the middle of a row or a column lies, mm.
+fn middle(cell: i32) -> f64 {
+    (f64::from(cell) + 0.5) * CELL
 }
 
 #[cfg(test)]

@@ -9,14 +9,19 @@
 //! - While printing, and where the nozzle goes straight down to print, the flat may press into what is soft
 //!   yet: within its diameter of the tip, and no deeper than [`DEEPEST_PRESS`] layers, one for the slope
 //!   and half a one for the tread of a staircase. Where a travel ends a line begins: there that holds, too.
-//! - All other touches of more than [`TOLERANCE`] are hits.
+//! - All other touches of more than [`TOLERANCE`] are hits. From [`MOST_MEASURED`] hits on only whether a move
+//!   hits is looked for, not where it does so the deepest.
+//! - Most of a way is clear at a glance: the lowest place of it and the head over all of its places leave all
+//!   blocks of the map be. Where one is not, each half of the way is looked at for itself.
 
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::relief::{Relief, Square};
 use crate::geom::segment;
+use crate::head::shape::Shape;
 use crate::head::{DEEPEST_PRESS, Head, Part};
 use crate::reader::print::Step;
 use std::cell::Cell;
+use std::ops::Range;
 
 /// Distance of the places that are looked at, mm.
 const STEP: f64 = 0.25;
@@ -27,20 +32,47 @@ const MOST_PLACES: f64 = 20_000.0;
 /// Touches that are less deep are rounding, mm.
 const TOLERANCE: f64 = 0.02;
 
-/// How much higher the map may be than what stands: half a cell of a slope of 25 degrees, mm.
-const BOUND: f64 = 0.03;
+/// How much higher the map may be than what stands, mm: lines are wider by half a cell's diagonal and higher
+/// by what they rise over it, on a slope of 22 degrees.
+const BOUND: f64 = 0.06;
 
 /// Squares in which no touch can be this many times as deep as one that is known are left out: a flat head
 /// touches all of a slope at once.
 const CLOSE: f64 = 1.05;
 
+/// Hits of a file of which each is measured at its deepest: many more than are listed.
+const MOST_MEASURED: usize = 1000;
+
+/// Places of a way that are looked at one by one, not at a glance.
+const FEW: usize = 3;
+
 /// See the head of this file.
 pub(super) struct Sweep<'a> {
     head: &'a Head,
-    reach: f64,
+    shape: Shape<'a>,
     press: f64,
+    hits: usize,
     /// Whether nobody knows how high the nozzle is.
     is_lost: bool,
+}
+
+/// The way of a move, at whose places the head is looked at.
+struct Way {
+    from: [f64; 3],
+    way: [f64; 3],
+    /// Places, of which the last is its end.
+    count: usize,
+    /// How far the head reaches with what may touch anything, mm.
+    reach: f64,
+    /// How deep a press may be on it, and at its end, mm.
+    most: [f64; 2],
+}
+
+impl Way {
+    /// A place of it, counted from 1.
+    fn place(&self, k: usize) -> [f64; 3] {
+        segment::along(self.from, k as f64 / self.count as f64, self.way)
+    }
 }
 
 /// The deepest touch of a move that is no press.
@@ -53,7 +85,8 @@ struct Hit {
 
 impl<'a> Sweep<'a> {
     pub(super) fn new(head: &'a Head) -> Self {
-        Self { head, reach: head.reach(), press: head.press_radius(), is_lost: false }
+        let (shape, press) = (Shape::of(head), head.press_radius());
+        Self { head, shape, press, hits: 0, is_lost: false }
     }
 
     /// The nozzle is sent to where only the printer knows.
@@ -70,19 +103,73 @@ impl<'a> Sweep<'a> {
         if self.is_lost || !is_low || !(is_aside || sinks) {
             return;
         }
-        let mut worst: Option<Hit> = None;
         let (from, to) = (step.from.map(f64::from), step.to.map(f64::from));
-        let way = segment::way(from, to);
         let count = (step.plan_length() / STEP).ceil().clamp(1.0, MOST_PLACES) as usize;
+        let most = DEEPEST_PRESS * height + BOUND;
+        let way = Way {
+            from,
+            way: segment::way(from, to),
+            count,
+            // Nothing stands higher than this above the tip.
+            reach: self.head.reach_below(relief.highest() - step.heights()[0]),
+            // Down to a line, and where a travel ends: there one begins.
+            most: [if step.is_line() || !is_aside { most } else { TOLERANCE }, most],
+        };
         // What a way begins with is where the one before has ended.
-        for k in 1..=count {
-            let tip = segment::along(from, k as f64 / count as f64, way);
-            let may_press = step.is_line() || !is_aside || k == count;
-            let most = if may_press { DEEPEST_PRESS * height + BOUND } else { TOLERANCE };
-            let deeper = worst.map_or(0.0, |worst| worst.depth);
-            worst = self.touch(relief, tip, (most, deeper)).or(worst);
+        if let Some(hit) = self.places(relief, &way, 1..count + 1, None) {
+            self.hits += 1;
+            found.add(told(&hit, step));
         }
-        found.extend(worst.map(|hit| told(&hit, step)));
+    }
+
+    /// The deepest touch at some places of a way, if that is deeper than the worst so far.
+    fn places(
+        &self,
+        relief: &Relief,
+        way: &Way,
+        places: Range<usize>,
+        mut worst: Option<Hit>,
+    ) -> Option<Hit> {
+        let is_enough = |worst: Option<Hit>| worst.is_some() && self.hits >= MOST_MEASURED;
+        if is_enough(worst) || !self.may_touch(relief, way, &places) {
+            return worst;
+        }
+        if places.len() > FEW {
+            let middle = places.start + places.len() / 2;
+            worst = self.places(relief, way, places.start..middle, worst);
+            return self.places(relief, way, middle..places.end, worst);
+        }
+        for k in places {
+            if is_enough(worst) {
+                break;
+            }
+            let deeper = worst.map_or(0.0, |worst| worst.depth);
+            let most = way.most[usize::from(k == way.count)];
+            worst = self.touch(relief, (way.place(k), way.reach), (most, deeper)).or(worst);
+        }
+        worst
+    }
+
+    /// Whether any block of what stands may be in the head's way at some places of a way.
+    fn may_touch(&self, relief: &Relief, way: &Way, places: &Range<usize>) -> bool {
+        let [a, b] = [way.place(places.start), way.place(places.end - 1)];
+        let low = [0, 1, 2].map(|axis: usize| a[axis].min(b[axis]));
+        let high = [0, 1].map(|axis: usize| a[axis].max(b[axis]));
+        let reach = way.reach;
+        let area = [[low[0] - reach, low[1] - reach], high.map(|at| at + reach)];
+        relief.any(area, &|square, highest| {
+            highest > low[2] + TOLERANCE && {
+                let near = [0, 1].map(|axis: usize| square.low[axis] - high[axis]);
+                let far = [0, 1].map(|axis: usize| square.low[axis] + square.side - low[axis]);
+                highest > low[2] + self.shape.lowest(near, far).0 + TOLERANCE
+            }
+        })
+    }
+
+    /// The underside over a place beside the tip, mm above it, and its part.
+    fn underside(&self, by: [f64; 2]) -> Option<(f64, Part)> {
+        let (z, part) = self.shape.lowest(by, by);
+        part.map(|part| (z, part))
     }
 
     /// The deepest touch there that is deeper than `least`, but for those within the flat's diameter that are
@@ -90,7 +177,7 @@ impl<'a> Sweep<'a> {
     fn touch(
         &self,
         relief: &Relief,
-        [x, y, z]: [f64; 3],
+        ([x, y, z], reach): ([f64; 3], f64),
         (most, least): (f64, f64),
     ) -> Option<Hit> {
         // What is found first lets most other squares be.
@@ -104,31 +191,32 @@ impl<'a> Sweep<'a> {
             // Most lies lower than the tip: no look at the head.
             highest > z + least && {
                 let (low, high) = beside(square);
-                highest > z + self.head.over(low, high) + least
+                highest > z + self.shape.lowest(low, high).0 + least
             }
         };
         let mut worst = None;
-        relief.look([x, y], self.reach, &counts, &mut |square, top| {
+        relief.look([x, y], reach, &counts, &mut |square, top| {
             if !counts(square, top) {
                 return;
             }
             let (low, high) = beside(square);
             let middle = [0, 1].map(|axis: usize| 0.5 * (low[axis] + high[axis]));
-            let own = self.head.underside(middle);
+            let own = self.underside(middle);
             let away = middle[0] * middle[0] + middle[1] * middle[1];
             let is_near = away <= self.press * self.press;
             // Near the tip by the cell's middle: its nearest corner would press where nothing does, and
             // on a steep slope the flank be deep in what it only comes near to.
             let is_beside = away <= 4.0 * self.press * self.press;
-            let under =
-                own.filter(|_| is_beside).map_or(self.head.over(low, high), |(under, _)| under);
+            let under = own
+                .filter(|_| is_beside)
+                .map_or(self.shape.lowest(low, high).0, |(under, _)| under);
             let depth = top - z - under;
             if depth <= deepest.get() || (is_near && depth <= most) {
                 return;
             }
             deepest.set(depth);
             let near = [0, 1].map(|axis: usize| 0.0_f64.clamp(low[axis], high[axis]));
-            let nearest = || self.head.underside(near).or(own);
+            let nearest = || self.underside(near).or(own);
             let lowest = own.filter(|_| is_beside).or_else(nearest);
             let part = lowest.map_or(Part::Box(0), |(_, part)| part);
             worst = Some(Hit { depth, at: [x + middle[0], y + middle[1]], part });
@@ -157,6 +245,7 @@ mod tests {
     use super::*;
     use crate::head::named::named;
     use crate::reader::Role;
+    use proptest::prelude::*;
 
     fn step(from: [f32; 3], to: [f32; 3], filament: f32) -> Step {
         let (feed, width, height) = (30.0, 0.4, 0.2);
@@ -199,7 +288,7 @@ mod tests {
         let head = named("v6").unwrap();
         let at = |z: f32, filament: f32| step([0.5, 2.0, z], [0.5, 18.0, z], filament);
         assert_eq!(beside(&head, at(9.75, 1.0)), []);
-        assert!((beside(&head, at(9.65, 1.0))[0].measure - 0.35).abs() < 1e-3);
+        assert!((beside(&head, at(9.6, 1.0))[0].measure - 0.4).abs() < 1e-3);
         assert!((beside(&head, at(9.75, 0.0))[0].measure - 0.25).abs() < 1e-3);
         assert_eq!(beside(&head, at(9.99, 0.0)), []);
         // Down to a line, and up from anywhere.
@@ -207,5 +296,56 @@ mod tests {
         assert_eq!(beside(&head, sinks(9.75)), []);
         assert!(!beside(&head, sinks(9.0)).is_empty());
         assert_eq!(beside(&head, step([0.5, 5.0, 9.0], [0.5, 5.0, 12.0], 0.0)), []);
+    }
+
+    #[test]
+    fn hits_are_counted_on_where_they_are_not_measured_any_more() {
+        let head = named("v6").unwrap();
+        let mut relief = Relief::default();
+        relief.lay(&step([0.0, 0.0, 10.0], [0.0, 20.0, 10.0], 1.0), false);
+        let (mut sweep, mut found) = (Sweep::new(&head), Findings::default());
+        let all = MOST_MEASURED + 50;
+        for _ in 0..all {
+            sweep.step(&step([0.5, 2.0, 9.0], [0.5, 18.0, 5.0], 0.0), &relief, 0.2, &mut found);
+        }
+        assert_eq!(found.len(), all);
+        let depths: Vec<f64> = found.into_iter().map(|hit| hit.measure).collect();
+        assert!(depths[0] > 4.9 && depths[all - 1] > 1.0 && depths[all - 1] < 1.2, "{depths:?}");
+    }
+
+    /// A place in a box of 20 mm, 5 mm high.
+    fn any_place() -> impl Strategy<Value = [f32; 3]> {
+        (0.0..20.0_f32, 0.0..20.0_f32, 0.0..5.0_f32).prop_map(|(x, y, z)| [x, y, z])
+    }
+
+    proptest! {
+        #[test]
+        fn a_glance_overlooks_nothing(
+            lines in prop::collection::vec((any_place(), any_place()), 1..6),
+            (from, to) in (any_place(), any_place()),
+            prints in any::<bool>(),
+            name in prop::sample::select(vec!["v6", "cautious", "long-0.6"]),
+        ) {
+            let head = named(name).unwrap();
+            let mut relief = Relief::default();
+            lines.iter().for_each(|(from, to)| relief.lay(&step(*from, *to, 1.0), false));
+            let one = step(from, to, if prints { 1.0 } else { 0.0 });
+            let (mut sweep, mut found) = (Sweep::new(&head), Findings::default());
+            sweep.step(&one, &relief, 0.2, &mut found);
+            let count = (one.plan_length() / STEP).ceil().max(1.0) as usize;
+            let (start, end) = (one.from.map(f64::from), one.to.map(f64::from));
+            let way = Way { from: start, way: segment::way(start, end), count, reach: 99.0, most: [0.0; 2] };
+            let press = DEEPEST_PRESS * 0.2 + BOUND;
+            let mut worst: Option<Hit> = None;
+            for k in 1..=count {
+                let most = if prints || k == count { press } else { TOLERANCE };
+                let deeper = worst.map_or(0.0, |worst| worst.depth);
+                worst = sweep.touch(&relief, (way.place(k), way.reach), (most, deeper)).or(worst);
+            }
+            let depth = found.into_iter().next().map(|hit| hit.measure);
+            // A move above all that stands is not looked at.
+            let is_low = one.heights()[0] < relief.highest() - TOLERANCE;
+            prop_assert_eq!(depth, worst.filter(|_| is_low).map(|hit| hit.depth));
+        }
     }
 }

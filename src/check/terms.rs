@@ -167,9 +167,8 @@ impl Terms {
     pub(super) fn plastic(&self, step: &Step) -> f64 {
         let flow = match step.role {
             Role::OuterWall | Role::InnerWall => self.flow[0],
-            Role::Skin | Role::Ironing => self.flow[1],
+            Role::Skin | Role::Ironing | Role::NonPlanar => self.flow[1],
             Role::Infill => self.flow[2],
-            Role::NonPlanar => self.multiplier * self.section,
             _ => self.section,
         };
         f64::from(step.filament) * self.filament_area / (flow * self.pressed(step))

@@ -37,12 +37,16 @@ Findings, each with a stable code, a place and a measure:
   double-skin          over 1.3 times the plastic that a patch has room for on what it lies on, in
                        squares of 1 mm
   overfilled         * over 1.25 times the plastic that walls and skins have room for, on one layer
-                       within 4 by 4 mm; an error where settings ask for over 1.6 times
-  underfilled        * under 0.7 times that, or a fifth of the room between them left open
+                       within 4 by 4 mm; an error where settings ask for over 1.6 times, or where a whole
+                       patch takes over 1.3 times its plastic, or plastic by its lines' length in space
+  underfilled        * under 0.7 times that, or a fifth of the room between them left open; an error
+                       where a whole patch takes under 0.7 times its plastic
   narrow-bead        * over 1 mm of a line narrower than 70 % of the nozzle
   slender-support    * support over 10 times as high as it is thick
   loose-infill       * the sparse infill touches under a quarter of the innermost walls
   wrong-sums           the file states another amount of filament or number of layers
+  wrong-marks          a patch of non-planar skin has no end, or, in files of this program, its number
+                       comes twice
   wrong-size           the walls do not lie along the part's outline, or the height differs
   open-outline         0.6 mm² or more of the outline is not printed
   open-surface         0.6 mm² or more of a top or bottom surface is not printed

@@ -15,7 +15,7 @@
 mod laws;
 pub mod named;
 pub mod pile;
-mod shape;
+pub mod shape;
 pub mod sweep;
 
 use pile::Hit;

@@ -4,7 +4,7 @@ use super::{Head, Part, furthest, length};
 
 /// A head, and the numbers of its nozzle.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shape<'a> {
+pub struct Shape<'a> {
     head: &'a Head,
     /// Radius of the flat.
     face: f64,
@@ -15,7 +15,9 @@ pub(super) struct Shape<'a> {
 }
 
 impl<'a> Shape<'a> {
-    pub(super) fn of(head: &'a Head) -> Self {
+    /// What is computed once of a head.
+    #[must_use]
+    pub fn of(head: &'a Head) -> Self {
         let face = head.flat / 2.0;
         let flares = head.cone > 0.0 && head.cone < 90.0 && head.cone_length > 0.0;
         let tan = if flares { libm::tan(head.cone.to_radians()) } else { f64::INFINITY };
@@ -48,10 +50,13 @@ impl<'a> Shape<'a> {
         (distance - self.face) * self.tan
     }
 
-    /// The lowest place of the underside over a rectangle, and its part. All that is round rises outwards:
+    /// The lowest place of the underside over a rectangle from `low` to `high` beside the tip, mm above it, and
+    /// its part; infinite and `None` beyond the head's reach. All that is round rises outwards:
     /// it hangs lowest at the rectangle's nearest point. The distance of that is monotone in its bounds, even
     /// as rounded, so what is told of a rectangle holds for each one inside it, to the last digit.
-    pub(super) fn lowest(&self, low: [f64; 2], high: [f64; 2]) -> (f64, Option<Part>) {
+    #[must_use]
+    #[inline]
+    pub fn lowest(&self, low: [f64; 2], high: [f64; 2]) -> (f64, Option<Part>) {
         let near = |axis: usize| {
             let (low, high) = (low[axis], high[axis]);
             if low > 0.0 {

@@ -180,7 +180,7 @@ fn json_is_stable() {
     let names = "unknown-code outside-volume through-print head-hits changes-the-machine wrong-temperature \
                  cold-extrusion too-fast too-many-steps too-much-flow unpaired-retraction odd-bead falling-z in-the-air floating unanchored \
                  printed-twice uncovered-skin double-skin overfilled underfilled narrow-bead slender-support loose-infill \
-                 wrong-sums wrong-size open-outline open-surface outside-part wrong-infill wrong-volume";
+                 wrong-sums wrong-marks wrong-size open-outline open-surface outside-part wrong-infill wrong-volume";
     assert_eq!(Code::ALL.map(Code::name).join(" "), names);
 }
 
@@ -349,4 +349,73 @@ fn lines_as_wide_as_no_machine_take_no_time() {
     let run = run.timeout(std::time::Duration::from_secs(20)).assert().code(1);
     let told = String::from_utf8(run.get_output().stdout.clone()).unwrap();
     assert!(told.contains("mm apart, further than on any machine"), "{told}");
+}
+
+/// A square tower whose outer wall begins on each layer by rising from the one below over 8 mm, and ends by
+/// fading over that: a scarf seam, as Orca writes it. `flow` is what a line gets in the middle of a side.
+fn scarfed(flow: f64) -> String {
+    let area = std::f64::consts::PI * 1.75 * 1.75 / 4.0;
+    let mut text = "G90\nM83\nM104 S210\nM109 S210\nG28\n".to_owned();
+    let line = |text: &mut String, from: [f64; 2], to: [f64; 3], part: f64| {
+        let e = (to[0] - from[0]).hypot(to[1] - from[1]) * WIDTH * HEIGHT * part / area;
+        writeln!(text, "G1 X{:.3} Y{:.3} Z{:.3} E{e:.5} F1500", to[0], to[1], to[2]).unwrap();
+        [to[0], to[1]]
+    };
+    for layer in 1..=10 {
+        let (low, z) = (HEIGHT * f64::from(layer - 1), HEIGHT * f64::from(layer));
+        writeln!(
+            text,
+            ";LAYER_CHANGE\n;Z:{z:.3}\n;HEIGHT:{HEIGHT}\n;TYPE:Outer wall\n;WIDTH:{WIDTH}"
+        )
+        .unwrap();
+        let (mut at, y) = ([100.0, 90.0], 90.0);
+        let start = if layer == 1 { z } else { low };
+        writeln!(text, "G1 Z{:.3} F600\nG1 X100 Y{y} F6000\nG1 Z{start:.3} F600", z + 0.4).unwrap();
+        for k in (1..=10).filter(|_| layer > 1) {
+            let part = f64::from(k) / 10.0;
+            at = line(&mut text, at, [100.0 + 8.0 * part, y, low + HEIGHT * part], part - 0.05);
+        }
+        let part = if layer == 5 { flow } else { 1.0 };
+        for ([x, y], part) in
+            [([110.0, y], 1.0), ([110.0, 110.0], part), ([90.0, 110.0], 1.0), ([90.0, y], 1.0)]
+        {
+            at = line(&mut text, at, [x, y, z], part);
+        }
+        at = line(&mut text, at, [100.0, y, z], 1.0);
+        for k in (1..=10).filter(|_| layer > 1) {
+            let part = f64::from(k) / 10.0;
+            at = line(&mut text, at, [100.0 + 8.0 * part, y, z], 1.05 - part);
+        }
+    }
+    text + "M104 S0\nM84\n"
+}
+
+#[test]
+fn scarf_seams_of_other_slicers_are_no_fault() {
+    let folder = tempfile::tempdir().unwrap();
+    for words in [&["-"][..], &["-", "--head", "v6"], &["-", "-p", "generic-marlin"]] {
+        let (code, out, _) = check(&folder, words, scarfed(1.0).as_bytes());
+        assert!(code == 0 && out.contains(": clean in 10 layers and "), "{words:?} {out}");
+        let (code, out, _) = check(&folder, words, scarfed(0.3).as_bytes());
+        assert!(code == 1 && out.contains("\nodd-bead: line "), "{words:?} {out}");
+        assert!(out.contains(": 1 finding "), "{words:?} {out}");
+    }
+}
+
+/// The thesis's machine lays 1.2 times the plastic that a box of a line's size holds, on flat skins and others.
+#[test]
+fn skins_are_held_against_the_factors_of_their_settings() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
+    let words = ["--nonplanar", "--head", "long-0.6", "-q", "-o", "wedge.gcode"];
+    command.current_dir(folder.path()).arg(fixtures().join("wedge.stl")).args(words);
+    command.assert().success();
+    let (code, out, _) = check(&folder, &["wedge.gcode"], b"");
+    assert!(code == 0 && out.contains("wedge.gcode: clean"), "{out}");
+    // The same plastic is too much by settings that ask for less.
+    let text = fs::read_to_string(folder.path().join("wedge.gcode")).unwrap();
+    let less =
+        text.replace("; extrusion.skin_factor = 0.04\n", "; extrusion.skin_factor = 0.025\n");
+    let (code, out, _) = check(&folder, &["-"], less.as_bytes());
+    assert!(code == 1 && out.contains("double-skin: ") && out.contains("overfilled: "), "{out}");
 }

@@ -11,6 +11,7 @@
 //!    after it does. Of the others [`Sound::counts`] asks whether they change anything.
 
 use super::common::gcode::{Kind, Move};
+use super::slopes::{SLANTS, Slant};
 use super::sound::{Chance, SAME, Sound, with_word, word};
 use std::collections::BTreeMap;
 
@@ -42,6 +43,8 @@ pub(crate) enum What {
     FeedOfZ(f64),
     /// To a whole layer.
     Layer(Deed),
+    /// To skins that follow a slope.
+    Skin(Slant),
     /// To the text.
     Text(Slip),
 }
@@ -169,6 +172,9 @@ pub(crate) fn kinds() -> Vec<(String, What)> {
     all.push(("a layer: 0.4 mm higher".into(), What::Layer(Deed::Shifted)));
     all.push(("a layer: half the plastic".into(), What::Layer(Deed::Half)));
     all.push(("a layer: twice the plastic".into(), What::Layer(Deed::Double)));
+    for (name, slant, _) in SLANTS {
+        all.push((format!("non-planar skin, {name}"), What::Skin(slant)));
+    }
     for (name, slip) in [
         ("a move's text is gone", Slip::MoveGone),
         ("a retraction is gone", Slip::RetractionGone),
@@ -215,6 +221,7 @@ impl Sound {
                 Some(self.rewritten(&BTreeMap::from([(k, Move { feed, ..self.print.moves[k] })])))
             }
             What::Layer(deed) => self.layer(deed, chance),
+            What::Skin(slant) => self.slant(slant, chance),
             What::Text(slip) => self.slip(slip, chance),
         }
     }

@@ -8,6 +8,7 @@
 mod common;
 mod edits;
 mod properties;
+mod slopes;
 mod sound;
 mod steps;
 mod witness;

@@ -17,6 +17,7 @@
 
 use super::common;
 use super::edits::{self, What};
+use super::slopes;
 use super::sound::{Chance, Sound};
 use rayon::prelude::*;
 use slicer::check::terms::Terms;
@@ -48,7 +49,7 @@ type Job = (&'static str, f64, &'static [(&'static str, &'static str)]);
 
 /// The sound files: fixture, profile, how deep it is sunk (mm), settings. The parts are cut low so
 /// that a case is quick.
-const FILES_OF: [Job; 4] = [
+const FILES_OF: [Job; 5] = [
     ("cube_20.stl", 14.0, &[("machine.thumbnails", "[]")]),
     (
         "cube_20.stl",
@@ -75,7 +76,11 @@ const FILES_OF: [Job; 4] = [
             ("machine.relative_e", "true"),
         ],
     ),
+    (RAMPS, 0.0, &slopes::SET),
 ];
+
+/// The name of a part that is made in code.
+const RAMPS: &str = "ramps.stl";
 
 /// Where the parts lie, mm: near what the start block draws, since maps of a small print are small.
 const BESIDE_THE_START: [f64; 2] = [35.0, 28.0];
@@ -102,12 +107,12 @@ struct Row {
     unseen: Option<(usize, u64)>,
 }
 
-fn read(text: &str) -> Print {
+pub(super) fn read(text: &str) -> Print {
     Print::read(&mut text.as_bytes(), 1.75).unwrap()
 }
 
 /// What `check` finds by the file's own settings, else by `settings`.
-fn judge(print: &Print, settings: &Settings, placed: Option<&Placed>) -> Verdict {
+pub(super) fn judge(print: &Print, settings: &Settings, placed: Option<&Placed>) -> Verdict {
     let own = profile::recorded(&print.values).ok().flatten();
     let own = own.as_ref().map(|own| &own.settings);
     let terms = Terms::new(Some(own.unwrap_or(settings)), own, print);
@@ -122,7 +127,7 @@ fn side(text: &str, settings: &Settings) -> Option<Side> {
 }
 
 /// Whether some kind of finding is there more often than in the sound file.
-fn is_new(verdict: &Verdict, sound: &Verdict) -> bool {
+pub(super) fn is_new(verdict: &Verdict, sound: &Verdict) -> bool {
     verdict.counts.iter().any(|one| {
         let old = sound.counts.iter().find(|old| old.code == one.code);
         old.is_none_or(|old| one.count > old.count || one.errors > old.errors)
@@ -133,9 +138,9 @@ impl File {
     fn new((stl, sink, set): &(&str, f64, &[(&str, &str)])) -> Self {
         let placement = Placement { sink: *sink, at: Some(BESIDE_THE_START), ..common::as_it_is() };
         let settings = common::shipped("generic-marlin", set);
-        let path = common::fixtures().join(stl);
-        let (text, _) = common::slice_file(&path, &settings, &placement).unwrap();
-        let model = slicer::Model::path(path.to_str().unwrap().to_owned());
+        let bytes = if *stl == RAMPS { slopes::part().stl() } else { common::fixture(stl) };
+        let text = common::slice_with(&bytes, settings.clone(), &placement).text;
+        let model = slicer::Model::bytes(*stl, bytes);
         let bed = slicer::bed(&settings.machine);
         let placed = slicer::place(&[model], &placement, &bed, &Default::default()).unwrap();
         let print = read(&text);

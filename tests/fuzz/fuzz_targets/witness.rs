@@ -7,6 +7,8 @@
 mod common;
 #[path = "../../hostile/edits.rs"]
 mod edits;
+#[path = "../../hostile/slopes.rs"]
+mod slopes;
 #[path = "../../hostile/sound.rs"]
 mod sound;
 #[path = "../../hostile/witness.rs"]
