@@ -4,6 +4,7 @@ use super::place::PlaceArgs;
 use super::preview::PreviewArgs;
 use super::profiles::{ProfileArgs, ShelfArgs};
 use super::reading::ReadingArgs;
+use super::texts::CODES;
 use super::words::{brim, parts, words};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
@@ -32,9 +33,9 @@ const EXIT_CODES: &str = "\
 Exit codes:
     0  done
     1  done, but with findings: warnings with --strict, what `check`, `play` or --check found, files
-       that `diff` found unequal
+       that `diff` found unequal, a mesh that `mesh` could not close
     2  wrong arguments, profile or setting
-    3  a model or G-code file cannot be read; a model does not fit, or leaves nothing to print
+    3  a file cannot be read or used; a model does not fit, or leaves nothing to print
     4  an output cannot be written
   101  a fault of the slicer itself
   130  interrupted
@@ -45,8 +46,9 @@ A run that fails changes no file but its report, which tells of the failure: `er
 for its kind, and `slicer report schema` lists them.";
 
 const CHECK_CODES: &str = "\
-Exit codes: 0 clean or warnings, 1 findings, 2 wrong arguments or profile, 3 a file cannot be read, prints
-nothing, or a model does not fit the machine. What could not be judged is listed and no finding.";
+Exit codes: 0 clean or warnings, 1 findings, 2 wrong arguments or profile, 3 a file cannot be read
+or prints nothing, or a model does not fit the machine. What could not be judged is listed and no
+finding.";
 
 /// Slices STL models into G-code
 ///
@@ -72,6 +74,17 @@ pub(crate) struct Arguments {
     pub(crate) command: Option<Command>,
     #[command(flatten)]
     pub(crate) slice: SliceArgs,
+}
+
+impl Arguments {
+    /// The models, of what slices them.
+    pub(super) fn inputs(&self) -> &[OsString] {
+        match &self.command {
+            None => &self.slice.inputs,
+            Some(Command::Compare(args)) => &args.inputs,
+            Some(_) => &[],
+        }
+    }
 }
 
 /// What else there is to do than slicing.
@@ -172,6 +185,7 @@ pub(crate) enum ReportCommand {
 
 /// Arguments of estimating.
 #[derive(Debug, Args)]
+#[command(after_long_help = CODES)]
 pub(crate) struct EstimateArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "FILE")]
@@ -217,6 +231,7 @@ pub(crate) struct CheckArgs {
 
 /// Arguments of `compare`.
 #[derive(Debug, Args)]
+#[command(after_help = CODES)]
 pub(crate) struct CompareArgs {
     /// STL files, binary or ASCII
     #[arg(value_name = "INPUT", required = true)]
