@@ -1,20 +1,28 @@
 //! Word that is no file -> the value that it was meant to be, as in `--raft 3` or `--ironing topmost`.
 
-use super::args::SettingArgs;
 use slicer::profile::keys;
 use slicer::text;
 use std::ffi::OsString;
 use std::path::Path;
 use toml::Value;
 
-/// Flags that take no word behind them, and the keys that people mean by one.
-const MEANT: [(&str, &[&str]); 6] = [
-    ("--arcs", &["arc_tolerance"]),
-    ("--dual", &["dual.ratio", "dual.mode"]),
-    ("--ironing", &["ironing.where"]),
-    ("--nonplanar", &["nonplanar.skins", "head.name"]),
-    ("--raft", &["raft.interface_layers"]),
-    ("--support", &["support.threshold_angle"]),
+/// A key that people mean by a word behind a flag, and how it is set: the value comes after it.
+type Meant = (&'static str, &'static str);
+
+/// Flags that take no word behind them, and what people mean by one.
+const MEANT: [(&str, &[Meant]); 6] = [
+    ("--arcs", &[("arc_tolerance", "--arcs --set arc_tolerance=")]),
+    ("--dual", &[("dual.ratio", "--dual-ratio "), ("dual.mode", "--dual-mode ")]),
+    ("--ironing", &[("ironing.where", "--ironing=")]),
+    (
+        "--nonplanar",
+        &[
+            ("nonplanar.skins", "--nonplanar --set nonplanar.skins="),
+            ("head.name", "--nonplanar --head "),
+        ],
+    ),
+    ("--raft", &[("raft.interface_layers", "--raft --set raft.interface_layers=")]),
+    ("--support", &[("support.threshold_angle", "--support --set support.threshold_angle=")]),
 ];
 
 /// What to say of the first of the `inputs` that is no file, but a value behind such a flag. `words` are
@@ -29,27 +37,21 @@ pub(super) fn among(words: &[OsString], inputs: &[OsString]) -> Option<String> {
 /// What to say of a `word` given to a `flag` that takes none, if it is a value.
 pub(super) fn told(flag: &str, word: &str) -> Option<String> {
     let (flag, meant) = MEANT.iter().find(|(name, _)| *name == flag)?;
-    let shown = text::line(word);
-    if let Some(how) = meant.iter().find_map(|key| set(flag, key, word)) {
-        return Some(format!("{flag} takes no value, and {shown} is no file; write {how}"));
+    let no_file = format!("{flag} takes no value, and {} is no file", text::line(word));
+    if let Some((_, how)) = meant.iter().find(|(key, _)| takes(key, word)) {
+        return Some(format!("{no_file}; write {how}{word}"));
     }
     let is_value = word.parse::<f64>().is_ok() || ["on", "off", "true", "false"].contains(&word);
-    let how = meant.first().and_then(|key| keys::find(key));
-    let how =
-        how.map_or_else(String::new, |key| format!(", or see {}: {}", key.name, key.allowed()));
-    is_value.then(|| format!("{flag} takes no value, and {shown} is no file; leave it out{how}"))
+    let key = keys::find(meant.first()?.0)?;
+    let limits = format!("{no_file}; leave it out, or see {}: {}", key.name, key.allowed());
+    is_value.then_some(limits)
 }
 
-/// How to set a key to the value of `word`, if it takes that.
-fn set(flag: &str, key: &str, word: &str) -> Option<String> {
+/// Whether a key may have the value of this word.
+fn takes(key: &str, word: &str) -> bool {
     let number = word.parse().map(Value::Integer).or_else(|_| word.parse().map(Value::Float));
     let value = number.unwrap_or_else(|_| Value::String(word.to_owned()));
-    keys::find(key)?.check(value).ok()?;
-    Some(match SettingArgs::flag_of(key) {
-        Some(own) if own == flag => format!("{own}={word}"),
-        Some(other) => format!("{other} {word}"),
-        None => format!("{flag} --set {key}={word}"),
-    })
+    keys::find(key).is_some_and(|key| key.check(value).is_ok())
 }
 
 #[cfg(test)]
@@ -65,7 +67,7 @@ mod tests {
             ("--support", "45", "write --support --set support.threshold_angle=45"),
             ("--dual", "3", "write --dual-ratio 3"),
             ("--dual", "interlaced", "write --dual-mode interlaced"),
-            ("--nonplanar", "v6", "write --head v6"),
+            ("--nonplanar", "v6", "write --nonplanar --head v6"),
             ("--nonplanar", "3", "write --nonplanar --set nonplanar.skins=3"),
             ("--arcs", "0.05", "write --arcs --set arc_tolerance=0.05"),
             ("--support", "off", "leave it out"),
