@@ -88,8 +88,8 @@ fn nonplanar(report: &NonPlanarReport) -> String {
 }
 
 /// What is said where a head counts that may be any.
-const UNKNOWN_HEAD: &str = "the head is `cautious`, which fits any printer and takes little: name yours \
-    with --head, or measure it for [head]\n";
+const UNKNOWN_HEAD: &str = "the head is `cautious`, which takes little, since nobody said what hangs there: \
+    measure yours for [head], or name one with --head\n";
 
 /// A reason for level tops, in words.
 fn why(reason: &str) -> &str {
