@@ -8,7 +8,7 @@ use super::texts::CODES;
 use super::words::{brim, parts, words};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
-use slicer::profile::{Override, ValueOrigin};
+use slicer::profile::{Override, Settings, ValueOrigin};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -370,6 +370,12 @@ impl SettingArgs {
             Some(Override { key: key.to_owned(), value: value?, origin })
         };
         given.filter_map(one).collect()
+    }
+
+    /// What to say of a flag that changes nothing with these settings.
+    pub(super) fn idle(&self, settings: &Settings) -> Option<&'static str> {
+        let is_idle = self.head.is_some() && !settings.nonplanar.enabled;
+        is_idle.then_some("--head: has no effect while nonplanar.enabled is off; add --nonplanar")
     }
 
     /// The flag that sets a key, if there is one.

@@ -61,6 +61,7 @@ fn a_value_behind_a_switch_is_no_file_that_cannot_be_read() {
     run(&["--ironing", "topmost"], "write --ironing=topmost");
     run(&["--dual", "interlaced"], "write --dual-mode interlaced");
     run(&["--nonplanar=v6"], "write --nonplanar --head v6");
+    run(&["--head", "v6"], "--head: has no effect while nonplanar.enabled is off; add --nonplanar");
     run(&["--head", "mk8"], "measure any other, and write it as [head]");
     // It may well be a file.
     fails(&folder, &["-o", "a", "--raft", "part.obj"], 3, "part.obj: cannot be read");
