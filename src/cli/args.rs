@@ -4,10 +4,11 @@ use super::place::PlaceArgs;
 use super::preview::PreviewArgs;
 use super::profiles::{ProfileArgs, ShelfArgs};
 use super::reading::ReadingArgs;
+use super::texts::CODES;
 use super::words::{brim, parts, words};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
-use slicer::profile::{Override, ValueOrigin};
+use slicer::profile::{Override, Settings, ValueOrigin};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -33,9 +34,9 @@ const EXIT_CODES: &str = "\
 Exit codes:
     0  done
     1  done, but with findings: warnings with --strict, what `check`, `play` or --check found, files
-       that `diff` found unequal
+       that `diff` found unequal, a mesh that `mesh` could not close
     2  wrong arguments, profile or setting
-    3  a model or G-code file cannot be read; a model does not fit, or leaves nothing to print
+    3  a file cannot be read or used; a model does not fit, or leaves nothing to print
     4  an output cannot be written; `send`: the port, the line or the board fails
   101  a fault of the slicer itself
   130  interrupted
@@ -46,8 +47,9 @@ A run that fails changes no file but its report, which tells of the failure: `er
 for its kind, and `slicer report schema` lists them.";
 
 const CHECK_CODES: &str = "\
-Exit codes: 0 clean or warnings, 1 findings, 2 wrong arguments or profile, 3 a file cannot be read, prints
-nothing, or a model does not fit the machine. What could not be judged is listed and no finding.";
+Exit codes: 0 clean or warnings, 1 findings, 2 wrong arguments or profile, 3 a file cannot be read
+or prints nothing, or a model does not fit the machine. What could not be judged is listed and no
+finding.";
 
 /// Slices STL models into G-code
 ///
@@ -72,6 +74,17 @@ pub(crate) struct Arguments {
     pub(crate) command: Option<Command>,
     #[command(flatten)]
     pub(crate) slice: SliceArgs,
+}
+
+impl Arguments {
+    /// The models, of what slices them.
+    pub(super) fn inputs(&self) -> &[OsString] {
+        match &self.command {
+            None => &self.slice.inputs,
+            Some(Command::Compare(args)) => &args.inputs,
+            Some(_) => &[],
+        }
+    }
 }
 
 /// What else there is to do than slicing.
@@ -178,6 +191,7 @@ pub(crate) enum ReportCommand {
 
 /// Arguments of estimating.
 #[derive(Debug, Args)]
+#[command(after_long_help = CODES)]
 pub(crate) struct EstimateArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "FILE")]
@@ -223,6 +237,7 @@ pub(crate) struct CheckArgs {
 
 /// Arguments of `compare`.
 #[derive(Debug, Args)]
+#[command(after_help = CODES)]
 pub(crate) struct CompareArgs {
     /// STL files, binary or ASCII
     #[arg(value_name = "INPUT", required = true)]
@@ -361,6 +376,12 @@ impl SettingArgs {
             Some(Override { key: key.to_owned(), value: value?, origin })
         };
         given.filter_map(one).collect()
+    }
+
+    /// What to say of a flag that changes nothing with these settings.
+    pub(super) fn idle(&self, settings: &Settings) -> Option<&'static str> {
+        let is_idle = self.head.is_some() && !settings.nonplanar.enabled;
+        is_idle.then_some("--head: has no effect while nonplanar.enabled is off; add --nonplanar")
     }
 
     /// The flag that sets a key, if there is one.

@@ -34,6 +34,7 @@ mod roughness;
 mod send;
 mod slice;
 mod steps;
+mod stray;
 mod summary;
 mod texts;
 mod threads;
@@ -88,6 +89,9 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
         Ok(arguments) => arguments,
         Err(error) => return refused(&error, &words),
     };
+    if let Some(line) = stray::among(&words, arguments.inputs()) {
+        return wrong(&words, line);
+    }
     let done = match &arguments.command {
         None => threads::with(arguments.slice.threads, || slice::run(&arguments.slice)),
         Some(command) if command.computes() => {
@@ -110,8 +114,8 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
 fn refused(error: &clap::Error, words: &[OsString]) -> u8 {
     let first = words.get(1).and_then(|word| word.to_str());
     use clap::error::ErrorKind::{
-        DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion,
-        MissingRequiredArgument, UnknownArgument,
+        DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion, InvalidValue,
+        MissingRequiredArgument, TooManyValues, UnknownArgument,
     };
     let text = error.render();
     match error.kind() {
@@ -130,25 +134,48 @@ fn refused(error: &clap::Error, words: &[OsString]) -> u8 {
                     first.and_then(|word| usage::meant(word, &help::command()))
                 }
                 UnknownArgument => unknown_flag(error, first),
+                TooManyValues => too_many(error),
+                InvalidValue if told(error, ContextKind::InvalidArg).starts_with("--head") => {
+                    Some(format!("{}; {MEASURED}", usage::reason(&text.to_string())))
+                }
                 _ => None,
             };
-            let line = line.unwrap_or_else(|| usage::one_line(&text.to_string()));
-            if first.is_none_or(|word| help::command().find_subcommand(word).is_none()) {
-                failed::refused(words, 2, &line);
-            }
-            say_line("error", line);
-            2
+            wrong(words, line.unwrap_or_else(|| usage::one_line(&text.to_string())))
         }
     }
 }
 
+/// What to do with a head that has no name here.
+const MEASURED: &str =
+    "measure any other, and write it as [head] into a profile (profiles/README.md)";
+
+/// Says what is wrong with the words of the command line, also in the report that they name.
+fn wrong(words: &[OsString], line: String) -> u8 {
+    let first = words.get(1).and_then(|word| word.to_str());
+    if first.is_none_or(|word| help::command().find_subcommand(word).is_none()) {
+        failed::refused(words, 2, &line);
+    }
+    say_line("error", line);
+    2
+}
+
+/// What clap says of an error under `kind`, or nothing.
+fn told(error: &clap::Error, kind: ContextKind) -> &str {
+    match error.get(kind) {
+        Some(ContextValue::String(text)) => text,
+        _ => "",
+    }
+}
+
+/// What to say of a value for a flag that takes none.
+fn too_many(error: &clap::Error) -> Option<String> {
+    stray::told(told(error, ContextKind::InvalidArg), told(error, ContextKind::InvalidValue))
+}
+
 /// What to say of a flag that the command, named by the first argument, does not have.
 fn unknown_flag(error: &clap::Error, first: Option<&str>) -> Option<String> {
-    let flag = error.get(ContextKind::InvalidArg).and_then(|value| match value {
-        ContextValue::String(flag) => Some(flag.as_str()),
-        _ => None,
-    });
-    let flag = flag.filter(|flag| flag.starts_with("--"))?;
+    let flag = told(error, ContextKind::InvalidArg);
+    let flag = flag.starts_with("--").then_some(flag)?;
     let program = help::command();
     let command = first.and_then(|word| program.find_subcommand(word));
     let takes_settings = command.is_none_or(|command| command.get_name() == "compare");

@@ -14,6 +14,7 @@ use super::output::{self, Sink};
 use super::profiles::ProfileArgs;
 use super::publish::publish;
 use super::reading::ReadingArgs;
+use super::texts::CODES;
 use super::{failure, interrupt, model, say, say_line, usage, viewer, words};
 use anyhow::{Context as _, Result};
 use clap::{Args, ValueEnum};
@@ -40,6 +41,7 @@ type Encode = fn(&Drawing) -> io::Result<Vec<u8>>;
 
 /// Arguments of `preview`.
 #[derive(Debug, Args)]
+#[command(after_long_help = CODES)]
 pub(crate) struct PreviewArgs {
     /// G-code file of any slicer, `-` for standard input; or an STL file, to see the model itself
     #[arg(value_name = "FILE")]

@@ -55,7 +55,6 @@ impl ReadingArgs {
         let (name, source) = input::open(file, self.max_moves)?;
         let [head, tail] = source.ends().map_err(|error| Cause::Unreadable(error).of(&name))?;
         let says = Reading::of_parts(&head, &tail);
-        let tail = if tail.is_empty() { head } else { tail };
         let says = told(says, &tail);
         Ok(Opened { name, source, says, tail })
     }
@@ -91,4 +90,28 @@ fn told(says: Reading, tail: &[u8]) -> Reading {
     let own = own.map(|own| input::firmware(&own.settings));
     let own = own.filter(|own| own.name() == says.firmware.name());
     Reading { firmware: own.unwrap_or(says.firmware), ..says }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn settings_are_whole_wherever_in_the_file_they_begin() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.gcode");
+        let settings = "; settings_format = 2\n; machine.dialect = \"klipper\"\n; speed.z = 5\n";
+        let args = ReadingArgs { firmware: None, max_moves: 1_000_000 };
+        for around in [100, Reading::HEAD, Reading::TAIL, Reading::HEAD + Reading::TAIL] {
+            for before in [0, 10, 23, 30, 50, settings.len()] {
+                let fill = around - before;
+                let text = "G1 X1\n".repeat(fill / 6) + &"\n".repeat(fill % 6) + settings;
+                fs::write(&path, text).unwrap();
+                let opened = args.open(path.as_os_str()).unwrap();
+                assert_eq!(opened.says.firmware, Firmware::Klipper, "{around} {before}");
+                assert_eq!(opened.values().unwrap().len(), 3, "{around} {before}");
+            }
+        }
+    }
 }

@@ -150,7 +150,11 @@ fn findings(strict: bool, warnings: usize) -> u8 {
 }
 
 fn load(args: &SliceArgs) -> Result<Profile> {
-    args.profiles.load(args.settings.overrides())
+    let profile = args.profiles.load(args.settings.overrides())?;
+    match args.settings.idle(&profile.settings) {
+        Some(why) => Err(failure::usage(why)),
+        None => Ok(profile),
+    }
 }
 
 /// Runs the pipeline under a progress bar.

@@ -16,6 +16,7 @@ use super::output::Sink;
 use super::profiles::ProfileArgs;
 use super::publish::Product;
 use super::reading::ReadingArgs;
+use super::texts::CODES;
 use super::{clock, input, interrupt, output, say, say_line, usage, words};
 use anyhow::{Context as _, Result};
 use clap::Args;
@@ -38,6 +39,7 @@ const ENDING: &str = "steps";
 
 /// Arguments of `steps`.
 #[derive(Debug, Args)]
+#[command(after_long_help = CODES)]
 pub(crate) struct StepsArgs {
     /// G-code file of any slicer; `-` reads standard input
     #[arg(value_name = "FILE")]

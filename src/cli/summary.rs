@@ -91,20 +91,45 @@ fn nonplanar(report: &NonPlanarReport) -> String {
     let areas = &report.areas;
     let mut flat: Vec<&FlatReport> = areas.flat.iter().filter(|flat| flat.mm2 >= 0.5).collect();
     flat.sort_by(|a, b| b.mm2.total_cmp(&a.mm2));
-    let reasons: Vec<String> =
-        flat.iter().map(|flat| format!("{} {:.0}", flat.reason, flat.mm2)).collect();
-    let why = if reasons.is_empty() { String::new() } else { format!(": {}", reasons.join(", ")) };
+    let reason =
+        |flat: &&FlatReport| format!("{} {:.0} ({})", flat.reason, flat.mm2, why(flat.reason));
+    let reasons: Vec<String> = flat.iter().map(reason).collect();
+    let reasons =
+        if reasons.is_empty() { String::new() } else { format!(": {}", reasons.join(", ")) };
     let contour = if areas.contour_mm2 < 0.5 {
         String::new()
     } else {
         format!(", {:.0} rise and fall within their layer", areas.contour_mm2)
     };
+    let sloped = areas.top_mm2 - areas.level_mm2;
+    // Nobody measured that head: it is hardly why somebody wants level tops.
+    let is_unknown = report.head == Some("cautious") && sloped - areas.skin_mm2 >= 0.5;
+    let head = if is_unknown { UNKNOWN_HEAD } else { "" };
     format!(
-        "non-planar skin on {:.0} of {:.0} mm² of sloped tops{contour}, {:.0} flat{why}\n",
-        areas.skin_mm2,
-        areas.top_mm2 - areas.level_mm2,
-        areas.flat_mm2,
+        "non-planar skin on {:.0} of {sloped:.0} mm² of sloped tops{contour}, {:.0} flat{reasons}\n{head}",
+        areas.skin_mm2, areas.flat_mm2,
     )
+}
+
+/// What is said where a head counts that may be any.
+const UNKNOWN_HEAD: &str = "the head is `cautious`, which takes little, since nobody said what hangs there: \
+    measure yours for [head], or name one with --head\n";
+
+/// A reason for level tops, in words.
+fn why(reason: &str) -> &str {
+    match reason {
+        "slope" => "too steep for the head",
+        "press" => "the nozzle would press too deep",
+        "cone" => "the head would touch the surface",
+        "obstacle" => "the head would touch the rest of the part",
+        "neighbour" => "the head would touch another part, support or skirt",
+        "overhang" => "too little under it, or too much",
+        "support" => "support would stand on it",
+        "z-limit" => "no room above",
+        "area" => "too small",
+        "thin" => "too narrow",
+        other => other,
+    }
 }
 
 /// Which layers are slower than asked for, if any is.
@@ -238,6 +263,7 @@ mod tests {
     use super::*;
     use slicer::report::{
         DualReport, FilamentReport, LayersReport, ProfileReport, RoleReport, TimeReport,
+        nonplanar::TopAreas,
     };
 
     #[test]
@@ -286,6 +312,28 @@ mod tests {
              filament 120 mm, 0.29 cm³, 0.4 g (outer wall 25 %, thick infill 75 %)\n\
              prints in 1 h 23 min, sliced in 1.23 s; 46 of 47 groups of layers with thick infill\n"
         );
+    }
+
+    #[test]
+    fn level_tops_are_told_with_their_reasons_and_a_head_that_nobody_named() {
+        let flat = |reason, mm2| FlatReport { reason, mm2 };
+        let areas = TopAreas {
+            top_mm2: 110.0,
+            skin_mm2: 60.0,
+            contour_mm2: 10.0,
+            level_mm2: 10.0,
+            flat_mm2: 30.0,
+            flat: vec![flat("area", 0.4), flat("press", 10.0), flat("slope", 19.6)],
+        };
+        let mut report = NonPlanarReport { head: Some("v6"), areas, patches: Vec::new() };
+        let line = "non-planar skin on 60 of 100 mm² of sloped tops, 10 rise and fall within their \
+                    layer, 30 flat: slope 20 (too steep for the head), press 10 (the nozzle would \
+                    press too deep)\n";
+        assert_eq!(nonplanar(&report), line);
+        report.head = Some("cautious");
+        assert_eq!(nonplanar(&report), format!("{line}{UNKNOWN_HEAD}"));
+        report.areas.skin_mm2 = 100.0;
+        assert!(!nonplanar(&report).contains("cautious"));
     }
 
     #[test]

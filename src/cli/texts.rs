@@ -5,16 +5,17 @@ pub(super) const FINDINGS: &str = "\
 Findings, each with a stable code, a place and a measure:
   unknown-code         a command that the machine's firmware does not know
   outside-volume       a line or travel beyond the machine's x, y or z
-  through-print        a travel, of start and end block too, through what stands by the nozzle's flat
-                       end, 2.5 times as wide as its hole, over 0.16 mm deep
-  head-hits            part of [head] runs into plastic of the file, where lines go over slopes: a travel
-                       by 0.02 mm; while printing the flat may press 1.5 layers deep within its
-                       diameter; not judged where nobody tells the head (--head NAME)
-  changes-the-machine  a command that changes what the rest relies on: G92 of an axis, steps, offsets,
-                       flow, homing or motors off in the print, a tool that is not there, heaters far
-                       from what the settings say, hotter after the print; a warning for pauses,
-                       changes of filament, and what a start or end block need not do
-  wrong-temperature    the nozzle or the bed is set to what the material does not take, or no machine
+  through-print        a travel, of start and end block too, through what stands by the nozzle's
+                       flat end, 2.5 times as wide as its hole, over 0.16 mm deep
+  head-hits            part of [head] runs into plastic of the file, where lines go over slopes: a
+                       travel by 0.02 mm; while printing the flat may press 1.5 layers deep within
+                       its diameter; not judged where nobody tells the head (--head NAME)
+  changes-the-machine  a command that changes what the rest relies on: G92 of an axis, steps,
+                       offsets, flow, homing or motors off in the print, a tool that is not there,
+                       heaters far from what the settings say, hotter after the print; a warning
+                       for pauses, changes of filament, and what a start or end block need not do
+  wrong-temperature    the nozzle or the bed is set to what the material does not take, or no
+                       machine
   cold-extrusion       filament is pushed before the nozzle is told to be hot and waited for
   too-fast             faster than [limits] allow in x or y; in z in files of this program, or over
                        500 mm/s
@@ -27,13 +28,13 @@ Findings, each with a stable code, a place and a measure:
   floating             lines that begin a body, or an island of one, with nothing printed below; an
                        error where a body of more than a 2000th of the lines (8 to 500 mm), or the
                        whole print, never stands on the bed, else a warning, as when slicing
-  unanchored         * over 3 mm of a line over nothing with a free end, along a void that it should
-                       cross, or, of a wall, in a bow
-  printed-twice        a line on the middle of another of its layer, over 10 mm or most of it; lines on
-                       what the start block has primed
+  unanchored         * over 3 mm of a line over nothing with a free end, along a void that it
+                       should cross, or, of a wall, in a bow
+  printed-twice        a line on the middle of another of its layer, over 10 mm or most of it;
+                       lines on what the start block has primed
   uncovered-skin       1 mm² or more of a patch of non-planar skin, 0.3 mm wide, that its last skin
-                       leaves open: 2.5 mm of a missing line; or that takes under 0.65 times its plastic
-                       over 4 mm²
+                       leaves open: 2.5 mm of a missing line; or that takes under 0.65 times its
+                       plastic over 4 mm²
   double-skin          over 1.3 times the plastic that a patch has room for on what it lies on, in
                        squares of 1 mm
   overfilled         * over 1.25 times the plastic that walls and skins have room for, on one layer
@@ -52,7 +53,8 @@ Findings, each with a stable code, a place and a measure:
   open-surface         0.6 mm² or more of a top or bottom surface is not printed
   outside-part         0.6 mm² or more is printed over 0.3 mm beside the part
   wrong-infill         another density of the infill than asked for, or none on some layers
-  wrong-volume         walls and skins take under 80 or over 125 % of the plastic they have room for
+  wrong-volume         walls and skins take under 80 or over 125 % of the plastic they have room
+                       for
 
 A kind marked * is a warning: a weak place of a print that can be made. Warnings are listed after
 `warning:` and fail neither `check` nor --check.
@@ -99,26 +101,33 @@ The report's dual.audit lists the material of each group against that of thin li
 
 /// How roughness is measured.
 pub(super) const ROUGHNESS: &str = "\
-Deviations are measured from the true surface of the model, at right angles to it, over cells of 0.05 mm
-(0.1 mm from 100 cm² of bed on), wherever it faces up by 45° or less:
-  bead      the top of a line is level across its full width, as high as the nozzle was, straight from end
-            to end, with round ends. A staircase of layers h high on a slope T so has Ra = h cos(T) / 4, and
-            lines s apart across a slope have Ra = s sin(T) / 4. Plastic that flows is not in it
-  top       of all beads over a cell the highest counts that is no more than 2 layers above the surface;
-            without one down to 2 layers below it, nothing is near
-  covered   share of the surface over which the top is within 0.8 layers of it, straight up or down. The
-            steps of a staircase are half a layer off; where a line lacks it is a whole one
+Deviations are measured from the true surface of the model, at right angles to it, over cells of
+0.05 mm (0.1 mm from 100 cm² of bed on), wherever it faces up by 45° or less:
+  bead      the top of a line is level across its full width, as high as the nozzle was, straight
+            from end to end, with round ends. A staircase of layers h high on a slope T so has Ra =
+            h cos(T) / 4, and lines s apart across a slope have Ra = s sin(T) / 4. Plastic that
+            flows is not in it
+  top       of all beads over a cell the highest counts that is no more than 2 layers above the
+            surface; without one down to 2 layers below it, nothing is near
+  covered   share of the surface over which the top is within 0.8 layers of it, straight up or
+            down. The steps of a staircase are half a layer off; where a line lacks it is a whole
+            one
   mean      mean deviation; above 0 there is too much
-  Ra Rq Rz  means over profiles along the steepest slope, a cell apart. Each place counts in that one of six
-            directions, 30° apart, that is nearest to its own steepest slope. Rz is the height of a piece
-            of a profile as long as the cut-off
+  Ra Rq Rz  means over profiles along the steepest slope, a cell apart. Each place counts in that
+            one of six directions, 30° apart, that is nearest to its own steepest slope. Rz is the
+            height of a piece of a profile as long as the cut-off
   Sa Sq     means over the area
   plain     less the mean of the profile, or of the patch
-  Gauss     less what the Gaussian filter lets through, of profiles by ISO 16610-21, over the area by
-            ISO 16610-61. At borders and gaps the weights of what is there are made 1 in all
-A patch is a piece of the surface joined over edges that bend by less than 30°. What slopes by less than
-0.5° is level: it has a row of its own, and is in no other. The model is placed as the flags below say, then
-moved to where the lines are.
+  Gauss     less what the Gaussian filter lets through, of profiles by ISO 16610-21, over the area
+            by ISO 16610-61. At borders and gaps the weights of what is there are made 1 in all
+A patch is a piece of the surface joined over edges that bend by less than 30°. What slopes by less
+than 0.5° is level: it has a row of its own, and is in no other. The model is placed as the flags
+below say, then moved to where the lines are.
 
-Exit codes: 0 measured, 2 wrong arguments or profile, 3 a file cannot be read, prints nothing, or has no
-plastic near the model's tops.";
+Exit codes: 0 measured, 2 wrong arguments or profile, 3 a file cannot be read, prints nothing, or
+has no plastic near the model's tops.";
+
+/// How commands end that read files and find nothing wrong with them.
+pub(super) const CODES: &str = "\
+Exit codes: 0 done, 2 wrong arguments or profile, 3 a file cannot be read or holds nothing to work
+on, 4 an output cannot be written.";

@@ -51,6 +51,11 @@ fn real_path(path: &Path) -> Option<PathBuf> {
 
 /// clap's message without its usage block: what is wrong, its tip, and where to find more.
 pub(super) fn one_line(text: &str) -> String {
+    format!("{}; see `slicer --help`", reason(text))
+}
+
+/// The same without the last.
+pub(super) fn reason(text: &str) -> String {
     let mut parts: Vec<String> = Vec::new();
     let over = |line: &str| line.starts_with("Usage:") || line.starts_with("For more information");
     let lines = text.lines().take_while(|line| !over(line));
@@ -68,7 +73,6 @@ pub(super) fn one_line(text: &str) -> String {
             (_, tip) => parts.push(tip.unwrap_or(line).to_owned()),
         }
     }
-    parts.push("see `slicer --help`".to_owned());
     parts.join("; ")
 }
 

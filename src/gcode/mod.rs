@@ -31,6 +31,7 @@ mod progress;
 pub mod reshaped;
 mod segments;
 mod slopes;
+mod stops;
 pub mod times;
 pub mod usage;
 pub mod write;

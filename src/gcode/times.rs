@@ -57,7 +57,7 @@ pub struct LayerTime {
 pub struct Schedule {
     /// When it begins.
     pub start: f64,
-    /// When the approach of each of its paths begins.
+    /// When the approach of each of its paths begins, and when the moves [within](Moves::within) it.
     pub paths: Vec<f64>,
     /// When it ends.
     pub end: f64,
@@ -116,9 +116,10 @@ impl Timer {
     /// Times the next layer.
     pub fn layer(&mut self, layer: &Moves) {
         self.mark(Begins::Layer(layer.z));
-        let mut paths = layer.paths.iter().peekable();
+        let with = |(path, &first)| std::iter::once(first).chain(layer.within(path));
+        let mut paths = layer.paths.iter().enumerate().flat_map(with).peekable();
         for (index, step) in layer.moves.iter().enumerate() {
-            while paths.next_if(|&&first| first == index).is_some() {
+            while paths.next_if(|&first| first == index).is_some() {
                 self.mark(Begins::Path);
             }
             self.drive(layer.layer, &step.kind);

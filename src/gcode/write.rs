@@ -39,7 +39,7 @@ pub struct LayerText {
     /// The text without progress lines.
     pub text: Vec<u8>,
     /// Where progress lines may be inserted, bytes: at the layer's beginning, then before the
-    /// approach of each path.
+    /// approach of each path and [within](Moves::within) it.
     pub cuts: Vec<usize>,
 }
 
@@ -121,6 +121,11 @@ impl WriteParams {
                 .filter(|run| run.paths.start == path)
                 .iter()
                 .for_each(|run| text.patch(run));
+            for stop in layer.within(path) {
+                text.steps(layer, done..stop);
+                cuts.push(text.out.len());
+                done = stop;
+            }
         }
         text.steps(layer, done..layer.moves.len());
         if patches.next().is_some() {

@@ -1,4 +1,7 @@
-//! Source tree -> builder: the words, the reasons, and where to add what. No code, only texts.
+//! Source tree -> builder: what it does, the words, the reasons, and where to add what. No code, only texts.
+
+#[doc = include_str!("features.md")]
+pub mod features {}
 
 #[doc = include_str!("words.md")]
 pub mod words {}

@@ -22,6 +22,12 @@ pub fn named(name: &str) -> Option<Head> {
     NAMED.iter().find(|(known, _)| *known == name).map(|(_, head)| head())
 }
 
+/// The name of a head, if it is one of these.
+#[must_use]
+pub fn name_of(head: &Head) -> Option<&'static str> {
+    NAMED.iter().find(|(_, named)| named() == *head).map(|(name, _)| *name)
+}
+
 /// `cautious`, for a head that nobody measured: Cura's defaults for an unknown machine
 /// (`machine_nozzle_tip_outer_diameter` 1, `machine_nozzle_expansion_angle` 45,
 /// `machine_nozzle_head_distance` 3). The radius of all that hangs above it, 40 mm, is ours: it

@@ -1,6 +1,7 @@
 //! Mesh and layers -> Curved: the patches of non-planar skin, for the stages that leave room for them and print them.
 
 use crate::fill::Path;
+use crate::head::named;
 use crate::mesh::place::Placed;
 use crate::nonplanar;
 use crate::nonplanar::base::Base;
@@ -29,7 +30,9 @@ impl Found {
     /// What is told of them, on a print of `layers` layers that is lifted by a raft.
     #[must_use]
     pub fn report(&self, layers: usize, lift: &Lift) -> NonPlanarReport {
-        report(&self.patches, layers, (lift.layers(), to_mm(lift.by())))
+        let head = named::name_of(&self.params.head);
+        let lift = (lift.layers(), to_mm(lift.by()));
+        NonPlanarReport { head, ..report(&self.patches, layers, lift) }
     }
 }
 

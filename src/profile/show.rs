@@ -39,7 +39,8 @@ pub fn values(settings: &Settings) -> Vec<(String, String)> {
 }
 
 /// The whole profile as a TOML file that gives the same settings again: every key there is,
-/// each value with its origin as a comment, and a key that is unset as a comment. With
+/// each value with its origin as a comment, and a key that is unset as a comment, a head's with what
+/// the named head has. With
 /// `explain` also the unit, limits and meaning of each key.
 #[must_use]
 pub fn document(profile: &Profile, explain: bool) -> String {
@@ -56,7 +57,11 @@ pub fn document(profile: &Profile, explain: bool) -> String {
             push(&mut text, format_args!("# {}\n", key.comment()));
         }
         let Some(value) = value_in(&root, key) else {
-            push(&mut text, format_args!("# {name} =  # unset\n"));
+            let (value, why) = match of_named_head(&profile.settings, &key.name) {
+                Some(value) => (one_line(&value), "of the named head"),
+                None => (String::new(), "unset"),
+            };
+            push(&mut text, format_args!("# {name} = {value}  # {why}\n"));
             continue;
         };
         let value = if key.kind == Kind::Block { block(value) } else { one_line(value) };
@@ -67,6 +72,19 @@ pub fn document(profile: &Profile, explain: bool) -> String {
         text.push('\n');
     }
     text
+}
+
+/// What holds for a key of the head that is unset.
+fn of_named_head(settings: &Settings, key: &str) -> Option<Value> {
+    let head = settings.head.name.head();
+    match key {
+        "head.flat" => Some(Value::Float(head.flat)),
+        "head.cone" => Some(Value::Float(head.cone)),
+        "head.cone_length" => Some(Value::Float(head.cone_length)),
+        "head.discs" => Value::try_from(head.discs).ok(),
+        "head.boxes" => Value::try_from(head.boxes).ok(),
+        _ => None,
+    }
 }
 
 fn table_of(settings: &Settings) -> Value {
@@ -218,6 +236,22 @@ mod tests {
         }
         profile.settings.top_layers = Some(4);
         assert!(document(&profile, false).contains("\ntop_layers = 4\n"));
+    }
+
+    #[test]
+    fn of_the_head_all_is_shown_that_holds() {
+        let mut profile = load(["zcube-dual"], &[]).unwrap();
+        profile.settings.head.name = crate::profile::HeadName::V6;
+        profile.settings.head.cone = Some(40.0);
+        let text = document(&profile, false);
+        for line in [
+            "# flat = 1  # of the named head",
+            "cone = 40",
+            "# discs = [[4.04, 2]]  # of the named head",
+            "# boxes = [[-15, -8, 8, 8, 5]]  # of the named head",
+        ] {
+            assert!(text.lines().any(|shown| shown == line), "{line}: {text}");
+        }
     }
 
     #[test]

@@ -29,12 +29,13 @@ pub(super) fn check(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
     let (least, most) = (skins.min_slope, settings.steepest_skin());
     if least > most + SLACK {
         let by_head = settings.head().steepest() <= most;
-        let (by, remedy) = if by_head {
-            ("the head leaves free", "name another head with head.name")
+        let (by, remedy, keys) = if by_head {
+            let keys = ["nonplanar.min_slope", "head.discs", "head.cone", "head.name"];
+            ("the head leaves free", "name another head with head.name", keys)
         } else {
-            ("head.flat may press into a layer", "use thicker layers")
+            let keys = ["nonplanar.min_slope", "head.flat", "layer_height", "head.name"];
+            ("head.flat may press into a layer", "use thicker layers", keys)
         };
-        let keys = ["nonplanar.min_slope", "head.name", "head.flat", "layer_height"];
         return Err(blame.error(&keys, Conflict::NoSlope { least, most, by, remedy }));
     }
     Ok(())
@@ -106,6 +107,10 @@ mod tests {
             (
                 &[on, ("head.name", "long-0.6"), ("nonplanar.min_slope", "25")],
                 "--set: nonplanar.min_slope = 25 degrees is more than the 21.8 degrees that head.flat may press",
+            ),
+            (
+                &[on, ("head.discs", "[[300, 1]]")],
+                "--set: nonplanar.min_slope = 0.5 degrees is more than the 0.2 degrees that the head",
             ),
             (
                 &[("head.boxes", "[[1,1,2,2,5],[1,1,0,2,5]]")],

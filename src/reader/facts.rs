@@ -9,7 +9,7 @@
 //!   comes before the first mark is no layer: what heights told until then is forgotten;
 //! - a segment without a line is no layer: its moves belong to the one before;
 //! - a layer lies where most of its lines do (see `height`), or where a comment says (`;Z:`) if they lie at
-//!   several heights; it is as high as it lies above the layer before;
+//!   several heights, or fell within it; it is as high as it lies above the layer before;
 //! - the lines of a patch of non-planar skin belong to the layer in which they stand, and say nothing of
 //!   its height. A patch without other lines belongs to the layer before.
 //!
@@ -44,6 +44,9 @@ const MOST_PRIMING: usize = 8;
 
 /// Heights that differ by less are the same, mm.
 const SAME_HEIGHT: f64 = 1e-4;
+
+/// Heights in comments have thousandths, mm.
+const FALLEN: f64 = 2e-3;
 
 /// Keys under which slicers write the filament's diameter, mm.
 const DIAMETER_KEYS: &[&str] = &["filament.diameter", "filament_diameter"];
@@ -188,8 +191,11 @@ pub(super) struct Gatherer {
     drawn: [f64; 2],
     /// Height of the level lines that the segment was found by, mm.
     found: Option<f64>,
-    /// Its height by a comment, mm.
+    /// Its height by a comment, and how high that says its lines are, mm.
     told: Option<f64>,
+    told_rise: Option<f64>,
+    /// Whether it has a line that lies lower than told, and is lower itself by as much: it fell within its layer.
+    has_fallen: bool,
     /// Whether a patch of skin goes on.
     is_in_patch: bool,
     /// Filament for each mm of the lines of each layer, mm.
@@ -231,6 +237,8 @@ impl Gatherer {
         facts.has_heights |= motion.height.is_some();
         facts.roles[motion.role as usize] = true;
         facts.move_count += 1;
+        // What is told where the layer begins.
+        self.told_rise = self.told_rise.or(self.told.and(motion.height));
         let step = Step::of(line, motion);
         if step.is_line() {
             facts.last_line = facts.move_count;
@@ -239,8 +247,18 @@ impl Gatherer {
                 self.heights.add([step.from[2], step.to[2]].map(f64::from), step.length());
                 self.drawn[0] += step.length();
                 self.drawn[1] += f64::from(step.filament);
+                self.has_fallen |= self.falls(&step, motion.height);
             }
         }
+    }
+
+    /// Whether a line of this height ends below the top of its layer, on the layer below.
+    fn falls(&self, step: &Step, height: Option<f64>) -> bool {
+        let (Some(told), Some(rise), Some(height)) = (self.told, self.told_rise, height) else {
+            return false;
+        };
+        let by = told - f64::from(step.to[2]);
+        by > FALLEN && (rise - height - by).abs() < FALLEN
     }
 
     /// A patch of skin begins or ends.
@@ -281,7 +299,8 @@ impl Gatherer {
         let facts = &mut self.facts;
         facts.marked |= marked;
         facts.begun += 1;
-        (self.found, self.told) = (z, None);
+        (self.found, self.told, self.told_rise) = (z, None, None);
+        self.has_fallen = false;
         self.segment = Some(facts.move_count);
     }
 
@@ -292,7 +311,7 @@ impl Gatherer {
         let (end, last) = (facts.move_count, facts.layers.last_mut());
         let [length, filament] = std::mem::take(&mut self.drawn);
         let heights = std::mem::take(&mut self.heights);
-        let told = std::mem::take(&mut self.told).filter(|_| !heights.is_one());
+        let told = self.told.take().filter(|_| self.has_fallen || !heights.is_one());
         let Some(z) = heights.height(self.found) else {
             if let Some(last) = last {
                 last.moves.end = end;

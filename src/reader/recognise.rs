@@ -58,11 +58,11 @@ impl Reading {
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         let head = bytes.len().min(Self::HEAD);
-        let tail = head.max(bytes.len().saturating_sub(Self::TAIL));
+        let tail = bytes.len().saturating_sub(Self::TAIL);
         Self::of_parts(&bytes[..head], &bytes[tail..])
     }
 
-    /// What a file says of itself at its beginning and at its end; lines may be cut.
+    /// What a file says of itself at its beginning and at its end; lines may be cut, and be in both.
     #[must_use]
     pub fn of_parts(head: &[u8], tail: &[u8]) -> Self {
         let mut said = Said::default();

@@ -59,14 +59,15 @@ impl Source {
         Limited::new(BufReader::with_capacity(BUFFER, reader), self.most)
     }
 
-    /// What [`Reading::of_parts`] looks at: its beginning, and its end but for that.
+    /// What [`Reading::of_parts`] looks at: its beginning and its end, which overlap in a short file, so
+    /// that settings at the end are whole in one of them.
     ///
     /// # Errors
     /// What reading gives.
     pub fn ends(&self) -> io::Result<[Vec<u8>; 2]> {
         let head = self.bytes(0, Reading::HEAD as u64)?;
         let length = self.length()?;
-        let tail = length.saturating_sub(Reading::TAIL as u64).max(head.len() as u64);
+        let tail = length.saturating_sub(Reading::TAIL as u64);
         Ok([head, self.bytes(tail, length)?])
     }
 

@@ -10,6 +10,8 @@ use serde::Serialize;
 /// or less; each place counts once.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct NonPlanarReport {
+    /// Name of the head that holds, if no key of `[head]` changes it.
+    pub head: Option<&'static str>,
     /// All of these areas.
     pub areas: TopAreas,
     /// The patches, in the order of printing.
@@ -83,7 +85,7 @@ pub fn report(patches: &Patches, count: usize, (layers, lift_mm): (usize, f64)) 
         }
     };
     let patches_report = patches.patches.iter().map(one).collect();
-    NonPlanarReport { areas: areas(&patches.mm2), patches: patches_report }
+    NonPlanarReport { head: None, areas: areas(&patches.mm2), patches: patches_report }
 }
 
 /// A warning if no top is printed otherwise than without such skins.

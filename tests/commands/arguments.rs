@@ -52,6 +52,24 @@ fn wrong_flags_are_one_line_with_a_tip() {
 }
 
 #[test]
+fn a_value_behind_a_switch_is_no_file_that_cannot_be_read() {
+    let folder = folder();
+    let run = |words: &[&str], says| {
+        fails(&folder, &[&["part.stl", "-o", "a"], words].concat(), 2, says);
+    };
+    run(&["--raft", "3"], "write --raft --set raft.interface_layers=3");
+    run(&["--ironing", "topmost"], "write --ironing=topmost");
+    run(&["--dual", "interlaced"], "write --dual-mode interlaced");
+    run(&["--nonplanar=v6"], "write --nonplanar --head v6");
+    run(&["--head", "v6"], "--head: has no effect while nonplanar.enabled is off; add --nonplanar");
+    run(&["--head", "mk8"], "measure any other, and write it as [head]");
+    // It may well be a file.
+    fails(&folder, &["-o", "a", "--raft", "part.obj"], 3, "part.obj: cannot be read");
+    std::fs::write(folder.path().join("3"), "solid part\nendsolid part\n").unwrap();
+    fails(&folder, &["-o", "a", "--raft", "3"], 3, "3: ");
+}
+
+#[test]
 fn wrong_settings_name_the_flag() {
     let folder = folder();
     let run = |words: &[&str], says| {

@@ -170,3 +170,17 @@ fn only_tops_are_bent() {
     assert!(bent(&WALLS) > 0 && bent(&[Kind::Skin]) > 0);
     assert_eq!(bent(&[Kind::Infill, Kind::Bridge, Kind::Brim]), 0);
 }
+
+#[test]
+fn a_layer_whose_only_line_falls_keeps_its_height() {
+    let set = [("layer_height", "0.27"), ("first_layer_height", "0.2"), ("walls", "1")];
+    let wedge = Solid::cuboid([0.0; 3], [24.0, 10.0, 1.6]);
+    let wedge = wedge.map(|[x, y, z]| [x, y, if z > 0.0 { 1.6 + x / 12.0 } else { 0.0 }]);
+    let run = sliced(&wedge, &set);
+    let last = run.print.beads().filter(|m| m.layer == Some(run.print.layers.len() - 1));
+    let fallen = last.map(|m| m.to[2]).fold(0.0, f64::max);
+    assert!(fallen < 3.65, "{fallen}");
+    let read = slicer::reader::Print::read(&mut run.text.as_bytes(), 1.75).unwrap();
+    let top = read.facts.layers.last().unwrap().z;
+    assert!((top - 3.71).abs() < 1e-3, "{top}");
+}

@@ -244,3 +244,14 @@ fn agrees(run: &Run, what: &str) {
         assert!((read.seconds - said.time_s).abs() < most, "{what}: {read:?} {said:?}");
     }
 }
+
+#[test]
+fn progress_goes_on_within_a_skin_that_is_one_long_path() {
+    let keys = [("nonplanar.enabled", "true"), ("head.name", "long-0.6"), ("speed.nonplanar", "2")];
+    let run = slice(&fixture("wedge.stl"), "generic-marlin", &keys);
+    let skin = run.report.roles.iter().find(|role| role.role == "non-planar skin").unwrap();
+    assert!(skin.time_s > 500.0, "{}", skin.time_s);
+    let left: Vec<u64> = progress(&run).iter().filter_map(|(_, _, minutes)| *minutes).collect();
+    let jump = left.windows(2).map(|two| two[0].abs_diff(two[1])).max();
+    assert!(jump <= Some(2), "{left:?}");
+}
