@@ -85,11 +85,7 @@ pub fn report(
             .chain(slowed_down(&usage.flows, settings))
             .chain(reshaped::warnings(sums, settings))
             .collect(),
-        brim: None,
-        raft: None,
-        nonplanar: None,
-        steps: None,
-        check: None,
+        ..Report::default()
     }
 }
 
