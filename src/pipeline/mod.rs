@@ -1,7 +1,8 @@
 //! Job + placed models -> stages: what the flow in `lib.rs` is put together from.
 //!
 //! Here is all code that names several stages at once: reading and placing ([`place`]), planning
-//! in batches ([`batches`]), where raster lines lie ([`phase`]), what begins in the air ([`footing`]), skirt, brim and raft
+//! in batches ([`batches`]), where raster lines lie ([`phase`]), what begins in
+//! the air ([`footing`]), skirt, brim and raft
 //! ([`sticking`]), skins that follow the surface ([`curved`]), how far a raft lifts all the rest ([`lift`]), the thumbnails ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs that
 //! cannot seek ([`spool`]).
 
