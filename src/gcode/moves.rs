@@ -13,9 +13,9 @@
 //! 1. Retract if the plan says so, wipe, and lift by the z-hop.
 //! 2. Lift over everything that is printed, travel, and go down to the first point. Within a patch the
 //!    plan says how high that is.
-//! 3. Write a move for each pair of points. Filament is length x width x height x rate of the role; of a round strand π/4 of that. The
-//!    length is that in plan, also on a slope: between two surfaces one straight above the other, lines
-//!    a width apart in plan fill width x height x length in plan, however steep it is.
+//! 3. Write a move for each pair of points. Filament is length x width x height x rate of the role, and of
+//!    a round strand π/4 of that. The length is that in plan, also on a slope: between two surfaces one
+//!    straight above the other, lines a width apart in plan fill width x height x length in plan.
 //! 4. Where width or height change, compute the feed again, clamped to the flow limit.
 
 use super::flow::{FlowLimit, Flows, Lowered, feed, whole_feed};
