@@ -59,6 +59,10 @@ pub(super) struct Square {
     pub(super) side: f64,
 }
 
+/// Takes a block: its tile, that one's lowest corner, and its first column and row of cells there; whether it is
+/// enough.
+type Sink<'a> = dyn FnMut(&Tile, [f64; 2], [usize; 2]) -> bool + 'a;
+
 impl Relief {
     /// The highest line so far, mm; 0 is the bed.
     pub(super) fn highest(&self) -> f64 {
@@ -131,13 +135,12 @@ impl Relief {
         self.blocks(area, counts, &mut |_, _, _| true)
     }
 
-    /// Hands blocks of an area that `counts` to `sink` until that says that it is enough: each with its tile, that
-    /// one's lowest corner, and its first column and row of cells there.
+    /// Hands blocks of an area that `counts` to `sink` until that says that it is enough.
     fn blocks(
         &self,
         [low, high]: [[f64; 2]; 2],
         counts: &dyn Fn(Square, f64) -> bool,
-        sink: &mut dyn FnMut(&Tile, [f64; 2], [usize; 2]) -> bool,
+        sink: &mut Sink<'_>,
     ) -> bool {
         let (whole, side) = (CELL * SIDE as f64, CELL * BLOCK as f64);
         let tile_of =

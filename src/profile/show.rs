@@ -57,11 +57,11 @@ pub fn document(profile: &Profile, explain: bool) -> String {
             push(&mut text, format_args!("# {}\n", key.comment()));
         }
         let Some(value) = value_in(&root, key) else {
-            let (value, why) = match of_named_head(&profile.settings, &key.name) {
-                Some(value) => (one_line(&value), "of the named head"),
-                None => (String::new(), "unset"),
+            let rest = match of_named_head(&profile.settings, &key.name) {
+                Some(value) => format!("{}  # of the named head", one_line(&value)),
+                None => " # unset".to_owned(),
             };
-            push(&mut text, format_args!("# {name} = {value}  # {why}\n"));
+            push(&mut text, format_args!("# {name} = {rest}\n"));
             continue;
         };
         let value = if key.kind == Kind::Block { block(value) } else { one_line(value) };

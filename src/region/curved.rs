@@ -13,9 +13,11 @@ use super::scan::Scan;
 use crate::geom::Contour;
 use crate::geom::spans::Rows;
 use crate::pattern::Turns;
-use crate::slice::Layer;
+use crate::slice::{Heights, Layer};
 use crate::units::Coord;
 use std::fmt::Debug;
+use std::ops::Range;
+use std::sync::OnceLock;
 
 /// Tops that are laid along the surface.
 pub trait CurvedTops: Sync + Debug {
@@ -25,6 +27,48 @@ pub trait CurvedTops: Sync + Debug {
     /// Where the underside of one lies at `from` or higher, and lower than `below`, in plan; both above
     /// the bed, grid units.
     fn over(&self, from: Coord, below: Coord) -> Vec<Contour>;
+}
+
+/// The curved tops above the layers of a print, if there are any.
+#[derive(Debug, Default)]
+pub(super) struct Above<'a> {
+    tops: Option<&'a dyn CurvedTops>,
+    /// Whether one lies near above each layer, once that was asked for.
+    near: Vec<OnceLock<bool>>,
+}
+
+impl<'a> Above<'a> {
+    /// Above so many layers.
+    pub(super) fn new(tops: Option<&'a dyn CurvedTops>, layers: usize) -> Self {
+        let layers = if tops.is_some() { layers } else { 0 };
+        Self { tops, near: vec![OnceLock::new(); layers] }
+    }
+
+    /// The tops.
+    pub(super) fn tops(&self) -> Option<&'a dyn CurvedTops> {
+        self.tops
+    }
+
+    /// Where none of these layers may print a line for several, below `skins` layers of skin.
+    pub(super) fn near(
+        &self,
+        heights: &Heights,
+        layers: Range<usize>,
+        skins: usize,
+    ) -> Vec<Contour> {
+        // Shares of skin ask for layers above the last one, too.
+        let known = !layers.is_empty() && layers.end <= self.near.len();
+        let Some(tops) = self.tops.filter(|_| known) else { return Vec::new() };
+        let last = layers.end - 1;
+        let near = (skins + 1) as Coord * heights.height(last);
+        tops.over(heights.top(layers.start), heights.top(last).saturating_add(near))
+    }
+
+    /// Whether one lies near above layer `k`.
+    pub(super) fn is_near(&self, heights: &Heights, k: usize, skins: usize) -> bool {
+        let ask = || !self.near(heights, k..k + 1, skins).is_empty();
+        self.near.get(k).is_some_and(|known| *known.get_or_init(ask))
+    }
 }
 
 /// These areas without the infill within `places`, and with no other infill than that.

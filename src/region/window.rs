@@ -14,7 +14,7 @@
 //! once, when its region is handed on. So memory holds a batch and a few layers, whatever the
 //! height of the print.
 
-use super::curved::{self, CurvedTops};
+use super::curved::{self, Above, CurvedTops};
 use super::divide::{Divided, Examined, LayerAreas, Lower, divide, examine};
 use super::dual;
 use super::dual::audit::Audit;
@@ -37,11 +37,10 @@ use crate::geom::spans::Rows;
 use crate::geom::{Contour, polygon};
 use crate::profile::DualPart;
 use crate::slice::{Layer, Slicer};
-use crate::units::Coord;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::Range;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Makes the regions of a print in batches, from the bed upwards.
 #[derive(Debug)]
@@ -51,9 +50,7 @@ pub struct Window<'a> {
     grouping: &'a Grouping,
     support: Option<Support>,
     /// Tops that are laid along the surface.
-    curved: Option<&'a dyn CurvedTops>,
-    /// Whether a curved top lies near above each layer, once it was asked for; nothing if there is none.
-    thin: Vec<OnceLock<bool>>,
+    curved: Above<'a>,
     /// The next batch to be sliced.
     batch: usize,
     /// The last layer that is prepared, where that above decides about its walls.
@@ -96,8 +93,7 @@ impl<'a> Window<'a> {
             params,
             grouping,
             support,
-            curved: None,
-            thin: Vec::new(),
+            curved: Above::default(),
             batch: 0,
             held: None,
             own: Queue::default(),
@@ -112,9 +108,9 @@ impl<'a> Window<'a> {
 
     /// The same under tops that are laid along the surface.
     #[must_use]
-    pub fn under(self, curved: Option<&'a dyn CurvedTops>) -> Self {
-        let count = if curved.is_some() { self.slicer.heights().count() } else { 0 };
-        Self { curved, thin: vec![OnceLock::new(); count], ..self }
+    pub fn under(mut self, curved: Option<&'a dyn CurvedTops>) -> Self {
+        self.curved = Above::new(curved, self.slicer.heights().count());
+        self
     }
 
     /// Takes the audits of dual injection, block by block.
@@ -137,7 +133,7 @@ impl<'a> Window<'a> {
     fn load(&mut self) {
         let layers = self.slicer.block(self.batch);
         self.batch += 1;
-        let cut = |layer: Layer| match self.curved {
+        let cut = |layer: Layer| match self.curved.tops() {
             Some(curved) => curved.cut(layer),
             None => layer,
         };
@@ -245,7 +241,7 @@ impl<'a> Window<'a> {
 
     /// The layer above layer `k`, if lines have to know what it leaves bare.
     fn above(&self, k: usize) -> Option<Arc<Layer>> {
-        self.curved.and_then(|_| Some(self.own.get(k + 1)?.layer.clone()))
+        self.curved.tops().and_then(|_| Some(self.own.get(k + 1)?.layer.clone()))
     }
 
     /// The infill of a block of these areas. Near a curved top it is printed layer by layer.
@@ -257,8 +253,9 @@ impl<'a> Window<'a> {
         let (turns, line_width) = (&self.params.sparse, self.params.walls.line_width);
         let shared =
             |areas: Vec<&LayerAreas>| dual::infill(block, &areas, self.grouping, turns, line_width);
-        let shares = self.grouping.shares(DualPart::Infill);
-        let places = if shares { self.thin_places(block.layers.clone()) } else { Vec::new() };
+        let is_shared = self.grouping.shares(DualPart::Infill);
+        let thin = || self.thin_places(block.layers.clone());
+        let places = if is_shared { thin() } else { Vec::new() };
         if places.is_empty() {
             return shared(areas.iter().map(Cow::as_ref).collect());
         }
@@ -272,18 +269,12 @@ impl<'a> Window<'a> {
 
     /// Where none of these layers may print a line for several: near a curved top.
     fn thin_places(&self, layers: Range<usize>) -> Vec<Contour> {
-        // Shares of skin ask for layers above the last one, too.
-        let known = !layers.is_empty() && layers.end <= self.count();
-        let Some(tops) = self.curved.filter(|_| known) else { return Vec::new() };
-        let (heights, last) = (self.slicer.heights(), layers.end - 1);
-        let near = (self.params.skins.top + 1) as Coord * heights.height(last);
-        tops.over(heights.top(layers.start), heights.top(last).saturating_add(near))
+        self.curved.near(self.slicer.heights(), layers, self.params.skins.top)
     }
 
     /// Whether all skins and walls of layer `k` are for it alone: a curved top lies near above it.
     fn is_thin(&self, k: usize) -> bool {
-        let known = self.thin.get(k);
-        known.is_some_and(|known| *known.get_or_init(|| !self.thin_places(k..k + 1).is_empty()))
+        self.curved.is_near(self.slicer.heights(), k, self.params.skins.top)
     }
 
     /// What of layer `k` is ironed.
@@ -308,7 +299,7 @@ impl<'a> Window<'a> {
     /// Where a curved top lies right on layer `k`.
     fn curved_above(&self, k: usize) -> Vec<Contour> {
         let (top, height) = (self.slicer.heights().top(k), self.slicer.heights().height(k));
-        self.curved.map(|tops| tops.over(top - height, top + height)).unwrap_or_default()
+        self.curved.tops().map(|tops| tops.over(top - height, top + height)).unwrap_or_default()
     }
 
     /// The number of layers that each wall of each layer of a block is printed for.

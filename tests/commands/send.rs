@@ -279,7 +279,8 @@ fn a_board_that_restarts_ends_the_print() {
 
 #[test]
 fn boards_of_another_kind_are_told_by_their_exit_code() {
-    let cases: [(fn(&mut Kind), i32, &str); 4] = [
+    type Case = (fn(&mut Kind), i32, &'static str);
+    let cases: [Case; 4] = [
         (|kind| kind.version = 9, 4, "speaks version 9 of the protocol"),
         (|kind| kind.scale = Some((1, 1)), 3, "X: it makes another number of steps a mm"),
         (|kind| kind.interval = 100_000, 3, "X: its motors are not so fast"),
