@@ -24,5 +24,5 @@ mod tests;
 
 pub use pass::patches;
 pub use patch::{Patch, Patches, Stroke};
-pub use scene::{Props, Scene, support_lines};
+pub use scene::{Props, Scene, Skirt, support_lines};
 pub use tally::{Areas, Reason};

@@ -34,6 +34,8 @@ pub struct NonPlanarParams {
     pub shortest: Coord,
     /// Travels keep so far above all under their way.
     pub clearance: Coord,
+    /// The part's outline is moved outwards by this, inwards if negative.
+    pub outline: Coord,
     /// The head.
     pub head: Head,
 }
@@ -83,6 +85,7 @@ impl NonPlanarParams {
             segment: to_units(skins.segment),
             shortest: to_units(settings.speed.nonplanar * seconds),
             clearance: to_units(skins.clearance),
+            outline: to_units(settings.xy_compensation),
             head: settings.head(),
         }
     }

@@ -6,11 +6,11 @@
 //! inside another body counts as it is.
 
 use super::Surface;
-use super::facets::{Groups, Lie, groups};
+use super::facets::{Groups, Lie, groups, in_plan};
 use super::sheets::sheets;
 use crate::geom::double_area;
 use crate::mesh::Mesh;
-use crate::mesh::edges::Adjacency;
+use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::mesh::geometry::measure::corners_of;
 use crate::nonplanar::params::NonPlanarParams;
 use crate::units::UNITS_PER_MM;
@@ -22,6 +22,9 @@ const UNITS2: f64 = UNITS_PER_MM * UNITS_PER_MM;
 /// A group overlaps itself if its facets have this much more area in plan than its outline, or a
 /// thousandth more; mm². Less comes from slivers that fold.
 const OVERLAP: f64 = 0.1;
+
+/// What is steeper than this (60°) beside a surface is no top that goes on: the tangent.
+const UPRIGHT: f64 = 1.732;
 
 /// The gentle slopes of a mesh, and its other tops.
 #[derive(Debug)]
@@ -57,12 +60,13 @@ pub fn surfaces(mesh: &Mesh, adjacency: &Adjacency, params: &NonPlanarParams) ->
     };
     let pieces = members.par_iter().filter(|group| is_large(group));
     let pieces = pieces.flat_map_iter(|group| {
-        let whole = surface(mesh, group);
+        let all = (mesh, adjacency, &lies[..]);
+        let whole = surface(all, group);
         if !overlaps(&whole, &lies, group) {
             return vec![(whole, group.clone())];
         }
         let sheets = sheets(mesh, adjacency, group).into_iter().filter(|sheet| is_large(sheet));
-        sheets.map(|sheet| (surface(mesh, &sheet), sheet)).collect()
+        sheets.map(|sheet| (surface(all, &sheet), sheet)).collect()
     });
     let (surfaces, used): (Vec<Surface>, Vec<Vec<u32>>) =
         pieces.collect::<Vec<_>>().into_iter().unzip();
@@ -71,10 +75,21 @@ pub fn surfaces(mesh: &Mesh, adjacency: &Adjacency, params: &NonPlanarParams) ->
     Surfaces { surfaces, tops: tops(&lies, &is_used, params) }
 }
 
-/// The surface of some triangles.
-fn surface(mesh: &Mesh, group: &[u32]) -> Surface {
-    let corners = |&t: &u32| corners_of(&mesh.vertices, mesh.triangles[t as usize]);
-    Surface::new(group.iter().map(corners).collect())
+/// The surface of some triangles, in their order.
+fn surface((mesh, adjacency, lies): (&Mesh, &Adjacency, &[Lie]), group: &[u32]) -> Surface {
+    let corners = |t: u32| corners_of(&mesh.vertices, mesh.triangles[t as usize]);
+    let is_upright = |side: u32| {
+        let beside = (side != NONE).then(|| parts(side).0);
+        let is_own = |t: usize| group.binary_search(&(t as u32)).is_ok();
+        beside.is_none_or(|t| lies[t].slope() > UPRIGHT && !is_own(t))
+    };
+    let sides = |&t: &u32| {
+        let (plan, beside) = (in_plan(&corners(t)), adjacency.neighbour[t as usize]);
+        let sides = (0..3).filter(move |&k| is_upright(beside[k]));
+        sides.map(move |k| [plan[k], plan[(k + 1) % 3]])
+    };
+    let upright = group.iter().flat_map(sides).collect();
+    Surface::new(group.iter().map(|&t| corners(t)).collect()).with_upright(upright)
 }
 
 /// Whether a surface lies above itself somewhere.
