@@ -12,6 +12,8 @@
 //! leaves nothing there. Where the patch ends at an upright side of the part, the section was simplified
 //! and the patch's outline was not: what is left there is thin. Of what is left and of what is taken, places
 //! thinner than a tenth of a usual line go: no bead fits into them, and walls would bend around them.
+//! Where the part's outline is moved outwards, a rim of that width would stand beside the skins, in treads:
+//! it is taken as well.
 
 use super::surface::Surface;
 use crate::geom::boxes::{extent, meet};
@@ -40,6 +42,8 @@ pub struct Lowered<'a> {
     pub height: Coord,
     /// The base ends so much higher, grid units.
     pub raised: Coord,
+    /// The part's outline is moved outwards by this, grid units: beside the skins nothing of that stands.
+    pub grown: Coord,
 }
 
 /// The patches of a print, and what is left of its layers under them.
@@ -130,6 +134,13 @@ impl Lowered<'_> {
             } else {
                 out.extend(polygon::intersection(&band, area));
             }
+        }
+        if self.grown > 0 && !out.is_empty() {
+            // A little more, for contours that were simplified.
+            let by = self.grown + THIN;
+            let beside = polygon::outset(&polygon::union(&out), by);
+            let beside = polygon::intersection(&beside, &self.surface.near_upright(by));
+            out.extend(polygon::difference(&beside, self.surface.outline(), TOLERANCE));
         }
         out
     }

@@ -25,5 +25,5 @@ mod tests;
 pub use field::Fields;
 pub use pass::{patches, patches_and_fields};
 pub use patch::{Patch, Patches, Stroke};
-pub use scene::{Props, Scene, support_lines};
+pub use scene::{Props, Scene, Skirt, support_lines};
 pub use tally::{Areas, Reason};

@@ -34,6 +34,8 @@ pub struct NonPlanarParams {
     pub shortest: Coord,
     /// Travels keep so far above all under their way.
     pub clearance: Coord,
+    /// The part's outline is moved outwards by this, inwards if negative.
+    pub outline: Coord,
     /// The head.
     pub head: Head,
 }
@@ -90,6 +92,7 @@ impl NonPlanarParams {
             // A longer chord would leave the surface where it bends: a board with a limit goes slower there.
             shortest: to_units((settings.speed.nonplanar * seconds).min(width)),
             clearance: to_units(skins.clearance),
+            outline: to_units(settings.xy_compensation),
             head: settings.head(),
         }
     }

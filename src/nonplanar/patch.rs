@@ -60,7 +60,8 @@ impl Patches {
         let (height, raised) = (params.height, params.raised());
         let lowered = |patch: &Patch| {
             let surface = surfaces.surfaces.get(patch.surface)?;
-            Some(Lowered { surface, areas: patch.areas.clone(), height, raised })
+            let (areas, grown) = (patch.areas.clone(), params.outline.max(0));
+            Some(Lowered { surface, areas, height, raised, grown })
         };
         Base::new(self.patches.iter().filter_map(lowered).collect())
     }

@@ -2,9 +2,9 @@
 
 use super::params::NonPlanarParams;
 use super::surface::find::Surfaces;
-use crate::geom::Point;
 use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span};
+use crate::geom::{Contour, Point};
 use crate::region::support::{SupportLayer, SupportPatterns};
 use crate::slice::Slicer;
 use crate::units::Coord;
@@ -21,6 +21,16 @@ pub struct Props<'a> {
     pub width: Coord,
     /// How far above the part it begins, grid units.
     pub gap: Coord,
+}
+
+/// A skirt of several layers, as the pass sees it. It is laid around what the first layer holds, brims too,
+/// so that it is only known how near it may be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Skirt {
+    /// It stands outside of these contours, anywhere.
+    pub inside: Vec<Contour>,
+    /// How high it gets above the bed, grid units.
+    pub top: Coord,
 }
 
 /// The lines that support may have in a layer: all rows of where it stands.
@@ -50,6 +60,8 @@ pub struct Scene<'a> {
     pub bodies: &'a [[Point; 2]],
     /// Its support, if it has any.
     pub support: Option<Props<'a>>,
+    /// Its skirt, if that is higher than a layer.
+    pub skirt: Option<&'a Skirt>,
     /// The nozzle gets no higher than this above the bed, grid units.
     pub ceiling: Coord,
     /// The numbers of skins.

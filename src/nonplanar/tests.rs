@@ -41,6 +41,7 @@ fn params(head: Head) -> NonPlanarParams {
         segment: 20_000,
         shortest: 500,
         clearance: 5_000,
+        outline: 0,
         head,
     }
 }
@@ -147,6 +148,7 @@ fn under(
         surfaces: &surfaces,
         bodies: &placed.bodies,
         support,
+        skirt: None,
         ceiling,
         params,
     };
@@ -393,4 +395,53 @@ fn support_stands_on_no_patch() {
     );
     assert!(share(&out, 1, [-0.5, -3.0], [0.5, 3.0]) < 1e-3);
     assert!(out.mm2.skin > 60.0);
+}
+
+#[test]
+fn what_no_tread_crosses_stays_level() {
+    // Rises by 0.06 mm; the middles of layers lie at odd tenths.
+    let rim = |low: f64| body([0.0, 0.0], (6, 6, 1.0), move |x, _| low + 0.01 * x);
+    let all = |low: f64| passed(&placed(vec![rim(low)], 1), &params(head("long-0.6")));
+    let out = all(4.02);
+    assert!(out.patches.is_empty() && (out.mm2.level - 36.0).abs() < 0.1, "{:?}", out.mm2);
+    let out = all(4.07);
+    assert!(out.patches.len() == 1 && out.mm2.level < 1e-9, "{:?}", out.mm2);
+}
+
+#[test]
+fn a_refused_summit_does_not_keep_the_rest_waiting() {
+    // The upper half of the ramp lies inside of a tower, which would stand 3 mm over the lower half if that
+    // waited for the summit.
+    let ramp = body([0.0, 0.0], (30, 12, 1.0), |x, _| 2.0 + x * tan(10.0));
+    let tower = body([15.0, -1.0], (17, 14, 1.0), |_, _| 12.0);
+    let out = passed(&placed(vec![joined(vec![ramp, tower])], 1), &params(head("v6")));
+    assert_eq!(out.patches.len(), 1, "{:?}", out.mm2);
+    let patch = &out.patches[0];
+    // What is lower than the tower's foot, and the middle of the layer there.
+    let foot = to_units(2.0 + 15.0 * tan(10.0));
+    assert!(i64::from(patch.top) <= i64::from(foot), "{} {foot}", patch.top);
+    assert!(share(&out, 1, [-16.0, -6.0], [-2.0, 6.0]) > 0.97, "{:?}", out.mm2);
+    assert!(out.mm2.of(Reason::Obstacle) > 150.0, "{:?}", out.mm2);
+}
+
+#[test]
+fn layers_too_high_for_the_bore_leave_no_stripes() {
+    // Without the rule, stripes of about 1.6 by 20 mm would be left between treads 2.6 mm wide.
+    let wedge = body([0.0, 0.0], (20, 20, 1.0), |x, _| 2.0 + x * tan(8.0));
+    let params = NonPlanarParams { height: 3_600, ..params(head("long-0.6")) };
+    let out = passed(&placed(vec![wedge], 1), &params);
+    assert!(out.patches.is_empty(), "{} stripes", out.patches.len());
+    assert!(out.mm2.of(Reason::Overhang) > 0.5 * out.mm2.total(), "{:?}", out.mm2);
+}
+
+#[test]
+fn flat_corners_of_a_saddle_do_not_grow_inwards() {
+    // Its corners, 3 % of it, are steeper than layers of 0.1 mm allow. With treads taken as half a layer
+    // above the surface everywhere, flat zones grow until the slope falls to 8°.
+    let saddle = |x: f64, y: f64| 5.0 + 0.008 * (x - 20.0) * (y - 20.0);
+    let head = head("long-0.6");
+    let slopes = 0.5..=head.steepest_press(0.1);
+    let params = NonPlanarParams { height: 1_000, slopes, ..params(head) };
+    let out = passed(&placed(vec![body([0.0, 0.0], (40, 40, 1.0), saddle)], 1), &params);
+    assert!(out.mm2.skin > 0.75 * out.mm2.total(), "{:?}", out.mm2);
 }

@@ -1,6 +1,8 @@
 //! Mesh and layers -> Curved: the patches of non-planar skin, for the stages that leave room for them and print them.
 
 use crate::fill::Path;
+use crate::geom::hull::hull;
+use crate::geom::{Point, polygon};
 use crate::head::named;
 use crate::mesh::place::Placed;
 use crate::nonplanar;
@@ -8,7 +10,7 @@ use crate::nonplanar::base::Base;
 use crate::nonplanar::contour::{self, Contours};
 use crate::nonplanar::params::NonPlanarParams;
 use crate::nonplanar::surface::find::{Surfaces, surfaces, surfaces_for};
-use crate::nonplanar::{Patch, Patches, Props, Scene, support_lines};
+use crate::nonplanar::{Patch, Patches, Props, Scene, Skirt, support_lines};
 use crate::plan::lift::Lift;
 use crate::plan::{Head, PlanParams, Toolpath, travel};
 use crate::profile::Settings;
@@ -64,12 +66,14 @@ pub fn find(
         width: params.line_width,
         gap: to_units(settings.support.z_distance),
     });
+    let skirt = skirt(settings, placed, slicer);
     let ceiling = to_units(settings.machine.bed_height) - Lift::new(settings).by();
     let scene = Scene {
         slicer,
         surfaces: &surfaces,
         bodies: &placed.bodies,
         support: props,
+        skirt: skirt.as_ref(),
         ceiling,
         params: &params,
     };
@@ -81,6 +85,26 @@ pub fn find(
         contours.beside(&patches)
     });
     Some(Found { params, surfaces, patches, contours })
+}
+
+/// The skirt beside the parts, if it is higher than a layer. It is laid later, around all lines of the first
+/// layer and all corners of the parts up to its top.
+fn skirt(settings: &Settings, placed: &Placed, slicer: &Slicer<'_>) -> Option<Skirt> {
+    let (skirt, heights) = (&settings.skirt, slicer.heights());
+    let layers = (skirt.layers as usize).saturating_sub(Lift::new(settings).layers());
+    let last = layers.min(heights.count()).checked_sub(1)?;
+    if skirt.loops == 0 || skirt.layers < 2 {
+        return None;
+    }
+    let top = heights.top(last);
+    let first = slicer.block(0);
+    let outline = first.first().into_iter().flat_map(|layer| layer.contours.iter().flatten());
+    let beside = placed.mesh.vertices.iter().filter(|v| v[2] <= top);
+    let corners = beside.map(|&[x, y, _]| Point { x, y });
+    let around = hull(outline.copied().chain(corners).collect());
+    // Lines keep half a line within the outline, and the skirt's own is as wide.
+    let near = to_units(skirt.distance).saturating_sub(to_units(settings.line_width)).max(1);
+    Some(Skirt { inside: polygon::outset(&[around], near), top })
 }
 
 /// Patches, and what is left of the layers below them.

@@ -331,3 +331,116 @@ fn with_a_low_head_only_the_shallow_middle_is_skin() {
     let highest = run.print.beads().filter(|b| b.patch > 0).map(|b| b.to[2]).fold(0.0, f64::max);
     assert!((highest - 3.0).abs() < 0.01, "{highest}: {looks:?}");
 }
+
+/// A solid, so far along x, y and z.
+fn moved(solid: Solid, by: [f64; 3]) -> Solid {
+    let triangles = solid
+        .triangles
+        .into_iter()
+        .map(|corners| corners.map(|corner| std::array::from_fn(|axis| corner[axis] + by[axis])));
+    Solid { triangles: triangles.collect() }
+}
+
+/// Square millimetres that are flat, or contoured, for a reason.
+fn flat_mm2(run: &Run, reason: &str) -> f64 {
+    let areas = &run.report.nonplanar.as_ref().unwrap().areas;
+    areas.flat.iter().filter(|flat| flat.reason == reason).map(|flat| flat.mm2).sum()
+}
+
+#[test]
+fn a_wall_along_the_edge_leaves_as_much_to_the_lines() {
+    for part in [WEDGE, DOME] {
+        let (run, looks) = seen(&part, &[("nonplanar.wall", "1")]);
+        is_whole(&looks, "with a wall");
+        // It runs half a line within all four sides.
+        let (corner, half) = (corner(&run, &part), run.settings.line_width * 0.45);
+        for axis in [0, 1] {
+            for edge in [half, part.sides[axis] - half] {
+                let along = run.print.beads().filter(|bead| bead.patch > 0).filter(|bead| {
+                    let [from, to] = [bead.a(), bead.b()].map(|at| at[axis] - corner[axis] - edge);
+                    from.abs() < 0.02 && to.abs() < 0.02
+                });
+                let length: f64 = along.map(crate::common::Move::length).sum();
+                assert!(length > 1.8 * (part.sides[1 - axis] - 1.0), "{axis} {edge}: {length} mm");
+            }
+        }
+    }
+}
+
+#[test]
+fn of_two_patches_after_one_layer_the_lower_comes_first() {
+    // The second one's top is 0.05 mm lower: the same layer makes both bases whole.
+    let other = moved(WEDGE.solid(), [17.0, 0.0, 0.0]);
+    let low = Solid {
+        triangles: other
+            .triangles
+            .into_iter()
+            .map(|t| t.map(|[x, y, z]| [x, y, if z > 0.0 { z - 0.05 } else { z }]))
+            .collect(),
+    };
+    let both = Relief {
+        sides: [33.0, 12.0],
+        surface: |x, _| match x {
+            x if x < 16.0 => 2.0 + 0.1 * x,
+            x if x < 17.0 => -9.0,
+            x => 1.95 + 0.1 * (x - 17.0),
+        },
+        squares: [1, 1],
+    };
+    let run = print(&WEDGE.solid().and(&low), &[("nonplanar.contour", "false")]);
+    let patches = &run.report.nonplanar.as_ref().unwrap().patches;
+    let [first, second] = patches.as_slice() else { panic!("{patches:?}") };
+    assert_eq!(first.layer, second.layer);
+    assert!(
+        first.max_mm[2] < second.max_mm[2] && first.min_mm[0] > second.min_mm[0],
+        "{patches:?}"
+    );
+    let looks = look(&run, &both, corner(&run, &both), 0.0);
+    is_sound(&looks, "two wedges");
+    // The high end of one stands 1.5 mm over the low end of the other, 1 mm beside it.
+    assert!(looks.covered > 0.85 * 2.0 * 16.0 * 12.0, "{} mm²", looks.covered);
+    assert!(flat_mm2(&run, "neighbour") + flat_mm2(&run, "obstacle") > 1.0, "{patches:?}");
+}
+
+/// A skirt of several layers stands when the skins are laid, and is as much in the way as a part.
+#[test]
+fn a_tall_skirt_keeps_the_head_off() {
+    let near: Set<'_> = &[
+        ("skirt.loops", "1"),
+        ("skirt.layers", "99"),
+        ("skirt.distance", "0.8"),
+        ("nonplanar.contour", "false"),
+    ];
+    let (run, looks) = seen(&WEDGE, near);
+    let skirts = run.print.beads().filter(|bead| bead.kind == Kind::Brim);
+    let highest = skirts.map(|bead| bead.to[2]).fold(0.0, f64::max);
+    assert!(highest > 3.0, "the skirt is {highest} mm high");
+    is_sound(&looks, "behind a skirt");
+    assert!(flat_mm2(&run, "neighbour") > 3.0, "{:?}", run.report.nonplanar);
+    assert!(looks.covered > 0.6 * 16.0 * 12.0, "{} mm²", looks.covered);
+    // Of a layer, it is in nobody's way.
+    let low: Set<'_> = &[("skirt.loops", "1"), ("skirt.distance", "0.8")];
+    is_whole(&seen(&WEDGE, low).1, "behind a low skirt");
+}
+
+/// No tread is left beside skins where the outline is moved, and nothing hangs beside the part.
+#[test]
+fn a_moved_outline_leaves_no_rim_beside_skins() {
+    for (by, value) in [(0.15, "0.15"), (-0.15, "-0.15")] {
+        let run = print(&WEDGE.solid(), &[("xy_compensation", value)]);
+        let corner = corner(&run, &WEDGE);
+        let areas = &run.report.nonplanar.as_ref().unwrap().areas;
+        let sides = WEDGE.sides.map(|side| side + 2.0 * f64::min(by, 0.0));
+        let top = sides[0] * sides[1] * 1.01_f64.sqrt();
+        assert!((areas.skin_mm2 - top).abs() < 0.02 * top, "{by}: {areas:?}");
+        for bead in run.print.beads().filter(|bead| bead.kind != Kind::Brim) {
+            let at = bead.at(0.5);
+            let surface = (WEDGE.surface)(at[0] - corner[0], 0.0);
+            let over = bead.to[2].max(bead.from[2]) - surface;
+            // Along its sides, a part that is moved outwards may have one skin on a layer more.
+            let base = if by > 0.0 { -0.09 } else { -0.29 };
+            let most = if bead.patch > 0 { 0.05 } else { base };
+            assert!(over < most, "{by}: {over} mm over the surface: {bead:?}");
+        }
+    }
+}

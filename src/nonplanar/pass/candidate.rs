@@ -4,7 +4,8 @@
 //! 2. Steeper than the flat may press, or under support: refused.
 //! 3. What is left is divided into pieces. On each the head is tried over the whole of it, as if all of
 //!    it stood: what the surface itself is in the way of is refused.
-//! 4. What is left is divided again. Each piece has a home of its own.
+//! 4. What is left is divided again. Each piece has a home of its own. What no tread crosses stays flat: a
+//!    rim that rises by a tenth of a layer gains nothing.
 //!
 //! The *home* of a piece is the last layer whose middle lies a skin height below the piece's highest
 //! place. There the base is whole, however many skins lie where; all that stands is lower than the
@@ -39,6 +40,7 @@ pub(super) struct Ground {
 }
 
 /// A piece of a surface that may become a patch.
+#[derive(Clone)]
 pub(super) struct Piece {
     /// Its surface, by number.
     pub surface: usize,
@@ -57,9 +59,13 @@ pub(super) struct Piece {
 /// The pieces of surface `number`.
 pub(super) fn pieces(scene: &Scene<'_>, number: usize, surface: &Surface) -> (Ground, Vec<Piece>) {
     let field = Field::new(surface);
-    let mut marks = Marks::new(&field);
+    let mut marks = Marks::new(&field, surface);
     let area = between(scene, surface, &field, &mut marks);
     let refused = refused(scene, &field, &marks);
+    // A part that is drawn in carries no skin along its upright sides.
+    let drawn_in = -scene.params.outline;
+    let area =
+        if drawn_in > 0 { grid::without(&area, &surface.near_upright(drawn_in)) } else { area };
     let area = shrink(area, &refused, &mut marks, scene.params);
     let mut out = Vec::new();
     for whole in grid::pieces(&area) {
@@ -70,6 +76,7 @@ pub(super) fn pieces(scene: &Scene<'_>, number: usize, surface: &Surface) -> (Gr
         for area in grid::pieces(&left) {
             let Some(bounds) = surface.over(&area) else { continue };
             match home(scene, bounds[1]) {
+                Some(_) if !has_treads(scene, bounds) => marks.mark_level(&places(&area)),
                 Some(home) => {
                     let (own, glance) = (Arc::clone(&own), Arc::clone(&glance));
                     out.push(Piece { surface: number, area, bounds, home, own, glance });
@@ -81,13 +88,21 @@ pub(super) fn pieces(scene: &Scene<'_>, number: usize, surface: &Surface) -> (Gr
     (Ground { field, marks }, out)
 }
 
+/// Whether what lies between two heights would be printed with a tread: the middle of a layer lies there.
+/// Without one it is as smooth printed flat, and no skin is worth its lines.
+pub(super) fn has_treads(scene: &Scene<'_>, bounds: [f64; 2]) -> bool {
+    let heights = scene.slicer.heights();
+    let [below, all] = bounds.map(|z| heights.planes_up_to(z.floor() as Coord));
+    below < all
+}
+
 /// The places of an area.
-fn places(area: &[Contour]) -> Rows {
+pub(super) fn places(area: &[Contour]) -> Rows {
     crate::region::scan::Scan::new(area, grid::raster(STEP)).inside().clone()
 }
 
 /// The last layer whose middle lies a skin height below `high`.
-fn home(scene: &Scene<'_>, high: f64) -> Option<usize> {
+pub(super) fn home(scene: &Scene<'_>, high: f64) -> Option<usize> {
     let below = high - f64::from(scene.params.height);
     scene.slicer.heights().planes_up_to(below.ceil() as Coord - 1).checked_sub(1)
 }

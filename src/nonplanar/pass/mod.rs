@@ -10,15 +10,21 @@
 //!
 //! In each round more is cut out around what fails. What has faults after the last one is printed flat:
 //! those parts of the piece that hang together, and no others.
+//!
+//! What is found so may tell that some pieces came too late, since the places that made their homes high
+//! can never pass. Then all is done again with lower homes for these (`homes`), and kept if that gives more.
 
 mod candidate;
 mod glance;
+mod homes;
 mod lay;
 mod marks;
 mod shrink;
+mod smooth;
 mod stack;
 mod touch;
 mod trial;
+mod worth;
 
 use crate::geom::Contour;
 use crate::geom::boxes::extent;
@@ -33,6 +39,7 @@ use crate::region::scan::Scan;
 use crate::units::{Coord, to_mm};
 use candidate::{Ground, Piece};
 use lay::{Coat, lay, steepest, strokes};
+use marks::Marks;
 use rayon::prelude::*;
 use shrink::Refused;
 use stack::{Cut, Stack};
@@ -41,6 +48,9 @@ use trial::Trial;
 
 /// What fails when a piece is laid is cut out with so many places around it, round by round.
 const ROUNDS: [i32; 5] = [0, 1, 3, 6, 15];
+
+/// So often all is done again with lower homes.
+const AGAIN: usize = 2;
 
 /// Decides which places of gentle slopes are printed as skins, and lays these.
 #[must_use]
@@ -58,7 +68,36 @@ pub fn patches_and_fields(scene: &Scene<'_>) -> (Patches, Fields) {
         .map(|(number, surface)| candidate::pieces(scene, number, surface))
         .collect();
     let (mut grounds, pieces): (Vec<Ground>, Vec<Vec<Piece>>) = found.into_iter().unzip();
-    let mut pieces: Vec<Piece> = pieces.into_iter().flatten().collect();
+    let mut best = run(scene, &mut grounds, pieces.into_iter().flatten().collect());
+    for _ in 0..AGAIN {
+        let Some(pieces) = homes::lower(scene, &mut grounds, &best) else { break };
+        let again = run(scene, &mut grounds, pieces);
+        if again.mm2 <= best.mm2 {
+            break;
+        }
+        best = again;
+    }
+    let out = best.finished(scene, &mut grounds);
+    let fields = grounds.into_iter().map(|ground| ground.field);
+    (out, Fields::new(surfaces.iter().cloned().zip(fields)))
+}
+
+/// What became of some pieces.
+struct Run {
+    /// In the order in which they were tried.
+    pieces: Vec<Piece>,
+    /// What of them is skin, in plan, mm².
+    mm2: f64,
+    /// The patches, and the numbers of their pieces.
+    patches: Vec<Patch>,
+    from: Vec<usize>,
+    /// What is said of the places of each surface, and what was said before.
+    marks: Vec<Marks>,
+    before: Vec<Marks>,
+}
+
+/// Tries some pieces. What is said of their places is taken out of `grounds`.
+fn run(scene: &Scene<'_>, grounds: &mut [Ground], mut pieces: Vec<Piece>) -> Run {
     // Of equal ones the first surface's, from its first contour: as they come.
     pieces.sort_by(|a, b| {
         a.home
@@ -66,24 +105,40 @@ pub fn patches_and_fields(scene: &Scene<'_>) -> (Patches, Fields) {
             .then(a.bounds[1].total_cmp(&b.bounds[1]))
             .then(a.surface.cmp(&b.surface))
     });
-    let (mut out, mut from) = (Patches::default(), Vec::new());
+    let before: Vec<Marks> = grounds.iter().map(|ground| ground.marks.clone()).collect();
+    let (mut patches, mut from) = (Vec::new(), Vec::new());
+    let mut mm2 = 0.0;
     if !pieces.is_empty() {
-        let mut stack = stack(scene, &grounds, &pieces);
+        let mut stack = stack(scene, grounds, &pieces);
         for (k, piece) in pieces.iter().enumerate() {
             stack.raise_to(piece.home);
             let ground = &mut grounds[piece.surface];
             if let Some(made) = patch(scene, (k, piece), ground, &mut stack) {
-                out.patches.push(made);
-                from.push(piece);
+                mm2 += made.areas.last().map_or(0.0, |area| grid::area_mm2(area));
+                patches.push(made);
+                from.push(k);
             }
         }
+    }
+    let marks = grounds.iter_mut().zip(&before);
+    let marks = marks.map(|(ground, old)| std::mem::replace(&mut ground.marks, old.clone()));
+    Run { pieces, mm2, patches, from, marks: marks.collect(), before }
+}
+
+impl Run {
+    /// The patches in their order, and what became of all tops.
+    fn finished(self, scene: &Scene<'_>, grounds: &mut [Ground]) -> Patches {
+        for (ground, marks) in grounds.iter_mut().zip(self.marks) {
+            ground.marks = marks;
+        }
+        let mut out = Patches { patches: self.patches, ..Patches::default() };
         for (number, patch) in (1..).zip(&mut out.patches) {
             patch.number = number;
         }
+        let from: Vec<&Piece> = self.from.iter().map(|&k| &self.pieces[k]).collect();
+        out.mm2 = tally(scene, grounds, &mut out.patches, &from);
+        out
     }
-    out.mm2 = tally(scene, &grounds, &mut out.patches, &from);
-    let fields = grounds.into_iter().map(|ground| ground.field);
-    (out, Fields::new(surfaces.iter().cloned().zip(fields)))
 }
 
 /// What stands before the first piece is laid, with room for all of them.
@@ -120,6 +175,9 @@ fn patch(
     // After the last round at least one part goes each time: that ends.
     for round in 0.. {
         trial.settle(stack);
+        if trial.drop_worthless(surface, stack) {
+            trial.settle(stack);
+        }
         if trial.is_empty() {
             break;
         }
@@ -191,6 +249,7 @@ fn tally(scene: &Scene<'_>, grounds: &[Ground], patches: &mut [Patch], from: &[&
         // Places are counted; the surface's area is known.
         let share = surface.area_mm2(surface.outline()) / own.total().max(f64::MIN_POSITIVE);
         all.skin += own.skin * share;
+        all.level += own.level * share;
         for reason in Reason::ALL {
             all.add(reason, own.of(reason) * share);
         }
@@ -203,6 +262,7 @@ fn tally(scene: &Scene<'_>, grounds: &[Ground], patches: &mut [Patch], from: &[&
                 count(&mut patch.mm2, ground, place, holds(&skin, place));
             }
             patch.mm2.skin *= share;
+            patch.mm2.level *= share;
             patch.mm2.flat.iter_mut().for_each(|mm2| *mm2 *= share);
         }
     }
@@ -215,6 +275,7 @@ fn count(areas: &mut Areas, ground: &Ground, place: Spot, is_skin: bool) {
     let mm2 = to_mm(STEP).powi(2) * (1.0 + x * x + y * y).sqrt();
     match ground.marks.reason(place) {
         _ if is_skin => areas.skin += mm2,
+        _ if ground.marks.is_level(place) => areas.level += mm2,
         reason => areas.add(reason.unwrap_or(Reason::Thin), mm2),
     }
 }

@@ -1,6 +1,7 @@
 //! Areas of skins and places that are refused -> smaller areas, and why each place was lost.
 
 use super::marks::Marks;
+use super::smooth::smooth;
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, polygon};
 use crate::nonplanar::grid::{self, STEP, Spot};
@@ -32,7 +33,8 @@ pub(super) fn widened(refused: &Refused, by: i32) -> Refused {
     out
 }
 
-/// Cuts refused places out of an area, then what is narrower than three lines, then what is too small.
+/// Cuts refused places out of an area, then steps too small for lines, then what is narrower than three lines,
+/// then what is too small.
 /// The same area if nothing is lost.
 pub(super) fn shrink(
     area: Vec<Contour>,
@@ -51,7 +53,8 @@ pub(super) fn shrink(
         marks.mark_all(&before.minus(&after), |place| nearest(refused, place).unwrap_or(most));
         cut
     };
-    let (before, open) = (rows(&cut), grid::opened(&cut, params.line_width));
+    let before = rows(&cut);
+    let open = grid::opened(&smooth(cut, marks, params.line_width), params.line_width);
     marks.mark_all(&before.minus(&rows(&open)), |_| Reason::Thin);
     let all = grid::pieces(&open);
     let is_large = |piece: &Vec<Contour>| grid::area_mm2(piece) >= params.min_area;
@@ -84,7 +87,8 @@ pub(super) fn shrink_all(
                 } else {
                     polygon::intersection(area, above)
                 };
-                grid::opened(&grid::without(&within, &around), params.line_width)
+                let cut = smooth(grid::without(&within, &around), marks, params.line_width);
+                grid::opened(&cut, params.line_width)
             }
         };
         out.push(shrunk);

@@ -9,8 +9,8 @@
 //! - What a patch leaves to be printed flat is raised as a whole, see [`Stack::raise`].
 
 use super::touch::mm;
-use crate::geom::Contour;
 use crate::geom::spans::{Rows, Span, merge};
+use crate::geom::{Contour, Point};
 use crate::head::pile::Pile;
 use crate::nonplanar::field::Field;
 use crate::nonplanar::grid::{self, CELL, Spot, cells, columns, middle, raster};
@@ -64,6 +64,8 @@ pub(super) struct Stack<'a> {
     pub cuts: Vec<Cut>,
     /// Where support stands or stood.
     supported: Rows,
+    /// Where a skirt may stand that is not piled up yet.
+    skirt: Option<Rows>,
 }
 
 impl<'a> Stack<'a> {
@@ -79,7 +81,13 @@ impl<'a> Stack<'a> {
         let pile =
             Pile::new(corner(low), corner([columns.end, rows.end]), to_mm(CELL)).wider(WIDER);
         let (sections, supported) = (VecDeque::new(), Rows::default());
-        Self { scene, pile, low, sections, next: first, cuts: Vec::new(), supported }
+        let skirt = scene.skirt.map(|skirt| {
+            let [x0, x1] = [columns.start, columns.end].map(|v| v * CELL);
+            let [y0, y1] = [rows.start, rows.end].map(|v| v * CELL);
+            let all = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| Point { x, y });
+            cells(&grid::without(&[all.to_vec()], &skirt.inside))
+        });
+        Self { scene, pile, low, sections, next: first, cuts: Vec::new(), supported, skirt }
     }
 
     /// The section of a layer that is not piled up; nothing above the last one.
@@ -113,11 +121,22 @@ impl<'a> Stack<'a> {
 
     /// Piles up all layers up to `k`.
     pub(super) fn raise_to(&mut self, k: usize) {
+        self.raise_skirt(k);
         // What is sliced in one go is piled up in one go.
         while self.next <= k && self.section(self.next).is_some() {
             let count = self.sections.len().min(k + 1 - self.next);
             self.raise_some(count);
         }
+    }
+
+    /// Piles the skirt up to layer `k`.
+    fn raise_skirt(&mut self, k: usize) {
+        let Some((rows, skirt)) = self.skirt.take().zip(self.scene.skirt) else { return };
+        let top = self.scene.slicer.heights().top(k);
+        for (j, row) in rows.iter() {
+            self.raise_row(j, row, to_mm(top.min(skirt.top)));
+        }
+        self.skirt = Some(rows).filter(|_| top < skirt.top);
     }
 
     /// Piles up the first sections.

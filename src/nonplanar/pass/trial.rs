@@ -3,13 +3,16 @@
 //! The head is tried at all places of each skin's area. Skin i lies (n − i) skin heights below the
 //! surface, so its tip is lower where it is not the last.
 //!
-//! - A place that fails for the last skin is refused to all: it is printed flat, and stands at most half
-//!   a layer over the surface. A place that fails for a lower skin only leaves that one: the base ends
-//!   higher there. So a flat zone does not grow: beside it, on a slope of 10° with a flat of 1 mm and
-//!   layers of 0.2 mm, the last skin's tip touches treads that stand 0.1 mm over the surface, and the
+//! - A place that fails for the last skin is refused to all: it is printed flat, in treads of half a layer
+//!   below to half a layer above the surface. A place that fails for a lower skin only leaves that one: the
+//!   base ends higher there. So a flat zone does not grow: beside it, on a slope of 10° with a flat of 1 mm
+//!   and layers of 0.2 mm, the last skin's tip touches treads that stand 0.1 mm over the surface, and the
 //!   slope adds 0.1 mm under the flat's uphill edge: 0.2 of the 0.3 mm that may be pressed. The first
 //!   skin's tip is 0.2 mm lower: that one keeps 0.6 mm off. Beside the base that is left, which stands 0.1
 //!   mm over it, it may lie.
+//! - Treads are piled up where the slicer puts them. Taken as half a layer above the surface everywhere,
+//!   they and the press of the steepest slope would be all that may be pressed, ring after ring, until the
+//!   slope is gentle. As they are, only edges that lie under the flat's uphill rim are in the way.
 //! - What is printed flat instead is raised in the stack, and all is tried again until nothing fails.
 //!   Areas only shrink and what stands only grows: that ends.
 //! - *Later* lines are those of layers above the home that are no higher than the piece's top: the skins
@@ -264,15 +267,16 @@ impl<'a> Trial<'a> {
         self.areas = shrink_all(&self.areas, refused, marks, self.scene.params);
         let heights = self.scene.slicer.heights();
         let most = to_mm(heights.top(self.piece.home));
-        let tread = to_mm(self.scene.params.height) / 2.0;
         let mut raised: BTreeSet<Spot> = BTreeSet::new();
         for (i, old) in old.iter().enumerate() {
             let lost = old.minus(&grid::cells(&self.areas[i]));
             let last = i + 1 == self.areas.len();
             for (cell, z) in heights_over(&self.ground.field, &lost) {
-                // The next skin stands on what is left of the base: its room needs the very height.
-                let ends = if last { z + tread } else { self.base_end(z, i) };
-                stack.raise(cell, ends.min(most));
+                let below = if last { 0 } else { self.below_surface(i) };
+                // A tread reaches to the edge of a cell whose middle lies beside it.
+                let [x, y] = self.ground.field.rise(cell);
+                let further = if last { x.hypot(y) * to_mm(CELL) / 2.0 } else { 0.0 };
+                stack.raise(cell, self.flat_end(z + further, below).min(most));
                 raised.insert(cell.map(|v| v.div_euclid(2 * BLOCK)));
                 if let Some(later) = self.later.as_mut().filter(|_| last) {
                     later.add(cell, z);
@@ -301,12 +305,16 @@ impl<'a> Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// How high the base stands where skin `i` is not laid, mm, under a surface at `z`: as many layers as
-    /// [`base`](crate::nonplanar::base) leaves of it.
-    fn base_end(&self, z: f64, i: usize) -> f64 {
+    /// How far below the surface the base ends where skin `i` is not laid.
+    fn below_surface(&self, i: usize) -> Coord {
+        self.scene.lowered(i) - self.scene.params.raised()
+    }
+
+    /// How high what is printed flat stands, mm, so far below a surface at `z`: as many layers as the slicer
+    /// makes of it, or as [`base`](crate::nonplanar::base) leaves.
+    fn flat_end(&self, z: f64, below: Coord) -> f64 {
         let heights = self.scene.slicer.heights();
-        let end = to_units(z) - self.scene.lowered(i) + self.scene.params.raised();
-        let count = heights.planes_up_to(end);
+        let count = heights.planes_up_to(to_units(z) - below);
         count.checked_sub(1).map_or(0.0, |k| to_mm(heights.top(k)))
     }
 

@@ -22,11 +22,12 @@ use crate::units::Coord;
 const FROM_EDGE: f64 = 0.49;
 
 /// Rows end half a line from the edge, and at shallow edges this share of a line. A smaller share makes
-/// threads in the tips of triangles; a larger one makes the line beside them wider.
-const NEAREST: f64 = 0.2;
+/// threads in the tips of triangles, which a nozzle of 0.4 mm tears; a larger one makes the line beside them
+/// wider.
+const NEAREST: f64 = 0.3;
 
 /// An edge is shallow if a row gains more by ending nearer to it, in line widths. With `NEAREST` that is
-/// an edge of less than 14° to the lines.
+/// an edge of less than 9° to the lines.
 const SHALLOW: f64 = 1.2;
 
 /// Turns run so far along the lines at most, in line widths: then they fill the open stretches at the

@@ -76,6 +76,7 @@ fn params() -> NonPlanarParams {
         segment: 20_000,
         shortest: 4_000,
         clearance: 5_000,
+        outline: 0,
         head: Head { flat: 1.0, cone: 45.0, cone_length: 3.0, discs: vec![], boxes: vec![] },
     }
 }

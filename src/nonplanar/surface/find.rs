@@ -6,7 +6,7 @@
 //! inside another body counts as it is.
 
 use super::Surface;
-use super::facets::{Lie, classes, groups, lies};
+use super::facets::{Lie, classes, groups, in_plan, lies};
 use super::sheets::sheets;
 use crate::geom::double_area;
 use crate::mesh::Mesh;
@@ -23,6 +23,9 @@ const UNITS2: f64 = UNITS_PER_MM * UNITS_PER_MM;
 /// A group overlaps itself if its facets have this much more area in plan than its outline, or a
 /// thousandth more; mm². Less comes from slivers that fold.
 const OVERLAP: f64 = 0.1;
+
+/// What is steeper than this (60°) beside a surface is no top that goes on: the tangent.
+const UPRIGHT: f64 = 1.732;
 
 /// The gentle slopes of a mesh, and its other tops.
 #[derive(Debug)]
@@ -106,14 +109,14 @@ fn found(
     let groups = members.par_iter().map(|group| (group, plan(group)));
     let large = groups.filter(|(_, plan)| *plan >= least * UNITS2);
     let found = large.flat_map_iter(|(group, all)| {
-        let whole = surface(mesh, adjacency, group);
+        let whole = surface((mesh, adjacency, lies), group);
         if !overlaps(&whole, lies, group) {
             return vec![made(group.clone(), whole, all)];
         }
         let sheets = sheets(mesh, adjacency, group).into_iter().map(|sheet| (plan(&sheet), sheet));
         let sheets = sheets.filter(|(own, _)| *own >= least * UNITS2);
         let sheet = |(own, sheet): (f64, Vec<u32>)| {
-            let surface = surface(mesh, adjacency, &sheet);
+            let surface = surface((mesh, adjacency, lies), &sheet);
             made(sheet, surface, all.min(own))
         };
         sheets.map(sheet).collect()
@@ -131,7 +134,7 @@ fn large(found: &[Found], lies: &[Lie], params: &NonPlanarParams) -> Surfaces {
 }
 
 /// The surface of some triangles, in their order.
-fn surface(mesh: &Mesh, adjacency: &Adjacency, group: &[u32]) -> Surface {
+fn surface((mesh, adjacency, lies): (&Mesh, &Adjacency, &[Lie]), group: &[u32]) -> Surface {
     let corners = |&t: &u32| corners_of(&mesh.vertices, mesh.triangles[t as usize]);
     // Most neighbours are the triangles before and after.
     let holds = |u: u32, k: usize| {
@@ -141,8 +144,16 @@ fn surface(mesh: &Mesh, adjacency: &Adjacency, group: &[u32]) -> Surface {
     let open = |(k, &t): (usize, &u32)| {
         adjacency.neighbour[t as usize].map(|side| side == NONE || !holds(parts(side).0 as u32, k))
     };
-    let open = group.iter().enumerate().map(open).collect();
-    Surface::new(group.iter().map(corners).collect(), open)
+    let open: Vec<[bool; 3]> = group.iter().enumerate().map(open).collect();
+    let is_upright = |side: u32| side == NONE || lies[parts(side).0].slope() > UPRIGHT;
+    let sides = |(t, open): (&u32, &[bool; 3])| {
+        let (plan, beside) = (in_plan(&corners(t)), adjacency.neighbour[*t as usize]);
+        let open = *open;
+        let sides = (0..3).filter(move |&k| open[k] && is_upright(beside[k]));
+        sides.map(move |k| [plan[k], plan[(k + 1) % 3]])
+    };
+    let upright = group.iter().zip(&open).flat_map(sides).collect();
+    Surface::new(group.iter().map(corners).collect(), open).with_upright(upright)
 }
 
 /// Whether a surface lies above itself somewhere.

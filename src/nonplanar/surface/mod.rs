@@ -22,8 +22,8 @@ mod sheets;
 mod tests;
 
 use crate::geom::boxes::extent;
-use crate::geom::{Contour, Point, edges, encloses, side};
-use crate::units::{Coord, UNITS_PER_MM, between};
+use crate::geom::{Contour, Point, edges, encloses, polygon, side};
+use crate::units::{Coord, UNITS_PER_MM, between, nearest};
 use index::{Index, NEAR};
 use levels::Levels;
 use rim::of_sides;
@@ -40,6 +40,7 @@ pub struct Surface {
     levels: Levels,
     index: Index,
     outline: Vec<Contour>,
+    upright: Vec<[Point; 2]>,
     extent: (Point, Point),
     bounds: [Coord; 2],
     area_mm2: f64,
@@ -76,6 +77,7 @@ impl Surface {
             outline: of_sides(rim),
             levels: Levels::new(&facets),
             index: Index::new(&plans),
+            upright: Vec::new(),
             extent: extent(plans.as_flattened()).unwrap_or_default(),
             bounds,
             area_mm2: area / (UNITS_PER_MM * UNITS_PER_MM),
@@ -90,6 +92,36 @@ impl Surface {
     #[must_use]
     pub fn outline(&self) -> &[Contour] {
         &self.outline
+    }
+
+    /// The same, with the sides of its rim beside which the part ends upright.
+    pub(super) fn with_upright(self, upright: Vec<[Point; 2]>) -> Self {
+        Self { upright, ..self }
+    }
+
+    /// The sides of its rim beside which the part ends upright, in plan: no top goes on there.
+    #[must_use]
+    pub fn upright(&self) -> &[[Point; 2]] {
+        &self.upright
+    }
+
+    /// What lies so near to where the part ends upright, on both sides, in plan; square at its ends.
+    #[must_use]
+    pub fn near_upright(&self, by: Coord) -> Vec<Contour> {
+        let around = |[a, b]: &[Point; 2]| {
+            let length = a.distance(*b);
+            if length == 0.0 {
+                return None;
+            }
+            let along = |d: Coord| nearest(f64::from(by) * f64::from(d) / length) as Coord;
+            let [dx, dy] = [along(b.x - a.x), along(b.y - a.y)];
+            let corner = |p: &Point, u: Coord, v: Coord| Point {
+                x: p.x + u * dx - v * dy,
+                y: p.y + u * dy + v * dx,
+            };
+            Some(vec![corner(a, -1, -1), corner(b, 1, -1), corner(b, 1, 1), corner(a, -1, 1)])
+        };
+        polygon::union(&self.upright.iter().filter_map(around).collect::<Vec<_>>())
     }
 
     /// Lowest and highest x and y.
