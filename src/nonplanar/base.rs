@@ -44,6 +44,8 @@ pub struct Lowered<'a> {
     pub raised: Coord,
     /// The part's outline is moved outwards by this, grid units: beside the skins nothing of that stands.
     pub grown: Coord,
+    /// Walls of the base reach so far beyond its contours, grid units: their room is taken, too.
+    pub beyond: Coord,
 }
 
 /// The patches of a print, and what is left of its layers under them.
@@ -141,6 +143,9 @@ impl Lowered<'_> {
             let beside = polygon::outset(&polygon::union(&out), by);
             let beside = polygon::intersection(&beside, &self.surface.near_upright(by));
             out.extend(polygon::difference(&beside, self.surface.outline(), TOLERANCE));
+        }
+        if self.beyond > 0 && !out.is_empty() {
+            out = polygon::outset(&polygon::union(&out), self.beyond);
         }
         out
     }

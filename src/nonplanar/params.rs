@@ -36,6 +36,8 @@ pub struct NonPlanarParams {
     pub clearance: Coord,
     /// The part's outline is moved outwards by this, inwards if negative.
     pub outline: Coord,
+    /// The walls of what is printed level reach so far beyond its contours.
+    pub beyond: Coord,
     /// The head.
     pub head: Head,
 }
@@ -93,6 +95,7 @@ impl NonPlanarParams {
             shortest: to_units((settings.speed.nonplanar * seconds).min(width)),
             clearance: to_units(skins.clearance),
             outline: to_units(settings.xy_compensation),
+            beyond: to_units(settings.line_width * (0.5 - settings.outer_wall_inset).max(0.0)),
             head: settings.head(),
         }
     }

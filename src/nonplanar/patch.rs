@@ -61,7 +61,7 @@ impl Patches {
         let lowered = |patch: &Patch| {
             let surface = surfaces.surfaces.get(patch.surface)?;
             let (areas, grown) = (patch.areas.clone(), params.outline.max(0));
-            Some(Lowered { surface, areas, height, raised, grown })
+            Some(Lowered { surface, areas, height, raised, grown, beyond: params.beyond })
         };
         Base::new(self.patches.iter().filter_map(lowered).collect())
     }

@@ -42,6 +42,7 @@ fn params(head: Head) -> NonPlanarParams {
         shortest: 500,
         clearance: 5_000,
         outline: 0,
+        beyond: 0,
         head,
     }
 }

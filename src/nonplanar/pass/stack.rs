@@ -116,7 +116,10 @@ impl<'a> Stack<'a> {
             let edges: Vec<_> = lines.into_iter().map(|[a, b]| (a, b, radius)).collect();
             around(&edges, raster(CELL))
         });
-        Section { solid: cells(&layer.contours), support: support.unwrap_or_default() }
+        let solid = cells(&layer.contours);
+        let beyond = self.scene.params.beyond;
+        let solid = if beyond > 0 { solid.dilate(beyond, CELL) } else { solid };
+        Section { solid, support: support.unwrap_or_default() }
     }
 
     /// Piles up all layers up to `k`.

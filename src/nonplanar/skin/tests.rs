@@ -77,6 +77,7 @@ fn params() -> NonPlanarParams {
         shortest: 4_000,
         clearance: 5_000,
         outline: 0,
+        beyond: 0,
         head: Head { flat: 1.0, cone: 45.0, cone_length: 3.0, discs: vec![], boxes: vec![] },
     }
 }
