@@ -14,6 +14,9 @@
 //!
 //! Both ways give the same contours in the same order, from the same first vertex. Tests compare them.
 
+#[cfg(test)]
+mod tests;
+
 use super::boxes::{Boxes, extent};
 use super::parallel::{parallel, parallel_and_lost};
 use super::simple::windings;
@@ -103,7 +106,13 @@ pub fn keep_shape(contours: &[Contour], distance: Coord, most: f64) -> bool {
 pub fn difference(contours: &[Contour], others: &[Contour], tolerance: Coord) -> Vec<Contour> {
     let (contours, others) = (to_library(contours), to_library(others));
     let left = difference_64(&contours, &others, FillRule::NonZero);
-    from_library(&clipper2_rust::simplify_paths(&left, f64::from(tolerance), true))
+    // A sliver may turn over when it is simplified: then it would be a hole in nothing.
+    let simpler = |path: &Path64| {
+        let simple = clipper2_rust::simplify_path(path, f64::from(tolerance), true);
+        let [before, after] = [path, &simple].map(clipper2_rust::area::<i64>);
+        (before * after > 0.0).then_some(simple)
+    };
+    from_library(&left.iter().filter_map(simpler).collect())
 }
 
 /// What `contours` and `others` have in common (both as from [`union`]).
@@ -208,11 +217,25 @@ fn offset(contours: &[Contour], distance: f64) -> Vec<Contour> {
         // Corners that are too sharp: the library cuts them off.
         None => {
             let (join, end) = (JoinType::Miter, EndType::Polygon);
-            let contours = to_library(contours);
+            let contours = without_lowest_holes(contours);
             from_library(&inflate_paths_64(&contours, distance, join, end, MITER_LIMIT, 0.0))
         }
     };
     moved.into_iter().map(cleaned).filter(is_shape).collect()
+}
+
+/// The contours for the library, which takes the lowest one for an outer one, and turns all others round if it is
+/// none. A hole in nothing is a sliver that rounding has turned over.
+fn without_lowest_holes(contours: &[Contour]) -> Paths64 {
+    let mut left: Vec<&Contour> = contours.iter().filter(|c| !c.is_empty()).collect();
+    let lowest = |c: &Contour| c.iter().map(|p| (p.y, Reverse(p.x))).max();
+    while let Some(at) = (0..left.len()).max_by_key(|&k| lowest(left[k])) {
+        if double_area(left[at]) > 0 {
+            break;
+        }
+        left.remove(at);
+    }
+    left.into_iter().map(|contour| path(contour)).collect()
 }
 
 /// The union of `curves`, if no sides cross: the curves that separate inside from outside, where the
@@ -299,178 +322,4 @@ fn path(contour: &[Point]) -> Path64 {
 fn point(p: &Point64) -> Point {
     // These contours were shrunk, or grown no further than they were shrunk before: they fit.
     Point { x: p.x as Coord, y: p.y as Coord }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geom::edges;
-    use crate::units::{nearest, sin_cos};
-    use proptest::prelude::*;
-
-    /// A star around the origin with its corners at `radii`. No side of it is horizontal.
-    fn star(radii: &[f64]) -> Contour {
-        let corner = |(k, r): (usize, &f64)| {
-            let (sin, cos) = sin_cos(0.1 + 360.0 * k as f64 / radii.len() as f64);
-            Point { x: nearest(r * cos) as Coord, y: nearest(r * sin) as Coord }
-        };
-        radii.iter().enumerate().map(corner).collect()
-    }
-
-    fn area(contours: &[Contour]) -> f64 {
-        contours.iter().map(|c| double_area(c) as f64 / 2.0).sum()
-    }
-
-    #[test]
-    fn loops_are_cut_by_the_areas_near_them_and_those_around_them() {
-        let square = |(x, y): (Coord, Coord), side: Coord| -> Contour {
-            let corners = [(0, 0), (side, 0), (side, side), (0, side)];
-            corners.map(|(right, up)| Point { x: x + right, y: y + up }).to_vec()
-        };
-        // A frame with a hole in it, and so many squares far away that they are sorted into cells.
-        let mut hole = square((40_000, 40_000), 20_000);
-        hole.reverse();
-        let mut areas = vec![square((0, 0), 100_000), hole];
-        areas.extend((0..60).map(|k| square((200_000 + 30_000 * k, 0), 10_000)));
-        let in_hole = square((45_000, 45_000), 5_000);
-        let far = square((0, -50_000), 5_000);
-        let loops = vec![
-            in_hole.clone(),
-            square((10_000, 10_000), 5_000),
-            square((55_000, 45_000), 10_000),
-            far.clone(),
-            square((205_000, -5_000), 10_000),
-        ];
-        let Cut { whole, pieces } = cut(loops, &areas);
-        assert_eq!(whole, [in_hole, far]);
-        let length =
-            |piece: &Vec<Point>| -> f64 { piece.windows(2).map(|p| p[0].distance(p[1])).sum() };
-        // Of a loop halfway in the hole half is left; of one over the corner of a square 3/4.
-        assert_eq!(pieces.iter().map(length).collect::<Vec<_>>(), [20_000.0, 30_000.0]);
-    }
-
-    #[test]
-    fn many_that_overlap_make_one_in_parts() {
-        // 300 triangles that share a middle, and one apart from them.
-        let triangle = |k: i32| -> Contour {
-            let at = |by: f64| {
-                let (sin, cos) = crate::units::sin_cos(by + f64::from(k) * 0.37);
-                Point { x: (cos * 90_000.0) as i32, y: (sin * 90_000.0) as i32 }
-            };
-            vec![at(0.0), at(120.0), at(240.0)]
-        };
-        let mut all: Vec<Contour> = (0..300).map(triangle).collect();
-        all.push(triangle(0).into_iter().map(|p| Point { x: p.x + 500_000, ..p }).collect());
-        let (parts, whole) = (by_parts(&all), united(&all));
-        let area = |contours: &[Contour]| contours.iter().map(|c| double_area(c)).sum::<i128>();
-        assert_eq!((parts.len(), whole.len()), (2, 2));
-        // Corners are rounded to the grid, a few times.
-        assert!((area(&parts) - area(&whole)).abs() < area(&whole) / 20_000);
-    }
-
-    proptest! {
-        #[test]
-        fn sides_cut_here_enclose_what_the_library_encloses(
-            radii in prop::collection::vec(84_000.0..90_000.0, 5..40),
-            distance in prop_oneof![-30_000.0..-100.0, 100.0..8_000.0],
-        ) {
-            let star = [star(&radii)];
-            let sides = parallel(&star[0], distance, MITER_LIMIT);
-            prop_assume!(sides.is_some());
-            let ours = from_library(&clean(&to_library(sides.as_slice())));
-            let (join, end) = (JoinType::Miter, EndType::Polygon);
-            let theirs =
-                inflate_paths_64(&to_library(&star), distance, join, end, MITER_LIMIT, 0.0);
-            let theirs = from_library(&theirs);
-            // They may differ by a micrometre along the whole outline.
-            let round = edges(&star[0]).map(|(p, q)| p.distance(q)).sum::<f64>();
-            let apart = (area(&ours) - area(&theirs)).abs();
-            prop_assert!(apart <= 10.0 * round, "{apart} of {}", area(&theirs));
-        }
-    }
-
-    /// Stars with corners on a coarse grid: many horizontal sides, many corners of equal y.
-    fn stars() -> impl Strategy<Value = Vec<Contour>> {
-        let shape = (prop::collection::vec(20.0..60.0, 3..12), -80..80, -80..80, any::<bool>());
-        let shape = shape.prop_map(|(radii, x, y, hole): (Vec<f64>, i32, i32, bool)| {
-            let coarse = |from: Coord, c: Coord| (from + c) / 4 * 4_000;
-            let move_to = |p: Point| Point { x: coarse(x, p.x), y: coarse(y, p.y) };
-            let mut star: Contour = star(&radii).into_iter().map(move_to).collect();
-            star.dedup();
-            if hole {
-                star.reverse();
-            }
-            star
-        });
-        prop::collection::vec(shape, 1..5)
-    }
-
-    proptest! {
-        #[test]
-        fn curves_without_crossings_are_united_as_the_library_does(curves in stars()) {
-            prop_assume!(curves.iter().all(|c| c.len() > 2));
-            let library = |fill| from_library(&union_subjects_64(&to_library(&curves), fill));
-            if let Some(ours) = disjoint(&curves, |winding| winding != 0, 0.0) {
-                prop_assert_eq!(ours, library(FillRule::NonZero));
-            }
-            if let Some(ours) = disjoint(&curves, |winding| winding > 0, 0.0) {
-                prop_assert_eq!(ours, library(FillRule::Positive));
-            }
-        }
-    }
-
-    #[test]
-    fn a_side_too_short_for_its_cuts_is_removed() {
-        let p = |x, y| Point { x, y };
-        // A square on its corner, with one corner blunted.
-        let cut = vec![
-            p(0, -100_000),
-            p(100_000, 0),
-            p(1_000, 99_000),
-            p(-1_000, 99_000),
-            p(-100_000, 0),
-        ];
-        let moved = parallel(&cut, -7_071.067_8, MITER_LIMIT).unwrap();
-        assert_eq!(moved.len(), 4, "{moved:?}");
-        assert!(moved.iter().any(|at| at.distance2(p(0, 90_000)) <= 2), "{moved:?}");
-    }
-
-    #[test]
-    fn shapes_are_kept_unless_something_is_too_thin() {
-        let p = |x, y| Point { x, y };
-        let square =
-            |low: Coord, high: Coord| vec![p(low, low), p(high, low), p(high, high), p(low, high)];
-        let block = square(0, 100_000);
-        let hole = |low, high| square(low, high).into_iter().rev().collect::<Contour>();
-        assert!(keep_shape(std::slice::from_ref(&block), 1_000, 0.0));
-        assert!(keep_shape(&[block.clone(), hole(2_100, 50_000)], 1_000, 0.0));
-        assert!(!keep_shape(&[block.clone(), hole(1_900, 50_000)], 1_000, 0.0), "a thin rim");
-        assert!(!keep_shape(&[square(0, 1_900)], 1_000, 0.0), "nothing is left");
-        // A pointed bump on a side, whose sides are removed one after the other from its tip.
-        let mut cape = vec![p(0, 0), p(100_000, 0), p(100_000, 100_000)];
-        cape.extend((0..=20).map(|k| p(51_000 - 50 * k, 100_000 + 1_000 * k)));
-        cape.extend((0..20).rev().map(|k| p(49_000 + 50 * k, 100_000 + 1_000 * k)));
-        cape.push(p(0, 100_000));
-        assert!(!keep_shape(&[cape], 1_100, 20_000.0));
-        // A blunted corner.
-        let blunt =
-            vec![p(0, 0), p(100_000, 0), p(100_000, 99_900), p(99_900, 100_000), p(0, 100_000)];
-        let keeps = |most| keep_shape(std::slice::from_ref(&blunt), 1_000, most);
-        assert!(keeps(200.0) && !keeps(100.0));
-    }
-
-    #[test]
-    fn neighbouring_sides_are_cut_where_they_cross() {
-        let p = |x, y| Point { x, y };
-        // A square on its corner: no side is horizontal.
-        let diamond = vec![p(0, -100_000), p(100_000, 0), p(0, 100_000), p(-100_000, 0)];
-        let moved = parallel(&diamond, -7_071.067_8, MITER_LIMIT).unwrap();
-        for (at, corner) in moved.iter().zip([(0, -90_000), (90_000, 0), (0, 90_000), (-90_000, 0)])
-        {
-            assert!(at.distance2(p(corner.0, corner.1)) <= 2, "{moved:?}");
-        }
-        let wider = parallel(&diamond, 7_071.067_8, MITER_LIMIT).unwrap();
-        assert_eq!(wider.len(), 4);
-        assert!(wider[0].distance2(p(0, -110_000)) <= 2, "{wider:?}");
-    }
 }
