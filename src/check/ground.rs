@@ -104,9 +104,10 @@ pub(super) fn below(line: &Bead, most: f64) -> Option<[f64; 2]> {
 }
 
 /// The part of a line, from 0 to 1, that lies within these distances above another line, mm. Each is as
-/// high as it is there.
+/// high as it is there, and the other goes on beyond its ends: the caller looks beside it alone.
 pub(super) fn above(line: &Bead, other: &Bead, within_mm: [f64; 2]) -> Option<[f64; 2]> {
-    let [from, to] = [line.above(other, 0.0), line.above(other, 1.0)];
+    let over = |part: f64| line.height(part) - other.height_along(line.place(part));
+    let [from, to] = [over(0.0), over(1.0)];
     within(from, to - from, within_mm)
 }
 
@@ -130,4 +131,38 @@ pub(super) fn bed_room(step: &Step) -> f64 {
 /// What may be missing under a line, mm.
 fn own_gap(step: &Step) -> f64 {
     GAP * f64::from(step.height).min(0.3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_line_over_a_slope_lies_on_short_ones() {
+        // 12 mm at 17°, over pieces of it that lie a skin lower.
+        let at = |y: f64, below: f64| [0.0, y as f32, (10.0 + 0.3 * y - below) as f32];
+        let bead = |from: f64, to: f64, below: f64| {
+            Bead::of(&Step {
+                from: at(from, below),
+                to: at(to, below),
+                filament: 1.0,
+                feed: 1.0,
+                width: 0.4,
+                height: 0.2,
+                role: Role::NonPlanar,
+                line: 1,
+            })
+        };
+        let long = bead(0.0, 12.0, 0.0);
+        let carried = |from: f64, to: f64| {
+            let other = bead(from, to, 0.2);
+            let beside = long.way(&other, 0.2)?;
+            above(&long, &other, [0.05, 0.31]).and_then(|way| super::super::laid::both(way, beside))
+        };
+        for (from, to) in [(0.0, 2.0), (5.0, 7.0), (11.0, 12.0), (7.0, 5.0), (6.0, 6.05)] {
+            let [begin, end] = carried(from, to).unwrap();
+            let (low, high) = (from.min(to) / 12.0, from.max(to) / 12.0);
+            assert!(begin <= low + 1e-6 && end >= high - 1e-6, "{from} to {to}: {begin} {end}");
+        }
+    }
 }

@@ -99,6 +99,16 @@ impl Bead {
         self.height((along / self.length).clamp(0.0, 1.0))
     }
 
+    /// Height of the nozzle at a place beside it, mm, if it went on beyond its ends as it goes between them. A line
+    /// that is shorter than wide is as high as its middle.
+    pub(super) fn height_along(&self, at: [f64; 2]) -> f64 {
+        if self.is_level() || self.length < self.radius {
+            return self.middle();
+        }
+        let along = segment::dot(segment::way(self.from, at), self.along);
+        self.height(along / self.length)
+    }
+
     /// Whether all of it lies at one height.
     pub(super) fn is_level(&self) -> bool {
         self.heights[0] == self.heights[1]

@@ -201,9 +201,29 @@ impl Coat {
     }
 }
 
-/// How many layers of `slicer` have something left on the `base`, from the lowest on.
+/// How many layers of `slicer` have something left on the `base`, from the lowest on. All, where none has anything:
+/// then there was nothing, and the job is refused for that.
 fn layers(base: &Base<'_>, slicer: &Slicer<'_>) -> usize {
     let is_left = |layer: &&Layer| !base.cut(Layer::clone(layer)).contours.is_empty();
     let last = |block| slicer.block(block).iter().rev().find(is_left).map(|layer| layer.index + 1);
-    (0..slicer.blocks()).rev().find_map(last).unwrap_or(0)
+    (0..slicer.blocks()).rev().find_map(last).unwrap_or_else(|| slicer.heights().count())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+    use crate::mesh::edges::adjacency;
+
+    #[test]
+    fn a_part_of_which_nothing_is_cut_keeps_its_layers() {
+        // A needle: too thin for a contour at the middle of its layer.
+        let vertices = vec![[0, 0, 0], [40, 0, 0], [0, 40, 0], [0, 0, 2_000]];
+        let mesh = Mesh { vertices, triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]] };
+        let heights = Heights::even(2_000, 2_000, 2_000);
+        let adjacency = adjacency(&mesh.vertices, &mesh.triangles);
+        let slicer = Slicer::new(&mesh, &adjacency, heights, 100);
+        assert!(slicer.block(0)[0].contours.is_empty());
+        assert_eq!(layers(&Base::default(), &slicer), 1);
+    }
 }
