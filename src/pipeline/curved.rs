@@ -1,4 +1,12 @@
 //! Mesh and layers -> Curved: the patches of non-planar skin, for the stages that leave room for them and print them.
+//!
+//! Words: a *patch* is skins over one piece of a surface; its *base* is what is printed level below; a *coat* is
+//! a patch as it is printed, after the paths of its layer.
+//!
+//! 1. Patches are [found](find) before the first layer is planned: support, a tall skirt and the other bodies stand
+//!    in their way.
+//! 2. Layers are cut to what the base leaves of them; those of which nothing is left are not printed.
+//! 3. After the paths of a layer come the coats that wait for it.
 
 use crate::fill::Path;
 use crate::geom::hull::hull;

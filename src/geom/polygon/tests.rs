@@ -1,4 +1,11 @@
 //! Shapes -> laws of offsets, unions and differences, held against the library and against areas by formula.
+//!
+//! - A *star* has its corners around one place, at given distances; its sides do not cross.
+//! - A *sliver* is a contour that is hardly wider than the grid.
+//!
+//! 1. Curves that do not cross come out as the library makes them, to the first vertex.
+//! 2. Where sides are cut here and not by the library, areas agree within a micrometre along the outline.
+//! 3. What is left of areas has no hole in nothing.
 
 use super::*;
 use crate::geom::edges;
