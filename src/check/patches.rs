@@ -5,10 +5,6 @@
 //! that the file tells: lines are spaced from above, and their heights are those of upright room.
 //!
 //! - Plastic far from that room is told for the whole patch.
-//! - Plastic by the lines' length in space grows as their slope does. Told heights drift by up to 0.02 mm until
-//!   the next telling, so that only the first line after each counts here. Over those the plastic is compared
-//!   with `1 + k · (secant of the slope - 1)` by least squares: sound files of scans and of machine parts
-//!   have k from -0.3 to 0.2 where lines are steep enough, wrong ones 1.
 //! - Marks: a patch ends before another begins, and before the file does. This program gives each number once.
 
 use super::finding::{Code, Finding, Findings, Place, short};
@@ -23,45 +19,20 @@ const BOUNDS: [f64; 2] = [0.7, 1.3];
 /// Least room by which a patch is judged, mm³: some lines.
 const LEAST_ROOM: f64 = 2.0;
 
-/// The root of the mean square of secant - 1 from which on slopes count: lines of 8 degrees.
-const LEAST_SECANT: f64 = 0.01;
-
-/// From here on plastic grows with the slope.
-const LEAST_GROWTH: f64 = 0.5;
-
 /// Sums of a patch.
 #[derive(Debug, Clone, Copy)]
 struct Sums {
     /// mm³.
     plastic: f64,
     room: f64,
-    /// Of lines whose heights are told anew: room; that times the square of secant - 1; and what they take more
-    /// than their room, times secant - 1.
-    told: [f64; 3],
-    /// Height of the last line, mm.
-    height: f32,
     /// Line of the file and layer, from 1, of its first line.
     first: (u32, Option<usize>),
 }
 
 impl Sums {
     fn add(&mut self, step: &Step, terms: &Terms) {
-        let (plastic, room, plan) = (terms.plastic(step), step.room(), step.plan_length());
-        self.plastic += plastic;
-        self.room += room;
-        if step.height != self.height {
-            let secant = step.length() / plan - 1.0;
-            let own = [room, room * secant * secant, (plastic - room) * secant];
-            self.told.iter_mut().zip(own).for_each(|(sum, one)| *sum += one);
-        }
-        self.height = step.height;
-    }
-
-    /// Whether the plastic of lines grows with their slope. See the head of this file.
-    fn grows(&self) -> bool {
-        let [room, square, more] = self.told;
-        let is_steep = square > LEAST_SECANT * LEAST_SECANT * room && room >= LEAST_ROOM;
-        is_steep && more > LEAST_GROWTH * square
+        self.plastic += terms.plastic(step);
+        self.room += step.room();
     }
 }
 
@@ -82,7 +53,7 @@ impl Patches {
         let Some(patch) = facts.patch_at(u64::from(step.line)) else { return };
         let first = (step.line, layer.map(|layer| layer + 1));
         let sums = self.all.entry(patch.number);
-        let nothing = Sums { plastic: 0.0, room: 0.0, told: [0.0; 3], height: 0.0, first };
+        let nothing = Sums { plastic: 0.0, room: 0.0, first };
         sums.or_insert(nothing).add(step, terms);
     }
 
@@ -107,17 +78,10 @@ fn judged(number: u32, sums: &Sums) -> Option<Finding> {
         return None;
     }
     let percent = short(100.0 * fills);
-    if !(BOUNDS[0]..=BOUNDS[1]).contains(&fills) {
+    (!(BOUNDS[0]..=BOUNDS[1]).contains(&fills)).then(|| {
         let text = format!("patch {number} takes {percent} % of the plastic that it has room for");
         let code = if fills > 1.0 { Code::Overfilled } else { Code::Underfilled };
-        return Some(Finding::of(code, percent, "%", text));
-    }
-    sums.grows().then(|| {
-        let text = format!(
-            "patch {number} takes {percent} % of the plastic that it has room for: as much as its lines are \
-             long in space, not from above"
-        );
-        Finding::of(Code::Overfilled, percent, "%", text)
+        Finding::of(code, percent, "%", text)
     })
 }
 

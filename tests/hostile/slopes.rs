@@ -29,8 +29,6 @@ pub(crate) enum Slant {
     Missing(usize),
     /// So many times the plastic of a stroke, or of the whole patch.
     Flow(f64, bool),
-    /// As much plastic as lines are long in space.
-    InSpace,
     /// A travel at this part of its height.
     Low(f64),
     /// A travel goes aside before it goes up.
@@ -46,7 +44,7 @@ pub(crate) enum Slant {
 }
 
 /// All of them, each with its name, and the codes by one of which it is found.
-pub(crate) const SLANTS: [(&str, Slant, &[Code]); 18] = [
+pub(crate) const SLANTS: [(&str, Slant, &[Code]); 17] = [
     ("a line 1 mm higher", Slant::Lifted(1.0), &[Code::InTheAir]),
     ("a line 0.3 mm higher", Slant::Lifted(0.3), &[Code::InTheAir]),
     ("a line 0.3 mm lower", Slant::Lifted(-0.3), &[Code::FallingZ]),
@@ -56,7 +54,6 @@ pub(crate) const SLANTS: [(&str, Slant, &[Code]); 18] = [
     ("a line: half the plastic", Slant::Flow(0.5, false), &[Code::OddBead]),
     ("all: twice the plastic", Slant::Flow(2.0, true), &[Code::DoubleSkin]),
     ("all: half the plastic", Slant::Flow(0.5, true), &[Code::Underfilled, Code::UncoveredSkin]),
-    ("plastic by the length in space", Slant::InSpace, &[Code::Overfilled]),
     ("a travel at 40 % of the height", Slant::Low(0.4), &[Code::HeadHits]),
     ("a travel goes aside before it goes up", Slant::AsideFirst, &[Code::HeadHits]),
     ("printed two layers too early", Slant::Later(-2), &[Code::FallingZ, Code::InTheAir]),
@@ -78,7 +75,7 @@ impl Sound {
     pub(crate) fn slant(&self, slant: Slant, chance: &mut Chance) -> Option<String> {
         let blocks = self.blocks();
         let (number, block) = match slant {
-            Slant::InSpace | Slant::Later(_) => self.steepest(blocks.clone())?,
+            Slant::Later(_) => self.steepest(blocks.clone())?,
             _ => blocks.get(chance.below(blocks.len()))?.clone(),
         };
         match slant {
@@ -88,10 +85,6 @@ impl Sound {
                 let of = if is_all { self.skin(number) } else { self.stroke(number, chance)? };
                 self.changed(of, |m| Move { e: m.e * times, ..*m })
             }
-            Slant::InSpace => self.changed(self.skin(number), |m| {
-                let rise = (m.to[2] - m.from[2]) / m.length();
-                Move { e: m.e * (1.0 + rise * rise).sqrt(), ..*m }
-            }),
             Slant::Low(part) => self.low(number, part, chance),
             Slant::AsideFirst => self.aside_first(number, chance),
             Slant::Later(layers) => self.later(block, layers),
@@ -302,7 +295,6 @@ pub(crate) const SET: [(&str, &str); 5] = [
     ("machine.relative_e", "true"),
     ("nonplanar.enabled", "true"),
     ("head.name", "long-0.6"),
-    // The last skin up the slope: plastic by the length in space is hardly more on level lines.
     ("nonplanar.directions", "auto"),
 ];
 
