@@ -263,6 +263,9 @@ impl From<&steps::Error> for Details {
             Cause::TooFar { line, .. } => {
                 Self::in_file("does-not-fit", &error.file).at(place(*line))
             }
+            Cause::NotMade { line, .. } => {
+                Self::in_file("unreadable", &error.file).at(place(*line))
+            }
         }
     }
 }

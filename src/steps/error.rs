@@ -46,6 +46,16 @@ pub enum Cause {
         /// Letter of the axis.
         axis: char,
     },
+    /// The G-code has a command that moves something, and that a stream cannot hold.
+    #[error("line {line}: {code} {why}")]
+    NotMade {
+        /// Line of the G-code, from 1.
+        line: u64,
+        /// The command.
+        code: String,
+        /// What it does, and what to do.
+        why: &'static str,
+    },
     /// It would take longer than any print.
     #[error(
         "it takes more than {days:.0} days; look for a wait (G4) or a feed (F) that is not meant",

@@ -136,6 +136,11 @@ enum Waiting {
     Rest,
 }
 
+/// Why some commands are refused.
+const OWN_RETRACTION: &str = "pulls filament back by a length that only a printer's firmware knows; make the file with E moves";
+const CURVE: &str = "is a curve; make the file with straight moves or arcs";
+const OTHER_TOOL: &str = "is a tool that the machine does not have; make the file for one extruder";
+
 enum Failed {
     Write(io::Error),
     Refused(Cause),
@@ -151,6 +156,8 @@ struct Maker<'a> {
     encoder: Encoder<&'a mut dyn Write>,
     /// Feed of moves that the file does not have, mm/s.
     travel: f64,
+    /// The machine's own tool.
+    tool: u32,
     /// Where the path so far ends: picometres, and places.
     at: [i64; AXES],
     place: [i64; AXES],
@@ -182,6 +189,7 @@ impl<'a> Maker<'a> {
             pace: Pace::new(&machine),
             encoder,
             travel: settings.speed.travel,
+            tool: settings.machine.tool,
             place: std::array::from_fn(|axis| machine.scale[axis].place(at[axis]).unwrap_or(0)),
             at,
             rest: 0.0,
@@ -214,6 +222,11 @@ impl<'a> Maker<'a> {
                     apply(&change, &mut limits);
                     clock.set_limits(limits);
                 }
+            }
+            Event::FirmwareRetraction { .. } => self.refuse(line, "G10 or G11", OWN_RETRACTION),
+            Event::Command { letter: b'G', number: 5, .. } => self.refuse(line, "G5", CURVE),
+            Event::Command { letter: b'T', number, .. } if number > 0 && number != self.tool => {
+                self.refuse(line, &format!("T{number}"), OTHER_TOOL);
             }
             Event::Command { letter, number, code } => self.command(line, letter, number, &code),
             _ => {}
@@ -327,6 +340,11 @@ impl<'a> Maker<'a> {
             }
             None => self.emit(&steps, way, feed, &Ramp::even(way, feed)),
         }
+    }
+
+    /// Refuses a command that would move something else than steps do.
+    fn refuse(&mut self, line: u64, code: &str, why: &'static str) {
+        self.failed = Some(Failed::Refused(Cause::NotMade { line, code: code.to_owned(), why }));
     }
 
     fn too_far(&mut self, line: u64, axis: usize) {

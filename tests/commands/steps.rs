@@ -203,6 +203,24 @@ fn damaged_streams_are_refused_with_their_block() {
 }
 
 #[test]
+fn what_a_stream_cannot_hold_is_refused_with_its_line() {
+    let cases = [
+        ("G1 X1 F600\nG10\nG11\n", "a.gcode: line 2: G10 or G11 pulls filament back"),
+        ("G1 X1 F600\nG5 X2 Y2 I1 J0 P0 Q1\n", "a.gcode: line 2: G5 is a curve"),
+        ("G1 X1 F600\nT0\nT1\nG1 E1\n", "a.gcode: line 3: T1 is a tool"),
+    ];
+    for (code, why) in cases {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a.gcode"), code).unwrap();
+        let words = ["steps", "a.gcode", "-p", "witbox-1", "-o", "a.steps"];
+        let refused = slicer(&folder).args(words).assert().code(3).stdout("");
+        let told = text(&refused.get_output().stderr);
+        assert!(told.contains(why) && told.lines().count() == 1, "{told}");
+        assert!(!folder.path().join("a.steps").exists());
+    }
+}
+
+#[test]
 fn where_it_begins_is_told_and_asked_for() {
     let folder = made("G1 X20 Y20\n");
     let words =
