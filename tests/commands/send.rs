@@ -6,7 +6,7 @@ use super::common::board::{self, Board, Kind, Step};
 use super::run::{folder, slicer};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::{FdFlags, fcntl_setfd, read, write};
-use rustix::process::{Pid, Signal, kill_process};
+use rustix::process::{Pid, Signal, WaitOptions, kill_process, waitpid};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use serde_json::Value;
 use slicer::steps::{Decoder, Item};
@@ -237,6 +237,45 @@ fn a_pause_stands_still_until_it_is_let_go_on() {
 }
 
 #[test]
+fn a_stop_of_who_stands_still_moves_nothing() {
+    for with in [Signal::INT, Signal::TERM] {
+        let bench = Bench::new(Kind::default(), 0);
+        let child = bench.begin(&[]);
+        signal(&child, Signal::TSTP);
+        // Until the process is stopped, too.
+        waitpid(Some(Pid::from_child(&child)), WaitOptions::UNTRACED).unwrap();
+        assert_eq!(bench.board().state, board::PAUSED);
+        let steps = bench.board().lives[0].len();
+        signal(&child, with);
+        signal(&child, Signal::CONT);
+        assert_eq!(end(child), (Some(130), String::new(), String::new()));
+        let board = bench.board();
+        assert!(board.state == board::STOPPED && board.is_off());
+        // Pause and stop, and no go on between them.
+        assert_eq!((board.orders, board.lives[0].len()), (2, steps));
+    }
+}
+
+#[test]
+fn a_pause_that_is_under_way_is_taken_back() {
+    let bench = Bench::new(Kind::default(), 0);
+    let child = bench.begin(&["--json"]);
+    // The board hears nothing meanwhile.
+    let deaf = bench.board();
+    signal(&child, Signal::TSTP);
+    thread::sleep(Duration::from_millis(300));
+    signal(&child, Signal::CONT);
+    thread::sleep(Duration::from_millis(300));
+    drop(deaf);
+    bench.until(|board| board.state == board::DONE);
+    let (code, out, told) = end(child);
+    assert_eq!((code, told.as_str()), (Some(0), ""));
+    assert_eq!(serde_json::from_str::<Value>(&out).unwrap()["pauses"], 0);
+    assert_eq!(bench.board().orders, 2);
+    bench.is_done();
+}
+
+#[test]
 fn an_unplugged_port_is_one_line_of_error() {
     let mut bench = Bench::new(Kind::default(), 0);
     let child = bench.begin(&[]);
@@ -262,8 +301,37 @@ fn another_run_goes_on_where_one_was_killed_and_none_begins_anew() {
     let told: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
     assert_eq!(told["resumed_at"], held);
     bench.is_done();
+    // The user is not sent into printing it again.
+    let heard = bench.board().lives.clone();
+    let over = said(&bench.send(&["--resume"]).success().stdout(""));
+    assert!(
+        over.contains("the board has executed all of it") && over.lines().count() == 1,
+        "{over}"
+    );
+    assert!(bench.board().lives == heard && bench.board().is_off());
+    // It restarts: nothing is held, and nothing is known.
+    bench.board().restart();
     let none = said(&bench.send(&["--resume"]).code(4).stdout(""));
     assert!(none.contains("holds no part of this file") && none.lines().count() == 1, "{none}");
+}
+
+#[test]
+fn who_resumes_what_was_stopped_or_failed_is_told_so() {
+    let bench = Bench::new(Kind::default(), 0);
+    let child = bench.begin(&[]);
+    signal(&child, Signal::INT);
+    assert_eq!(end(child).0, Some(130));
+    let told = said(&bench.send(&["--resume"]).code(4).stdout(""));
+    assert!(
+        told.contains("was stopped at the board after ") && told.lines().count() == 1,
+        "{told}"
+    );
+    let bench = Bench::new(Kind { fails_at: Some(1), ..Kind::default() }, 0);
+    let why = "failed after 1 block: Y: a switch was hit";
+    for words in [&[][..], &["--resume"]] {
+        let told = said(&bench.send(words).code(4).stdout(""));
+        assert!(told.contains(why) && told.lines().count() == 1, "{told}");
+    }
 }
 
 #[test]
@@ -323,4 +391,6 @@ fn what_is_no_stream_or_no_port_is_refused_before_anything_is_sent() {
     }
     bench.send(&["--baud", "300"]).code(2);
     slicer(&bench.folder).args(["send", "a.steps"]).assert().code(2);
+    let run = slicer(&bench.folder).args(["send", "-", "--port", &bench.port]).assert();
+    assert!(said(&run.code(2).stdout("")).contains("send needs a file"));
 }
