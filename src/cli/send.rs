@@ -6,11 +6,12 @@
 //! 2. The port is opened, and blocks go to the board, until it has executed all.
 //! 3. SIGINT and SIGTERM wish to stop: motors and heater off, and the program ends with 130. A second one
 //!    ends it at once. Ctrl-Z (SIGTSTP) wishes to pause: when the board stands still, this process is
-//!    stopped as any other would be; `fg` or SIGCONT goes on. Other signals end the program as they end any:
+//!    stopped as any other would be; `fg` or SIGCONT goes on, or takes back a pause that is still under
+//!    way. A stop that was wished meanwhile is all that is then sent. Other signals end the program as they end any:
 //!    the board holds the job, and `--resume` goes on with it.
 
 use super::progress::Meter;
-use super::{Outcome, output, say};
+use super::{Outcome, output, say, usage};
 use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
@@ -69,6 +70,9 @@ pub(crate) struct SendArgs {
 /// # Errors
 /// A stream that cannot be read or is damaged; every error of sending.
 pub(super) fn run(args: &SendArgs) -> Result<Outcome> {
+    if args.file == Path::new("-") {
+        usage::refuse("send needs a file: it is read more than once")?;
+    }
     let mut wishes = signals::Wishes::watch();
     let name = text::name(&args.file);
     let unreadable = |error| slicer::steps::Cause::Unreadable(error).of(&name);
@@ -107,6 +111,9 @@ pub(super) fn run(args: &SendArgs) -> Result<Outcome> {
 /// For people.
 fn notes(sent: &Sent, told: &Told) -> String {
     let blocks = plural(u64::from(sent.done), "block");
+    if told.resumed_at == Some(sent.done) {
+        return format!("the board has executed all of it: {blocks}\n");
+    }
     let again = match sent.repeated {
         0 => String::new(),
         frames => format!(", {} sent again", plural(frames, "frame")),
@@ -138,7 +145,7 @@ mod signals {
     //! Signals -> wishes, and a port that they are for.
 
     use super::SendArgs;
-    use signal_hook::consts::{SIGINT, SIGTERM, SIGTSTP};
+    use signal_hook::consts::{SIGCONT, SIGINT, SIGTERM, SIGTSTP};
     use signal_hook::{flag, low_level};
     use slicer::progress::Progress;
     use slicer::steps::send::{self, Error, Event, Feed, Port, Sender, Sent};
@@ -146,12 +153,23 @@ mod signals {
     use std::hash::{BuildHasher as _, RandomState};
     use std::io::{Read, Seek};
     use std::sync::Arc;
-    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+    use std::thread;
+    use std::time::Duration;
+
+    /// What was asked for last, and is not done: nothing, to pause, or to go on.
+    const NOTHING: usize = 0;
+    const PAUSE: usize = 1;
+    const GO: usize = 2;
+
+    /// How long signals that came while this process was stopped may take: another thread may have them.
+    const DELIVERY: Duration = Duration::from_millis(50);
 
     /// What signals ask for.
     pub(super) struct Wishes {
         stop: Arc<AtomicBool>,
-        pause: Arc<AtomicBool>,
+        /// The last of pause and go on.
+        last: Arc<AtomicUsize>,
         /// The board was told to stand still.
         is_pausing: bool,
         pauses: u64,
@@ -160,15 +178,17 @@ mod signals {
     impl Wishes {
         /// Watches signals from now on. What cannot be watched ends the program as it ends any.
         pub(super) fn watch() -> Self {
-            let [stop, pause] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
+            let stop = Arc::new(AtomicBool::new(false));
+            let last = Arc::new(AtomicUsize::new(NOTHING));
             for signal in [SIGINT, SIGTERM] {
                 // In this order: the first signal finds the flag still down.
                 let code = i32::from(crate::cli::interrupt::INTERRUPTED);
                 let _ = flag::register_conditional_shutdown(signal, code, Arc::clone(&stop));
                 let _ = flag::register(signal, Arc::clone(&stop));
             }
-            let _ = flag::register(SIGTSTP, Arc::clone(&pause));
-            Self { stop, pause, is_pausing: false, pauses: 0 }
+            let _ = flag::register_usize(SIGTSTP, Arc::clone(&last), PAUSE);
+            let _ = flag::register_usize(SIGCONT, Arc::clone(&last), GO);
+            Self { stop, last, is_pausing: false, pauses: 0 }
         }
 
         pub(super) fn is_stop(&self) -> bool {
@@ -183,17 +203,26 @@ mod signals {
             if self.is_stop() {
                 return Some(Event::Stop);
             }
-            if self.pause.swap(false, Ordering::Relaxed) {
-                self.is_pausing = true;
-                return Some(Event::Pause);
+            match self.last.swap(NOTHING, Ordering::SeqCst) {
+                PAUSE => {
+                    self.is_pausing = true;
+                    return Some(Event::Pause);
+                }
+                GO if self.is_pausing => {
+                    self.is_pausing = false;
+                    return Some(Event::Go);
+                }
+                _ => {}
             }
-            if self.is_pausing && sender.is_paused() {
-                (self.is_pausing, self.pauses) = (false, self.pauses + 1);
-                // Returns when somebody lets this process go on.
-                let _ = low_level::emulate_default_handler(SIGTSTP);
-                return Some(Event::Go);
-            }
-            None
+            (self.is_pausing && sender.is_paused()).then(|| self.stand())
+        }
+
+        /// Stops this process, until somebody lets it go on.
+        fn stand(&mut self) -> Event {
+            (self.is_pausing, self.pauses) = (false, self.pauses + 1);
+            let _ = low_level::emulate_default_handler(SIGTSTP);
+            thread::sleep(DELIVERY);
+            if self.is_stop() { Event::Stop } else { Event::Go }
         }
     }
 

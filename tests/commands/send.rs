@@ -6,7 +6,7 @@ use super::common::board::{self, Board, Kind, Step};
 use super::run::{folder, slicer};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::{FdFlags, fcntl_setfd, read, write};
-use rustix::process::{Pid, Signal, kill_process};
+use rustix::process::{Pid, Signal, WaitOptions, kill_process, waitpid};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use serde_json::Value;
 use slicer::steps::{Decoder, Item};
@@ -52,7 +52,8 @@ impl Bench {
         let port = ptsname(&main, Vec::new()).unwrap().into_string().unwrap();
         let (shared, off) = (Arc::clone(&board), Arc::clone(&is_off));
         let thread = thread::spawn(move || {
-            let (began, mut frames) = (Instant::now(), 0);
+            // Each way counts by itself: how often nothing came makes no difference.
+            let (began, mut frames, mut pieces) = (Instant::now(), 0_u64, 0);
             let wait = Timespec { tv_sec: 0, tv_nsec: 2_000_000 };
             while !*off.lock().unwrap() {
                 let mut piece = [0; 4096];
@@ -64,8 +65,8 @@ impl Bench {
                 if is_quiet {
                     thread::sleep(Duration::from_millis(1));
                 }
-                frames += 1;
-                match frames % loses.max(2) {
+                pieces += u64::from(heard > 0);
+                match pieces % loses.max(2) {
                     0 if loses > 0 => heard = 0,
                     1 if loses > 0 && heard > 0 => piece[heard / 2] ^= 0x10,
                     _ => {}
@@ -198,14 +199,14 @@ fn an_interrupt_turns_motors_and_heater_off_and_says_nothing() {
 fn a_second_interrupt_ends_at_once() {
     let bench = Bench::new(Kind::default(), 0);
     let child = bench.begin(&[]);
-    bench.board().kind.is_stubborn = true;
+    // The board hears nothing meanwhile, and answers nothing.
+    let deaf = bench.board();
     signal(&child, Signal::INT);
-    bench.until(|board| board.orders > 0);
+    thread::sleep(Duration::from_millis(300));
     let began = Instant::now();
     signal(&child, Signal::INT);
     assert_eq!(end(child), (Some(130), String::new(), String::new()));
-    assert!(began.elapsed() < Duration::from_secs(4));
-    assert!(!bench.board().is_off());
+    assert!(began.elapsed() < Duration::from_secs(4) && !deaf.is_off());
 }
 
 #[test]
@@ -237,6 +238,45 @@ fn a_pause_stands_still_until_it_is_let_go_on() {
 }
 
 #[test]
+fn a_stop_of_who_stands_still_moves_nothing() {
+    for with in [Signal::INT, Signal::TERM] {
+        let bench = Bench::new(Kind::default(), 0);
+        let child = bench.begin(&[]);
+        signal(&child, Signal::TSTP);
+        // Until the process is stopped, too.
+        waitpid(Some(Pid::from_child(&child)), WaitOptions::UNTRACED).unwrap();
+        assert_eq!(bench.board().state, board::PAUSED);
+        let steps = bench.board().lives[0].len();
+        signal(&child, with);
+        signal(&child, Signal::CONT);
+        assert_eq!(end(child), (Some(130), String::new(), String::new()));
+        let board = bench.board();
+        assert!(board.state == board::STOPPED && board.is_off());
+        // Pause and stop, and no go on between them.
+        assert_eq!((board.orders, board.lives[0].len()), (2, steps));
+    }
+}
+
+#[test]
+fn a_pause_that_is_under_way_is_taken_back() {
+    let bench = Bench::new(Kind::default(), 0);
+    let child = bench.begin(&["--json"]);
+    // The board hears nothing meanwhile.
+    let deaf = bench.board();
+    signal(&child, Signal::TSTP);
+    thread::sleep(Duration::from_millis(300));
+    signal(&child, Signal::CONT);
+    thread::sleep(Duration::from_millis(300));
+    drop(deaf);
+    bench.until(|board| board.state == board::DONE);
+    let (code, out, told) = end(child);
+    assert_eq!((code, told.as_str()), (Some(0), ""));
+    assert_eq!(serde_json::from_str::<Value>(&out).unwrap()["pauses"], 0);
+    assert_eq!(bench.board().orders, 2);
+    bench.is_done();
+}
+
+#[test]
 fn an_unplugged_port_is_one_line_of_error() {
     let mut bench = Bench::new(Kind::default(), 0);
     let child = bench.begin(&[]);
@@ -262,8 +302,37 @@ fn another_run_goes_on_where_one_was_killed_and_none_begins_anew() {
     let told: Value = serde_json::from_slice(&run.get_output().stdout).unwrap();
     assert_eq!(told["resumed_at"], held);
     bench.is_done();
+    // The user is not sent into printing it again.
+    let heard = bench.board().lives.clone();
+    let over = said(&bench.send(&["--resume"]).success().stdout(""));
+    assert!(
+        over.contains("the board has executed all of it") && over.lines().count() == 1,
+        "{over}"
+    );
+    assert!(bench.board().lives == heard && bench.board().is_off());
+    // It restarts: nothing is held, and nothing is known.
+    bench.board().restart();
     let none = said(&bench.send(&["--resume"]).code(4).stdout(""));
     assert!(none.contains("holds no part of this file") && none.lines().count() == 1, "{none}");
+}
+
+#[test]
+fn who_resumes_what_was_stopped_or_failed_is_told_so() {
+    let bench = Bench::new(Kind::default(), 0);
+    let child = bench.begin(&[]);
+    signal(&child, Signal::INT);
+    assert_eq!(end(child).0, Some(130));
+    let told = said(&bench.send(&["--resume"]).code(4).stdout(""));
+    assert!(
+        told.contains("was stopped at the board after ") && told.lines().count() == 1,
+        "{told}"
+    );
+    let bench = Bench::new(Kind { fails_at: Some(1), ..Kind::default() }, 0);
+    let why = "failed after 1 block: Y: a switch was hit";
+    for words in [&[][..], &["--resume"]] {
+        let told = said(&bench.send(words).code(4).stdout(""));
+        assert!(told.contains(why) && told.lines().count() == 1, "{told}");
+    }
 }
 
 #[test]
@@ -323,4 +392,6 @@ fn what_is_no_stream_or_no_port_is_refused_before_anything_is_sent() {
     }
     bench.send(&["--baud", "300"]).code(2);
     slicer(&bench.folder).args(["send", "a.steps"]).assert().code(2);
+    let run = slicer(&bench.folder).args(["send", "-", "--port", &bench.port]).assert();
+    assert!(said(&run.code(2).stdout("")).contains("send needs a file"));
 }

@@ -2,6 +2,7 @@
 
 use super::super::axis::LETTERS;
 use super::super::error as stream;
+use super::frame::State;
 use std::io;
 
 /// A stream that could not be sent, or not to its end.
@@ -20,7 +21,7 @@ pub struct Error {
 #[non_exhaustive]
 pub enum Cause {
     /// The port cannot be opened or set.
-    #[error("cannot open: {0}; check --port")]
+    #[error("cannot open: {}; check --port", opening(.0))]
     Open(#[source] io::Error),
     /// It is a file of another kind.
     #[error("it is no serial port; check --port")]
@@ -38,7 +39,10 @@ pub enum Cause {
         begun: bool,
     },
     /// It answers, but what is sent does not get through. The board holds the job.
-    #[error("the board answers, but {what} does not get through; check cable and --baud{}", resume(*.begun))]
+    #[error(
+        "{what} does not get through: answers come too late or not at all; check cable and --baud{}",
+        resume(*.begun)
+    )]
     NotTaken {
         /// What was sent.
         what: &'static str,
@@ -71,7 +75,7 @@ pub enum Cause {
         axis: Option<usize>,
     },
     /// It could not go on.
-    #[error("the board failed after {done} blocks: {}", why(*.reason, *.axis))]
+    #[error("the board failed after {}: {}", blocks(*.done), why(*.reason, *.axis))]
     Failed {
         /// Its number of the protocol.
         reason: u8,
@@ -82,26 +86,27 @@ pub enum Cause {
     },
     /// It restarted.
     #[error(
-        "the board restarted after {done} blocks: it does not know where its axes stand; take off the \
-         part, home them, and begin anew"
+        "the board restarted after {}: it does not know where its axes stand; take off the part, home \
+         them, and begin anew",
+        blocks(*.done)
     )]
     Restarted {
         /// Blocks that it had executed when it was last heard.
         done: u32,
     },
     /// Somebody stopped it.
-    #[error("the job was stopped at the board after {done} blocks; home its axes, and begin anew")]
+    #[error("the job was stopped at the board after {}; home its axes, and begin anew", blocks(*.done))]
     StoppedThere {
         /// Blocks that it had executed.
         done: u32,
     },
     /// It answers, and does nothing.
-    #[error(
-        "the board is ready or busy for ever: nothing happened for {seconds} s; it was stopped"
-    )]
+    #[error("the board {}: nothing happened for {seconds} s; it was stopped", idle(*.state))]
     Stuck {
         /// How long, s.
         seconds: u64,
+        /// What it was at.
+        state: State,
     },
     /// Its answers contradict themselves.
     #[error("the board says what cannot be: block {0}; mend its program")]
@@ -132,6 +137,24 @@ impl Error {
 
 fn resume(begun: bool) -> &'static str {
     if begun { ", and go on with --resume" } else { "" }
+}
+
+fn opening(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::ResourceBusy => "another program has it open".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+fn blocks(count: u32) -> String {
+    if count == 1 { "1 block".to_owned() } else { format!("{count} blocks") }
+}
+
+fn idle(state: State) -> &'static str {
+    match state {
+        State::Preparing => "does not get ready",
+        _ => "runs but executes nothing",
+    }
 }
 
 /// What the numbers of the protocol mean.

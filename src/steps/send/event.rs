@@ -2,10 +2,16 @@
 
 use super::super::axis::AXES;
 use super::error::Cause;
-use super::frame::{Answer, Order, State, Status};
+use super::frame::{Answer, Job, Order, State, Status};
 
 /// Milliseconds.
 pub type Ms = u64;
+
+/// How much longer than its steps a block may take.
+const SLACK: Ms = 30_000;
+
+/// How long a board may heat.
+const HEATING: Ms = 1_800_000;
 
 /// What is to be sent; the frame's tag stands beside it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,5 +71,25 @@ pub(super) fn over(status: &Status, blocks: u32) -> Result<Option<Ended>, Cause>
         State::Refused => Err(Cause::Refused { reason, axis }),
         State::Failed => Err(Cause::Failed { reason, axis, done }),
         State::Preparing | State::Running | State::Paused => Ok(None),
+    }
+}
+
+/// How a job ended at a board that is at nothing any more, for who wants to go on with it.
+///
+/// # Errors
+/// [`Cause::NothingHeld`] if it had another, or none; else if it ended badly.
+pub(super) fn left(status: &Status, job: Job) -> Result<Option<Ended>, Cause> {
+    if status.job != job.sum || status.state == State::Idle {
+        return Err(Cause::NothingHeld);
+    }
+    over(status, job.blocks)
+}
+
+/// How long a board may execute nothing, if it should; `longest` is how long the longest block takes.
+pub(super) fn may_take(status: &Status, longest: Ms) -> Option<Ms> {
+    match status.state {
+        State::Running if status.done < status.next => Some(longest.saturating_add(SLACK)),
+        State::Preparing => Some(HEATING),
+        _ => None,
     }
 }

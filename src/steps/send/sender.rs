@@ -22,7 +22,7 @@
 //! - What does not arrive after [`REPEATS`] repeats, though the board answers, ends the run.
 
 use super::error::Cause;
-use super::event::{Action, Ended, Event, Ms, Want, over};
+use super::event::{Action, Ended, Event, Ms, Want, left, may_take, over};
 use super::frame::{Answer, Job, Order, State, Status, VERSION};
 use std::collections::VecDeque;
 
@@ -37,12 +37,6 @@ pub const FLIGHT: usize = 4;
 
 /// How often a quiet board is asked how it is.
 const POLL: Ms = 500;
-
-/// How much longer than its steps a block may take.
-const SLACK: Ms = 30_000;
-
-/// How long a board may heat.
-const HEATING: Ms = 1_800_000;
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Phase {
@@ -68,8 +62,8 @@ pub struct Sender {
     job: Job,
     run: u32,
     is_resume: bool,
-    /// How long nothing may be executed, ms.
-    patience: Ms,
+    /// How long the longest block takes, ms.
+    longest: Ms,
     phase: Phase,
     boot: Option<u32>,
     /// Other boots before anything was begun.
@@ -118,8 +112,7 @@ impl Sender {
     /// the longest block takes, ms. With `is_resume` it goes on with what the board has.
     #[must_use]
     pub fn new(job: Job, run: u32, longest: Ms, is_resume: bool) -> Self {
-        let patience = longest.saturating_add(SLACK);
-        Self { job, run, is_resume, patience, ..Self::default() }
+        Self { job, run, is_resume, longest, ..Self::default() }
     }
 
     /// The first block that the board does not have.
@@ -221,7 +214,7 @@ impl Sender {
         if self.phase == Phase::Sending
             && let Some(seconds) = self.is_stuck(now)
         {
-            self.why = Some(Cause::Stuck { seconds });
+            self.why = Some(Cause::Stuck { seconds, state: self.board.state });
             return self.stop(now, out);
         }
         match self.waits_since {
@@ -236,13 +229,9 @@ impl Sender {
 
     /// How long nothing moved where something should, s.
     fn is_stuck(&mut self, now: Ms) -> Option<u64> {
-        let most = match self.board.state {
-            State::Running if self.board.done < self.board.next => self.patience,
-            State::Preparing => HEATING,
-            _ => {
-                self.moved_at = now;
-                return None;
-            }
+        let Some(most) = may_take(&self.board, self.longest) else {
+            self.moved_at = now;
+            return None;
         };
         let still = now.saturating_sub(self.moved_at);
         (still > most).then_some(still / 1000)
@@ -297,10 +286,10 @@ impl Sender {
             Phase::Asking if knows && is_ours && status.state.is_active() => {
                 self.begun(answer, now, out)
             }
-            Phase::Asking if knows => self.found(status, now, out).map(|()| None),
+            Phase::Asking if knows => self.found(status, now, out),
             Phase::Beginning | Phase::Joining if is_ours => self.begun(answer, now, out),
             Phase::Beginning if knows && status.state.is_active() => Err(Cause::Busy(status.next)),
-            Phase::Joining if knows && !status.state.is_active() => Err(Cause::NothingHeld),
+            Phase::Joining if knows && !status.state.is_active() => self.found(status, now, out),
             Phase::Beginning | Phase::Joining if knows => self.greet(now, out).map(|()| None),
             Phase::Sending if is_ours => self.sending(answer, now, out),
             Phase::Sending if knows => Err(Cause::Busy(status.next)),
@@ -340,13 +329,23 @@ impl Sender {
     }
 
     /// The first answer: is it free, or has it what is to be resumed?
-    fn found(&mut self, status: &Status, now: Ms, out: &mut Vec<Action>) -> Result<(), Cause> {
-        match (status.state.is_active(), self.is_resume) {
-            (false, false) => self.enter(Phase::Beginning, now, out),
-            (true, true) if status.job == self.job.sum => self.enter(Phase::Joining, now, out),
-            (true, false) => Err(Cause::Busy(status.next)),
-            (_, true) => Err(Cause::NothingHeld),
-        }
+    fn found(
+        &mut self,
+        status: &Status,
+        now: Ms,
+        out: &mut Vec<Action>,
+    ) -> Result<Option<Ended>, Cause> {
+        let phase = match (status.state.is_active(), self.is_resume) {
+            (false, false) => Phase::Beginning,
+            (true, true) if status.job == self.job.sum => Phase::Joining,
+            (true, false) => return Err(Cause::Busy(status.next)),
+            (true, true) => return Err(Cause::NothingHeld),
+            (false, true) => {
+                self.board.done = status.done;
+                return left(status, self.job);
+            }
+        };
+        self.enter(phase, now, out).map(|()| None)
     }
 
     /// The board has the run.
