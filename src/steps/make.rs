@@ -380,9 +380,8 @@ impl<'a> Maker<'a> {
     fn emit(&mut self, line: &Line, way: f64, feed: f64, ramp: &Ramp) {
         let (encoder, pace) = (&mut self.encoder, &mut self.pace);
         let backwards = line.backwards();
-        let (mut any, mut failed) = (false, None);
+        let mut failed = None;
         line.steps(|share, mask| {
-            any = true;
             let at = pace.step(ramp.at(share * way), mask, backwards);
             match encoder.step(at, mask, backwards) {
                 Ok(()) => ControlFlow::Continue(()),
@@ -393,7 +392,8 @@ impl<'a> Maker<'a> {
             }
         });
         pace.pass(ramp.time());
-        if any && failed.is_none() {
+        // One without a step has an end as well: the path back has it.
+        if failed.is_none() {
             failed = encoder.mark(line.to, feed).err();
         }
         self.look_at_time();
