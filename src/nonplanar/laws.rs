@@ -139,20 +139,19 @@ fn layers(mesh: &Mesh) -> Vec<Layer> {
     (0..slicer.blocks()).flat_map(|b| slicer.block(b)).collect()
 }
 
+/// The base under skins of 0.2 mm on these areas of a surface.
+fn base_under(surface: &Surface, areas: Vec<Vec<Contour>>, raised: Coord) -> Base<'_> {
+    let height = 2_000;
+    Base::new(vec![Lowered { surface, areas, height, raised, grown: 0, beyond: 0 }])
+}
+
 /// Cuts a body whose whole top is a patch, and compares with the body lowered by two skins,
 /// but for what the base is raised by.
 fn is_lowered(make: impl Fn(f64) -> Mesh, slopes: RangeInclusive<f64>, raised: Coord) {
     let (whole, lower) = (make(0.0), make(0.4 - to_mm(raised)));
     let (surface, _) = only(&whole, slopes);
     let areas = vec![surface.outline().to_vec(); 2];
-    let base = Base::new(vec![Lowered {
-        surface: &surface,
-        areas,
-        height: 2_000,
-        raised,
-        grown: 0,
-        beyond: 0,
-    }]);
+    let base = base_under(&surface, areas, raised);
     let expected = layers(&lower);
     let mut cut = 0;
     for layer in layers(&whole) {
@@ -303,14 +302,7 @@ fn a_skin_of_less_area_than_the_next_leaves_a_higher_base() {
     let (surface, _) = only(&mesh, 0.5..=26.0);
     let inner = rectangle(at(-25.0, -15.0), at(25.0, 0.0));
     let areas = vec![inner, surface.outline().to_vec()];
-    let base = Base::new(vec![Lowered {
-        surface: &surface,
-        areas,
-        height: 2_000,
-        raised: 0,
-        grown: 0,
-        beyond: 0,
-    }]);
+    let base = base_under(&surface, areas, 0);
     let layer = layers(&mesh).swap_remove(19);
     let plane = to_mm(layer.z - layer.height / 2);
     let reach = |lower: f64| 25.0 - (plane + lower - 4.0) / 0.08;
@@ -329,14 +321,7 @@ fn a_roof_over_a_patch_stays() {
     let (surface, level) = only(&mesh, 0.5..=26.0);
     assert_eq!(level, 100.0);
     let areas = vec![surface.outline().to_vec(); 2];
-    let base = Base::new(vec![Lowered {
-        surface: &surface,
-        areas,
-        height: 2_000,
-        raised: 0,
-        grown: 0,
-        beyond: 0,
-    }]);
+    let base = base_under(&surface, areas, 0);
     for layer in layers(&mesh).into_iter().skip(25) {
         let plane = to_mm(layer.z - layer.height / 2);
         let lowered = 30.0 * (25.0 - (plane + 0.4 - 4.0) / 0.08).max(0.0);

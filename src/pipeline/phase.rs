@@ -40,17 +40,13 @@ pub fn in_phase<'a>(settings: &Settings, placed: &'a Placed) -> Cow<'a, Placed> 
 mod tests {
     use super::*;
     use crate::mesh::Mesh;
-    use crate::profile::{Override, ValueOrigin, load};
+    use crate::profile::Profile;
 
     /// A box of 50 by 20 mm about the middle, and settings with these values.
     fn of(set: &[(&str, &str)]) -> (Settings, Placed) {
-        let given = |(key, value): &(&str, &str)| Override {
-            key: (*key).to_owned(),
-            value: (*value).to_owned(),
-            origin: ValueOrigin::Set,
-        };
-        let overrides: Vec<Override> = set.iter().map(given).collect();
-        let settings = load(["generic-marlin"], &overrides).unwrap().settings;
+        let given = Profile::builder("generic-marlin");
+        let given = set.iter().fold(given, |given, (key, value)| given.set(*key, *value));
+        let settings = given.load().unwrap().settings;
         let [x, y] = [250_000, 100_000];
         let vertices = vec![[-x, -y, 0], [x, -y, 0], [x, y, 0], [-x, y, 0]];
         let bodies = vec![[Point { x: -x, y: -y }, Point { x, y }]];

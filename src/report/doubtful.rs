@@ -86,17 +86,13 @@ fn outside(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::profile::{Override, ValueOrigin, builtin_names, load};
+    use crate::profile::{Profile, builtin_names, load};
 
     /// What is said of these settings of generic-marlin.
     fn told(set: &[(&str, &str)]) -> Vec<String> {
-        let given = |(key, value): &(&str, &str)| Override {
-            key: (*key).to_owned(),
-            value: (*value).to_owned(),
-            origin: ValueOrigin::Set,
-        };
-        let overrides: Vec<Override> = set.iter().map(given).collect();
-        let settings = load(["generic-marlin"], &overrides).unwrap().settings;
+        let given = Profile::builder("generic-marlin");
+        let given = set.iter().fold(given, |given, (key, value)| given.set(*key, *value));
+        let settings = given.load().unwrap().settings;
         warnings(&settings).iter().map(ToString::to_string).collect()
     }
 
