@@ -8,7 +8,7 @@
 //! what is left is skin or infill. Last, strips in which no sparse line has room become skin.
 
 use super::Skin;
-use super::bridge::loose::{self, Below};
+use super::bridge::loose::{self, Beads, Below};
 use super::bridge::{self, Pair};
 use super::classify::{Areas, areas, areas_beside, exposed};
 use super::crossed::Crossed;
@@ -109,7 +109,7 @@ pub fn divide<'a>(
         None => rooms::on_raster(narrow, both, raster, region),
     };
     let solid = &examined.solid;
-    let beads = held(k, examined.beads.clone(), layers, below, params);
+    let Beads { kept: beads, cut } = held(k, examined.beads.clone(), layers, below, params);
     let pair = below.map(|below| Pair { own, below: below.layer, beads: &beads });
     let bridges = pair.map(|pair| bridge::bridges(pair, layers, params)).unwrap_or_default();
     let along = params.rasters.skin(skin_turn(k).0);
@@ -122,6 +122,13 @@ pub fn divide<'a>(
                 other = exposed(raster);
                 &other
             }
+        };
+        let bare;
+        let uncovered = if cut.is_empty() {
+            uncovered
+        } else {
+            bare = uncovered.or(&loose::bare(&cut, along.frame, raster).and(fill));
+            &bare
         };
         let solid = solid.as_ref().map(|solid| on(solid, raster, fill));
         if beads.is_empty() && bridges.is_empty() {
@@ -167,16 +174,18 @@ fn solid<'a>(
     rooms::narrow(fill, [0, 1].map(|r| params.rasters.skin(r)), params.skins.least_room)
 }
 
-/// The `beads` of layer `k` without those that would lie along the sparse lines below.
+/// The `beads` of layer `k`; cut out is what would lie along the sparse lines below.
 fn held<'a>(
     k: usize,
     beads: Vec<Polyline>,
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
     below: Option<&Lower<'_>>,
     params: &RegionParams,
-) -> Vec<Polyline> {
+) -> Beads {
     let lower = below.and_then(|below| Some((below, below.lines?, layers(k.checked_sub(1)?)?)));
-    let Some((below, lines, rows)) = lower.filter(|_| !beads.is_empty()) else { return beads };
+    let Some((below, lines, rows)) = lower.filter(|_| !beads.is_empty()) else {
+        return Beads { kept: beads, cut: Vec::new() };
+    };
     let along = skin_turn(k).0;
     let Examined { exposed, solid, .. } = below.examined;
     let skin = solid.as_ref().map(|solid| exposed[along].or(&solid[along]));

@@ -7,10 +7,11 @@
 //! At the edge both kinds turn, or end in a tip, and each presses a little into the other. So lines of
 //! the rest end earlier by half of what lines reach into walls.
 //!
-//! Both rasters are divided by the same rule. They agree but for less than a line at the edges; columns
-//! that no row crosses there are left out.
+//! Both rasters are divided by the same rule, but each knows its edges across only to within a line.
+//! Beside a wall that runs along the rows they may disagree for a long way. So each part has all columns
+//! that some row crosses: they say how far its last row is from the wall, and what is left open there is
+//! closed by the part that has this row. Other columns belong to one part.
 
-use super::dual::inner_skin::without_threads;
 use super::first_skin::Both;
 use super::params::NARROW_TOP;
 use super::{Skin, SkinRows};
@@ -37,9 +38,16 @@ pub fn divide(
         return vec![(skin, !along.is_empty())];
     }
     let columns = [skin[1].minus(&across), across];
-    let columns = columns.map(|columns| without_threads(&columns, &skin[1], width));
+    let columns = columns.map(|columns| columns_of(&columns, &skin[1], width));
     let part = |rows: Rows, columns: &Rows| [rows, columns.clone()].map(Arc::new);
     vec![(part(rest, &columns[0]), false), (part(along, &columns[1]), true)]
+}
+
+/// The columns of a part: those of the `whole` skin that rows `pitch` apart cross, and of the others its
+/// `own`.
+fn columns_of(own: &Rows, whole: &Rows, pitch: Coord) -> Rows {
+    let crossed = whole.filter(|_, s| s.end.div_euclid(pitch) * pitch >= s.start);
+    own.and(&whole.minus(&crossed)).or(&crossed)
 }
 
 /// Adds the wall beads of a layer that are seen to its skin that is; returns the others. They lie on the

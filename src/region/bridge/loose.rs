@@ -3,13 +3,15 @@
 //! Narrow skin is laid as beads along the walls ([`crate::region::wall_beads`]). Where they are the
 //! first skin above sparse infill whose lines run in the same direction, they lie between two of
 //! these lines, on nothing, for the whole length of the wall. Such stretches are cut out. What
-//! they would cover is left to the lines of the skin, which run across.
+//! they would cover is left to the lines of the skin, which run across. It may be narrower than the
+//! rows lie apart, so that none of them tells of it: it is handed on as [`bare`] rows.
 
 use crate::geom::Point;
 use crate::geom::frame::Frame;
 use crate::geom::polyline::{self, LinePoint, Polyline};
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
+use crate::region::scan::around;
 use crate::units::{Bounded as _, Coord, nearest};
 
 /// A bead may lie on nothing for this long (2 mm). A smaller value breaks beads at every gap
@@ -36,11 +38,34 @@ pub struct Below<'a> {
     pub lines: Frame,
 }
 
-/// The parts of `beads` that lie on something.
+/// Wall beads of a layer.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Beads {
+    /// Those that lie on something.
+    pub kept: Vec<Polyline>,
+    /// What was cut out of others. Nothing covers it but the lines of the skin.
+    pub cut: Vec<Polyline>,
+}
+
+/// Divides `beads` into the parts that lie on something, and the rest.
 #[must_use]
-pub fn held(beads: Vec<Polyline>, below: &Below<'_>) -> Vec<Polyline> {
+pub fn held(beads: Vec<Polyline>, below: &Below<'_>) -> Beads {
     let lines = below.direction();
-    beads.into_iter().flat_map(|bead| cut(bead, below, lines)).collect()
+    let mut out = Beads::default();
+    beads.into_iter().for_each(|bead| divide(bead, below, lines, &mut out));
+    out
+}
+
+/// Where beads that were `cut` out, given in the frame `from`, leave a layer bare: on the rows of
+/// `raster` that are next to them.
+#[must_use]
+pub fn bare(cut: &[Polyline], from: Frame, raster: Raster) -> Rows {
+    let enter = |p: &LinePoint| raster.frame.enter(from.leave(Point { x: p.u, y: p.v }));
+    let edges = cut.iter().flat_map(|bead| bead.windows(2)).map(|w| {
+        // Two rows may lie as far away as half their distance.
+        (enter(&w[0]), enter(&w[1]), (w[1].width / 2).max(raster.pitch / 2 + 1))
+    });
+    around(&edges.collect::<Vec<_>>(), raster)
 }
 
 /// A point of a bead, and whether the way to it is free.
@@ -51,7 +76,7 @@ struct Step {
     is_free: bool,
 }
 
-fn cut(bead: Polyline, below: &Below<'_>, lines: [f64; 2]) -> Vec<Polyline> {
+fn divide(bead: Polyline, below: &Below<'_>, lines: [f64; 2], out: &mut Beads) {
     let mut steps = Vec::new();
     for (k, ends) in bead.windows(2).enumerate() {
         let (a, b) = (ends[0], ends[1]);
@@ -71,11 +96,15 @@ fn cut(bead: Polyline, below: &Below<'_>, lines: [f64; 2]) -> Vec<Polyline> {
     let is_cut = |run: &[Step]| run[0].is_free && length(run) > MOST_FREE;
     let runs: Vec<&[Step]> = steps.chunk_by(|a, b| a.is_free == b.is_free).collect();
     if !runs.iter().any(|run| is_cut(run)) {
-        return vec![bead];
+        out.kept.push(bead);
+        return;
     }
     let least = SHORT * i64::from(below.raster.pitch);
-    let kept = runs.split(|run| is_cut(run)).map(<[&[Step]]>::concat);
-    kept.filter(|piece| length(piece) >= least).map(|piece| corners(&piece)).collect()
+    for pieces in runs.chunk_by(|a, b| !is_cut(a) && !is_cut(b)) {
+        let piece = pieces.concat();
+        let to = if is_cut(pieces[0]) || length(&piece) < least { &mut out.cut } else { &mut out.kept };
+        to.push(corners(&piece));
+    }
 }
 
 /// The ends and corners of a piece.
@@ -122,7 +151,7 @@ mod tests {
     }
 
     /// What is left of `bead` above infill on rows 0 to 40, with skin below on rows 0 to 5.
-    fn left(bead: Polyline, degrees: f64) -> Vec<Polyline> {
+    fn left(bead: Polyline, degrees: f64) -> Beads {
         let (fill, exposed) = (rows(0, 40), rows(0, 5));
         let raster = Raster { frame: Frame::new(0.0), pitch: W };
         let lines = Frame::new(degrees);
@@ -132,19 +161,32 @@ mod tests {
     #[test]
     fn a_bead_along_the_lines_below_is_left_to_lines_across() {
         let along = bead(&[(10_000, 20 * W), (400_000, 20 * W)]);
-        assert!(left(along.clone(), 0.0).is_empty());
-        assert_eq!(left(along.clone(), 90.0), [along]);
+        assert!(left(along.clone(), 0.0).kept.is_empty());
+        assert_eq!(left(along.clone(), 90.0).kept, [along]);
         let on_skin = bead(&[(10_000, 3 * W), (400_000, 3 * W)]);
-        assert_eq!(left(on_skin.clone(), 0.0), [on_skin]);
+        assert_eq!(left(on_skin.clone(), 0.0).kept, [on_skin]);
     }
 
     #[test]
     fn only_the_stretch_that_lies_on_nothing_is_cut_out() {
         // Along row 3, which lies on skin, across the lines, back along row 20.
         let bead = bead(&[(400_000, 3 * W), (50_000, 3 * W), (50_000, 20 * W), (300_000, 20 * W)]);
-        let left = left(bead, 0.0);
-        assert_eq!(left.len(), 1);
-        let ends = [left[0][0], left[0][left[0].len() - 1]].map(|p| (p.u, p.v));
-        assert_eq!(ends, [(400_000, 3 * W), (50_000, 20 * W)]);
+        let Beads { kept, cut } = left(bead, 0.0);
+        let ends = |pieces: &[Polyline]| {
+            assert_eq!(pieces.len(), 1);
+            [pieces[0][0], pieces[0][pieces[0].len() - 1]].map(|p| (p.u, p.v))
+        };
+        assert_eq!(ends(&kept), [(400_000, 3 * W), (50_000, 20 * W)]);
+        assert_eq!(ends(&cut)[1], (300_000, 20 * W));
+    }
+
+    #[test]
+    fn what_is_cut_out_is_seen_by_a_row_of_every_raster() {
+        for (degrees, pitch) in [(0.0, W), (90.0, W), (45.0, 5 * W), (0.0, 5 * W)] {
+            // Between two rows, and narrower than they lie apart.
+            let cut = vec![bead(&[(10_000, 20 * W + W / 2), (400_000, 20 * W + W / 2)])];
+            let rows = bare(&cut, Frame::new(0.0), Raster { frame: Frame::new(degrees), pitch });
+            assert!(!rows.is_empty(), "{degrees} {pitch}");
+        }
     }
 }
