@@ -142,6 +142,16 @@ mod tests {
     }
 
     #[test]
+    fn both_parts_have_the_columns_that_rows_cross_and_share_the_others() {
+        let whole = rows(0, 2, &[(500, 90_000), (100_500, 103_500)]);
+        let own = rows(0, 2, &[(500, 10_000)]);
+        let columns = columns_of(&own, &whole, WIDTH);
+        assert_eq!(columns.row(0), [Span { start: 500, end: 90_000 }]);
+        let own = rows(0, 2, &[(80_000, 103_500)]);
+        assert_eq!(columns_of(&own, &whole, WIDTH).row(1), whole.row(1));
+    }
+
+    #[test]
     fn beads_are_seen_where_most_of_them_lies_beside_what_is_above() {
         let bead = |us: [Coord; 3]| us.map(|u| LinePoint { u, v: 10_000, width: WIDTH }).to_vec();
         let cover = rows(0, 50, &[(0, 100_000)]);

@@ -102,7 +102,8 @@ fn divide(bead: Polyline, below: &Below<'_>, lines: [f64; 2], out: &mut Beads) {
     let least = SHORT * i64::from(below.raster.pitch);
     for pieces in runs.chunk_by(|a, b| !is_cut(a) && !is_cut(b)) {
         let piece = pieces.concat();
-        let to = if is_cut(pieces[0]) || length(&piece) < least { &mut out.cut } else { &mut out.kept };
+        let to =
+            if is_cut(pieces[0]) || length(&piece) < least { &mut out.cut } else { &mut out.kept };
         to.push(corners(&piece));
     }
 }

@@ -210,7 +210,13 @@ fn lay(
     // A line never jumps over a hole to reach its anchor.
     let skin = skin.filter(|j, span| open.row(j).iter().any(|s| s.overlaps(span)));
     let columns = widened(&open_across, (more + pitch / 2) / pitch).and(&fill_across);
-    let columns = columns.filter(|_, span| span.len() >= i64::from(pitch));
+    // A place between two rows has no line, and takes none from others.
+    let has_line = |c: i32, span: Span| {
+        let rows = -(-span.start).div_euclid(pitch)..=span.end.div_euclid(pitch);
+        rows.into_iter()
+            .any(|j| skin.row(j).iter().any(|s| s.start <= -c * pitch && -c * pitch <= s.end))
+    };
+    let columns = columns.filter(|c, span| span.len() >= i64::from(pitch) && has_line(c, span));
     Skin {
         layers: 1,
         raster: rasters[0],

@@ -118,3 +118,25 @@ fn a_bridge_has_a_line_beside_its_opening_on_both_sides() {
         assert!(first < -edge && last > edge, "{half}: {first} to {last}");
     }
 }
+
+#[test]
+fn a_place_between_two_rows_takes_nothing_from_other_lines() {
+    let params = params();
+    let mut between = 0;
+    for shift in 0..9 {
+        // A notch in the edge of the layer below, which reaches 0.1 mm under what lies inside the walls.
+        let edge = 20.0 + f64::from(shift) / 20.0;
+        let plate = rectangle([-20.0, edge], [-10.0, 10.0]);
+        let depth = edge - to_mm(params.insets.fill - params.insets.cover) - 0.1;
+        let notch = [(edge, -3.0), (depth, -3.0), (depth, 3.0), (edge, 3.0)];
+        let notch = notch.map(|(x, y)| Point { x: to_units(x), y: to_units(y) });
+        let mut below = plate.clone();
+        below.splice(2..2, notch);
+        for bridge in turned(&[plate], &[below], 0.0, &params) {
+            between += i32::from(lines(&bridge).is_empty());
+            let taken = taken(std::slice::from_ref(&bridge), params.rasters.skin(0), &params);
+            assert!(!lines(&bridge).is_empty() || taken.is_empty(), "{shift}");
+        }
+    }
+    assert!(between > 0, "no case of this kind");
+}
