@@ -20,8 +20,8 @@ mod tests;
 use super::boxes::{Boxes, extent};
 use super::parallel::{parallel, parallel_and_lost};
 use super::simple::windings;
-use super::{Contour, Point, double_area, side};
-use crate::units::Coord;
+use super::{Contour, Point, double_area, segment, side};
+use crate::units::{Bounded as _, Coord};
 use clipper2_rust::core::{FillRule, Path64, Paths64, Point64};
 use clipper2_rust::engine::ClipType;
 use clipper2_rust::engine_public::Clipper64;
@@ -89,15 +89,36 @@ pub fn outset(contours: &[Contour], distance: Coord) -> Vec<Contour> {
 }
 
 /// Whether `contours` (as from [`union`]) keep their shape when shrunk by `distance`: none splits, meets
-/// another or vanishes, and none loses sides with a total length above `most` (grid units).
+/// another or vanishes, and none loses sides with a total length above `most` (grid units), or more than
+/// that of either side of a corner.
 #[must_use]
 pub fn keep_shape(contours: &[Contour], distance: Coord, most: f64) -> bool {
+    if contours.iter().any(|contour| deepest_corner(contour) * f64::from(distance) > most) {
+        return false;
+    }
     let distance = -f64::from(distance);
     let moved = contours.iter().map(|c| parallel_and_lost(c, distance, MITER_LIMIT));
     let kept = moved.map(|moved| moved.filter(|(_, lost)| *lost <= most).map(|(curve, _)| curve));
     let curves = kept.collect::<Option<Vec<Contour>>>();
     let left = curves.and_then(|curves| disjoint(&curves, |winding| winding > 0, distance));
     left.is_some_and(|left| left.len() == contours.len())
+}
+
+/// How far the sharpest corner of a contour moves along its sides for each unit that they move inwards:
+/// the cotangent of half its angle.
+fn deepest_corner(contour: &Contour) -> f64 {
+    let n = contour.len();
+    let way = |a: Point, b: Point| [b.x - a.x, b.y - a.y].map(f64::from);
+    let corner = |k: usize| {
+        let at = contour[k];
+        let (u, v) = (way(contour[(k + n - 1) % n], at), way(at, contour[(k + 1) % n]));
+        let cross = u[0] * v[1] - u[1] * v[0];
+        let length = (segment::dot(u, u) * segment::dot(v, v)).sqrt();
+        // The solid is on the left: corners that turn right do not move inwards.
+        let over = (length + segment::dot(u, v)).at_least(f64::MIN_POSITIVE);
+        if cross > 0.0 { cross / over } else { 0.0 }
+    };
+    (0..n).map(corner).fold(0.0, f64::max)
 }
 
 /// Subtracts `others` from `contours` (both as from [`union`]). The result is simplified within

@@ -186,6 +186,19 @@ proptest! {
     }
 
     #[test]
+    fn a_tip_has_one_bead_until_two_fit(
+        count in 1..=3_u32,
+        last in 4_000.0..60_000.0,
+        degrees in 0.0..180.0,
+    ) {
+        let Walls { walls, .. } = made(&bar(200.0, last, degrees), &params(count));
+        let narrow = walls.iter().flat_map(sides).filter(|(_, _, width)| *width < 0.7 * W);
+        let narrow: f64 = narrow.map(|(p, q, _)| p.distance(q)).sum();
+        // A taper shorter than 1 mm.
+        prop_assert!(narrow < 10_000.0, "{narrow}");
+    }
+
+    #[test]
     fn no_bead_is_narrower_than_asked_for((count, width) in case(), degrees in 0.0..180.0) {
         let Walls { walls, .. } = made(&bar(width, width, degrees), &params(count));
         let widths = walls.iter().flat_map(sides).map(|(_, _, width)| width);
