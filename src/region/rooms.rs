@@ -25,6 +25,10 @@ use crate::units::Coord;
 /// limit high; a smaller value fills corners of wide rooms, a larger one leaves narrow ends open.
 const TIP: f64 = 0.75;
 
+/// The same for a stack that is higher than wide: not a corner but a finger, such as the tooth of a
+/// gear. A smaller value lays specks; a larger one leaves short fingers hollow.
+const FINGER: f64 = 0.375;
+
 /// The narrow places of a region on the two rasters of skins, of which the second is turned by
 /// +90°; `None` if there are none.
 #[must_use]
@@ -79,11 +83,22 @@ struct Narrow {
     span: Span,
 }
 
-/// A stack of narrow spans: its lowest and highest row, and whether it lies beside a wide place.
+/// A stack of narrow spans: its lowest and highest row, its longest span, and whether it lies beside a
+/// wide place.
 #[derive(Clone, Copy)]
 struct Stack {
     rows: (i32, i32),
+    widest: i64,
     tip: bool,
+}
+
+impl Stack {
+    /// Whether it is no tip of a wide region.
+    fn is_room(&self, pitch: Coord, limit: Coord) -> bool {
+        let height = i64::from((self.rows.1 - self.rows.0 + 1) * pitch);
+        let least = if height > self.widest { FINGER } else { TIP };
+        !self.tip || height >= (f64::from(limit) * least) as i64
+    }
 }
 
 /// Stacks that grow together: each set's root holds what is true of all of it.
@@ -107,7 +122,7 @@ impl Stacks {
         let Some((root, joined)) = self.sets.join(a, b) else { return };
         let (x, y) = (self.of[root], self.of[joined]);
         let rows = (x.rows.0.min(y.rows.0), x.rows.1.max(y.rows.1));
-        self.of[root] = Stack { rows, tip: x.tip || y.tip };
+        self.of[root] = Stack { rows, widest: x.widest.max(y.widest), tip: x.tip || y.tip };
     }
 }
 
@@ -128,7 +143,7 @@ fn stacks(rows: &Rows, pitch: Coord, columns: &Columns<'_>, limit: Coord) -> Opt
                 continue;
             }
             let tip = wide.iter().any(|w: &Span| w.overlaps(span));
-            stacks.add(Stack { rows: (row, row), tip });
+            stacks.add(Stack { rows: (row, row), widest: span.len(), tip });
             below.for_each(|k| stacks.join(k, spans.len()));
             spans.push(Narrow { row, span });
         }
@@ -136,12 +151,8 @@ fn stacks(rows: &Rows, pitch: Coord, columns: &Columns<'_>, limit: Coord) -> Opt
         std::mem::swap(&mut wide, &mut wide_here);
         wide_here.clear();
     }
-    let least = (f64::from(limit) * TIP) as Coord;
-    let mut stays = (0..spans.len()).map(|k| {
-        let Stack { rows: (low, high), tip } = *stacks.root(k);
-        !tip || (high - low + 1) * pitch >= least
-    });
-    spans.retain(|_| stays.next().unwrap_or_default());
+    let mut is_room = (0..spans.len()).map(|k| stacks.root(k).is_room(pitch, limit));
+    spans.retain(|_| is_room.next().unwrap_or_default());
     (!spans.is_empty()).then(|| {
         let mut rest = spans.as_slice();
         let mut out = Rows::with_room_of(rows, rows.range().start);
@@ -208,27 +219,32 @@ mod tests {
     use super::*;
     use crate::geom::frame::Frame;
     use crate::region::scan::Scan;
-    use crate::units::{sin_cos, to_units};
+    use crate::units::{UNITS_PER_MM, sin_cos, to_mm, to_units};
     use proptest::prelude::*;
 
     const W: Coord = 4_000;
     const LIMIT: Coord = 20_000;
 
-    /// The share of a rectangle that is narrow, on each raster.
-    fn share(size: (f64, f64), degrees: f64) -> [f64; 2] {
+    /// How much of a polygon is narrow, and all of it, mm², on each raster.
+    fn areas(corners: &[(f64, f64)], degrees: f64) -> [(f64, f64); 2] {
         let (sin, cos) = sin_cos(degrees);
-        let corner = |(x, y): (f64, f64)| {
-            let (x, y) = (x * size.0 / 2.0, y * size.1 / 2.0);
-            Point { x: to_units(x * cos - y * sin), y: to_units(x * sin + y * cos) }
+        let turned = |&(x, y): &(f64, f64)| Point {
+            x: to_units(x * cos - y * sin),
+            y: to_units(x * sin + y * cos),
         };
-        let contour = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(corner).to_vec();
+        let contour = corners.iter().map(turned).collect();
         let rasters = [0.0, 90.0].map(|a| Raster { frame: Frame::new(a), pitch: W });
         let scans = rasters.map(|r| Scan::new(std::slice::from_ref(&contour), r));
         let rows = [scans[0].inside(), scans[1].inside()];
-        match narrow(rows, rasters, LIMIT) {
-            Some(found) => [0, 1].map(|r| found[r].total() as f64 / rows[r].total() as f64),
-            None => [0.0, 0.0],
-        }
+        let area = |rows: &Rows| to_mm(W) * rows.total() as f64 / UNITS_PER_MM;
+        let found = narrow(rows, rasters, LIMIT).unwrap_or_default();
+        [0, 1].map(|r| (area(&found[r]), area(rows[r])))
+    }
+
+    /// The share of a rectangle that is narrow, on each raster.
+    fn share(size: (f64, f64), degrees: f64) -> [f64; 2] {
+        let (x, y) = (size.0 / 2.0, size.1 / 2.0);
+        areas(&[(-x, -y), (x, -y), (x, y), (-x, y)], degrees).map(|(narrow, all)| narrow / all)
     }
 
     proptest! {
@@ -244,6 +260,21 @@ mod tests {
                 } else {
                     prop_assert!(share < 0.12, "{}", share);
                 }
+            }
+        }
+
+        /// A finger on a block, with a little of the block at its foot.
+        #[test]
+        fn fingers_longer_than_wide_are_rooms(
+            width in 0.5..0.9_f64, longer in 2.6..4.0_f64, degrees in 0.0..90.0_f64
+        ) {
+            let (x, top) = (width / 2.0, 5.0 + longer * width);
+            let block = [(-5.0, -5.0), (5.0, -5.0), (5.0, 5.0)];
+            let finger = [(x, 5.0), (x, top), (-x, top), (-x, 5.0), (-5.0, 5.0)];
+            let finger_mm2 = longer * width * width;
+            for (narrow, _) in areas(&[&block[..], &finger[..]].concat(), degrees) {
+                let share = narrow / finger_mm2;
+                prop_assert!((0.5..1.9).contains(&share), "{share}");
             }
         }
 
