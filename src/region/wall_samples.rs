@@ -373,6 +373,8 @@ fn bridge(samples: &mut [WallSample], perimeter: f64, params: &BeadParams) {
             continue;
         }
         let deep = (from..to).any(|k| samples[k % n].skin);
+        // How wide a strip is at its end says nothing of a room behind it.
+        let deep = deep && !before.shared && !after.shared;
         let most = if deep { CORNER } else { SHORT } * w;
         if span(samples, (from, to), perimeter) > most {
             continue;
