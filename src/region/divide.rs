@@ -26,6 +26,7 @@ use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
 use crate::slice::Layer;
 use crate::units::Coord;
+use std::borrow::Cow;
 
 /// Areas of one layer on both rasters of skins, and on the others that were requested.
 pub type LayerAreas = PerRaster<Areas>;
@@ -115,30 +116,20 @@ pub fn divide<'a>(
     let along = params.rasters.skin(skin_turn(k).0);
     let areas_on = |raster: Raster| {
         let Some(fill) = fill(raster) else { return Areas::default() };
-        let other;
         let uncovered = match index(raster) {
-            Some(r) => &skins[r],
-            None => {
-                other = exposed(raster);
-                &other
-            }
+            Some(r) => Cow::Borrowed(&skins[r]),
+            None => Cow::Owned(exposed(raster)),
         };
-        let bare;
-        let uncovered = if cut.is_empty() {
-            uncovered
-        } else {
-            bare = uncovered.or(&loose::bare(&cut, along.frame, raster).and(fill));
-            &bare
-        };
+        let uncovered = with_bare(uncovered, &cut, along.frame, (raster, fill));
         let solid = solid.as_ref().map(|solid| on(solid, raster, fill));
         if beads.is_empty() && bridges.is_empty() {
-            return areas(fill, uncovered, solid.as_ref(), raster.pitch, &params.skins);
+            return areas(fill, &uncovered, solid.as_ref(), raster.pitch, &params.skins);
         }
         let mut taken = taken(&beads, along.frame, raster, &params.beads);
         if !bridges.is_empty() {
             taken = taken.or(&bridge::taken(&bridges, raster, params));
         }
-        areas_beside(&taken, fill, uncovered, solid.as_ref(), raster.pitch, &params.skins)
+        areas_beside(&taken, fill, &uncovered, solid.as_ref(), raster.pitch, &params.skins)
     };
     let areas = PerRaster::new(&params.rasters, more, areas_on);
     // Strips between skin or a bridge and a wall in which no sparse line has room.
@@ -155,6 +146,20 @@ pub fn divide<'a>(
     let filling = between_walls(k, &own.walls, layers, params);
     let (room_beads, beads) = hidden::beads(k, beads, solid.as_ref(), skins, params);
     Divided { areas, beads, room_beads, filling, bridges, hanging }
+}
+
+/// What is `uncovered` on a raster with these `fill` rows, and what beads that were `cut` out, given in the
+/// frame `from`, leave bare.
+fn with_bare<'a>(
+    uncovered: Cow<'a, Rows>,
+    cut: &[Polyline],
+    from: Frame,
+    (raster, fill): (Raster, &Rows),
+) -> Cow<'a, Rows> {
+    if cut.is_empty() {
+        return uncovered;
+    }
+    Cow::Owned(uncovered.or(&loose::bare(cut, from, raster).and(fill)))
 }
 
 /// Narrower strips of infill become skin; 0 if there is nothing beside which they could be.
