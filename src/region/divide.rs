@@ -120,8 +120,12 @@ pub fn divide<'a>(
             Some(r) => Cow::Borrowed(&skins[r]),
             None => Cow::Owned(exposed(raster)),
         };
-        let uncovered = with_bare(uncovered, &cut, along.frame, (raster, fill));
         let solid = solid.as_ref().map(|solid| on(solid, raster, fill));
+        let bare = || bare(&cut, along.frame, (raster, fill), solid.as_ref());
+        let uncovered = match cut.is_empty() {
+            true => uncovered,
+            false => Cow::Owned(uncovered.or(&bare())),
+        };
         if beads.is_empty() && bridges.is_empty() {
             return areas(fill, &uncovered, solid.as_ref(), raster.pitch, &params.skins);
         }
@@ -148,18 +152,19 @@ pub fn divide<'a>(
     Divided { areas, beads, room_beads, filling, bridges, hanging }
 }
 
-/// What is `uncovered` on a raster with these `fill` rows, and what beads that were `cut` out, given in the
-/// frame `from`, leave bare.
-fn with_bare<'a>(
-    uncovered: Cow<'a, Rows>,
+/// What beads that were `cut` out, given in the frame `from`, leave bare on a raster with these `fill` rows.
+/// Rooms are `solid` anyway, with lines across.
+fn bare(
     cut: &[Polyline],
     from: Frame,
     (raster, fill): (Raster, &Rows),
-) -> Cow<'a, Rows> {
-    if cut.is_empty() {
-        return uncovered;
+    solid: Option<&Rows>,
+) -> Rows {
+    let bare = loose::bare(cut, from, raster).and(fill);
+    match solid {
+        Some(solid) => bare.minus(solid),
+        None => bare,
     }
-    Cow::Owned(uncovered.or(&loose::bare(cut, from, raster).and(fill)))
 }
 
 /// Narrower strips of infill become skin; 0 if there is nothing beside which they could be.
