@@ -79,6 +79,13 @@ impl Pile {
         Self { wider: by, ..self }
     }
 
+    /// One with the same cells, on which nothing stands.
+    #[must_use]
+    pub fn emptied(&self) -> Self {
+        let levels = self.levels.iter().map(|level| Level::new(level.columns, level.rows));
+        Self { levels: levels.collect(), ..*self }
+    }
+
     /// Columns and rows of its cells.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {

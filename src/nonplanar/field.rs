@@ -75,6 +75,11 @@ impl Field {
 
     /// How it rises along x and y at a cell, from those beside it.
     pub(super) fn rise(&self, [x, y]: Spot) -> [f64; 2] {
+        if let Some([left, right, below, above]) = self.beside([x, y]) {
+            let rise =
+                |from: f32, to: f32| (f64::from(to) - f64::from(from)) / (2.0 * f64::from(CELL));
+            return [rise(left, right), rise(below, above)];
+        }
         let across = |before: f32, here: f32, after: f32| {
             let (from, to, cells) = match [before, here, after].map(f32::is_nan) {
                 [false, _, false] => (before, after, 2.0),
@@ -89,6 +94,21 @@ impl Field {
             across(self.known([x - 1, y]), here, self.known([x + 1, y])),
             across(self.known([x, y - 1]), here, self.known([x, y + 1])),
         ]
+    }
+
+    /// How high it lies over the cells to the left and right, below and above, if it lies over all of them: that
+    /// is so for nearly all cells.
+    fn beside(&self, [x, y]: Spot) -> Option<[f32; 4]> {
+        let [x, y] = [x.wrapping_sub(self.low[0]), y.wrapping_sub(self.low[1])];
+        let [x, y] = [x, y].map(|v| v as u32 as usize);
+        let [columns, rows] = self.size;
+        if x == 0 || y == 0 || x + 1 >= columns || y + 1 >= rows {
+            return None;
+        }
+        let at = y * columns + x;
+        let all = [at - 1, at + 1, at - columns, at + columns].map(|at| self.heights[at]);
+        let is_known = all.iter().all(|z| !z.is_nan());
+        is_known.then_some(all)
     }
 
     /// How high the surface lies over a cell; not a number beside it.

@@ -181,6 +181,7 @@ fn patch(
         if trial.is_empty() {
             break;
         }
+        trial.look_round(stack);
         let Coat { skins, refused } = lay(&trial, surface, stack);
         if refused.iter().all(Refused::is_empty) {
             coat = Some(skins);

@@ -180,12 +180,25 @@ impl<'a> Stack<'a> {
         }
     }
 
-    /// A cell stands at least so high, mm.
-    pub(super) fn raise(&mut self, [x, y]: Spot, z: f64) {
+    /// A cell stands at least so high, mm. Whether it rose.
+    pub(super) fn raise(&mut self, [x, y]: Spot, z: f64) -> bool {
         let at = (usize::try_from(x - self.low[0]), usize::try_from(y - self.low[1]));
-        if let (Ok(x), Ok(y)) = at {
-            self.pile.raise([x, y], z);
+        let (Ok(x), Ok(y)) = at else { return false };
+        let before = self.pile.height([x, y]);
+        self.pile.raise([x, y], z);
+        self.pile.height([x, y]) > before
+    }
+
+    /// What stands at some cells alone, if any; as near to a head as it is among all, to the last digit.
+    pub(super) fn alone(&self, cells: &[Spot]) -> Option<Pile> {
+        let mut pile = (!cells.is_empty()).then(|| self.pile.emptied())?;
+        for &[x, y] in cells {
+            let at = (usize::try_from(x - self.low[0]), usize::try_from(y - self.low[1]));
+            if let (Ok(column), Ok(row)) = at {
+                pile.raise([column, row], self.pile.height([column, row]));
+            }
         }
+        Some(pile)
     }
 
     /// The cells of an area stand at least as high as a surface over them.

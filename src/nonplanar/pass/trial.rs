@@ -58,8 +58,16 @@ pub(super) struct Trial<'a> {
     /// Where what stands leaves room for the head, at a glance; `None` while that changes.
     glance: Option<Glance>,
     later: Option<Later>,
-    /// Blocks of places that may fail now, if some were tried before.
-    fresh: Option<BTreeSet<Spot>>,
+    /// What may fail now, if all places were tried before.
+    fresh: Option<Fresh>,
+}
+
+/// What was cut out since places were tried.
+struct Fresh {
+    /// Blocks of places that may fail for it.
+    blocks: BTreeSet<Spot>,
+    /// What stands higher now; all else was no hindrance to what passed.
+    risen: Option<Pile>,
 }
 
 /// The tips of later lines.
@@ -115,15 +123,22 @@ impl<'a> Trial<'a> {
 
     /// Shrinks the areas until all places pass.
     pub(super) fn settle(&mut self, stack: &mut Stack<'_>) {
+        if self.fresh.is_none() {
+            self.look_round(stack);
+        }
         while !self.is_empty() {
-            if self.glance.is_none() {
-                self.glance = Some(self.look(stack));
-            }
             let refused = self.refused(stack);
             if refused.iter().all(Refused::is_empty) {
                 return;
             }
             self.cut(&refused, stack);
+        }
+    }
+
+    /// Makes sure that it is known where there is room for the head at a glance.
+    pub(super) fn look_round(&mut self, stack: &Stack<'_>) {
+        if self.glance.is_none() && !self.is_empty() {
+            self.glance = Some(self.look(stack));
         }
     }
 
@@ -201,7 +216,7 @@ impl<'a> Trial<'a> {
     /// Whether something was raised in reach of a place since it passed.
     fn is_fresh(&self, place: Spot) -> bool {
         let block = place.map(|v| v.div_euclid(BLOCK));
-        self.fresh.as_ref().is_none_or(|fresh| fresh.contains(&block))
+        self.fresh.as_ref().is_none_or(|fresh| fresh.blocks.contains(&block))
     }
 
     /// What the head touches that lays skin `i` at a place.
@@ -210,13 +225,16 @@ impl<'a> Trial<'a> {
         let z = self.ground.field.at(cell)?;
         let [x, y] = grid::middle(cell);
         let tip = [x, y, mm(z - f64::from(self.scene.lowered(i)))];
-        if self.is_clear(cell, tip[2]) {
-            return None;
-        }
         let (head, touch) = (&self.scene.params.head, self.touch());
-        // Press goes into its own surface alone.
-        let pressed = || self.others.hit(head, tip, &|hit| touch.is_press(hit));
-        let hit = stack.pile.hit_printing(head, tip, touch.layer).or_else(pressed)?;
+        let hit = match &self.fresh {
+            Some(fresh) => fresh.risen.as_ref()?.hit_printing(head, tip, touch.layer)?,
+            None if self.is_clear(cell, tip[2]) => return None,
+            None => {
+                // Press goes into its own surface alone.
+                let pressed = || self.others.hit(head, tip, &|hit| touch.is_press(hit));
+                stack.pile.hit_printing(head, tip, touch.layer).or_else(pressed)?
+            }
+        };
         Some(touch.reason(&hit, |cell| stack.is_supported(cell)))
     }
 
@@ -268,6 +286,7 @@ impl<'a> Trial<'a> {
         let heights = self.scene.slicer.heights();
         let most = to_mm(heights.top(self.piece.home));
         let mut raised: BTreeSet<Spot> = BTreeSet::new();
+        let mut risen: Vec<Spot> = Vec::new();
         for (i, old) in old.iter().enumerate() {
             let lost = old.minus(&grid::cells(&self.areas[i]));
             let last = i + 1 == self.areas.len();
@@ -276,7 +295,9 @@ impl<'a> Trial<'a> {
                 // A tread reaches to the edge of a cell whose middle lies beside it.
                 let [x, y] = self.ground.field.rise(cell);
                 let further = if last { x.hypot(y) * to_mm(CELL) / 2.0 } else { 0.0 };
-                stack.raise(cell, self.flat_end(z + further, below).min(most));
+                if stack.raise(cell, self.flat_end(z + further, below).min(most)) {
+                    risen.push(cell);
+                }
                 raised.insert(cell.map(|v| v.div_euclid(2 * BLOCK)));
                 if let Some(later) = self.later.as_mut().filter(|_| last) {
                     later.add(cell, z);
@@ -287,7 +308,8 @@ impl<'a> Trial<'a> {
             self.glance = None;
         }
         // Where nothing was raised in reach, nothing can fail that passed.
-        self.fresh = Some(self.in_reach(&raised));
+        let blocks = self.in_reach(&raised);
+        self.fresh = Some(Fresh { blocks, risen: stack.alone(&risen) });
     }
 
     /// The blocks of places from which the head may touch something in some blocks.
