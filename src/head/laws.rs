@@ -69,6 +69,36 @@ proptest! {
     }
 
     #[test]
+    fn what_is_too_far_away_is_left_out(
+        head in any_head(), pile in any_pile(), x in -5.0..45.0, y in -5.0..35.0, z in 0.0..6.0,
+        radius in 0.0..12.0,
+    ) {
+        let tip = [x, y, z];
+        let is_far = |hit: &Hit| {
+            let by = [0, 1].map(|axis| ((hit.at[axis] - tip[axis]).abs() - pile.side() / 2.0).max(0.0));
+            by[0].hypot(by[1]) > radius
+        };
+        let right = pile.hit(&head, tip, &is_far);
+        prop_assert_eq!(pile.hit_within(&head, tip, radius, &|_| false), right);
+    }
+
+    #[test]
+    fn what_passed_only_fails_for_what_rose_since(
+        head in any_head(), pile in any_pile(), tip in [-1.0..9.0_f64, -1.0..9.0_f64, 0.0..8.0_f64],
+        risen in prop::collection::vec(([0..40_usize, 0..30_usize], 0.0..9.0_f64), 0..20),
+    ) {
+        let (mut whole, mut alone) = (pile.clone(), pile.emptied());
+        for &(cell, z) in &risen {
+            whole.raise(cell, z);
+            alone.raise(cell, whole.height(cell));
+        }
+        if pile.hit_printing(&head, tip, 0.2).is_none() {
+            let hits = [&whole, &alone].map(|pile| pile.hit_printing(&head, tip, 0.2));
+            prop_assert_eq!(hits[0], hits[1]);
+        }
+    }
+
+    #[test]
     fn cells_of_a_row_rise_as_one_by_one(
         pile in any_pile(), row in 0..32_usize, column in 0..42_usize,
         heights in prop::collection::vec(prop::option::of(-1.0..6.0_f64), 0..50),

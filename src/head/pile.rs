@@ -202,28 +202,42 @@ impl Pile {
     /// cell's whole square counts.
     #[must_use]
     pub fn hit(&self, head: &Head, tip: [f64; 3], spare: &dyn Fn(&Hit) -> bool) -> Option<Hit> {
-        self.search(head, tip, None, spare)
+        self.search(head, tip, [None, None], spare)
+    }
+
+    /// As [`Self::hit`] of cells that come as near to the tip as this, seen from above, mm.
+    #[must_use]
+    pub fn hit_within(
+        &self,
+        head: &Head,
+        tip: [f64; 3],
+        radius: f64,
+        spare: &dyn Fn(&Hit) -> bool,
+    ) -> Option<Hit> {
+        self.search(head, tip, [None, Some(radius)], spare)
     }
 
     /// As [`Self::hit`] with [`Head::presses`] for `spare`, while a layer of this height is printed, mm: but
     /// several times as fast, since squares that are only pressed are left out as a whole.
     #[must_use]
     pub fn hit_printing(&self, head: &Head, tip: [f64; 3], layer_height: f64) -> Option<Hit> {
-        let press = [head.press_radius().powi(2), DEEPEST_PRESS * layer_height];
-        self.search(head, tip, Some(press), &|hit| head.presses(hit, layer_height))
+        let most = DEEPEST_PRESS * layer_height;
+        self.search(head, tip, [Some(most), None], &|hit| head.presses(hit, layer_height))
     }
 
     fn search(
         &self,
         head: &Head,
         tip: [f64; 3],
-        press: Option<[f64; 2]>,
+        [press, within]: [Option<f64>; 2],
         spare: &dyn Fn(&Hit) -> bool,
     ) -> Option<Hit> {
         let shape = Shape::of(head);
-        let mut search = Search { pile: self, shape, tip, press, spare, best: None };
+        let press = press.map(|most| [head.press_radius().powi(2), most]);
+        let within2 = within.map(|radius| radius * radius);
+        let mut search = Search { pile: self, shape, tip, press, within2, spare, best: None };
         let mut open: Vec<(f64, usize, [usize; 2])> = Vec::new();
-        self.in_reach(&shape, tip, |level, square| {
+        self.in_reach(&shape, tip, within, |level, square| {
             open.extend(search.depth(level, square).map(|depth| (depth, level, square)));
         });
         open.sort_by(|one, other| other.0.total_cmp(&one.0));
@@ -234,13 +248,20 @@ impl Pile {
     }
 
     /// The squares, four at most, under all of the head that may touch anything.
-    fn in_reach(&self, shape: &Shape<'_>, tip: [f64; 3], mut with: impl FnMut(usize, [usize; 2])) {
+    fn in_reach(
+        &self,
+        shape: &Shape<'_>,
+        tip: [f64; 3],
+        within: Option<f64>,
+        mut with: impl FnMut(usize, [usize; 2]),
+    ) {
         let most = self.highest() - tip[2];
         if most <= LEAST_TOUCH {
             return;
         }
         // A cell more, for rounding.
-        let reach = shape.reach_below(most) + self.wider + self.cell;
+        let reach = shape.reach_below(most) + self.wider;
+        let reach = within.map_or(reach, |within| reach.min(within)) + self.cell;
         let top = self.levels.len() - 1;
         let side = |level: usize| self.cell * (1_u64 << level) as f64;
         let level = (0..top).find(|&level| side(level) >= 2.0 * reach).unwrap_or(top);
@@ -327,6 +348,8 @@ struct Search<'a> {
     tip: [f64; 3],
     /// Squares that lie as near as this all over, squared, and are not touched deeper than this are left out.
     press: Option<[f64; 2]>,
+    /// Squares further away than this all over, squared, are left out.
+    within2: Option<f64>,
     spare: &'a dyn Fn(&Hit) -> bool,
     /// The deepest touch so far, and its row and column.
     best: Option<(Hit, [usize; 2])>,
@@ -377,6 +400,9 @@ impl Search<'_> {
             return None;
         }
         let [low, high] = self.beside(level, square);
+        if self.within2.is_some_and(|within2| nearest2(low, high) > within2) {
+            return None;
+        }
         let [from, to] = self.widened([low, high]);
         let depth = above - self.shape.lowest(from, to).0;
         (depth > LEAST_TOUCH && !self.is_press(depth, low, high)).then_some(depth)
@@ -414,6 +440,12 @@ impl Search<'_> {
         let Some([near, most]) = self.press else { return false };
         depth <= most && furthest2(low, high) <= near
     }
+}
+
+/// The squared distance of a square's nearest place from the tip.
+fn nearest2(low: [f64; 2], high: [f64; 2]) -> f64 {
+    let nearest = [0, 1].map(|axis| low[axis].at_least(-high[axis]).at_least(0.0));
+    nearest[0] * nearest[0] + nearest[1] * nearest[1]
 }
 
 /// The squared distance of a square's furthest corner from the tip.

@@ -75,10 +75,8 @@ impl Field {
 
     /// How it rises along x and y at a cell, from those beside it.
     pub(super) fn rise(&self, [x, y]: Spot) -> [f64; 2] {
-        if let Some([left, right, below, above]) = self.beside([x, y]) {
-            let rise =
-                |from: f32, to: f32| (f64::from(to) - f64::from(from)) / (2.0 * f64::from(CELL));
-            return [rise(left, right), rise(below, above)];
+        if let Some([_, left, right, below, above]) = self.around([x, y]) {
+            return [between(left, right), between(below, above)];
         }
         let across = |before: f32, here: f32, after: f32| {
             let (from, to, cells) = match [before, here, after].map(f32::is_nan) {
@@ -96,9 +94,19 @@ impl Field {
         ]
     }
 
-    /// How high it lies over the cells to the left and right, below and above, if it lies over all of them: that
-    /// is so for nearly all cells.
-    fn beside(&self, [x, y]: Spot) -> Option<[f32; 4]> {
+    /// How high it lies over a cell and how it rises there, as [`Self::at`] and [`Self::rise`].
+    pub(super) fn plane(&self, cell: Spot) -> Option<(f64, [f64; 2])> {
+        match self.around(cell) {
+            Some([here, left, right, below, above]) => {
+                Some((f64::from(here), [between(left, right), between(below, above)]))
+            }
+            None => Some((self.at(cell)?, self.rise(cell))),
+        }
+    }
+
+    /// How high it lies over a cell and those to the left and right, below and above, if it lies over all of
+    /// them: nearly everywhere.
+    fn around(&self, [x, y]: Spot) -> Option<[f32; 5]> {
         let [x, y] = [x.wrapping_sub(self.low[0]), y.wrapping_sub(self.low[1])];
         let [x, y] = [x, y].map(|v| v as u32 as usize);
         let [columns, rows] = self.size;
@@ -106,9 +114,8 @@ impl Field {
             return None;
         }
         let at = y * columns + x;
-        let all = [at - 1, at + 1, at - columns, at + columns].map(|at| self.heights[at]);
-        let is_known = all.iter().all(|z| !z.is_nan());
-        is_known.then_some(all)
+        let all = [at, at - 1, at + 1, at - columns, at + columns].map(|at| self.heights[at]);
+        all.iter().all(|z| !z.is_nan()).then_some(all)
     }
 
     /// How high the surface lies over a cell; not a number beside it.
@@ -121,6 +128,11 @@ impl Field {
             f32::NAN
         }
     }
+}
+
+/// How a surface rises at a cell between these two beside it.
+fn between(before: f32, after: f32) -> f64 {
+    (f64::from(after) - f64::from(before)) / (2.0 * f64::from(CELL))
 }
 
 /// The heights in some rows of so many cells, from the cell `low` on.

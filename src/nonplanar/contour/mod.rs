@@ -257,8 +257,7 @@ impl Tread<'_> {
         let cell = cell_at(at);
         let top = f64::from(self.layer.z);
         let over = |ground: &&Ground| {
-            let z = ground.field.at(cell)?;
-            let [along, across] = ground.field.rise(cell);
+            let (z, [along, across]) = ground.field.plane(cell)?;
             let by = |v: Coord, k: i32| f64::from(v) - f64::from(k) * f64::from(CELL);
             let z = z + along * by(at.x, cell[0]) + across * by(at.y, cell[1]);
             ((z - top).abs() < self.reach).then_some(z)

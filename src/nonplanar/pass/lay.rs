@@ -17,7 +17,7 @@ use crate::fill::{Path, PathPoint};
 use crate::geom::Point;
 use crate::geom::spans::Rows;
 use crate::head::pile::{Hit, Pile};
-use crate::head::sweep::{SAMPLE, sweep, sweep_printing};
+use crate::head::sweep::{SAMPLE, sweep, sweep_printing, sweep_within};
 use crate::nonplanar::field::Field;
 use crate::nonplanar::grid::{self, CELL, Spot, cell_of, place_at};
 use crate::nonplanar::patch::Stroke;
@@ -51,15 +51,16 @@ struct Under<'a> {
 impl Base for Under<'_> {
     fn height(&self, at: Point) -> f64 {
         let [x, y] = [at.x, at.y].map(|v| (v + CELL / 2).div_euclid(CELL));
-        let surface = self.field.at([x, y]);
         let holds = |(rows, _): &&(Rows, f64)| {
             rows.row(y).iter().any(|span| span.start <= x * CELL && x * CELL < span.end)
         };
-        if let (Some((_, lowered)), Some(z)) = (self.below.as_ref().filter(holds), surface) {
-            let [along, across] = self.field.rise([x, y]);
+        let below = self.below.as_ref().filter(holds);
+        let plane = below.and_then(|(_, lowered)| Some((lowered, self.field.plane([x, y])?)));
+        if let Some((lowered, (z, [along, across]))) = plane {
             let [dx, dy] = [at.x - x * CELL, at.y - y * CELL].map(f64::from);
             return z + along * dx + across * dy - lowered;
         }
+        let surface = self.field.at([x, y]);
         let height = |cell: Spot| self.stack.height(cell) * crate::units::UNITS_PER_MM;
         let own = height([x, y]);
         // At the edge of a part the middle of a cell may lie beside it.
@@ -158,7 +159,9 @@ impl Swept<'_> {
                 continue;
             }
             // What the skins are to themselves is known: they lie on the surface within the tolerance.
-            let pressed = || sweep(&self.trial.others, head, a, b, &press);
+            // Beyond the ring where a touch may be press, nothing is touched by then.
+            let radius = head.press_radius();
+            let pressed = || sweep_within(&self.trial.others, head, a, b, radius, &press);
             let hit = sweep_printing(&self.stack.pile, head, a, b, layer).or_else(pressed);
             let Some(hit) = hit else { continue };
             let reason = touch.reason(&hit, |cell| self.stack.is_supported(cell));

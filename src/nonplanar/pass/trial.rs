@@ -230,8 +230,10 @@ impl<'a> Trial<'a> {
             Some(fresh) => fresh.risen.as_ref()?.hit_printing(head, tip, touch.layer)?,
             None if self.is_clear(cell, tip[2]) => return None,
             None => {
-                // Press goes into its own surface alone.
-                let pressed = || self.others.hit(head, tip, &|hit| touch.is_press(hit));
+                // Press goes into its own surface alone. What else may be touched is known by then.
+                let radius = head.press_radius();
+                let pressed =
+                    || self.others.hit_within(head, tip, radius, &|hit| touch.is_press(hit));
                 stack.pile.hit_printing(head, tip, touch.layer).or_else(pressed)?
             }
         };

@@ -6,7 +6,7 @@ use super::stack::Stack;
 use super::trial::Trial;
 use crate::geom::Contour;
 use crate::geom::spans::Rows;
-use crate::nonplanar::grid::{self, STEP};
+use crate::nonplanar::grid::{self, STEP, cell_of};
 use crate::nonplanar::surface::Surface;
 use crate::nonplanar::tally::Reason;
 
@@ -17,11 +17,23 @@ impl Trial<'_> {
             return self.drop(&self.whole(), Some(Reason::Overhang), stack);
         }
         let is_level = |part: &Vec<Contour>| {
-            surface.over(part).is_none_or(|bounds| !has_treads(self.scene, bounds))
+            !self.has_treads_at_places(part)
+                && surface.over(part).is_none_or(|bounds| !has_treads(self.scene, bounds))
         };
         let level: Vec<Contour> =
             grid::pieces(&self.whole()).into_iter().filter(is_level).flatten().collect();
         self.drop(&level, None, stack)
+    }
+
+    /// Whether the places of a part tell that there are treads. It is quicker than to look at all of its surface.
+    fn has_treads_at_places(&self, part: &[Contour]) -> bool {
+        let field = &self.ground.field;
+        let heights = grid::spots(&places(part), STEP).into_iter();
+        let heights = heights.filter_map(|place| field.at(cell_of(place)));
+        let [low, high] =
+            heights.fold([f64::MAX, f64::MIN], |[low, high], z| [low.min(z), high.max(z)]);
+        // A unit less, since a field's heights are rounded.
+        low < high && has_treads(self.scene, [low + 1.0, high - 1.0])
     }
 
     /// The area of the last skin.
