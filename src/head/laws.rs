@@ -75,7 +75,7 @@ proptest! {
     ) {
         let tip = [x, y, z];
         let is_far = |hit: &Hit| {
-            let by = [0, 1].map(|axis| ((hit.at[axis] - tip[axis]).abs() - pile.side() / 2.0).max(0.0));
+            let by = [0, 1].map(|axis| (f64::abs(hit.at[axis] - tip[axis]) - pile.side() / 2.0).max(0.0));
             by[0].hypot(by[1]) > radius
         };
         let right = pile.hit(&head, tip, &is_far);

@@ -239,6 +239,17 @@ fn the_first_travel_of_a_print_rises_as_well() {
     assert_eq!((travel.from[2], travel.to[2], travel.prints), (5.0, 5.0, false));
 }
 
+#[test]
+fn short_lines_keep_to_the_speed_of_z_as_the_file_tells_it() {
+    // A step rises by 69.1 µm, which the file tells as 69 or 70.
+    let settings = settings("generic-marlin", &[("limits.speed_z", "5")]);
+    let line = line(10.0, steps(0.1).take(60), |x| 0.691 * x);
+    let (text, _) = print(&[line], 4.5, &settings);
+    let beads = beads(&text);
+    let fastest = beads.iter().map(|bead| bead.feed * bead.sine()).fold(0.0, f64::max);
+    assert!(beads.len() > 50 && fastest > 4.9 && fastest <= 5.0 + 1e-6, "{fastest}");
+}
+
 /// Asserts what the z axis bears on every line of a patch, and between any two that follow each other.
 fn within_limits(text: &str, settings: &Settings) {
     let limits = &settings.limits;
