@@ -6,7 +6,8 @@
 //! No file tells where a skin ends, and the skins of one place may be laid before or after those of another.
 //! So each stroke is judged by itself: it is of the ply above that on which most of its length lies. Where a
 //! patch ends, its upper skin may reach further than the lower one: a stroke beside one of a higher ply, in the
-//! file's order, that has nothing of a higher ply on it is of that ply, too.
+//! file's order, that has nothing of a higher ply on it is of that ply, too. What crosses it at its own height, as
+//! the ends of one skin's lines do along a patch's edge, does not lie on it.
 
 use super::relief::{CELL, footprint};
 use crate::geom::segment;
@@ -29,7 +30,7 @@ const SOME: f64 = 0.1;
 /// Part of a line's width that its neighbours do not reach.
 const CORE: f32 = 0.8;
 
-/// Part of its height by which a line is higher than what it lies on.
+/// Part of its height by which a line is higher than what it lies on, and lower than what lies on it.
 const HIGHER: f64 = 0.3;
 
 /// Distance of the places of a line that are looked at, mm.
@@ -148,8 +149,8 @@ impl Map<'_> {
     /// The highest ply that lies under most of some lines' length; 0 for none.
     fn below(&self, lines: &[Step]) -> u16 {
         let mut plies: Vec<u16> = Vec::new();
-        self.places(lines, 0.0, |cell, least| {
-            let is_lower = |cell: &usize| f64::from(self.top[*cell]) < least;
+        self.places(lines, 0.0, |cell, z, slack| {
+            let is_lower = |cell: &usize| f64::from(self.top[*cell]) < z - slack;
             plies.push(cell.filter(is_lower).map_or(0, |cell| self.ply[cell]));
         });
         // More than a part lies on what comes after that part from the highest on.
@@ -158,19 +159,22 @@ impl Map<'_> {
         plies.get(most).copied().unwrap_or_default()
     }
 
-    /// The part of some lines' length, but for their ends, that higher plies cover.
+    /// The part of some lines' length, but for their ends, that higher plies lie on.
     fn covered(&self, lines: &[Step], ply: u16) -> f64 {
         let (mut covered, mut all) = (0_u32, 0_u32);
-        self.places(lines, f64::from(lines[0].width), |cell, _| {
+        self.places(lines, f64::from(lines[0].width), |cell, z, slack| {
             all += 1;
-            covered += u32::from(cell.is_some_and(|cell| self.ply[cell] > ply));
+            let lies_on = |cell: usize| {
+                self.ply[cell] > ply && f64::from(self.top[cell]) > z + slack
+            };
+            covered += u32::from(cell.is_some_and(lies_on));
         });
         f64::from(covered) / f64::from(all.max(1))
     }
 
-    /// Hands the places of some lines, but for their `ends`, mm, to `sink`: the cell, if it is on the map, and
-    /// how high the top of what is below may be there, mm.
-    fn places(&self, lines: &[Step], ends: f64, mut sink: impl FnMut(Option<usize>, f64)) {
+    /// Hands the places of some lines, but for their `ends`, mm, to `sink`: the cell, if it is on the map, how high
+    /// the line is there, and by how much what it lies on is lower, mm.
+    fn places(&self, lines: &[Step], ends: f64, mut sink: impl FnMut(Option<usize>, f64, f64)) {
         let whole: f64 = lines.iter().map(Step::plan_length).sum();
         let mut before = 0.0;
         for step in lines {
@@ -180,7 +184,7 @@ impl Map<'_> {
             for part in (0..count).map(|k| (f64::from(k) + 0.5) / f64::from(count)) {
                 if (ends..=whole - ends).contains(&(before + part * length)) {
                     let [x, y, z] = segment::along(from, part, way);
-                    sink(self.field.cell([x, y]), z - HIGHER * f64::from(step.height));
+                    sink(self.field.cell([x, y]), z, HIGHER * f64::from(step.height));
                 }
             }
             before += length;
@@ -229,6 +233,33 @@ mod tests {
     fn line(from: [f32; 3], to: [f32; 3]) -> Step {
         let (filament, feed, width, height) = (1.0, 30.0, 0.4, 0.2);
         Step { from, to, filament, feed, width, height, role: Role::NonPlanar, line: 1 }
+    }
+
+    #[test]
+    fn a_skin_that_reaches_far_is_one_though_an_edge_of_it_is_crossed() {
+        // A level skin along x, and one across it that reaches three times as far: first lines of which the lower
+        // skin carries a third, then one along the edge of the patch, and lines that lie on it as a whole.
+        let level = |z: f32, places: &[[f32; 2]]| -> Vec<Step> {
+            let at = |[x, y]: [f32; 2]| [x, y, z];
+            places.windows(2).map(|two| line(at(two[0]), at(two[1]))).collect()
+        };
+        let zigzag = |count: u8, from: f32, ends: [f32; 2]| -> Vec<[f32; 2]> {
+            let across = |k: u8| (from + 0.4 * f32::from(k), usize::from(k % 2));
+            (0..count).map(across).flat_map(|(at, k)| [[at, ends[k]], [at, ends[1 - k]]]).collect()
+        };
+        let turned: Vec<[f32; 2]> =
+            zigzag(10, 0.0, [0.0, 8.0]).into_iter().map(|[y, x]| [x, y]).collect();
+        let mut lines = level(1.0, &turned);
+        let first = lines.len();
+        lines.extend(level(1.2, &zigzag(10, 0.0, [0.0, 12.0])));
+        // Along the edge, over nothing, and crossed at its own height by the lines after it.
+        lines.extend(level(1.2, &[[3.9, 8.0], [4.7, 5.0]]));
+        lines.extend(level(1.2, &zigzag(6, 4.0, [0.0, 7.0])));
+        let field = Field::around(&lines, 0).unwrap();
+        for stroke in strokes(&lines, &field).iter().filter(|one| one.length >= LEAST_STROKE) {
+            let right = if stroke.lines.start < first { 1 } else { 2 };
+            assert_eq!(stroke.ply, right, "{stroke:?} {:?}", lines[stroke.lines.start]);
+        }
     }
 
     #[test]
