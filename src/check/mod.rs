@@ -35,6 +35,7 @@ mod heat;
 mod judge;
 mod laid;
 mod lay;
+mod limits;
 mod motors;
 mod moves;
 mod orders;

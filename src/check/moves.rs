@@ -14,8 +14,9 @@
 //!   head touches, and the skins there ([`slopes`](super::slopes)); and lines on what the start block primed
 //!   ([`primed`](super::primed)).
 //!
-//! Between the moves are commands: those that change the machine ([`changes`](super::changes)), and those
-//! for heaters ([`warmth`](super::warmth)) and the fan ([`air`](super::air)).
+//! Between the moves are commands: those that change the machine ([`changes`](super::changes)) and its limits
+//! ([`limits`](super::limits)), and those for heaters ([`warmth`](super::warmth)) and the fan
+//! ([`air`](super::air)).
 //!
 //! Commands are judged once each, by a list of what the firmware knows. Klipper's macros cannot be
 //! judged, and are listed as such.
@@ -25,6 +26,7 @@ use super::changes::Changes;
 use super::dialect;
 use super::finding::{Code, Finding, Findings, Place, short};
 use super::heat::Heat;
+use super::limits;
 use super::motors::{self, LEAST_LENGTH, SPEED_SLACK};
 use super::patches::Patches;
 use super::primed::Primed;
@@ -100,6 +102,8 @@ impl<'a> Moves<'a> {
         let mut walk = self.walk;
         self.codes.finish(walk.facts, found, notes);
         multiplier(walk.terms, found);
+        let printing = walk.begun.unwrap_or(usize::MAX)..walk.facts.last_line;
+        limits::judge((walk.facts, walk.terms), &printing, found);
         walk.changes.finish(found);
         walk.warmth.finish(found);
         walk.primed.finish(found);
@@ -222,6 +226,8 @@ struct Walk<'a> {
     layer: Option<usize>,
     /// The moves from the first layer's to the last line.
     printing: std::ops::Range<usize>,
+    /// Place of the first line of a layer.
+    begun: Option<usize>,
     heat: Heat,
     /// The first command that the reader does not know: a macro that may heat the nozzle.
     stranger: Option<String>,
@@ -251,6 +257,7 @@ impl<'a> Walk<'a> {
             at: [0.0; 3],
             layer: None,
             printing: facts.start.end..facts.last_line.max(facts.start.end),
+            begun: None,
             heat: if heats_by_itself(facts) { Heat::by_printer() } else { Heat::default() },
             stranger: None,
             heated_by_macro: None,
@@ -296,6 +303,7 @@ impl<'a> Walk<'a> {
         let is_of_layer = printing && step.is_line();
         match self.layer {
             Some(layer) if is_of_layer => {
+                self.begun = self.begun.or(Some(index));
                 self.changes.line(found);
                 self.warmth.line(found);
                 self.air.line(step, layer, found);

@@ -164,9 +164,8 @@ impl Map<'_> {
         let (mut covered, mut all) = (0_u32, 0_u32);
         self.places(lines, f64::from(lines[0].width), |cell, z, slack| {
             all += 1;
-            let lies_on = |cell: usize| {
-                self.ply[cell] > ply && f64::from(self.top[cell]) > z + slack
-            };
+            let lies_on =
+                |cell: usize| self.ply[cell] > ply && f64::from(self.top[cell]) > z + slack;
             covered += u32::from(cell.is_some_and(lies_on));
         });
         f64::from(covered) / f64::from(all.max(1))

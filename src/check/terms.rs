@@ -8,6 +8,7 @@
 //! infill, the material and its temperatures; a list has an entry for each tool, and the first counts. What
 //! nobody tells is `None`, empty, or a value that accuses no file.
 
+use super::limits::Asked;
 use crate::head::{Head, named};
 use crate::profile::{DialectName, ExtrusionModel, Settings};
 use crate::reader::print::Step;
@@ -50,6 +51,8 @@ pub struct Terms {
     pub named: [Vec<f64>; 2],
     /// How many tools the file was made for, if it tells.
     pub tools: Option<u32>,
+    /// Speeds, accelerations and jerks that the file's own settings name.
+    pub(super) asked: Asked,
     /// The least power of the part cooling fan by settings of the file's own, %, and the last layer, from
     /// 1, on which it may be less.
     pub fan: Option<(f64, usize)>,
@@ -68,6 +71,10 @@ pub struct Machine {
     pub reach: [[f64; 3]; 2],
     /// Highest speeds in x, y, z and of the filament, mm/s.
     pub speed: [f64; 4],
+    /// Highest accelerations likewise, mm/s².
+    pub acceleration: [f64; 4],
+    /// Jerks likewise, mm/s.
+    pub jerk: [f64; 4],
     /// Plastic that it melts, mm³/s.
     pub flow: f64,
     /// Of motors whose rate is known: steps for a mm, and most steps a second; x, y, z, filament.
@@ -136,6 +143,7 @@ impl Terms {
             nozzle: own.map(of).or_else(nozzle).or_else(|| settings.map(of)),
             lift: own.map(Settings::raft_lift),
             infill: by_file(),
+            asked: Asked::new(own, print),
             fan: own.filter(|own| !own.raft.enabled).map(fan),
             multiplier: own.map_or(1.0, |own| own.extrusion.multiplier),
             material: material(own, print),
@@ -257,6 +265,13 @@ impl Machine {
             volume: machine.volume(),
             reach: machine.nozzle_reach(),
             speed: [limits.speed_x, limits.speed_y, limits.speed_z, limits.speed_e],
+            acceleration: [
+                limits.acceleration_x.max(machine.acceleration),
+                limits.acceleration_y.max(machine.acceleration),
+                limits.acceleration_z,
+                limits.acceleration_e.max(limits.retract_acceleration),
+            ],
+            jerk: [limits.jerk_x, limits.jerk_y, limits.jerk_z, limits.jerk_e],
             flow: settings.max_volumetric_speed(),
         }
     }

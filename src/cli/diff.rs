@@ -29,7 +29,8 @@ use std::path::{Path, PathBuf};
 
 const DIFF_RULES: &str = "\
 Equal are files whose plastic, ways and orders to the printer are the same:
-  moved    a print that lies elsewhere as a whole is one finding; all else is compared as if it did not
+  moved    a print that lies elsewhere as a whole is one finding, and so is a part of a plate that
+           moved alone; all else is compared as if it did not
   layers   the same number of layers, each at the same z within MM
   lines    every place of every line within MM of a line of the same role in the other file, in the
            same layer; neither their order, direction nor division into moves matters
@@ -45,6 +46,9 @@ Equal are files whose plastic, ways and orders to the printer are the same:
            filament likewise, and the time of the whole print within PERCENT and 1 s
   orders   the same temperatures, and the same other commands such as M106, in the same order
            within each layer; M73, M105, M117 and M118 are left out
+  limits   the same speeds, accelerations and jerks that the printer is told (M201, M203, M204, M205,
+           M566, SET_VELOCITY_LIMIT), and the same waits (G4) of 20 s and more; how often and where
+           that is told shows in the times alone
 Told but not decisive: settings in comments (unless --settings), widths in comments, and how often and
 how long the file travels and retracts in all; the time of that is part of the file's.
 If one of the files tells no roles, all lines count as one role, and seams are not compared. What comes
@@ -54,8 +58,8 @@ those that A holds as settings, else those of B, else those of the default profi
 A picture (-o) shows the worst layer, a page (.html) the worst ones: what both files print is grey, what
 only A prints blue, what only B prints orange, travels that differ dashed.
 
-Kinds of findings in JSON, worst first: layers-only-in, moved, heights, heaters, role-only-in, lines,
-flow, sum, travels, commands, retractions, firmware-retractions, seams, order, setting; --schema says
+Kinds of findings in JSON, worst first: layers-only-in, moved, part-moved, heights, heaters, role-only-in,
+lines, flow, sum, travels, commands, limits, retractions, firmware-retractions, seams, order, setting; --schema says
 what each holds.
 
 Exit codes: 0 equal, 1 not equal, 2 wrong arguments, 3 a file cannot be read or holds no move, 4 an

@@ -7,6 +7,7 @@
 //! last line. Places are as the file has them. The JSON form is stable: kinds and fields may be
 //! added, and none changes its meaning.
 
+use super::PartMoved;
 use super::codes::{CodeDifference, Setting};
 use super::pair::Flow;
 use super::place::Place;
@@ -68,6 +69,8 @@ pub enum Finding {
         /// How far, in x, y and z, mm.
         by_mm: [f64; 3],
     },
+    /// A part of a plate lies elsewhere in the second file. All else is compared as if it did not.
+    PartMoved(PartMoved),
     /// Layers at other heights.
     Heights {
         /// How many.
@@ -89,6 +92,11 @@ pub enum Finding {
         /// In this layer; `None` is after the last line.
         layer: Option<Both<usize>>,
         /// What.
+        difference: CodeDifference,
+    },
+    /// Limits of the machine, such as accelerations, or long waits that only one file sets.
+    Limits {
+        /// What, and the first line of the file.
         difference: CodeDifference,
     },
     /// Lines of a role that the other file has nowhere in the same layer.
@@ -215,7 +223,7 @@ pub enum Finding {
 pub enum Kind {
     /// [`Finding::LayersOnlyIn`].
     Layers,
-    /// [`Finding::Moved`].
+    /// [`Finding::Moved`] and [`Finding::PartMoved`].
     Moved,
     /// [`Finding::Heights`].
     Heights,
@@ -233,6 +241,8 @@ pub enum Kind {
     Travels,
     /// [`Finding::Commands`].
     Commands,
+    /// [`Finding::Limits`].
+    Limits,
     /// [`Finding::Retractions`] and [`Finding::FirmwareRetractions`].
     Retractions,
     /// [`Finding::Seams`].
@@ -281,7 +291,11 @@ impl Finding {
             | Self::Travels { layer, .. }
             | Self::Retractions { layer, .. }
             | Self::Order { layer, .. } => layer.iter().map(both).collect(),
-            Self::Moved { .. } | Self::FirmwareRetractions { .. } | Self::Setting(_) => Vec::new(),
+            Self::PartMoved(_) => vec![Both { a: Some(1), b: Some(1) }],
+            Self::Moved { .. }
+            | Self::Limits { .. }
+            | Self::FirmwareRetractions { .. }
+            | Self::Setting(_) => Vec::new(),
         }
     }
 
@@ -290,7 +304,8 @@ impl Finding {
     pub fn kind(&self) -> Kind {
         match self {
             Self::LayersOnlyIn { .. } => Kind::Layers,
-            Self::Moved { .. } => Kind::Moved,
+            Self::Moved { .. } | Self::PartMoved(_) => Kind::Moved,
+            Self::Limits { .. } => Kind::Limits,
             Self::Heights { .. } => Kind::Heights,
             Self::Heaters { .. } => Kind::Heaters,
             Self::RoleOnlyIn { .. } => Kind::Roles,
@@ -323,7 +338,9 @@ impl Finding {
                 [share, unlike_mm.a.max(unlike_mm.b)]
             }
             Self::Sum { sum, .. } => [sum.share(), 0.0],
+            Self::PartMoved(PartMoved { by_mm: [x, y], .. }) => [x.hypot(*y), 0.0],
             Self::Moved { .. }
+            | Self::Limits { .. }
             | Self::Heights { .. }
             | Self::Retractions { .. }
             | Self::FirmwareRetractions { .. }

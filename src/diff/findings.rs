@@ -1,7 +1,9 @@
 //! Difference -> Findings: what makes two files unequal, worst first.
 //!
 //! A cause is reported once, where it says most:
-//! - a print that moved as a whole is one finding, and all else is looked at as if it had not;
+//! - a print that moved as a whole is one finding, a part of a plate that moved alone likewise, and all else is
+//!   looked at as if it had not;
+//! - limits that only one file sets are one finding, whatever they do to how many layers;
 //! - layers that only one file has, and roles that only one file has in a layer, are one finding for
 //!   all layers together, not one for each;
 //! - layers at other heights likewise, with the one that differs most; seams with the farthest;
@@ -35,6 +37,8 @@ pub(super) fn findings(difference: &Difference, tolerances: &Tolerances) -> Vec<
         found.extend(roles.filter_map(|role| role_only_in(file, role, &difference.pairs)));
     }
     found.extend(difference.moved_mm.map(|by_mm| Finding::Moved { by_mm }));
+    found.extend(difference.parts_moved.iter().copied().map(Finding::PartMoved));
+    found.extend(difference.limits.clone().map(|difference| Finding::Limits { difference }));
     let raised = difference.moved_mm.map_or(0.0, |[_, _, z]| z);
     found.extend(heights(&difference.pairs, raised, tolerances.place));
     for pair in &difference.pairs {

@@ -6,14 +6,15 @@
 //! something there; and which commands the printer gets besides. The files may be from different
 //! slicers.
 //!
-//! 1. If the second print moved as a whole, it is looked at where the first one lies (`moved`).
+//! 1. If the second print moved as a whole, it is looked at where the first one lies (`moved`); so are single
+//!    parts of a plate (`parts`).
 //!    Layers are paired by their heights (`align`).
 //! 2. In each pair, lines of each role are compared with those of the same role (`apart`): what of
 //!    a line is farther than the tolerance from all lines of the other file is *far*; what lies in
 //!    the same place with another amount of filament per mm is *unlike*.
 //!    Lines of a patch of non-planar skin are compared with those of the same patch (`patches`).
 //! 3. Travels are compared likewise (`travels`), and the places where walls begin (`seams`).
-//! 4. Commands besides moves are compared in their order (`codes`).
+//! 4. Commands besides moves are compared in their order (`codes`), and limits that are set (`limits`).
 //! 5. Sums of length, filament and time are compared, by layer and for the file (`sums`).
 //! 6. What differs becomes findings, the worst first (`findings`). Without findings the files are
 //!    equal.
@@ -30,9 +31,11 @@ mod finding;
 mod findings;
 mod grid;
 mod half;
+mod limits;
 mod line;
 mod moved;
 mod pair;
+mod parts;
 mod patches;
 mod place;
 mod seams;
@@ -56,11 +59,13 @@ pub use travels::TravelsOfPair;
 use crate::reader::{Error, Role};
 use align::Pair;
 use pair::Rules;
+use parts::Parts;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde::Serialize;
 use show::strands;
+use std::borrow::Cow;
 use sums::{Measure, ROLES};
 use window::Of;
 
@@ -118,6 +123,8 @@ pub struct Difference {
     /// How far the second print moved as a whole, in x, y and z, mm; the rest is compared as if it had
     /// not. `None` if it did not.
     pub moved_mm: Option<[f64; 3]>,
+    /// Parts that moved alone; the rest is compared as if they had not.
+    pub parts_moved: Vec<PartMoved>,
     /// Number of layers.
     pub layers: Both<usize>,
     /// Time of the whole file, s.
@@ -130,6 +137,8 @@ pub struct Difference {
     pub roles: Vec<RoleOfFile>,
     /// Retractions whose length only the printer knows (G10, G11).
     pub firmware_retractions: Both<u64>,
+    /// Limits of the machine, such as accelerations, and long waits that only one of the files sets.
+    pub limits: Option<CodeDifference>,
     /// Settings in the comments that differ. They make files unequal only if asked to.
     pub settings: Vec<Setting>,
     /// What makes the files unequal, worst first.
@@ -140,6 +149,21 @@ pub struct Difference {
     pub end_travels: Option<TravelsOfPair>,
     /// What comes before the first layer, and each layer.
     pub pairs: Vec<PairOfLayers>,
+}
+
+/// A part of a plate that moved alone.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+pub struct PartMoved {
+    /// The lowest and the highest corner of the box around its lines in the first file, in x and y, mm.
+    pub box_mm: [[f64; 2]; 2],
+    /// How far it moved in x and y, mm.
+    pub by_mm: [f64; 2],
+}
+
+impl From<&parts::Moved> for PartMoved {
+    fn from(moved: &parts::Moved) -> Self {
+        Self { box_mm: moved.from, by_mm: moved.by }
+    }
 }
 
 /// What moves of one role add up to in either file.
@@ -180,6 +204,10 @@ pub fn diff(a: &Side, b: &Side, tolerances: &Tolerances) -> Result<Difference, E
     let layers = moved::pairs(&a.floors, &b.floors, raised, place);
     let moved = moved::moved(&a.floors, &b.floors, &layers, raised, place);
     let rules = Rules { tolerances, by_role, moved };
+    let parts = match moved {
+        None if parts::lie_apart(&a.floors, &b.floors, &layers, place) => Parts::new(a, b, place)?,
+        _ => Parts::default(),
+    };
     let slack = slack(a, b, &layers, raised);
     let last_slack = slack.last().copied().unwrap_or_default();
     let [x, y, _] = moved.unwrap_or_default();
@@ -188,6 +216,9 @@ pub fn diff(a: &Side, b: &Side, tolerances: &Tolerances) -> Result<Difference, E
     let mut end_travels = None;
     window::each(a, b, &layers, &mut |first, some| {
         let compared = some.par_iter().enumerate().map(|(k, window::Moves { pair, moves })| {
+            let lie_back =
+                |steps| if *pair == Of::Start { Cow::Borrowed(steps) } else { parts.back(steps) };
+            let moves = Both { a: Cow::Borrowed(&moves.a[..]), b: lie_back(&moves.b[..]) };
             let halves = match pair {
                 Of::Start => Both { a: a.start(&moves.a), b: b.start(&moves.b) },
                 Of::End => Both { a: a.end(&moves.a), b: b.end(&moves.b) },
@@ -213,14 +244,14 @@ pub fn diff(a: &Side, b: &Side, tolerances: &Tolerances) -> Result<Difference, E
         }
     })?;
     let end_travels = end_travels.filter(|_| tolerances.travels);
-    Ok(whole(Both { a, b }, all, rules, pairs, end_travels))
+    Ok(whole(Both { a, b }, all, (rules, &parts), pairs, end_travels))
 }
 
 /// All that is told of two files, of what their layers have told.
 fn whole(
     sides: Both<&Side>,
     all: Both<Measure>,
-    rules: Rules<'_>,
+    (rules, parts): (Rules<'_>, &Parts),
     pairs: Vec<PairOfLayers>,
     end_travels: Option<TravelsOfPair>,
 ) -> Difference {
@@ -235,12 +266,14 @@ fn whole(
         seams_mm: Some(tolerances.seams).filter(|mm| mm.is_finite()),
         travels: tolerances.travels,
         moved_mm: moved,
+        parts_moved: parts.moved.iter().map(PartMoved::from).collect(),
         layers: sides.map(|side| side.floors.len()),
         time_s: Sum::new(seconds.a, seconds.b, share, LEAST_TIME),
         filament_mm: filament(all.as_ref(), share),
         extent_mm: all.map(|measure| measure.extent),
         roles: roles(sides.a, sides.b, all.as_ref(), by_role, share),
         firmware_retractions: sides.map(Side::firmware_retractions),
+        limits: limits::difference(sides.map(Side::facts)),
         settings: codes::settings(&sides.a.values, &sides.b.values),
         findings: Vec::new(),
         end: codes::end(sides.map(|side| &side.codes)),

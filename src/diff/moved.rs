@@ -21,6 +21,8 @@ pub(super) struct Floor {
     pub(super) level: Level,
     /// Box around its lines.
     pub(super) extent: Option<Extent>,
+    /// The middle of its lines in x and y, mm.
+    pub(super) middle: [f64; 2],
 }
 
 /// How far all of the second file's layers lie above those of the first, mm; 0 if they do not lie
@@ -80,6 +82,6 @@ fn apart(a: Extent, b: Extent, tolerance: f64) -> Option<[f64; 2]> {
     Some(by)
 }
 
-fn rounded(value: f64) -> f64 {
+pub(super) fn rounded(value: f64) -> f64 {
     (value * ROUND).round() / ROUND
 }

@@ -17,7 +17,7 @@ use super::sums::{self, Measure};
 use crate::estimate::Estimate;
 use crate::reader::print::Step;
 use crate::reader::stream::Section;
-use crate::reader::{Cause, Error, Firmware, Role, Source, Stream};
+use crate::reader::{Cause, Error, Facts, Firmware, Role, Source, Stream};
 use std::io::{self, BufReader};
 
 /// Commands for heaters that are kept: more than any slicer writes.
@@ -110,6 +110,16 @@ impl Side {
         Moves { sections: self.stream.sections(), rest: Some(Vec::new()) }
     }
 
+    /// The start and all layers, one after the other.
+    pub(super) fn sections(&self) -> impl Iterator<Item = io::Result<Section>> + Send {
+        self.stream.sections()
+    }
+
+    /// What is known of the file as a whole.
+    pub(super) fn facts(&self) -> &Facts {
+        self.stream.facts()
+    }
+
     /// What comes before the first layer.
     pub(super) fn start<'a>(&'a self, steps: &'a [Step]) -> Half<'a> {
         let seconds = self.estimate.start_seconds;
@@ -164,7 +174,8 @@ impl Survey {
             if let Some(layer) = section.of(stream.facts()) {
                 let level = Level { z: layer.z, height: layer.height };
                 let extent = Measure::new(&section.moves, true).extent;
-                survey.floors.push(Floor { level, extent });
+                let middle = middle(section.lines());
+                survey.floors.push(Floor { level, extent, middle });
                 survey.places.before.push(last);
                 let begin = section.moves.first().map(|step| step.line);
                 survey.first_line = survey.first_line.or(begin);
@@ -179,6 +190,19 @@ impl Survey {
         }
         Ok(survey)
     }
+}
+
+/// The middle of some lines in x and y, mm: that of each counts by its length.
+fn middle<'a>(lines: impl Iterator<Item = &'a Step>) -> [f64; 2] {
+    let (mut sum, mut length) = ([0.0; 2], 0.0);
+    for step in lines {
+        let own = step.plan_length();
+        for (axis, sum) in sum.iter_mut().enumerate() {
+            *sum += 0.5 * (f64::from(step.from[axis]) + f64::from(step.to[axis])) * own;
+        }
+        length += own;
+    }
+    sum.map(|sum| sum / length.max(f64::MIN_POSITIVE))
 }
 
 /// See [`Side::moves`].

@@ -20,7 +20,9 @@
 //!
 //! Nothing here grows with the number of moves or lines; what a file may have many of is bounded.
 
+use super::priming::{self, Priming};
 use super::step::{Layer, Step};
+use super::told::{self, LongWait, Told};
 use super::{Event, Heights, Motion, Role, Summary};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -38,9 +40,6 @@ const MOST_COMMANDS: usize = 10_000;
 
 /// Patches of skin that are kept: a print has tens.
 const MOST_PATCHES: usize = 100_000;
-
-/// Lines that a start block draws to prime the nozzle, at most.
-const MOST_PRIMING: usize = 8;
 
 /// Heights that differ by less are the same, mm.
 const SAME_HEIGHT: f64 = 1e-4;
@@ -99,6 +98,10 @@ pub struct Facts {
     pub values: Vec<(String, String)>,
     /// Commands that occur, but for moves: letter and number -> the first line with it.
     pub commands: BTreeMap<(u8, u32), u64>,
+    /// Limits that the file tells the machine, each value once, in the file's order.
+    pub limits: Vec<Told>,
+    /// Long waits (G4), in the file's order.
+    pub waits: Vec<LongWait>,
     /// The file's first comments, up to the first line that is something else.
     pub head: Vec<String>,
     /// Whether comments mark where layers begin.
@@ -203,6 +206,9 @@ pub(super) struct Gatherer {
     /// How many lines it has, and how many the first layer has.
     lines: usize,
     first_lines: usize,
+    /// The lines with which the first layer begins, and the length and filament of all of it, mm.
+    priming: Priming,
+    first_drawn: [f64; 2],
     /// Height of the layer before, mm.
     below: f64,
     /// Height of the lowest layer so far, mm.
@@ -224,6 +230,12 @@ impl Gatherer {
                 if commands.len() < MOST_COMMANDS {
                     commands.entry((*letter, *number)).or_insert(line);
                 }
+            }
+            Event::Change(change) => {
+                told::add(&mut self.facts.limits, change, (line, self.facts.move_count));
+            }
+            Event::Dwell(seconds) => {
+                told::wait(&mut self.facts.waits, *seconds, (line, self.facts.move_count));
             }
             Event::Comment(comment) => return self.comment(comment),
             _ => {}
@@ -247,6 +259,10 @@ impl Gatherer {
                 self.heights.add([step.from[2], step.to[2]].map(f64::from), step.length());
                 self.drawn[0] += step.length();
                 self.drawn[1] += f64::from(step.filament);
+                if facts.layers.is_empty() {
+                    let drawn = [step.length(), f64::from(step.filament)];
+                    self.priming.line(facts.move_count, drawn);
+                }
                 self.has_fallen |= self.falls(&step, motion.height);
             }
         }
@@ -295,6 +311,7 @@ impl Gatherer {
             (self.heights, self.below) = (Heights::default(), 0.0);
             (self.drawn, self.flows) = ([0.0; 2], Vec::new());
             (self.lines, self.lowest) = (0, None);
+            self.priming = Priming::default();
         }
         let facts = &mut self.facts;
         facts.marked |= marked;
@@ -324,7 +341,7 @@ impl Gatherer {
         let lowest = self.lowest.unwrap_or(HIGHEST);
         let lines = std::mem::take(&mut self.lines);
         if last.is_none() {
-            self.first_lines = lines;
+            (self.first_lines, self.first_drawn) = (lines, [length, filament]);
         }
         let height = match (z - self.below, last) {
             (rise, _) if rise > SAME_HEIGHT => rise,
@@ -367,7 +384,14 @@ impl Gatherer {
     fn has_priming(&self) -> bool {
         let [first, next, ..] = &self.facts.layers[..] else { return false };
         let is_higher = next.z < first.z - SAME_HEIGHT;
-        !self.facts.marked && is_higher && self.first_lines <= MOST_PRIMING
+        !self.facts.marked && is_higher && self.first_lines <= priming::MOST_LINES
+    }
+
+    /// Where in the moves of a file without marks the first layer begins after what primes the nozzle at its height,
+    /// and what it draws from there on, if anything primes there.
+    fn primed(&self) -> Option<(usize, [f64; 2])> {
+        let is_unmarked = !self.facts.marked && !self.facts.layers.is_empty();
+        is_unmarked.then(|| self.priming.end(self.first_drawn))?
     }
 
     /// The facts, at the file's end. `diameter`, mm, is that of the filament if the file gives none.
@@ -378,6 +402,9 @@ impl Gatherer {
             self.facts.layers.remove(0);
             self.flows.remove(0);
             self.facts.begun -= 1;
+        } else if let Some((end, [length, filament])) = self.primed() {
+            self.facts.layers[0].moves.start = end;
+            self.flows[0] = filament / length;
         }
         let mut facts = self.facts;
         facts.summary = summary;

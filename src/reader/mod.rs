@@ -18,6 +18,7 @@ mod lines;
 mod marks;
 mod pieces;
 mod places;
+mod priming;
 pub mod print;
 mod recognise;
 mod retraction;
@@ -27,6 +28,7 @@ mod spiral;
 mod state;
 mod step;
 pub mod stream;
+mod told;
 mod words;
 
 pub use change::Change;
@@ -41,6 +43,7 @@ pub use recognise::Reading;
 pub use role::Role;
 pub use source::Source;
 pub use stream::Stream;
+pub use told::{Limit, LongWait, Told};
 
 use crate::units::MmPerS;
 use std::io::{self, BufRead};

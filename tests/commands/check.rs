@@ -184,6 +184,63 @@ fn json_is_stable() {
     assert_eq!(Code::ALL.map(Code::name).join(" "), names);
 }
 
+#[test]
+fn limits_that_change_in_the_print_and_long_waits_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let middle = CUBE.match_indices(";LAYER_CHANGE").nth(50).unwrap().0;
+    let judged = |line: &str| {
+        let text = format!("{}{line}\n{}", &CUBE[..middle], &CUBE[middle..]);
+        fs::write(folder.path().join("one.gcode"), text).unwrap();
+        check(&folder, &["one.gcode"], b"")
+    };
+    let number = CUBE[..middle].lines().count() + 1;
+    for (line, is_error, told) in [
+        ("M203 X1", true, "the highest speed of x is set to 1 mm/s in the print: it crawls"),
+        (
+            "M204 S90000",
+            true,
+            "the acceleration is set to 90000 mm/s² in the print, where the machine does",
+        ),
+        (
+            "M205 X3",
+            false,
+            "the jerk of x is set to 3 mm/s in the print, which the file's settings do not ask for",
+        ),
+        ("G4 S3600", false, "the nozzle stands still for 3600 s in the print"),
+    ] {
+        let (code, out, _) = judged(line);
+        let place = format!("changes-the-machine: line {number}, layer 50: {told}");
+        assert!(out.contains(&place), "{line}: {out}");
+        assert_eq!(code, i32::from(is_error), "{out}");
+    }
+    assert!(judged("G4 S3").1.contains(": clean"));
+    // What the file's own settings ask for by role is fine.
+    let keys = [
+        "acceleration.outer_wall=700",
+        "acceleration.travel=900",
+        "jerk.infill=4",
+        "jerk.outer_wall=6",
+    ];
+    for printer in ["generic-marlin", "prusa-mk3s", "voron-2.4-250", "ender-3"] {
+        let made = slice(&crate::common::fixture("cube_20.stl"), printer, &keys).text;
+        assert!(["M204", "SET_VELOCITY"].iter().any(|word| made.contains(word)), "{printer}");
+        fs::write(folder.path().join("one.gcode"), made).unwrap();
+        let (_, out, _) = check(&folder, &["one.gcode"], b"");
+        assert!(!out.contains("changes-the-machine"), "{printer}: {out}");
+    }
+}
+
+#[test]
+fn our_file_without_a_comment_is_judged_but_for_what_it_primes() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = slice(&crate::common::fixture("cube_20.stl"), "prusa-mk3s", &[]).text;
+    let code = |line: &str| line.split(';').next().unwrap_or_default().trim_end().to_owned() + "\n";
+    let bare: String = made.lines().filter(|line| !line.starts_with(';')).map(code).collect();
+    fs::write(folder.path().join("bare.gcode"), &bare).unwrap();
+    let (code, out, _) = check(&folder, &["bare.gcode", "-p", "prusa-mk3s"], b"");
+    assert!(code == 0 && out.starts_with("bare.gcode: clean"), "{out}");
+}
+
 /// How a slicer writes a file.
 #[derive(Clone, Copy, PartialEq)]
 enum Form {

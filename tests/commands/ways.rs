@@ -264,6 +264,52 @@ fn a_print_that_moved_as_a_whole_is_one_finding() {
     }
 }
 
+#[test]
+fn a_part_that_moved_alone_is_one_finding() {
+    let made = squares(4, &THREE, |_| 0);
+    let moved = [THREE[0], [41.0, 9.5], THREE[2]];
+    let found = compared(&made, &squares(4, &moved, |_| 0), &Tolerances::default());
+    let [Finding::PartMoved(part)] = &found.findings[..] else { panic!("{:?}", found.findings) };
+    assert_eq!((part.by_mm, part.box_mm), ([1.0, -0.5], [[40.0, 10.0], [60.0, 30.0]]));
+    assert_eq!(found.parts_moved, [*part]);
+    // Two of them, each its own way; and what else is another is told beside it.
+    let both = [[9.0, 10.0], THREE[1], [70.0, 22.0]];
+    let other = squares(4, &both, |_| 0);
+    let found = compared(&made, &other, &Tolerances::default()).findings;
+    let by = |one: &Finding| match one {
+        Finding::PartMoved(part) => Some(part.by_mm),
+        _ => None,
+    };
+    let all: Vec<_> = found.iter().map(by).collect();
+    assert_eq!(all, [Some([0.0, 2.0]), Some([-1.0, 0.0])]);
+    let thick = other.replacen("E0.666", "E0.9", 1);
+    let found = compared(&made, &thick, &Tolerances::default()).findings;
+    let flow = |one: &Finding| matches!(one, Finding::Flow { .. });
+    assert!(found.iter().any(flow) && found.iter().filter_map(by).count() == 2, "{found:?}");
+    // A part of another shape did not move.
+    let turned = made.replace("X60 Y30", "X61 Y30");
+    let found = compared(&made, &turned, &Tolerances::default()).findings;
+    assert!(found.iter().filter_map(by).count() == 0 && found.len() >= 4, "{found:?}");
+}
+
+#[test]
+fn limits_and_long_waits_of_one_file_are_one_finding() {
+    let made = squares(4, &THREE, |_| 0);
+    let at = layer(&made, 3);
+    let told = with(&made, at, "G1", "M204 S300\nM203 X40\n");
+    let again = with(&told, layer(&told, 4), "G1", "M204 S300\nG4 S3600\nG4 S2\n");
+    let mut found = compared(&made, &again, &Tolerances::default()).findings;
+    found.retain(|one| !matches!(one, Finding::Sum { layer: None, .. }));
+    let [Finding::Limits { difference }] = &found[..] else { panic!("{found:?}") };
+    let named = "acceleration 300 mm/s², acceleration of travels 300 mm/s², highest speed of x 40 mm/s, wait of 3600 s";
+    assert_eq!(
+        difference.only,
+        Both { a: vec![], b: named.split(", ").map(str::to_owned).collect() }
+    );
+    let line = again[..again.find("M204").unwrap()].lines().count() as u64 + 1;
+    assert_eq!(difference.line, Both { a: None, b: Some(line) });
+}
+
 /// The line with its z raised.
 fn raised(line: &str, by: f64) -> String {
     let z = line.strip_prefix("G1 Z").and_then(|rest| rest.split_once(' '));

@@ -104,7 +104,7 @@ const DEEDS: [(&str, Deed); 5] = [
 ];
 
 /// Commands that stand in the middle of a print.
-const IN_THE_MIDDLE: [&str; 27] = [
+const IN_THE_MIDDLE: [&str; 34] = [
     "G92 X0 Y0",
     "G92 Z5",
     "M206 X10",
@@ -132,6 +132,13 @@ const IN_THE_MIDDLE: [&str; 27] = [
     "M83/M82",
     "M290 Z1",
     "M851 Z-1",
+    "M201 X90000",
+    "M203 X1",
+    "M204 S90000",
+    "M204 S30",
+    "M205 X300",
+    "SET_VELOCITY_LIMIT ACCEL=30",
+    "G4 S3600",
 ];
 
 /// All kinds by name.

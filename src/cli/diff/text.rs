@@ -11,8 +11,8 @@
 //! in a row are written as a range.
 
 use slicer::diff::{
-    Both, CodeDifference, Difference, File, Finding, Flow, Kind, Ordered, Place, Quantity, Setting,
-    Sum,
+    Both, CodeDifference, Difference, File, Finding, Flow, Kind, Ordered, PartMoved, Place,
+    Quantity, Setting, Sum,
 };
 use slicer::reader::Role;
 use slicer::warning::plural;
@@ -157,6 +157,16 @@ pub(super) fn line(finding: &Finding, tolerance: f64) -> String {
             let z = if by_mm[2] == 0.0 { String::new() } else { format!(", {z}") };
             format!("all moved by {x}, {y}{z} mm; the rest is compared as if it had not")
         }
+        Finding::PartMoved(PartMoved { box_mm: [low, high], by_mm }) => {
+            let [x, y] = by_mm.map(short);
+            let span = |axis: usize| format!("{} to {}", short(low[axis]), short(high[axis]));
+            format!(
+                "the part at x {}, y {} moved by {x}, {y} mm; the rest is compared as if it had not",
+                span(0),
+                span(1)
+            )
+        }
+        Finding::Limits { difference } => format!("limits and waits: {}", codes(difference)),
         Finding::Travels { .. }
         | Finding::Order { .. }
         | Finding::Seams { .. }
