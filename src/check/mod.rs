@@ -19,6 +19,7 @@ mod against;
 mod air;
 mod align;
 mod anchors;
+mod asked;
 mod beads;
 mod belongs;
 mod bodies;

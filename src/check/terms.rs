@@ -8,7 +8,7 @@
 //! infill, the material and its temperatures; a list has an entry for each tool, and the first counts. What
 //! nobody tells is `None`, empty, or a value that accuses no file.
 
-use super::limits::Asked;
+use super::asked::Asked;
 use crate::head::{Head, named};
 use crate::profile::{DialectName, ExtrusionModel, Settings};
 use crate::reader::print::Step;

@@ -38,7 +38,7 @@ pub(super) fn findings(difference: &Difference, tolerances: &Tolerances) -> Vec<
     }
     found.extend(difference.moved_mm.map(|by_mm| Finding::Moved { by_mm }));
     found.extend(difference.parts_moved.iter().copied().map(Finding::PartMoved));
-    found.extend(difference.limits.clone().map(|difference| Finding::Limits { difference }));
+    found.extend(difference.limits_told.clone().map(|difference| Finding::Limits { difference }));
     let raised = difference.moved_mm.map_or(0.0, |[_, _, z]| z);
     found.extend(heights(&difference.pairs, raised, tolerances.place));
     for pair in &difference.pairs {

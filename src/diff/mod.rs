@@ -138,7 +138,7 @@ pub struct Difference {
     /// Retractions whose length only the printer knows (G10, G11).
     pub firmware_retractions: Both<u64>,
     /// Limits of the machine, such as accelerations, and long waits that only one of the files sets.
-    pub limits: Option<CodeDifference>,
+    pub limits_told: Option<CodeDifference>,
     /// Settings in the comments that differ. They make files unequal only if asked to.
     pub settings: Vec<Setting>,
     /// What makes the files unequal, worst first.
@@ -273,7 +273,7 @@ fn whole(
         extent_mm: all.map(|measure| measure.extent),
         roles: roles(sides.a, sides.b, all.as_ref(), by_role, share),
         firmware_retractions: sides.map(Side::firmware_retractions),
-        limits: limits::difference(sides.map(Side::facts)),
+        limits_told: limits::difference(sides.map(Side::facts)),
         settings: codes::settings(&sides.a.values, &sides.b.values),
         findings: Vec::new(),
         end: codes::end(sides.map(|side| &side.codes)),

@@ -152,20 +152,7 @@ fn listed(findings: &[Finding], all: bool) -> Vec<&Finding> {
 /// One difference in one line.
 pub(super) fn line(finding: &Finding, tolerance: f64) -> String {
     match finding {
-        Finding::Moved { by_mm } => {
-            let [x, y, z] = by_mm.map(short);
-            let z = if by_mm[2] == 0.0 { String::new() } else { format!(", {z}") };
-            format!("all moved by {x}, {y}{z} mm; the rest is compared as if it had not")
-        }
-        Finding::PartMoved(PartMoved { box_mm: [low, high], by_mm }) => {
-            let [x, y] = by_mm.map(short);
-            let span = |axis: usize| format!("{} to {}", short(low[axis]), short(high[axis]));
-            format!(
-                "the part at x {}, y {} moved by {x}, {y} mm; the rest is compared as if it had not",
-                span(0),
-                span(1)
-            )
-        }
+        Finding::Moved { .. } | Finding::PartMoved(_) => moved(finding),
         Finding::Limits { difference } => format!("limits and waits: {}", codes(difference)),
         Finding::Travels { .. }
         | Finding::Order { .. }
@@ -217,6 +204,27 @@ pub(super) fn line(finding: &Finding, tolerance: f64) -> String {
             format!("{layer}: {role}{what} {a:.2} {unit} in A, {b:.2} in B ({more})")
         }
         Finding::Setting(setting) => format!("setting {}", changed(setting)),
+    }
+}
+
+/// What lies elsewhere as a whole.
+fn moved(finding: &Finding) -> String {
+    match finding {
+        Finding::Moved { by_mm } => {
+            let [x, y, z] = by_mm.map(short);
+            let z = if by_mm[2] == 0.0 { String::new() } else { format!(", {z}") };
+            format!("all moved by {x}, {y}{z} mm; the rest is compared as if it had not")
+        }
+        Finding::PartMoved(PartMoved { box_mm: [low, high], by_mm }) => {
+            let [x, y] = by_mm.map(short);
+            let span = |axis: usize| format!("{} to {}", short(low[axis]), short(high[axis]));
+            format!(
+                "the part at x {}, y {} moved by {x}, {y} mm; the rest is compared as if it had not",
+                span(0),
+                span(1)
+            )
+        }
+        _ => String::new(),
     }
 }
 
