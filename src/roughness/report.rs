@@ -113,8 +113,8 @@ pub(super) fn make(surface: &Surface, map: &Map, lie: &Lie, options: &Options) -
         layer_mm: lie.layer,
         window_layers: WINDOW,
         cutoff_mm: options.cutoff,
-        moved_mm: lie.moved,
-        lift_mm: lie.lift,
+        moved_mm: lie.moved.map(rounded),
+        lift_mm: rounded(lie.lift),
         whole: Sums::of(&by_class[1..]).means(),
         slopes: slopes.collect(),
         patches,
@@ -147,4 +147,10 @@ fn patch(map: &Map, samples: &[u32], lie: &Lie, found: &Found) -> OfPatch {
         direction_deg: found.direction,
         means: Sums::of(&found.sums[1..]).means(),
     }
+}
+
+/// A length to the nanometre, and no minus before a zero.
+fn rounded(mm: f64) -> f64 {
+    let rounded = (mm * 1e6).round() / 1e6;
+    if rounded == 0.0 { 0.0 } else { rounded }
 }
