@@ -12,8 +12,12 @@ Findings, each with a stable code, a place and a measure:
                        its diameter; not judged where nobody tells the head (--head NAME)
   changes-the-machine  a command that changes what the rest relies on: G92 of an axis, steps,
                        offsets, flow, homing or motors off in the print, a tool that is not there,
-                       heaters far from what the settings say, hotter after the print; a warning
-                       for pauses, changes of filament, and what a start or end block need not do
+                       heaters far from what the settings say, hotter after the print; limits of
+                       speed, acceleration and jerk that are new in the print and beyond the
+                       machine, or so low that it crawls (below 2 mm/s or 20 mm/s²); a warning for
+                       others that the file's settings do not ask for (of other slicers' files for
+                       M201 and M203 alone), pauses, waits (G4) of 20 s and more, changes of
+                       filament, and what a start or end block need not do
   wrong-temperature    the nozzle or the bed is set to what the material does not take, or no
                        machine
   cold-extrusion       filament is pushed before the nozzle is told to be hot and waited for
