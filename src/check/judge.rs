@@ -6,8 +6,8 @@
 //! 1. All layers are surveyed: what must be known of all before any is judged ([`survey`](super::survey)).
 //! 2. The part, if it is given, is laid where it was printed ([`align`](super::align)).
 //! 3. Batch by batch, layers are judged side by side by those witnesses for which one layer is enough,
-//!    while the next batch is read. What each has found is then put together in the file's order, beside
-//!    the witnesses that go from move to move.
+//!    while the witnesses that go from move to move go through the same batch. What each has found is then
+//!    put together in the file's order.
 //! 4. Sums over all layers are judged at the end.
 //!
 //! So the findings and their order are the same for any number of threads, and only a window of layers
@@ -56,17 +56,21 @@ pub(super) fn judge<'a, E: Send>(
     });
     let mut judge = Judge::new((facts, &survey), terms, part.as_ref());
     judge.is_absurd = absurd.is_some();
+    let mut moves = Moves::new(facts, terms, survey.has_slopes(facts));
     let mut window = Window::new(facts);
     let mut pages = pages();
     if let Some(start) = pages.next() {
-        judge.moves.page(&start?, &mut found.moves);
+        moves.page(&start?, &mut found.moves);
     }
     let count = facts.layers.len();
     let mut batch = 0..BATCH.min(count);
     window.go_on((0, batch.end), &survey.floors, &mut pages)?;
     while !batch.is_empty() {
         let next = batch.end..(batch.end + BATCH).min(count);
-        let judged = judge.batch(&window, batch.clone());
+        let (judged, ()) = rayon::join(
+            || judge.batch(&window, batch.clone()),
+            || walk(&mut moves, &window, batch.clone(), &mut found.moves),
+        );
         judge.put_together(&window, judged, &mut found);
         judge.forget(batch.end);
         window.go_on((next.start, next.end), &survey.floors, &mut pages)?;
@@ -74,6 +78,7 @@ pub(super) fn judge<'a, E: Send>(
     }
     beads::sums(facts, survey.used, &mut found.sums);
     found.sums.extend(absurd);
+    moves.finish(&mut found.moves, &mut found.of_moves);
     let (stacked, sums) = judge.finish(&mut found);
     let mut not_judged = what_is_missing((facts, &survey), terms, model.is_some());
     let (findings, counts, notes) = found.sorted();
@@ -98,6 +103,13 @@ pub(super) fn judge<'a, E: Send>(
             infill: sums.and_then(|sums| sums.density),
         },
     })
+}
+
+/// Judges the moves of some layers one by one.
+fn walk(moves: &mut Moves<'_>, window: &Window<'_>, layers: Range<usize>, found: &mut Findings) {
+    for page in layers.filter_map(|layer| window.page(layer)) {
+        moves.page(page, found);
+    }
 }
 
 /// What each witness has found, and what could not be judged.
@@ -143,7 +155,6 @@ struct Judge<'a> {
     has_roles: bool,
     /// Whether lines lie further apart than on any machine.
     is_absurd: bool,
-    moves: Moves<'a>,
     stack: Stack<'a>,
     surfaces: Option<Surfaces<'a>>,
     field: Option<Field>,
@@ -176,7 +187,6 @@ impl<'a> Judge<'a> {
             terms,
             has_roles,
             is_absurd: false,
-            moves: Moves::new(facts, terms, survey.has_slopes(facts)),
             stack: Stack::new(facts, part),
             surfaces: part.and_then(|part| Surfaces::new(part, (survey, terms), has_roles)),
             field: Field::over(survey).filter(|_| has_roles),
@@ -225,9 +235,6 @@ impl<'a> Judge<'a> {
     fn put_together(&mut self, window: &Window<'_>, judged: Vec<Judged>, found: &mut Found) {
         let filled = Filled { window, survey: self.survey };
         for one in judged {
-            if let Some(page) = window.page(one.layer) {
-                self.moves.page(page, &mut found.moves);
-            }
             found.odd.extend(one.odd);
             found.narrow.extend(one.narrow);
             found.fills.extend(one.fills);
@@ -254,7 +261,6 @@ impl<'a> Judge<'a> {
 
     /// Judges the sums over all layers.
     fn finish(self, found: &mut Found) -> (lay::Measured, Option<Sums>) {
-        self.moves.finish(&mut found.moves, &mut found.of_moves);
         self.contacts.finish(&mut found.contacts);
         if let Some(posts) = self.posts.filter(|_| !self.is_absurd) {
             posts.finish(self.facts, &mut found.posts);

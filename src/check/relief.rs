@@ -1,8 +1,8 @@
 //! Lines in the file's order -> Relief: how high plastic stands at each place, as wide as lines are.
 //!
 //! Words used here: a *cell* is a square of [`CELL`] mm; a *block* is [`BLOCK`] by [`BLOCK`] cells; a
-//! *tile* is [`BLOCKS`] by [`BLOCKS`] blocks, and exists where something stands. Blocks and tiles know how
-//! high their highest cell is.
+//! *field* is [`FIELD`] by [`FIELD`] blocks; a *tile* is [`BLOCKS`] by [`BLOCKS`] blocks, and exists where
+//! something stands. Blocks, fields and tiles know how high their highest cell is.
 //!
 //! - A cell is as high as the highest line anywhere in it: an upper bound, to judge what the head touches.
 //! - A cell also keeps how high it stood before the first line of a skin covered it: what skins lie on.
@@ -22,6 +22,10 @@ pub(super) const CELL: f64 = 0.1;
 /// Cells along a block's side, and blocks along a tile's.
 pub(super) const BLOCK: usize = 4;
 pub(super) const BLOCKS: usize = 16;
+
+/// Blocks along a field's side, and fields along a tile's.
+const FIELD: usize = 4;
+const FIELDS: usize = BLOCKS / FIELD;
 const SIDE: usize = BLOCK * BLOCKS;
 
 /// From a cell's middle to its corners, mm.
@@ -38,8 +42,28 @@ struct Tile {
     cells: Box<[f32]>,
     /// Before skins; not a number where there is none.
     before: Option<Box<[f32]>>,
+    tops: Tops,
+}
+
+/// How high the highest cell of each block, of each field and of a tile is, mm.
+struct Tops {
     blocks: [f32; BLOCKS * BLOCKS],
+    fields: [f32; FIELDS * FIELDS],
     highest: f32,
+}
+
+impl Tops {
+    /// A cell of a block is so high.
+    fn raise(&mut self, block: usize, z: f32) {
+        let (row, column) = (block / BLOCKS, block % BLOCKS);
+        for top in [
+            &mut self.blocks[block],
+            &mut self.fields[row / FIELD * FIELDS + column / FIELD],
+            &mut self.highest,
+        ] {
+            *top = top.max(z);
+        }
+    }
 }
 
 /// Plastic as it stands.
@@ -154,16 +178,26 @@ impl Relief {
             let Some(&tile) = self.map.get(&[column, row]) else { continue };
             let tile = &self.tiles[tile];
             let corner = [column, row].map(|k| f64::from(k) * whole);
-            if !counts(Square { low: corner, side: whole }, f64::from(tile.highest)) {
+            if !counts(Square { low: corner, side: whole }, f64::from(tile.tops.highest)) {
                 continue;
             }
             let block_of = |at: f64| ((at / side).max(0.0) as usize).min(BLOCKS - 1);
             let span = |axis: usize| {
                 block_of(low[axis] - corner[axis])..=block_of(high[axis] - corner[axis])
             };
+            // Most fields lie lower than whatever is looked for: none of their blocks is asked.
+            let field_counts: [bool; FIELDS * FIELDS] = std::array::from_fn(|field| {
+                let at = [field % FIELDS, field / FIELDS].map(|k| side * (k * FIELD) as f64);
+                let low = [corner[0] + at[0], corner[1] + at[1]];
+                let square = Square { low, side: side * FIELD as f64 };
+                counts(square, f64::from(tile.tops.fields[field]))
+            });
             for (j, i) in span(1).flat_map(|j| span(0).map(move |i| (j, i))) {
+                if !field_counts[j / FIELD * FIELDS + i / FIELD] {
+                    continue;
+                }
                 let low = [corner[0] + side * i as f64, corner[1] + side * j as f64];
-                let highest = f64::from(tile.blocks[j * BLOCKS + i]);
+                let highest = f64::from(tile.tops.blocks[j * BLOCKS + i]);
                 if counts(Square { low, side }, highest)
                     && sink(tile, corner, [i * BLOCK, j * BLOCK])
                 {
@@ -193,8 +227,11 @@ impl Relief {
         self.tiles.push(Tile {
             cells: vec![0.0; SIDE * SIDE].into_boxed_slice(),
             before: None,
-            blocks: [0.0; BLOCKS * BLOCKS],
-            highest: 0.0,
+            tops: Tops {
+                blocks: [0.0; BLOCKS * BLOCKS],
+                fields: [0.0; FIELDS * FIELDS],
+                highest: 0.0,
+            },
         });
         Some(self.tiles.len() - 1)
     }
@@ -224,20 +261,16 @@ impl Tile {
             let row = first / SIDE / BLOCK * BLOCKS;
             let columns = first % SIDE / BLOCK..=(first + count - 1) % SIDE / BLOCK;
             for column in columns {
-                let block = &mut self.blocks[row + column];
-                *block = block.max(z);
+                self.tops.raise(row + column, z);
             }
-            self.highest = self.highest.max(z);
             return;
         }
         for (k, cell) in cells.iter_mut().enumerate() {
             let z = strip.height(after + k as i32) as f32;
             if z > *cell {
                 *cell = z;
-                let index = first + k;
-                let block = &mut self.blocks[index / SIDE / BLOCK * BLOCKS + index % SIDE / BLOCK];
-                *block = block.max(z);
-                self.highest = self.highest.max(z);
+                let (row, column) = ((first + k) / SIDE, (first + k) % SIDE);
+                self.tops.raise(row / BLOCK * BLOCKS + column / BLOCK, z);
             }
         }
     }
