@@ -83,7 +83,6 @@ pub(super) fn judge<'a, E: Send>(
     let mut not_judged = what_is_missing((facts, &survey), terms, model.is_some());
     let (findings, counts, notes) = found.sorted();
     not_judged.extend(notes);
-    let share = |[all, some]: [f64; 2]| if all > 0.0 { some / all } else { 1.0 };
     Ok(Verdict {
         schema: SCHEMA,
         layers: count,
@@ -91,18 +90,29 @@ pub(super) fn judge<'a, E: Send>(
         findings,
         counts,
         not_judged,
-        measures: Measures {
-            plastic_mm3: survey.filament * terms.filament_area,
-            longest_bridge_mm: stacked.longest_bridge,
-            longest_end_mm: stacked.longest_end,
-            part_hangs_mm: stacked.part_hangs,
-            part_mm3: sums.map(|sums| sums.total.part),
-            outline: sums.map(|sums| share(sums.total.rim)),
-            surface: sums.map(|sums| share(sums.total.surface)),
-            solid: sums.map(|sums| share(sums.total.solid)),
-            infill: sums.and_then(|sums| sums.density),
-        },
+        measures: measures(terms, &survey, &stacked, sums.as_ref()),
     })
+}
+
+/// What was measured on the way.
+fn measures(
+    terms: &Terms,
+    survey: &Survey,
+    stacked: &lay::Measured,
+    sums: Option<&Sums>,
+) -> Measures {
+    let share = |[all, some]: [f64; 2]| if all > 0.0 { some / all } else { 1.0 };
+    Measures {
+        plastic_mm3: survey.filament * terms.filament_area,
+        longest_bridge_mm: stacked.longest_bridge,
+        longest_end_mm: stacked.longest_end,
+        part_hangs_mm: stacked.part_hangs,
+        part_mm3: sums.map(|sums| sums.total.part),
+        outline: sums.map(|sums| share(sums.total.rim)),
+        surface: sums.map(|sums| share(sums.total.surface)),
+        solid: sums.map(|sums| share(sums.total.solid)),
+        infill: sums.and_then(|sums| sums.density),
+    }
 }
 
 /// Judges the moves of some layers one by one.
