@@ -17,7 +17,7 @@
 
 use super::surface::Surface;
 use crate::geom::boxes::{extent, meet};
-use crate::geom::{Contour, Point, polygon, side};
+use crate::geom::{Contour, polygon};
 use crate::region::curved::CurvedTops;
 use crate::slice::Layer;
 use crate::units::Coord;
@@ -28,8 +28,8 @@ const ABOVE: Coord = 2;
 /// Half the width of what is too thin to be left or taken, grid units: 0.02 mm.
 const THIN: Coord = 200;
 
-/// The cosine of the turn at a corner of 40°. A sharper one may end in a thin tip.
-const SHARP: f64 = -0.766;
+/// The cotangent of half the angle of a corner of 40°. A sharper one may end in a thin tip.
+const SHARP: f64 = 2.747;
 
 /// Contours are simplified within this, grid units: 2 µm.
 const TOLERANCE: Coord = 20;
@@ -169,16 +169,5 @@ fn without_thin(contours: Vec<Contour>) -> Vec<Contour> {
 /// Whether contours certainly have no thin places: moved in, each keeps all its sides and meets no other, and no
 /// corner is so sharp that its tip would be thin.
 fn is_thick(contours: &[Contour]) -> bool {
-    let is_sharp = |[a, b, c]: [Point; 3]| {
-        let way =
-            |p: Point, q: Point| [f64::from(q.x) - f64::from(p.x), f64::from(q.y) - f64::from(p.y)];
-        let (u, v) = (way(a, b), way(b, c));
-        let turn = (u[0] * v[0] + u[1] * v[1]) / (u[0].hypot(u[1]) * v[0].hypot(v[1]));
-        side(a, b, c) > 0 && turn < SHARP
-    };
-    let has_tip = |contour: &Contour| {
-        let n = contour.len();
-        (0..n).any(|k| is_sharp([contour[k], contour[(k + 1) % n], contour[(k + 2) % n]]))
-    };
-    !contours.iter().any(has_tip) && polygon::keep_shape(contours, THIN, 0.0)
+    polygon::sharpest(contours) < SHARP && polygon::keep_shape(contours, THIN, 0.0)
 }

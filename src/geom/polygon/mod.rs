@@ -89,13 +89,10 @@ pub fn outset(contours: &[Contour], distance: Coord) -> Vec<Contour> {
 }
 
 /// Whether `contours` (as from [`union`]) keep their shape when shrunk by `distance`: none splits, meets
-/// another or vanishes, and none loses sides with a total length above `most` (grid units), or more than
-/// that of either side of a corner.
+/// another or vanishes, and none loses sides with a total length above `most` (grid units). A pointed tip may
+/// move far along its sides: see [`sharpest`].
 #[must_use]
 pub fn keep_shape(contours: &[Contour], distance: Coord, most: f64) -> bool {
-    if contours.iter().any(|contour| deepest_corner(contour) * f64::from(distance) > most) {
-        return false;
-    }
     let distance = -f64::from(distance);
     let moved = contours.iter().map(|c| parallel_and_lost(c, distance, MITER_LIMIT));
     let kept = moved.map(|moved| moved.filter(|(_, lost)| *lost <= most).map(|(curve, _)| curve));
@@ -104,21 +101,27 @@ pub fn keep_shape(contours: &[Contour], distance: Coord, most: f64) -> bool {
     left.is_some_and(|left| left.len() == contours.len())
 }
 
-/// How far the sharpest corner of a contour moves along its sides for each unit that they move inwards:
-/// the cotangent of half its angle.
-fn deepest_corner(contour: &Contour) -> f64 {
-    let n = contour.len();
-    let way = |a: Point, b: Point| [b.x - a.x, b.y - a.y].map(f64::from);
-    let corner = |k: usize| {
+/// How far the tip of the sharpest corner moves along its sides for each unit that they move inwards: the
+/// cotangent of half its angle. Corners that stick into the part do not move inwards; 0 if all do.
+#[must_use]
+pub fn sharpest(contours: &[Contour]) -> f64 {
+    let way =
+        |a: Point, b: Point| [[a.x, b.x], [a.y, b.y]].map(|[a, b]| f64::from(b) - f64::from(a));
+    let corner = |contour: &Contour, k: usize| {
+        let n = contour.len();
         let at = contour[k];
         let (u, v) = (way(contour[(k + n - 1) % n], at), way(at, contour[(k + 1) % n]));
         let cross = u[0] * v[1] - u[1] * v[0];
         let length = (segment::dot(u, u) * segment::dot(v, v)).sqrt();
-        // The solid is on the left: corners that turn right do not move inwards.
-        let over = (length + segment::dot(u, v)).at_least(f64::MIN_POSITIVE);
-        if cross > 0.0 { cross / over } else { 0.0 }
+        // The solid is on the left.
+        if cross > 0.0 {
+            cross / (length + segment::dot(u, v)).at_least(f64::MIN_POSITIVE)
+        } else {
+            0.0
+        }
     };
-    (0..n).map(corner).fold(0.0, f64::max)
+    let all = contours.iter().flat_map(|contour| (0..contour.len()).map(move |k| (contour, k)));
+    all.map(|(contour, k)| corner(contour, k)).fold(0.0, f64::max)
 }
 
 /// Subtracts `others` from `contours` (both as from [`union`]). The result is simplified within

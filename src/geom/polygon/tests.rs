@@ -180,20 +180,32 @@ fn shapes_are_kept_unless_something_is_too_thin() {
         |low: Coord, high: Coord| vec![p(low, low), p(high, low), p(high, high), p(low, high)];
     let block = square(0, 100_000);
     let hole = |low, high| square(low, high).into_iter().rev().collect::<Contour>();
-    assert!(keep_shape(std::slice::from_ref(&block), 1_000, 1_000.0));
-    assert!(keep_shape(&[block.clone(), hole(2_100, 50_000)], 1_000, 1_000.0));
-    assert!(!keep_shape(&[block.clone(), hole(1_900, 50_000)], 1_000, 1_000.0), "a thin rim");
-    assert!(!keep_shape(&[square(0, 1_900)], 1_000, 1_000.0), "nothing is left");
+    assert!(keep_shape(std::slice::from_ref(&block), 1_000, 0.0));
+    assert!(keep_shape(&[block.clone(), hole(2_100, 50_000)], 1_000, 0.0));
+    assert!(!keep_shape(&[block.clone(), hole(1_900, 50_000)], 1_000, 0.0), "a thin rim");
+    assert!(!keep_shape(&[square(0, 1_900)], 1_000, 0.0), "nothing is left");
     // A pointed bump on a side, whose sides are removed one after the other from its tip.
     let mut cape = vec![p(0, 0), p(100_000, 0), p(100_000, 100_000)];
     cape.extend((0..=20).map(|k| p(51_000 - 50 * k, 100_000 + 1_000 * k)));
     cape.extend((0..20).rev().map(|k| p(49_000 + 50 * k, 100_000 + 1_000 * k)));
     cape.push(p(0, 100_000));
     assert!(!keep_shape(&[cape], 1_100, 20_000.0));
-    // The tip of a wedge of 10° moves along its sides by more than eleven times as much as they move.
-    let wedge = |height| vec![p(0, 0), p(100_000, 0), p(100_000, height)];
-    assert!(keep_shape(&[wedge(50_000)], 1_000, 11_000.0));
-    assert!(!keep_shape(&[wedge(17_600)], 1_000, 11_000.0));
+    // A blunted corner.
+    let blunt = vec![p(0, 0), p(100_000, 0), p(100_000, 99_900), p(99_900, 100_000), p(0, 100_000)];
+    let keeps = |most| keep_shape(std::slice::from_ref(&blunt), 1_000, most);
+    assert!(keeps(200.0) && !keeps(100.0));
+}
+
+#[test]
+fn the_sharpest_corner_is_the_one_whose_tip_moves_furthest() {
+    let p = |x, y| Point { x, y };
+    let square = vec![p(0, 0), p(100_000, 0), p(100_000, 100_000), p(0, 100_000)];
+    assert!((sharpest(std::slice::from_ref(&square)) - 1.0).abs() < 1e-9);
+    // A wedge of 10°: 1 / tan 5°.
+    let wedge = vec![p(0, 0), p(100_000, 0), p(100_000, 17_633)];
+    assert!((sharpest(&[square.clone(), wedge]) - 11.43).abs() < 0.01);
+    // A hole has its corners the other way round.
+    assert_eq!(sharpest(&[square.into_iter().rev().collect()]), 0.0);
 }
 
 #[test]

@@ -70,7 +70,10 @@ pub fn open(
     let half = (params.least_apart(depth) / 2).max(1);
     let short = SHORT * f64::from(params.line_width);
     // Shrunk by half, the passes of a thin place would meet or vanish. If none do, nothing is thin.
-    let (mut kept, mut rest) = sorted_out(loops, |group| polygon::keep_shape(group, half, short));
+    let (mut kept, mut rest) = sorted_out(loops, |group| {
+        polygon::sharpest(group) * f64::from(half) <= short
+            && polygon::keep_shape(group, half, short)
+    });
     if rest.is_empty() {
         return (kept, false);
     }
