@@ -89,6 +89,11 @@ const ROUND: f64 = 1.2;
 /// of three beads at corners. A larger value lays beads over skin that is really deep.
 const CORNER: f64 = 11.0;
 
+/// How much longer than the strip is wide the way around its end may be, from sample to sample: a line for
+/// the wall itself, and up to one and a half on either side to the next sample. A larger value takes a room
+/// for the end of a strip that narrows towards it; a smaller one breaks beads at square ends.
+const STRIP_END: f64 = 4.0;
+
 /// Margin around the samples with beads within which wall edges are collected. It must reach from a
 /// sample to the middle of a bridged gap, and from there to the far side of the beads and to walls
 /// near them. If it is too small, beads may cross walls; a larger value sorts edges for nothing.
@@ -373,13 +378,16 @@ fn bridge(samples: &mut [WallSample], perimeter: f64, params: &BeadParams) {
             continue;
         }
         let deep = (from..to).any(|k| samples[k % n].skin);
-        // How wide a strip is at its end says nothing of a room behind it.
-        let deep = deep && !before.shared && !after.shared;
-        let most = if deep { CORNER } else { SHORT } * w;
+        let model = if before.depth <= after.depth { before } else { after };
+        let most = match deep {
+            false => SHORT * w,
+            // The wall turns back at the end of a strip: as far as it is wide, between samples of both sides.
+            true if model.shared => 2.0 * model.depth + STRIP_END * w,
+            true => CORNER * w,
+        };
         if span(samples, (from, to), perimeter) > most {
             continue;
         }
-        let model = if before.depth <= after.depth { before } else { after };
         // At the end of a strip the wall turns back: one side leads, the other does not.
         let leads = before.leads || after.leads;
         for k in from..to {
