@@ -325,4 +325,22 @@ mod tests {
         let length = beads[0][0].u - beads[0].last().unwrap().u;
         assert!(length.abs() > 280_000, "{length}");
     }
+
+    #[test]
+    fn a_room_that_narrows_to_a_point_gets_no_ring_as_narrow_as_the_point() {
+        for half in (9_000..=16_000).step_by(500) {
+            for long in (14_000..=30_000).step_by(2_000) {
+                let p = |x, y| Point { x, y };
+                let drop =
+                    [p(-long, 0), p(0, -half), p(half, -half / 2), p(half, half / 2), p(0, half)];
+                let (beads, params) = beads(&[drop.to_vec()], 60_000);
+                let pairs = beads.iter().flat_map(|bead| bead.windows(2));
+                let narrow = pairs.filter(|p| 10 * p[1].width < 7 * params.line_width);
+                let at = |p: &LinePoint| Point { x: p.u, y: p.v };
+                let narrow: f64 = narrow.map(|p| at(&p[0]).distance(at(&p[1]))).sum();
+                // The taper itself, and no ring of 4 mm.
+                assert!(narrow < 20_000.0, "{half} {long}: {narrow}");
+            }
+        }
+    }
 }
