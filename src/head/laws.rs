@@ -1,4 +1,12 @@
 //! Laws of pile and sweep: what they tell is what a look at every cell tells.
+//!
+//! Words: a *pile* is what stands, as heights of cells; a *hit* is the deepest touch of the head, above one
+//! cell; what is *spared* is no touch, such as the press of the nozzle's flat on its own surface.
+//!
+//! - Heads, piles and tips are random; the answer that counts looks at every cell, one by one.
+//! - Searches that leave something out as a whole, by press or by distance, find the same hit.
+//! - A place that passed can fail only for what rose since: it may be tried against that alone.
+//! - A sweep is the deepest of its samples.
 
 use super::pile::{Hit, LEAST_TOUCH, Pile};
 use super::sweep::{SAMPLE, sweep};
