@@ -84,7 +84,7 @@ fn the_path_comes_back_as_moves_that_print_the_same() {
     let play = ["play", "a.steps", "-q", "--gcode", "b.gcode"];
     // The start block primes beside the bed, which is a finding or none.
     slicer(&folder).args(play).assert().stderr("");
-    // Commands to the heaters are no steps, and a stream tells no roles.
+    // Commands to the heaters and limits of the machine are no steps, and a stream tells no roles.
     let diff =
         ["diff", "a.gcode", "b.gcode", "--tolerance", "0.00625", "--json", "-p", "generic-marlin"];
     let told = slicer(&folder).args(diff).assert();
@@ -95,7 +95,7 @@ fn the_path_comes_back_as_moves_that_print_the_same() {
         .iter()
         .map(|one| one["kind"].as_str().unwrap())
         .collect();
-    let about_motion = |kind: &&&str| !["heaters", "commands"].contains(*kind);
+    let about_motion = |kind: &&&str| !["heaters", "commands", "limits"].contains(*kind);
     assert_eq!(kinds.iter().filter(about_motion).count(), 0, "{kinds:?}");
     // At most two bytes a step.
     let bytes = fs::metadata(folder.path().join("a.steps")).unwrap().len();

@@ -215,7 +215,19 @@ fn commands_that_change_what_the_rest_relies_on() {
 
 #[test]
 fn pauses_and_what_the_print_may_do() {
-    for new in ["M0", "M1", "M25", "M226", "M600", "M601", "M500", "G28 X Y", "M18 E", "M220 S80"] {
+    for new in [
+        "M0",
+        "M1",
+        "M25",
+        "M226",
+        "M600",
+        "M601",
+        "M500",
+        "G28 X Y",
+        "M18 E",
+        "M220 S80",
+        "M204 P900 T900",
+    ] {
         found(Middle, new, Code::ChangesTheMachine, Severity::Warning);
     }
     for new in [
@@ -229,7 +241,7 @@ fn pauses_and_what_the_print_may_do() {
         "M220 S100",
         "M221 S100",
         "M900 K0.05",
-        "M204 P900 T900",
+        "M204 S1000",
         "M84 S600",
         "T0",
         "G54",
