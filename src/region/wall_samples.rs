@@ -89,10 +89,10 @@ const ROUND: f64 = 1.2;
 /// of three beads at corners. A larger value lays beads over skin that is really deep.
 const CORNER: f64 = 11.0;
 
-/// How much longer than the strip is wide the way around its end may be, from sample to sample: a line for
-/// the wall itself, and up to one and a half on either side to the next sample. A larger value takes a room
-/// for the end of a strip that narrows towards it; a smaller one breaks beads at square ends.
-const STRIP_END: f64 = 4.0;
+/// Where a strip ends or turns a corner, the wall seems deep for up to twice the strip's width, and for this
+/// much more: the wall itself on both sides, and the way to the next samples. A larger value takes a room for
+/// the end of a strip that narrows towards it; a smaller one breaks beads at square ends and corners.
+const STRIP_TURN: f64 = 5.0;
 
 /// Margin around the samples with beads within which wall edges are collected. It must reach from a
 /// sample to the middle of a bridged gap, and from there to the far side of the beads and to walls
@@ -381,8 +381,7 @@ fn bridge(samples: &mut [WallSample], perimeter: f64, params: &BeadParams) {
         let model = if before.depth <= after.depth { before } else { after };
         let most = match deep {
             false => SHORT * w,
-            // The wall turns back at the end of a strip: as far as it is wide, between samples of both sides.
-            true if model.shared => 2.0 * model.depth + STRIP_END * w,
+            true if model.shared => (4.0 * model.depth + STRIP_TURN * w).at_most(CORNER * w),
             true => CORNER * w,
         };
         if span(samples, (from, to), perimeter) > most {
