@@ -23,6 +23,7 @@
 
 use super::variable_width::{Line, LineParams, SHORT_STRIP, Strip, WIDEST};
 use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::raster::crossed;
 use crate::geom::spans::Span;
 use crate::region::crossed::Crossed;
 use crate::units::Coord;
@@ -161,11 +162,11 @@ impl Strips {
     /// Adds the strips above the highest and below the lowest row within `extent`. Returns
     /// `false` if no row crosses it.
     fn add(&mut self, extent: &Extent, params: &LineParams) -> bool {
-        let highest = extent.high.div_euclid(self.pitch);
-        let lowest = -(-extent.low).div_euclid(self.pitch);
-        if lowest > highest {
+        let rows = crossed(extent.low, extent.high, self.pitch);
+        if rows.is_empty() {
             return false;
         }
+        let (lowest, highest) = (rows.start, rows.end - 1);
         // A line at the wall already reaches `overlap` into it.
         let above = extent.high - highest * self.pitch - params.overlap;
         let below = lowest * self.pitch - extent.low - params.overlap;

@@ -12,6 +12,12 @@ pub struct Raster {
     pub pitch: Coord,
 }
 
+/// The rows `j`, `pitch` > 0 apart, with `low <= j · pitch <= high`: those that a column from `low` to `high` crosses.
+#[must_use]
+pub fn crossed(low: Coord, high: Coord, pitch: Coord) -> std::ops::Range<i32> {
+    -(-low).div_euclid(pitch)..high.div_euclid(pitch) + 1
+}
+
 impl Raster {
     /// A raster of lines at `degrees`, at most about `width` apart, and a stride: each line is
     /// `spacing` > 0 from the line `stride` rows further on. Sparse infill takes every `stride`-th

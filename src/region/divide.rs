@@ -121,11 +121,7 @@ pub fn divide<'a>(
             None => Cow::Owned(exposed(raster)),
         };
         let solid = solid.as_ref().map(|solid| on(solid, raster, fill));
-        let bare = || bare(&cut, along.frame, (raster, fill), solid.as_ref());
-        let uncovered = match cut.is_empty() {
-            true => uncovered,
-            false => Cow::Owned(uncovered.or(&bare())),
-        };
+        let uncovered = with_bare(uncovered, &cut, along.frame, (raster, fill), solid.as_ref());
         if beads.is_empty() && bridges.is_empty() {
             return areas(fill, &uncovered, solid.as_ref(), raster.pitch, &params.skins);
         }
@@ -152,19 +148,23 @@ pub fn divide<'a>(
     Divided { areas, beads, room_beads, filling, bridges, hanging }
 }
 
-/// What beads that were `cut` out, given in the frame `from`, leave bare on a raster with these `fill` rows.
-/// Rooms are `solid` anyway, with lines across.
-fn bare(
+/// What is `uncovered` on a raster with these `fill` rows, and what beads that were `cut` out, given in the
+/// frame `from`, leave bare. Rooms are `solid` anyway, with lines across.
+fn with_bare<'a>(
+    uncovered: Cow<'a, Rows>,
     cut: &[Polyline],
     from: Frame,
     (raster, fill): (Raster, &Rows),
     solid: Option<&Rows>,
-) -> Rows {
-    let bare = loose::bare(cut, from, raster).and(fill);
-    match solid {
-        Some(solid) => bare.minus(solid),
-        None => bare,
+) -> Cow<'a, Rows> {
+    if cut.is_empty() {
+        return uncovered;
     }
+    let bare = loose::bare(cut, from, raster).and(fill);
+    Cow::Owned(match solid {
+        Some(solid) => uncovered.or(&bare.minus(solid)),
+        None => uncovered.or(&bare),
+    })
 }
 
 /// Narrower strips of infill become skin; 0 if there is nothing beside which they could be.

@@ -11,6 +11,7 @@
 //! two directions inside it would cost more than it mends.
 
 use crate::geom::islands::Islands;
+use crate::geom::raster::crossed;
 use crate::geom::spans::{Rows, Span};
 use crate::units::Coord;
 use std::sync::Arc;
@@ -63,8 +64,7 @@ fn island(islands: &Islands<'_>, c: i32, span: Span, turn: Turn) -> Option<usize
     let at = c * turn.pitch;
     let (u, low, high) =
         if turn.left { (-at, span.start, span.end) } else { (at, -span.end, -span.start) };
-    let rows = -(-low).div_euclid(turn.pitch)..=high.div_euclid(turn.pitch);
-    rows.into_iter().find_map(|j| islands.at(j, u))
+    crossed(low, high, turn.pitch).find_map(|j| islands.at(j, u))
 }
 
 #[cfg(test)]

@@ -16,7 +16,7 @@ use super::scan::around;
 use crate::geom::Point;
 use crate::geom::cells::Cells;
 use crate::geom::outline::Columns;
-use crate::geom::raster::Raster;
+use crate::geom::raster::{Raster, crossed};
 use crate::geom::sets::Sets;
 use crate::geom::spans::{Rows, Span, merge};
 use crate::units::Coord;
@@ -181,7 +181,7 @@ fn is_narrow(v: Coord, span: Span, columns: &Columns<'_>, limit: Coord) -> bool 
 
 /// The columns as rows `pitch` apart: each as wide as their distance.
 fn brought(columns: &Columns<'_>, pitch: Coord) -> Rows {
-    let rows = |low: Coord, high: Coord| -(-low).div_euclid(pitch)..high.div_euclid(pitch) + 1;
+    let rows = |low: Coord, high: Coord| crossed(low, high, pitch);
     let all = || columns.spans().map(|(_, low, high)| rows(low, high)).filter(|r| !r.is_empty());
     let (first, last) = (all().map(|r| r.start).min(), all().map(|r| r.end).max());
     let Some((first, last)) = first.zip(last) else { return Rows::default() };

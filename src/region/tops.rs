@@ -16,6 +16,7 @@ use super::first_skin::Both;
 use super::params::NARROW_TOP;
 use super::{Skin, SkinRows};
 use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::raster;
 use crate::geom::spans::{Rows, Span};
 use crate::units::Coord;
 use std::sync::Arc;
@@ -46,7 +47,7 @@ pub fn divide(
 /// The columns of a part: those of the `whole` skin that rows `pitch` apart cross, and of the others its
 /// `own`.
 fn columns_of(own: &Rows, whole: &Rows, pitch: Coord) -> Rows {
-    let crossed = whole.filter(|_, s| s.end.div_euclid(pitch) * pitch >= s.start);
+    let crossed = whole.filter(|_, s| !raster::crossed(s.start, s.end, pitch).is_empty());
     own.and(&whole.minus(&crossed)).or(&crossed)
 }
 

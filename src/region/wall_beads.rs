@@ -167,14 +167,22 @@ fn joins(a: &Place, b: &Place, near: &Near, params: &BeadParams) -> bool {
 /// beads as they do with walls.
 #[must_use]
 pub fn taken(beads: &[Polyline], frame: Frame, raster: Raster, params: &BeadParams) -> Rows {
-    let enter = |p: &LinePoint| raster.frame.enter(frame.leave(Point { x: p.u, y: p.v }));
     let more = params.line_width / 2 - params.overlap;
-    let edges: Vec<(Point, Point, Coord)> = beads
-        .iter()
-        .flat_map(|b| b.windows(2))
-        .map(|w| (enter(&w[0]), enter(&w[1]), (w[1].width / 2 + more).max(0)))
-        .collect();
-    around(&edges, raster)
+    beside(beads, frame, raster, |width| (width / 2 + more).max(0))
+}
+
+/// The area on `raster` within a `radius` of `beads`, given in `frame`, by their width at each place.
+#[must_use]
+pub fn beside(
+    beads: &[Polyline],
+    frame: Frame,
+    raster: Raster,
+    radius: impl Fn(Coord) -> Coord,
+) -> Rows {
+    let enter = |p: &LinePoint| raster.frame.enter(frame.leave(Point { x: p.u, y: p.v }));
+    let ways = beads.iter().flat_map(|b| b.windows(2));
+    let edges = ways.map(|w| (enter(&w[0]), enter(&w[1]), radius(w[1].width)));
+    around(&edges.collect::<Vec<_>>(), raster)
 }
 
 fn length(arc: &[Place]) -> f64 {

@@ -23,6 +23,7 @@ mod tests;
 mod upright;
 
 use crate::geom::boxes::extent;
+use crate::geom::raster::crossed;
 use crate::geom::{Contour, Point, edges, encloses, side};
 use crate::units::{Coord, UNITS_PER_MM, between};
 use index::{Index, NEAR};
@@ -222,7 +223,8 @@ impl Surface {
             }
             let [a, b, c] = facet.map(|corner| corner[1]);
             let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-            let rows = (-(-low).div_euclid(pitch)).max(first)..=high.div_euclid(pitch);
+            let rows = crossed(low, high, pitch);
+            let rows = rows.start.max(first)..rows.end;
             for k in rows.map(|j| (j - first) as usize).take_while(|&k| k < ways.len()) {
                 if let Some(way) = ways[k] {
                     level_crossings(facet, (way, y(k)), &mut found[k]);

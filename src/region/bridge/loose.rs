@@ -11,7 +11,7 @@ use crate::geom::frame::Frame;
 use crate::geom::polyline::{self, LinePoint, Polyline};
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
-use crate::region::scan::around;
+use crate::region::wall_beads::beside;
 use crate::units::{Bounded as _, Coord, nearest};
 
 /// A bead may lie on nothing for this long (2 mm). A smaller value breaks beads at every gap
@@ -60,12 +60,8 @@ pub fn held(beads: Vec<Polyline>, below: &Below<'_>) -> Beads {
 /// `raster` that are next to them.
 #[must_use]
 pub fn bare(cut: &[Polyline], from: Frame, raster: Raster) -> Rows {
-    let enter = |p: &LinePoint| raster.frame.enter(from.leave(Point { x: p.u, y: p.v }));
-    let edges = cut.iter().flat_map(|bead| bead.windows(2)).map(|w| {
-        // Two rows may lie as far away as half their distance.
-        (enter(&w[0]), enter(&w[1]), (w[1].width / 2).max(raster.pitch / 2 + 1))
-    });
-    around(&edges.collect::<Vec<_>>(), raster)
+    // Two rows may lie as far away as half their distance.
+    beside(cut, from, raster, |width| (width / 2).max(raster.pitch / 2 + 1))
 }
 
 /// A point of a bead, and whether the way to it is free.

@@ -29,7 +29,7 @@ use crate::geom::Point;
 use crate::geom::frame::Frame;
 use crate::geom::islands::Islands;
 use crate::geom::polyline::Polyline;
-use crate::geom::raster::Raster;
+use crate::geom::raster::{Raster, crossed};
 use crate::geom::spans::{Rows, Span, merge};
 use crate::slice::Layer;
 use crate::units::{Coord, nearest};
@@ -212,9 +212,8 @@ fn lay(
     let columns = widened(&open_across, (more + pitch / 2) / pitch).and(&fill_across);
     // A place between two rows has no line, and takes none from others.
     let has_line = |c: i32, span: Span| {
-        let rows = -(-span.start).div_euclid(pitch)..=span.end.div_euclid(pitch);
-        rows.into_iter()
-            .any(|j| skin.row(j).iter().any(|s| s.start <= -c * pitch && -c * pitch <= s.end))
+        let holds = |s: &Span| s.start <= -c * pitch && -c * pitch <= s.end;
+        crossed(span.start, span.end, pitch).any(|j| skin.row(j).iter().any(holds))
     };
     let columns = columns.filter(|c, span| span.len() >= i64::from(pitch) && has_line(c, span));
     Skin {
