@@ -114,6 +114,13 @@ pub(super) struct Heat {
     text: String,
 }
 
+impl Code {
+    /// One that is not for a heater.
+    pub(super) fn new(line: u64, text: String) -> Self {
+        Self { line, text, heats: false }
+    }
+}
+
 impl Heat {
     /// The command of a note, if it is for a heater.
     pub(super) fn of(note: &Note) -> Option<Self> {
@@ -272,9 +279,22 @@ fn difference(codes: Both<&[Code]>, heats: bool) -> Option<CodeDifference> {
     if only.a.is_empty() && only.b.is_empty() {
         only = codes;
     }
-    let line = only.as_ref().map(|codes| codes.first().map(|code| code.line));
-    let only = only.map(|codes| codes.into_iter().map(|code| code.text.clone()).collect());
-    Some(CodeDifference { only, line })
+    Some(named(&only))
+}
+
+/// The codes that only one of the files has, in whatever order.
+pub(super) fn only_in(codes: Both<&[Code]>) -> Option<CodeDifference> {
+    let codes = codes.map(|codes| codes.iter().collect::<Vec<&Code>>());
+    let only = Both { a: rest(&codes.a, &codes.b), b: rest(&codes.b, &codes.a) };
+    (!only.a.is_empty() || !only.b.is_empty()).then(|| named(&only))
+}
+
+fn named(only: &Both<Vec<&Code>>) -> CodeDifference {
+    let only = only.as_ref();
+    CodeDifference {
+        line: only.map(|codes| codes.first().map(|code| code.line)),
+        only: only.map(|codes| codes.iter().map(|code| code.text.clone()).collect()),
+    }
 }
 
 /// The first codes without as many of the same as there are among the others.

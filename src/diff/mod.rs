@@ -160,12 +160,6 @@ pub struct PartMoved {
     pub by_mm: [f64; 2],
 }
 
-impl From<&parts::Moved> for PartMoved {
-    fn from(moved: &parts::Moved) -> Self {
-        Self { box_mm: moved.from, by_mm: moved.by }
-    }
-}
-
 /// What moves of one role add up to in either file.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct RoleOfFile {
@@ -266,7 +260,7 @@ fn whole(
         seams_mm: Some(tolerances.seams).filter(|mm| mm.is_finite()),
         travels: tolerances.travels,
         moved_mm: moved,
-        parts_moved: parts.moved.iter().map(PartMoved::from).collect(),
+        parts_moved: parts.moved.clone(),
         layers: sides.map(|side| side.floors.len()),
         time_s: Sum::new(seconds.a, seconds.b, share, LEAST_TIME),
         filament_mm: filament(all.as_ref(), share),

@@ -70,7 +70,7 @@ pub(super) fn moved(
 }
 
 /// How far a box lies from one of the same size, in x and y.
-fn apart(a: Extent, b: Extent, tolerance: f64) -> Option<[f64; 2]> {
+pub(super) fn apart(a: Extent, b: Extent, tolerance: f64) -> Option<[f64; 2]> {
     let mut by = [0.0; 2];
     for (axis, by) in by.iter_mut().enumerate() {
         let [low, high] = [b.min[axis] - a.min[axis], b.max[axis] - a.max[axis]];

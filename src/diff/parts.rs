@@ -15,10 +15,12 @@
 //! Parts nearer to each other than a cell are one. It costs two more passes over each file, which only files pay
 //! whose layers lie differently ([`lie_apart`]).
 
+use super::PartMoved;
 use super::align::Pair;
 use super::apart::SLACK;
-use super::moved::{Floor, rounded};
+use super::moved::{self, Floor, rounded};
 use super::side::Side;
+use super::sums::{Extent, Shape};
 use crate::reader::print::Step;
 use crate::reader::{Error, Role};
 use std::borrow::Cow;
@@ -42,19 +44,10 @@ const MOST: usize = 10_000;
 const ALIKE: f64 = 0.01;
 const MIDDLE: f64 = 0.2;
 
-/// A part that moved.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Moved {
-    /// Its box in the first file: lowest and highest corner, mm.
-    pub(super) from: [[f64; 2]; 2],
-    /// How far it moved, mm.
-    pub(super) by: [f64; 2],
-}
-
 /// What moved.
 #[derive(Debug, Default)]
 pub(super) struct Parts {
-    pub(super) moved: Vec<Moved>,
+    pub(super) moved: Vec<PartMoved>,
     /// Numbers of the second file's parts by cell, 0 for none; how far each moved, mm.
     map: Option<Map>,
     by: Vec<[f64; 2]>,
@@ -81,9 +74,10 @@ impl Parts {
         let pairs = paired(&one.parts, &other.parts, tolerance);
         let mut all = Self { by: vec![[0.0; 2]; other.parts.len() + 1], ..Self::default() };
         for (own, number, by) in pairs {
-            let part = &one.parts[own];
             all.by[number + 1] = by;
-            all.moved.push(Moved { from: [part.low, part.high], by });
+            let Some(Extent { min, max }) = one.parts[own].extent else { continue };
+            let box_mm = [min, max].map(|[x, y, _]| [x, y]);
+            all.moved.push(PartMoved { box_mm, by_mm: by });
         }
         all.map = Some(other).filter(|_| !all.moved.is_empty());
         Ok(all)
@@ -102,57 +96,23 @@ impl Parts {
     }
 }
 
-/// The lines of a part, mm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Part {
-    low: [f64; 2],
-    high: [f64; 2],
-    length: f64,
-    /// Sum of the middles of lines times their lengths.
-    moment: [f64; 2],
-}
-
-const NOTHING: Part =
-    Part { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2], length: 0.0, moment: [0.0; 2] };
-
-impl Part {
-    fn add(&mut self, step: &Step) {
-        let (from, to) = (step.from.map(f64::from), step.to.map(f64::from));
-        let length = step.plan_length();
-        self.length += length;
-        for axis in 0..2 {
-            self.low[axis] = self.low[axis].min(from[axis]).min(to[axis]);
-            self.high[axis] = self.high[axis].max(from[axis]).max(to[axis]);
-            self.moment[axis] += 0.5 * (from[axis] + to[axis]) * length;
-        }
-    }
-
-    /// How far one that is like it lies from it, mm.
-    fn apart(&self, other: &Self, tolerance: f64) -> Option<[f64; 2]> {
-        let mut by = [0.0; 2];
-        let is_as_long = (self.length - other.length).abs() <= ALIKE * self.length;
-        for (axis, by) in by.iter_mut().enumerate() {
-            let [low, high] =
-                [other.low[axis] - self.low[axis], other.high[axis] - self.high[axis]];
-            *by = 0.5 * (low + high);
-            let middle = other.moment[axis] / other.length - self.moment[axis] / self.length;
-            let is_as_wide = (low - high).abs() <= 2.0 * (tolerance + SLACK);
-            if !is_as_long || !is_as_wide || (middle - *by).abs() > MIDDLE {
-                return None;
-            }
-        }
-        Some(by)
-    }
+/// How far a part lies from one that is like it, mm.
+fn apart(one: &Shape, other: &Shape, tolerance: f64) -> Option<[f64; 2]> {
+    let by = moved::apart(one.extent?, other.extent?, tolerance)?;
+    let is_as_long = (one.length - other.length).abs() <= ALIKE * one.length;
+    let (from, to) = (one.middle(), other.middle());
+    let is_alike = (0..2).all(|axis| (to[axis] - from[axis] - by[axis]).abs() <= MIDDLE);
+    (is_as_long && is_alike).then_some(by)
 }
 
 /// Parts that moved: the places of a part in both lists, and how far it did.
-fn paired(a: &[Part], b: &[Part], tolerance: f64) -> Vec<(usize, usize, [f64; 2])> {
+fn paired(a: &[Shape], b: &[Shape], tolerance: f64) -> Vec<(usize, usize, [f64; 2])> {
     let square = |by: [f64; 2]| by[0] * by[0] + by[1] * by[1];
     let is_still = |by: [f64; 2]| by.iter().all(|by| by.abs() <= tolerance + SLACK);
     let mut is_free = vec![true; b.len()];
-    let nearest = |part: &Part, is_free: &[bool]| {
+    let nearest = |part: &Shape, is_free: &[bool]| {
         let free = b.iter().enumerate().filter(|(k, _)| is_free[*k]);
-        let like = free.filter_map(|(k, other)| Some((k, part.apart(other, tolerance)?)));
+        let like = free.filter_map(|(k, other)| Some((k, apart(part, other, tolerance)?)));
         like.min_by(|one, two| square(one.1).total_cmp(&square(two.1)))
     };
     let mut left = Vec::new();
@@ -177,7 +137,7 @@ fn paired(a: &[Part], b: &[Part], tolerance: f64) -> Vec<(usize, usize, [f64; 2]
 struct Map {
     /// Numbers of parts by cell, from 1.
     numbers: Vec<u16>,
-    parts: Vec<Part>,
+    parts: Vec<Shape>,
 }
 
 impl Map {
@@ -195,7 +155,7 @@ impl Map {
             }
         }
         let Some((numbers, count)) = numbered(&marks) else { return Ok(None) };
-        let mut parts = vec![NOTHING; count];
+        let mut parts = vec![Shape::default(); count];
         for section in side.sections() {
             let section = section?;
             let lines = section.lines().filter(|_| section.layer.is_some());

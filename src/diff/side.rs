@@ -13,7 +13,7 @@ use super::align::Level;
 use super::codes::{Codes, Heat, Places};
 use super::half::Half;
 use super::moved::Floor;
-use super::sums::{self, Measure};
+use super::sums::{self, Shape};
 use crate::estimate::Estimate;
 use crate::reader::print::Step;
 use crate::reader::stream::Section;
@@ -173,8 +173,9 @@ impl Survey {
             let section = section?;
             if let Some(layer) = section.of(stream.facts()) {
                 let level = Level { z: layer.z, height: layer.height };
-                let extent = Measure::new(&section.moves, true).extent;
-                let middle = middle(section.lines());
+                let mut shape = Shape::default();
+                section.lines().for_each(|step| shape.add(step));
+                let (extent, middle) = (shape.extent, shape.middle());
                 survey.floors.push(Floor { level, extent, middle });
                 survey.places.before.push(last);
                 let begin = section.moves.first().map(|step| step.line);
@@ -190,19 +191,6 @@ impl Survey {
         }
         Ok(survey)
     }
-}
-
-/// The middle of some lines in x and y, mm: that of each counts by its length.
-fn middle<'a>(lines: impl Iterator<Item = &'a Step>) -> [f64; 2] {
-    let (mut sum, mut length) = ([0.0; 2], 0.0);
-    for step in lines {
-        let own = step.plan_length();
-        for (axis, sum) in sum.iter_mut().enumerate() {
-            *sum += 0.5 * (f64::from(step.from[axis]) + f64::from(step.to[axis])) * own;
-        }
-        length += own;
-    }
-    sum.map(|sum| sum / length.max(f64::MIN_POSITIVE))
 }
 
 /// See [`Side::moves`].

@@ -37,6 +37,17 @@ pub struct Extent {
     pub max: [f64; 3],
 }
 
+/// Box, length and middle of lines, mm.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Shape {
+    /// Around them; `None` without lines.
+    pub(super) extent: Option<Extent>,
+    /// Seen from above.
+    pub(super) length: f64,
+    /// Sum of the middles of lines times their lengths.
+    moment: [f64; 2],
+}
+
 /// What moves of one role add up to.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Tally {
@@ -86,6 +97,33 @@ pub(super) fn role(role: Role, by_role: bool) -> Role {
     if by_role || matches!(role, Role::Travel | Role::Retraction) { role } else { Role::Other }
 }
 
+impl Shape {
+    pub(super) fn add(&mut self, step: &Step) {
+        let (own, length) = (Extent::of(step), step.plan_length());
+        self.extent = joined(self.extent, Some(own));
+        self.length += length;
+        for (axis, moment) in self.moment.iter_mut().enumerate() {
+            *moment += 0.5 * (f64::from(step.from[axis]) + f64::from(step.to[axis])) * length;
+        }
+    }
+
+    /// The middle in x and y: that of each line counts by its length.
+    pub(super) fn middle(&self) -> [f64; 2] {
+        self.moment.map(|moment| moment / self.length.max(f64::MIN_POSITIVE))
+    }
+}
+
+impl Extent {
+    /// The box around a line.
+    fn of(step: &Step) -> Self {
+        let [from, to] = [step.from, step.to].map(|place| place.map(f64::from));
+        Self {
+            min: std::array::from_fn(|axis| from[axis].min(to[axis])),
+            max: std::array::from_fn(|axis| from[axis].max(to[axis])),
+        }
+    }
+}
+
 impl Measure {
     /// Sums up these moves, by role if both files give roles.
     pub(super) fn new(steps: &[Step], by_role: bool) -> Self {
@@ -99,9 +137,7 @@ impl Measure {
                 tally.asked += step.length() / f64::from(step.feed);
             }
             if step.is_line() {
-                let places = [step.from, step.to].map(|place| place.map(f64::from));
-                let [one, other] = places.map(|place| Extent { min: place, max: place });
-                measure.extent = joined(measure.extent, joined(Some(one), Some(other)));
+                measure.extent = joined(measure.extent, Some(Extent::of(step)));
             }
         }
         measure
