@@ -4,7 +4,7 @@ use super::params::NonPlanarParams;
 use super::surface::find::Surfaces;
 use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span};
-use crate::geom::{Contour, Point};
+use crate::geom::{Contour, Point, edges};
 use crate::region::support::{SupportLayer, SupportPatterns};
 use crate::slice::Slicer;
 use crate::units::Coord;
@@ -33,7 +33,7 @@ pub struct Skirt {
     pub top: Coord,
 }
 
-/// The lines that support may have in a layer: all rows of where it stands.
+/// The lines that support may have in a layer: all rows of where it stands, and its outlines.
 #[must_use]
 pub fn support_lines(layer: &SupportLayer, patterns: &SupportPatterns) -> Vec<[Point; 2]> {
     let pairs = layer.body.iter().zip(&patterns.body);
@@ -46,7 +46,8 @@ pub fn support_lines(layer: &SupportLayer, patterns: &SupportPatterns) -> Vec<[P
         let rows = rows.iter().flat_map(|(j, row)| row.iter().map(move |span| line(j, span)));
         rows.collect::<Vec<_>>()
     };
-    all.flat_map(|(rows, pattern)| lines(rows, pattern.raster())).collect()
+    let outlines = layer.outlines.iter().flat_map(|outline| edges(outline)).map(|(a, b)| [a, b]);
+    all.flat_map(|(rows, pattern)| lines(rows, pattern.raster())).chain(outlines).collect()
 }
 
 /// A part on the bed, with its gentle slopes.

@@ -301,6 +301,22 @@ fn support_stands_elsewhere_and_never_on_skins() {
     }
 }
 
+/// Support of posts has outlines on every layer and lines on few of them: the head must know the outlines.
+#[test]
+fn the_head_keeps_clear_of_the_outlines_of_support() {
+    // A roof on a post stands beside the low end of a slope of 11°.
+    let wedge = Relief { surface: |x, _| 2.0 + 0.2 * x, ..WEDGE };
+    let post = Solid::cuboid([-8.0, 5.0, 0.0], [-6.0, 7.0, 9.0]);
+    let roof = Solid::cuboid([-8.0, 5.0, 8.0], [-3.0, 7.0, 9.0]);
+    let run = print(&wedge.solid().and(&post).and(&roof), &[("support.enabled", "true")]);
+    let whole = Relief {
+        sides: [24.0, 12.0],
+        surface: |x, _| if x >= 8.0 { 2.0 + 0.2 * (x - 8.0) } else { -9.0 },
+        squares: [1, 1],
+    };
+    is_sound(&look(&run, &whole, corner(&run, &whole), 0.0), "beside support");
+}
+
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
     let both = DOME.solid().and(&Solid::cuboid([18.0, 5.0, 0.0], [21.0, 9.0, 7.0]));
