@@ -108,7 +108,7 @@ fn measures(
         longest_end_mm: stacked.longest_end,
         part_hangs_mm: stacked.part_hangs,
         part_mm3: sums.map(|sums| sums.total.part),
-        outline: sums.map(|sums| share(sums.total.rim)),
+        outline: sums.filter(|_| terms.has_walls).map(|sums| share(sums.total.rim)),
         surface: sums.map(|sums| share(sums.total.surface)),
         solid: sums.map(|sums| share(sums.total.solid)),
         infill: sums.and_then(|sums| sums.density),
@@ -306,7 +306,11 @@ fn what_is_missing(
             "what the head touches: no profile says its shape; give --head",
         ),
         (!has_model, "size, outline, surfaces, infill and volume: give the model with --against"),
-        (!facts.has(Role::OuterWall), "what lines are for: no comment of the file tells it"),
+        (
+            terms.has_walls && !facts.has(Role::OuterWall),
+            "what lines are for: no comment of the file tells it",
+        ),
+        (!terms.has_walls, "the outline: its own settings ask for no walls"),
         (!facts.has_widths, "the plastic of single lines: no comment tells how wide they are"),
     ];
     missing.into_iter().filter(|(is, _)| *is).map(|(_, what)| what.to_owned()).collect()

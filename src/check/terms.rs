@@ -33,6 +33,8 @@ pub struct Terms {
     pub pressed: f64,
     /// Whether bottoms and tops are closed by skin, as far as the file's own settings go.
     pub closes: [bool; 2],
+    /// Whether walls close outlines, as far as the file's own settings go.
+    pub has_walls: bool,
     /// Diameter of the nozzle, mm, if it is known.
     pub nozzle: Option<f64>,
     /// What hangs around the nozzle, if somebody tells it.
@@ -136,6 +138,7 @@ impl Terms {
             section: own.map_or(1.0, |own| own.extrusion.section()),
             pressed: own.map_or(1.0, |own| own.extrusion.first_layer / 100.0),
             closes: own.map_or([true; 2], |own| [own.has_bottom_skins(), own.has_top_skins()]),
+            has_walls: own.is_none_or(|own| own.walls > 0),
             head: head(settings, own),
             moved: own.map_or([0.0; 3], |own| {
                 [own.xy_compensation.abs(), own.hole_compensation.abs(), own.foot_drawn_in()]

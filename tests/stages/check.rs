@@ -201,6 +201,20 @@ fn a_skin_line_that_is_missing() {
     }
 }
 
+/// Who asks for no walls gets open sides; tops and bottoms are closed all the same.
+#[test]
+fn a_part_without_walls_has_no_outline() {
+    let bare = Good::of("cube_20.stl", "generic-marlin", &[("walls", "0")]);
+    let verdict = bare.judge(&bare.with(|_| true));
+    assert!(verdict.findings.is_empty(), "{}", listed(&verdict));
+    assert!(verdict.measures.outline.is_none());
+    assert!(verdict.not_judged.iter().any(|what| what.contains("no walls")), "{verdict:?}");
+    let middle = bare.moves().map(|m| m.to[1]).fold(0.0, f64::max) - 10.0;
+    let half = bare.with(|m| !m.is_bead() || m.layer != Some(TOP) || m.to[1] < middle);
+    let open = bare.judge(&half);
+    assert!(open.findings.iter().any(|finding| finding.code == Code::OpenSurface), "{open:?}");
+}
+
 #[test]
 fn a_layer_that_is_missing() {
     for good in [&*CUBE, &RELATIVE] {
