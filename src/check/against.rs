@@ -130,11 +130,8 @@ impl Judge<'_> {
             self.terms.moved_at(self.window.facts.layers[index].z - self.survey.heights[index]);
 
         let mut verdict = Verdict::default();
-        let rim = if self.terms.has_walls {
-            here.and(&along).and(&printable)
-        } else {
-            Rows::default()
-        };
+        let rim =
+            if self.terms.has_walls { here.and(&along).and(&printable) } else { Rows::default() };
         let open = rim.minus(&printed);
         let beside =
             |open: Rows| if moved > 0.0 { open.minus(&cut.along(lattice, moved)) } else { open };

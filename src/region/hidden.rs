@@ -8,12 +8,21 @@ use super::classify::neighbours;
 use super::params::RegionParams;
 use super::per_raster::skin_turn;
 use super::prepare::LayerRows;
+use super::stretches::{Smooth, stretches};
 use super::walls::Wall;
 use crate::geom::Point;
 use crate::geom::outline::Columns;
-use crate::geom::polyline::Polyline;
+use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::spans::Rows;
 use crate::units::{Bounded as _, Coord, nearest};
+
+/// So far from what is exposed beads are still part of the surface, in line widths. A smaller value leaves
+/// surfaces of short pieces.
+const MARGIN: f64 = 2.0;
+
+/// Shorter stretches between exposed ones belong to these, in line widths. A smaller value makes pieces that
+/// change from one kind to the other and back; a larger one takes more for surface.
+const LEAST: f64 = 5.0;
 
 /// An area as its rows and its columns tell it. A strip between two rows is on no row.
 #[derive(Debug, Clone, Copy)]
@@ -29,8 +38,8 @@ impl Place<'_> {
     }
 }
 
-/// The wall `beads` of layer `k`: first those in its solid `rooms` that nothing exposes, then the
-/// others. `rooms` and what is `exposed` are on the two rasters of skins.
+/// The stretches of the wall `beads` of layer `k`: first those in its solid `rooms` that nothing exposes,
+/// then the others. `rooms` and what is `exposed` are on the two rasters of skins.
 #[must_use]
 pub fn beads(
     k: usize,
@@ -46,16 +55,23 @@ pub fn beads(
         let columns = Columns { rows: &of[across], pitch, left_turn: along == 0 };
         Place { rows: &of[along], columns }
     });
-    beads.into_iter().partition(|bead| is_hidden(bead, rooms, exposed))
+    let w = f64::from(pitch);
+    let smooth = Smooth { close: 0.0, margin: MARGIN * w, least: LEAST * w };
+    let place = |p: &LinePoint| Point { x: p.u, y: p.v };
+    let covered = |p: &LinePoint| !exposed.holds(place(p));
+    let all = beads.iter().flat_map(|bead| stretches(bead, pitch, smooth, covered));
+    let (hidden, others): (Vec<_>, Vec<_>) =
+        all.partition(|(is_covered, stretch)| *is_covered && is_inside(stretch, rooms));
+    let only = |of: Vec<(bool, Polyline)>| of.into_iter().map(|(_, stretch)| stretch).collect();
+    (only(hidden), only(others))
 }
 
-/// Whether the wall bead `bead` lies in the `rooms`, and nowhere where the layer is `exposed`. All
-/// are in one frame.
-fn is_hidden(bead: &Polyline, rooms: Place<'_>, exposed: Place<'_>) -> bool {
+/// Whether most of a bead lies in the `rooms`. Their rows leave out what lies between two of them.
+fn is_inside(bead: &[LinePoint], rooms: Place<'_>) -> bool {
     let line: Vec<Point> = bead.iter().map(|p| Point { x: p.u, y: p.v }).collect();
     let places: Vec<Point> = places(&line, rooms.columns.pitch).collect();
     let inside = places.iter().filter(|&&p| rooms.holds(p)).count();
-    2 * inside > places.len() && !places.iter().any(|&p| exposed.holds(p))
+    2 * inside > places.len()
 }
 
 /// The indices of those `walls` of layer `k` that lie between the innermost loops, and that nothing

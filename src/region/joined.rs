@@ -1,5 +1,6 @@
 //! What is decided for a layer, and what belongs to it alone -> its Region.
 
+use super::dual::beads::Counted;
 use super::ironing::Ironing;
 use super::overhang::Hanging;
 use super::prepare::Own;
@@ -35,6 +36,8 @@ pub(super) struct Filling {
     pub(super) support: SupportLines,
     /// How many layers each wall is printed for.
     pub(super) walls: Vec<u32>,
+    /// Its beads in narrow rooms, by how many layers they are printed for.
+    pub(super) room_beads: Counted,
     /// What is ironed.
     pub(super) ironing: Option<Ironing>,
     /// The layer above, under curved tops.
@@ -49,17 +52,25 @@ pub(super) fn region(
     laid: Laid,
     seen: Option<Option<&Rows>>,
 ) -> Region {
-    let Filling { mut skins, infill, support, walls: printed, ironing, above } = filling;
-    let Laid { beads, room_beads, filling, bridges, hanging } = laid;
-    // Wall beads are for this layer alone.
+    let Filling { mut skins, infill, support, walls: printed, room_beads, ironing, above } =
+        filling;
+    let Laid { beads, filling, bridges, hanging, .. } = laid;
+    // Wall beads beside skin are for this layer alone.
     let beads = match seen {
         Some(above) => tops::add_seen(&mut skins, beads, above),
         None => beads,
     };
+    let mut thick = Vec::new();
     if let Some(skin) = skins.first_mut() {
         skin.beads.extend(beads);
-        skin.room_beads = room_beads;
+        for (layers, room_beads) in room_beads {
+            match layers {
+                1 => skin.room_beads = room_beads,
+                _ => thick.push(Skin { layers, room_beads, ..skin.bare() }),
+            }
+        }
     }
+    skins.extend(thick);
     skins.extend(bridges);
     let Own { layer, walls, thin_mm2, .. } = own;
     let (mut walls, hangs): (Vec<Wall>, Vec<Vec<u8>>) = match hanging {

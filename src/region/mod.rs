@@ -36,6 +36,7 @@ pub mod prepare;
 mod queue;
 pub mod rooms;
 pub mod scan;
+mod stretches;
 pub mod support;
 mod taper;
 pub mod tops;
@@ -156,6 +157,13 @@ impl Skin {
             bridges: false,
             top: false,
         }
+    }
+
+    /// The same without lines and beads, to lay others in its frame.
+    #[must_use]
+    fn bare(&self) -> Self {
+        let (rows, columns) = (SkinRows::default(), SkinRows::default());
+        Self { rows, columns, beads: Vec::new(), room_beads: Vec::new(), top: false, ..*self }
     }
 
     /// Its rows and columns together.

@@ -21,7 +21,7 @@ use super::near::Near;
 use super::params::BeadParams;
 use super::scan::around;
 use super::taper::{self, distance, tapered};
-use super::wall_samples::{MOST_BEADS, NARROWEST, SHORT, WallSample, samples};
+use super::wall_samples::{MOST_BEADS, SHORT, WallSample, samples};
 use crate::geom::frame::Frame;
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::raster::Raster;
@@ -81,19 +81,11 @@ pub fn wall_beads(walls: &[Contour], crossed: &Crossed<'_>, params: &BeadParams)
 /// too near.
 fn place(sample: &WallSample, index: usize, near: &Near, params: &BeadParams) -> Option<Place> {
     let w = f64::from(params.line_width);
-    if index >= sample.beads {
+    let (count, width) = sample.laid(params);
+    if index >= count {
         return None;
     }
-    let edge = w / 2.0;
-    let (width, from) = if sample.is_single(params) {
-        // One of the two walls lays the bead between them.
-        (2.0 * sample.depth, sample.leads.then_some(0.0)?)
-    } else {
-        let even = sample.depth / sample.beads as f64;
-        let width = if sample.shared { even } else { even.max(NARROWEST * w) };
-        (width, index as f64 * width)
-    };
-    let away = edge + from + width / 2.0;
+    let away = w / 2.0 + (index as f64 + 0.5) * width;
     let [x, y] = [0, 1].map(|k| sample.at[k] + away * sample.normal[k]);
     let clear = away - SLACK * w;
     near.is_free([[x, y]], clear).then_some(Place {

@@ -2,8 +2,8 @@
 //!
 //! Words: a *wall sample* is a place on a wall's centre line, with the *depth* of the skin behind
 //! it, measured from the wall's inner edge at right angles to it. A *strip* is the room between
-//! two walls; its samples are *shared*, and one of the two walls *leads*: it lays the bead that
-//! both share. The *position* of a sample is its distance from the wall's first point along the
+//! two walls; its samples are *shared*, and one of the two walls *leads*: it lays a bead in the
+//! middle. The *position* of a sample is its distance from the wall's first point along the
 //! wall; the *perimeter* is the length of the wall. A *stretch* is a sequence of equal samples.
 //!
 //! Algorithm, for each closed wall:
@@ -33,7 +33,7 @@ pub(super) const MOST_BEADS: usize = 3;
 /// Minimum width of a bead, where there is room. Thinner skin gets a bead that reaches
 /// beyond the skin. A smaller value makes beads too thin to flow evenly; a larger one
 /// wastes plastic.
-pub(super) const NARROWEST: f64 = 0.75;
+const NARROWEST: f64 = 0.75;
 
 /// Shorter beads are dropped and left to lines; shorter gaps in a bead are closed. A smaller value
 /// makes many short beads with a travel each. A larger one lays beads where there is no skin.
@@ -43,14 +43,14 @@ pub(super) const SHORT: f64 = 2.5;
 /// them wider than what a nozzle lays evenly; a smaller one needs a second bead earlier.
 const WIDEST: f64 = 1.5;
 
-/// Strips are filled with one bead along either wall if each half is at most this wide. Wider ones
-/// would need more beads, and strips mostly taper too much for these: lines fill them better. A
-/// smaller value leaves more strips to zigzags.
-const SHARED: f64 = 1.6;
+/// Maximum number of beads across a strip between two walls. Wider ones are left to lines. A smaller
+/// value fills the walls of shells by zigzags that are nearly all turns; a larger one lays many beads
+/// beside each other that all change their width where the strip does.
+const MOST_ACROSS: usize = 5;
 
 /// A narrower strip gets a single bead, of its full width. From this width on two beads of 0.8 fit.
 /// A larger value makes single beads too wide; a smaller one makes pairs that are too thin.
-pub(super) const SINGLE: f64 = 1.6;
+const SINGLE: f64 = 1.6;
 
 /// Maximum depth for each bead on a short stretch where one bead more would be needed: stretching
 /// the others avoids a short extra bead. It is as wide as lines may get in gap closing. At
@@ -94,6 +94,10 @@ const CORNER: f64 = 11.0;
 /// the end of a strip that narrows towards it; a smaller one breaks beads at square ends and corners.
 const STRIP_TURN: f64 = 5.0;
 
+/// Where a strip turns, it is hardly wider on one side than on the other: at most this many times. A larger
+/// value takes the width of its pointed end for that of a room; a smaller one breaks beads at corners.
+const ALIKE: f64 = 1.5;
+
 /// Margin around the samples with beads within which wall edges are collected. It must reach from a
 /// sample to the middle of a bridged gap, and from there to the far side of the beads and to walls
 /// near them. If it is too small, beads may cross walls; a larger value sorts edges for nothing.
@@ -114,9 +118,9 @@ pub(super) struct WallSample {
     pub depth: f64,
     /// The depth is half the distance to another wall, which lays beads as well.
     pub shared: bool,
-    /// Of these two walls, this one lays a single bead that both share.
+    /// Of these two walls, this one lays a bead in the middle.
     pub leads: bool,
-    /// Number of beads; 0 where there is no skin or too much.
+    /// Number of beads, in a strip up to its middle; 0 where there is no skin or too much.
     pub beads: usize,
     /// Distance from the wall's first point along the wall.
     position: f64,
@@ -140,7 +144,7 @@ pub(super) fn samples(
     let w = f64::from(params.line_width);
     let near = Near::new(walls, Area::around(with_beads, MARGIN * w), CELL * w);
     for (lap, wall) in laps.iter_mut().zip(walls) {
-        lap.iter_mut().filter(|s| s.shared).for_each(|s| s.confirm(&near, params));
+        lap.iter_mut().filter(|s| s.shared).for_each(|s| s.confirm(&near, crossed.left_turn, params));
         *lap = finished(wall, std::mem::take(lap), params);
     }
     Some((laps, near))
@@ -158,19 +162,28 @@ fn finished(wall: &Contour, mut found: Vec<WallSample>, params: &BeadParams) -> 
 }
 
 impl WallSample {
-    /// Whether one bead fills the strip at this sample.
-    pub(super) fn is_single(&self, params: &BeadParams) -> bool {
-        self.shared && 2.0 * self.depth < SINGLE * f64::from(params.line_width)
+    /// How many beads this wall lays here, and how wide each is. Of an odd number across a strip, the one
+    /// in the middle is laid by the wall that leads.
+    pub(super) fn laid(&self, params: &BeadParams) -> (usize, f64) {
+        let w = f64::from(params.line_width);
+        if !self.shared || self.beads == 0 {
+            return (self.beads, (self.depth / self.beads as f64).max(NARROWEST * w));
+        }
+        let across = 2.0 * self.depth;
+        let most = 2 * self.beads;
+        let is_odd = across < least_of(most) * w;
+        let count = most - usize::from(is_odd);
+        (count / 2 + usize::from(is_odd && self.leads), across / count as f64)
     }
 
     /// Checks that a shared sample really has another wall opposite, and decides which of the two
     /// leads. Past the middle of a strip the opposite wall is the nearer one. In a corner the wall
     /// at the other end of the row is not: then the sample loses its beads.
-    fn confirm(&mut self, near: &Near, params: &BeadParams) {
+    fn confirm(&mut self, near: &Near, left_turn: bool, params: &BeadParams) {
         let across = 2.0 * (self.depth + f64::from(params.line_width) / 2.0);
         let beyond = [0, 1].map(|k| self.at[k] + BEYOND * across * self.normal[k]);
         if let Some(other) = near.nearest(beyond, (1.0 - BEYOND + SLOPE) * across) {
-            self.leads = leads(self.normal, other);
+            self.leads = leads(self.normal, other, left_turn);
         } else {
             self.shared = false;
             self.beads = 0;
@@ -180,11 +193,13 @@ impl WallSample {
 
 /// Whether a wall with this normal leads the one with edge `other`. The sign of the difference of
 /// the two normals decides. The opposite wall sees the same difference with the other sign, so
-/// exactly one of the two leads, however they lean.
-fn leads(normal: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
+/// exactly one of the two leads, however they lean. It is the same one on layers whose lines run in the
+/// other direction, so that their beads lie on each other.
+fn leads(normal: [f64; 2], [from, to]: [[f64; 2]; 2], left_turn: bool) -> bool {
     let [x, y] = [to[0] - from[0], to[1] - from[1]];
     let length = (x * x + y * y).sqrt().at_least(1.0);
     let [x, y] = [normal[0] + y / length, normal[1] - x / length];
+    let [x, y] = if left_turn { [x, y] } else { [-y, x] };
     x > 0.0 || (x == 0.0 && y > 0.0)
 }
 
@@ -319,7 +334,8 @@ impl Behind {
         let across = depth(self.room) + lead;
         if skin && across - taken(self.skin) - taken(self.other) <= GAP * w {
             let depth = across / 2.0;
-            let beads = usize::from(depth <= SHARED * w);
+            let count = (1..=MOST_ACROSS).find(|&count| across < least_of(count + 1) * w);
+            let beads = count.map_or(0, |count| count.div_ceil(2));
             return WallSample { depth, shared: true, beads, skin: true, ..blank };
         }
         if self.skin == 0 {
@@ -341,6 +357,11 @@ fn reach(stretches: impl Iterator<Item = (i64, i64)>, pitch: Coord) -> i64 {
         end = to;
     }
     end
+}
+
+/// The least width of a strip that gets `count` beads, at least 2, in line widths.
+fn least_of(count: usize) -> f64 {
+    if count == 2 { SINGLE } else { count as f64 - 0.5 }
 }
 
 /// Number of beads that cover a depth; 0 if it is too deep.
@@ -378,7 +399,12 @@ fn bridge(samples: &mut [WallSample], perimeter: f64, params: &BeadParams) {
             continue;
         }
         let deep = (from..to).any(|k| samples[k % n].skin);
-        let model = if before.depth <= after.depth { before } else { after };
+        let (model, other) =
+            if before.depth <= after.depth { (before, after) } else { (after, before) };
+        // A strip that narrows is no strip that turns.
+        if deep && model.shared && other.depth > ALIKE * model.depth {
+            continue;
+        }
         let most = match deep {
             false => SHORT * w,
             true if model.shared => (4.0 * model.depth + STRIP_TURN * w).at_most(CORNER * w),

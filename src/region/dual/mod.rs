@@ -16,6 +16,7 @@
 //! same direction every time. Both are avoided here unless the settings ask for that rule.
 
 pub mod audit;
+pub mod beads;
 pub mod groups;
 pub mod inner_skin;
 pub mod runs;

@@ -14,6 +14,8 @@
 //! once, when its region is handed on. So memory holds a batch and a few layers, whatever the
 //! height of the print.
 
+mod shared;
+
 use super::curved::{self, Above, CurvedTops};
 use super::divide::{Divided, Examined, LayerAreas, Lower, divide, examine};
 use super::dual;
@@ -30,8 +32,7 @@ use super::per_raster::skin_turn;
 use super::prepare::{LayerRows, Own, prepare};
 use super::queue::Queue;
 use super::support::{SupportLayer, SupportPatterns};
-use super::walls::{self, Wall};
-use super::{Region, Skin, Sparse, SupportLines, tops};
+use super::{Region, Skin, Sparse, tops};
 use crate::geom::frame::Frame;
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, polygon};
@@ -225,13 +226,15 @@ impl<'a> Window<'a> {
         let (support, support_audit) = self.share_support(block);
         let above = block.layers.clone().map(|k| self.above(k));
         let ironed = ironed.into_iter().zip(above);
-        let lines = infill.into_iter().zip(support).zip(self.share_walls(block)).zip(ironed);
-        let fillings = skins.into_iter().zip(lines).map(
-            |(skins, (((infill, support), walls), (ironing, above)))| Filling {
+        let lines = infill.into_iter().zip(support);
+        let shared = self.share_walls(block).into_iter().zip(self.share_beads(block));
+        let fillings = skins.into_iter().zip(lines).zip(shared).zip(ironed).map(
+            |(((skins, (infill, support)), (walls, room_beads)), (ironing, above))| Filling {
                 skins,
                 infill,
                 support,
                 walls,
+                room_beads,
                 ironing,
                 above,
             },
@@ -300,44 +303,6 @@ impl<'a> Window<'a> {
     fn curved_above(&self, k: usize) -> Vec<Contour> {
         let (top, height) = (self.slicer.heights().top(k), self.slicer.heights().height(k));
         self.curved.tops().map(|tops| tops.over(top - height, top + height)).unwrap_or_default()
-    }
-
-    /// The number of layers that each wall of each layer of a block is printed for.
-    fn share_walls(&self, block: &Block) -> Vec<Vec<u32>> {
-        let walls = |k| self.own.get(k).map_or(&[] as &[Wall], |own| &own.walls);
-        let layers: Vec<&[Wall]> = block.layers.clone().map(walls).collect();
-        if self.grouping.shares(DualPart::InnerWalls) {
-            let thin = |k: usize| self.is_thin(k);
-            walls::share(block, &layers, self.grouping, &thin, &self.params.walls)
-        } else {
-            layers.iter().map(|walls| vec![1; walls.len()]).collect()
-        }
-    }
-
-    /// The support of each layer of a block.
-    fn share_support(&self, block: &Block) -> (Vec<SupportLines>, Option<Audit>) {
-        let Some(Support { patterns, layers }) = &self.support else {
-            return (block.layers.clone().map(|_| SupportLines::default()).collect(), None);
-        };
-        let layers = &layers[block.layers.clone()];
-        let width = self.params.walls.line_width;
-        let rows = |n: usize| layers.iter().map(|layer| layer.body[n].clone()).collect();
-        let rows: [Vec<Rows>; 2] = [0, 1].map(rows);
-        let (bodies, audit) = dual::support(block, &rows, &patterns.body, self.grouping, width);
-        // What carries the part is printed layer by layer, as finely as the part.
-        let lines = |(layer, body): (&SupportLayer, Vec<Sparse>)| {
-            let dense = patterns.interface.iter().zip(&layer.interface);
-            let interface =
-                dense.filter(|(_, rows)| !rows.is_empty()).map(|(pattern, rows)| Sparse {
-                    pattern: pattern.clone(),
-                    rows: rows.clone(),
-                    layers: 1,
-                    width,
-                    border: None,
-                });
-            SupportLines { body, interface: interface.collect(), outlines: layer.outlines.clone() }
-        };
-        (layers.iter().zip(bodies).map(lines).collect(), audit)
     }
 
     /// The skins of layer `k`, and what they leave of its areas; `None` if it is not divided. The
