@@ -132,6 +132,12 @@ impl Verdict {
     pub fn fails(&self) -> bool {
         self.counts.iter().any(|count| count.errors > 0)
     }
+
+    /// How many findings are no more than a weak place.
+    #[must_use]
+    pub fn warnings(&self) -> usize {
+        self.counts.iter().map(|count| count.count - count.errors).sum()
+    }
 }
 
 /// Judges a file. `model` is what it was made from, if that is known.

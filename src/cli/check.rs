@@ -4,7 +4,7 @@ use super::args::CheckArgs;
 use super::reading::Opened;
 use super::{Outcome, failure, output};
 use anyhow::Result;
-use slicer::check::finding::{Code, Count};
+use slicer::check::finding::Count;
 use slicer::check::terms::Terms;
 use slicer::check::{self, Measures, Model, Verdict};
 use slicer::mesh::Bed;
@@ -78,7 +78,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     } else {
         let firmware = print.summary.firmware;
         let by = judged_by(given.as_ref(), own.as_ref(), firmware, &args.against);
-        let (headline, findings) = (headline(&verdict), findings(&verdict));
+        let (headline, findings) = (headline(&verdict), findings(&verdict, "--json"));
         format!("{name}: {headline}, {by}\n{findings}{}", notes(&verdict))
     };
     Ok(Outcome { text, code })
@@ -128,9 +128,9 @@ fn headline(verdict: &Verdict) -> String {
     format!("{found} in {layers} and {}", plural(verdict.moves as u64, "move"))
 }
 
-/// Findings, a line each.
-pub(super) fn findings(verdict: &Verdict) -> String {
-    verdict.counts.iter().map(|count| of_kind(verdict, count.code, count.count)).collect()
+/// Findings, a line each; where there are too many, `whole` is the option that lists all.
+pub(super) fn findings(verdict: &Verdict, whole: &str) -> String {
+    verdict.counts.iter().map(|count| of_kind(verdict, count, whole)).collect()
 }
 
 /// What was measured, and what was not judged.
@@ -143,12 +143,12 @@ pub(super) fn notes(verdict: &Verdict) -> String {
 }
 
 /// The largest findings of a kind, and how many more there are.
-fn of_kind(verdict: &Verdict, code: Code, count: usize) -> String {
+fn of_kind(verdict: &Verdict, &Count { code, count, .. }: &Count, whole: &str) -> String {
     let of_kind = verdict.findings.iter().filter(|finding| finding.code == code);
     let mut text: String = of_kind.take(MOST_SHOWN).map(|finding| format!("{finding}\n")).collect();
     if count > MOST_SHOWN {
         let more = count - MOST_SHOWN;
-        text.push_str(&format!("{}: and {more} more (--json lists them)\n", code.name()));
+        text.push_str(&format!("{}: and {more} more ({whole} lists them)\n", code.name()));
     }
     text
 }

@@ -17,6 +17,7 @@ use super::publish::publish;
 use super::steps::Target;
 use super::{check, failed, failure, input, interrupt, progress, say, say_line, summary, usage};
 use anyhow::{Context as _, Result};
+use slicer::check::Verdict;
 use slicer::check::terms::Terms;
 use slicer::error::Error;
 use slicer::gcode;
@@ -77,7 +78,7 @@ fn make(
         say_line("warning", warning);
     }
     if let Some(verdict) = &report.check {
-        say(&check::findings(verdict));
+        say(&check::findings(verdict, "--report"));
         if !args.quiet {
             say(&check::notes(verdict));
         }
@@ -103,7 +104,8 @@ fn make(
     if !args.quiet {
         say(&summary::summary(&report, started.elapsed()));
     }
-    Ok(findings(args.strict, report.warnings.len()))
+    let of_check = report.check.as_ref().map_or(0, Verdict::warnings);
+    Ok(findings(args.strict, report.warnings.len() + of_check))
 }
 
 /// Checks that no two arguments mean the same file.
@@ -127,6 +129,13 @@ fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
         return usage::refuse("-o and --report name the same file; name two");
     }
     for product in std::iter::once(out).chain(report) {
+        // A forgotten -o in a shell's list of files would cost a model.
+        if product.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl")) {
+            let name = text::name(product.as_os_str());
+            return usage::refuse(&format!(
+                "{name} is a model's name, and what is written is none; choose another ending"
+            ));
+        }
         let read = args.inputs.iter().map(OsString::as_os_str).chain(args.profiles.names());
         if let Some(name) = read.into_iter().find(|name| same(product, Path::new(name))) {
             let name = text::name(name);

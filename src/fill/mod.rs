@@ -129,7 +129,6 @@ impl Maker<'_> {
         let (plain, height) = (self.params.line_width, self.height(wall.layers));
         let role = match wall.depth {
             0 => Role::OuterWall,
-            _ if wall.fills => Role::Infill,
             _ => Role::InnerWall,
         };
         let point = |(k, &at): (usize, &Point)| {

@@ -40,7 +40,7 @@ pub struct Divided {
     pub beads: Vec<Polyline>,
     /// Those of its rooms too narrow for sparse lines, where nothing is exposed.
     pub room_beads: Vec<Polyline>,
-    /// Which of its walls fill a room that nothing exposes.
+    /// Which of its walls fill a room that nothing exposes; they are among the beads of its rooms.
     pub filling: Vec<usize>,
     /// Its bridges.
     pub bridges: Vec<Skin>,
@@ -144,7 +144,9 @@ pub fn divide<'a>(
     };
     let hanging = overhangs(k, &own.walls, layers, params);
     let filling = between_walls(k, &own.walls, layers, params);
-    let (room_beads, beads) = hidden::beads(k, beads, solid.as_ref(), skins, params);
+    let (mut room_beads, beads) = hidden::beads(k, beads, solid.as_ref(), skins, params);
+    let bead = |index: &usize| own.walls[*index].bead(along.frame, params.walls.line_width);
+    room_beads.extend(filling.iter().map(bead));
     Divided { areas, beads, room_beads, filling, bridges, hanging }
 }
 

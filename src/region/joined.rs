@@ -18,7 +18,7 @@ pub(super) struct Laid {
     pub(super) beads: Vec<Polyline>,
     /// The same in narrow rooms.
     pub(super) room_beads: Vec<Polyline>,
-    /// Which walls fill a room.
+    /// Which walls fill a room: they are among the beads in narrow rooms.
     pub(super) filling: Vec<usize>,
     /// Bridges.
     pub(super) bridges: Vec<Skin>,
@@ -52,7 +52,7 @@ pub(super) fn region(
     laid: Laid,
     seen: Option<Option<&Rows>>,
 ) -> Region {
-    let Filling { mut skins, infill, support, walls: printed, room_beads, ironing, above } =
+    let Filling { mut skins, infill, support, walls: mut printed, room_beads, ironing, above } =
         filling;
     let Laid { beads, filling, bridges, hanging, .. } = laid;
     // Wall beads beside skin are for this layer alone.
@@ -73,11 +73,11 @@ pub(super) fn region(
     skins.extend(thick);
     skins.extend(bridges);
     let Own { layer, walls, thin_mm2, .. } = own;
-    let (mut walls, hangs): (Vec<Wall>, Vec<Vec<u8>>) = match hanging {
+    let (walls, hangs): (Vec<Wall>, Vec<Vec<u8>>) = match hanging {
         Some(hanging) => hanging.into_iter().map(|h| (h.wall, h.hangs)).unzip(),
         None => (walls, Vec::new()),
     };
-    filling.into_iter().for_each(|index| walls[index].fills = true);
+    filling.into_iter().for_each(|index| printed[index] = 0);
     // A wall that is printed for several layers lies on the lowest of them.
     let of = |(hangs, layers): (Vec<u8>, &u32)| match layers {
         0 => None,

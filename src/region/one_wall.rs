@@ -256,7 +256,7 @@ mod tests {
     fn square() -> Wall {
         let path = [(0, 0), (100_000, 0), (100_000, 100_000), (0, 100_000)];
         let path = path.map(|(x, y)| Point { x, y }).to_vec();
-        Wall { path, widths: Vec::new(), closed: true, depth: 1, fills: false, layers: 1 }
+        Wall { path, widths: Vec::new(), closed: true, depth: 1, layers: 1 }
     }
 
     fn length(wall: &Wall) -> f64 {

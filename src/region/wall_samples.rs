@@ -144,7 +144,9 @@ pub(super) fn samples(
     let w = f64::from(params.line_width);
     let near = Near::new(walls, Area::around(with_beads, MARGIN * w), CELL * w);
     for (lap, wall) in laps.iter_mut().zip(walls) {
-        lap.iter_mut().filter(|s| s.shared).for_each(|s| s.confirm(&near, crossed.left_turn, params));
+        lap.iter_mut()
+            .filter(|s| s.shared)
+            .for_each(|s| s.confirm(&near, crossed.left_turn, params));
         *lap = finished(wall, std::mem::take(lap), params);
     }
     Some((laps, near))

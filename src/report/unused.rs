@@ -2,6 +2,7 @@
 
 use crate::fill::Role;
 use crate::gcode::usage::Usage;
+use crate::pattern;
 use crate::profile::{BrimPlace, IroningPlace, Settings};
 use crate::warning::Warning;
 
@@ -16,6 +17,10 @@ pub(super) fn warnings(usage: &Usage, settings: &Settings) -> Vec<Warning> {
     if settings.ironing.place != IroningPlace::Off && !ironed {
         found.push(Warning::void(["ironing.where"], "no top is wide enough for its lines"));
     }
+    if pattern::pattern(settings) != settings.pattern {
+        let why = "lines that cross cannot be so dense; they run in one direction on each layer";
+        found.push(Warning::void(["pattern"], why));
+    }
     found
 }
 
@@ -29,4 +34,25 @@ fn on_raft(settings: &Settings) -> Vec<&'static str> {
     ];
     let void = keys.into_iter().filter(|(_, is_set)| *is_set && settings.raft.enabled);
     void.map(|(key, _)| key).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pattern::Turns;
+    use crate::profile::Profile;
+
+    #[test]
+    fn what_crosses_itself_is_not_printed_densely() {
+        let told = |pattern: &str, infill: &str| {
+            let given = Profile::builder("generic-marlin").set("pattern", pattern);
+            let settings = given.set("infill", infill).load().unwrap().settings;
+            let warnings = warnings(&Usage::default(), &settings);
+            (warnings.len(), Turns::new(&settings).of(0).len())
+        };
+        assert_eq!(told("grid", "100"), (1, 1));
+        assert_eq!(told("triangles", "95"), (1, 1));
+        assert_eq!(told("grid", "60"), (0, 2));
+        assert_eq!(told("rectilinear", "100"), (0, 1));
+    }
 }

@@ -184,6 +184,9 @@ fn no_two_arguments_may_mean_the_same_file() {
     fails(&folder, &["part.stl", "-o", "./part.stl"], 2, "would replace part.stl");
     fails(&folder, &["part.stl", "-o", "a", "--report", "./a"], 2, "the same file");
     fails(&folder, &["-", "-", "-o", "a"], 2, "standard input holds one model");
+    // Nor may a product look like a model.
+    fails(&folder, &["part.stl", "-o", "next.STL"], 2, "next.STL is a model's name");
+    fails(&folder, &["part.stl", "-o", "a", "--report", "b.stl"], 2, "b.stl is a model's name");
 }
 
 #[test]
@@ -327,6 +330,23 @@ fn cube_with_a_flaw() -> Vec<u8> {
         std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/cube_20.stl")).unwrap();
     bytes.push(0);
     bytes
+}
+
+#[test]
+fn strict_counts_what_the_check_warns_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let part = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/overhang.stl");
+    for (strict, code) in [(false, 0), (true, 1)] {
+        let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_slicer"));
+        command.current_dir(folder.path()).args([part, "-o", "a.gcode", "-q", "--check"]);
+        if strict {
+            command.arg("--strict");
+        }
+        let output = command.output().unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{text}");
+        assert!(text.contains("warning: unanchored") && !text.contains("--json"), "{text}");
+    }
 }
 
 #[test]

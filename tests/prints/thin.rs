@@ -175,3 +175,49 @@ fn what_fills_a_narrow_room_is_infill_where_nothing_exposes_it() {
         }
     }
 }
+
+/// The length of a layer's lines of a kind beside the middle of a plate along x: along it, and across.
+fn ways(run: &Run, kind: Kind, layer: usize) -> [f64; 2] {
+    let near = |m: &&Move| along(run, 0.0, m.at(0.5)).abs() < WITHIN;
+    let beads = run.print.of(kind).filter(|m| m.layer == Some(layer)).filter(near);
+    beads.fold([0.0; 2], |[along, across], m| {
+        let [x, y] = [0, 1].map(|axis| (m.to[axis] - m.from[axis]).abs());
+        [along + x, across + y]
+    })
+}
+
+/// Rooms up to 2 mm wide are solid. Zigzags in them would be nearly all turns.
+#[test]
+fn the_room_between_two_walls_is_filled_by_beads_along_them() {
+    for room in [0.5, 0.9, 1.2, 1.4, 1.7, 1.95] {
+        for angle in [0.0, 30.0, 90.0] {
+            let run = sliced(&plate(1.6 + room, 1.6 + room), 2, angle, &[]);
+            for layer in [6, 7] {
+                let [along, across] = ways(&run, Kind::Infill, layer);
+                assert!(along > 10.0, "{room} mm, {angle} degrees, layer {layer}: {along} mm");
+                assert!(across < 0.02 * along, "{room} mm, {angle} degrees: {across} of {along}");
+                let filled = plastic(&run, 0.0, layer, -WITHIN, WITHIN);
+                let share = filled / ((1.6 + room) * 2.0 * WITHIN * 0.2);
+                assert!((0.95..=1.03).contains(&share), "{room} mm, {angle} degrees: {share}");
+            }
+        }
+    }
+}
+
+#[test]
+fn beads_that_lie_on_each_other_are_printed_once_for_both_layers() {
+    for (thickness, mode) in [(2.1, "pair"), (2.8, "pair"), (3.3, "pair"), (3.3, "interlaced")] {
+        let plain = sliced(&plate(thickness, thickness), 2, 0.0, &[]);
+        let dual = sliced(&plate(thickness, thickness), 2, 0.0, &[("dual.mode", mode)]);
+        let of = |run: &Run, thick: bool| -> f64 {
+            let infill = run.print.of(Kind::Infill).filter(|m| run.print.is_thick(m) == thick);
+            infill.map(|m| m.e).sum()
+        };
+        let (all, thick, thin) = (of(&plain, false), of(&dual, true), of(&dual, false));
+        assert!(
+            (thick + thin - all).abs() < 0.01 * all,
+            "{thickness} mm {mode}: {thick} {thin} {all}"
+        );
+        assert!(thick > 0.75 * all, "{thickness} mm {mode}: {thick} of {all}");
+    }
+}

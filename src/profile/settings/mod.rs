@@ -172,7 +172,8 @@ pub struct Settings {
     /// Rooms inside the walls narrower than this are filled solid.
     #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 2))]
     pub narrow_room: f64,
-    /// Pattern of the sparse infill.
+    /// Pattern of the sparse infill. From 90 % on grid and triangles are rectilinear: lines that cross on a
+    /// layer cannot be so dense.
     #[schemars(extend("default" = "rectilinear"))]
     pub pattern: Pattern,
     /// Direction of the lines on even layers, from the x axis; odd layers are turned by 90.

@@ -24,7 +24,7 @@ const ALIKE: f64 = 0.1;
 const CLOSE: f64 = 2.5;
 
 /// Shorter stretches are not worth a change of height, in line widths.
-const LEAST: f64 = 5.0;
+const LEAST: f64 = 12.0;
 
 /// Beads of a layer by the number of layers that they are printed for.
 pub type Counted = Vec<(u32, Vec<Polyline>)>;

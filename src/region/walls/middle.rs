@@ -134,7 +134,7 @@ pub(super) fn wall(arc: &Arc) -> Wall {
             *first = last;
         }
     }
-    Wall { path, widths, closed, depth, fills: false, layers: 1 }
+    Wall { path, widths, closed, depth, layers: 1 }
 }
 
 /// The samples of a contour whose first side has the index `first`.

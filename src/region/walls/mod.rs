@@ -36,8 +36,10 @@ pub use share::share;
 
 use super::near::Near;
 use super::params::WallParams;
+use crate::geom::frame::Frame;
+use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::segment::along;
-use crate::geom::{Contour, polygon};
+use crate::geom::{Contour, Point, polygon};
 use crate::units::Coord;
 use room::{Opposite, Outline};
 
@@ -53,8 +55,6 @@ pub struct Wall {
     pub closed: bool,
     /// Counted from the outside; 0 is the outer wall.
     pub depth: u32,
-    /// Whether it fills a room between the innermost loops that nothing exposes.
-    pub fills: bool,
     /// How many layers it is printed for: this one and those below it.
     pub layers: u32,
 }
@@ -138,9 +138,21 @@ fn levels(
 }
 
 impl Wall {
+    /// Its bead in a frame; `line_width` is that of places without another.
+    #[must_use]
+    pub fn bead(&self, frame: Frame, line_width: Coord) -> Polyline {
+        let point = |(k, at): (usize, &Point)| {
+            let at = frame.enter(*at);
+            let width = self.widths.get(k).copied().unwrap_or(line_width);
+            LinePoint { u: at.x, v: at.y, width }
+        };
+        let corners = self.path.iter().enumerate().map(point);
+        corners.clone().chain(corners.take(usize::from(self.closed))).collect()
+    }
+
     /// A loop of one line width.
     fn closed(path: Contour, depth: u32) -> Self {
-        Self { path, widths: Vec::new(), closed: true, depth, fills: false, layers: 1 }
+        Self { path, widths: Vec::new(), closed: true, depth, layers: 1 }
     }
 }
 
