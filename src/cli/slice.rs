@@ -129,18 +129,18 @@ fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
         return usage::refuse("-o and --report name the same file; name two");
     }
     for product in std::iter::once(out).chain(report) {
-        // A forgotten -o in a shell's list of files would cost a model.
-        if product.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl")) {
-            let name = text::name(product.as_os_str());
-            return usage::refuse(&format!(
-                "{name} is a model's name, and what is written is none; choose another ending"
-            ));
-        }
         let read = args.inputs.iter().map(OsString::as_os_str).chain(args.profiles.names());
         if let Some(name) = read.into_iter().find(|name| same(product, Path::new(name))) {
             let name = text::name(name);
             return usage::refuse(&format!(
                 "the output would replace {name}; choose another name for it"
+            ));
+        }
+        // A forgotten -o in a shell's list of files would cost a model.
+        if product.extension().is_some_and(|end| end.eq_ignore_ascii_case("stl")) {
+            let name = text::name(product.as_os_str());
+            return usage::refuse(&format!(
+                "{name} is a model's name, and what is written is none; choose another ending"
             ));
         }
     }
