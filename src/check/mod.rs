@@ -156,6 +156,9 @@ pub fn check_stream(
     terms: &Terms,
     model: Option<Model<'_>>,
 ) -> io::Result<Verdict> {
+    if let Some(print) = stream.whole() {
+        return Ok(check(print, terms, model));
+    }
     let pages = || -> window::Pages<'_, io::Error> {
         Box::new(stream.sections().map(|section| section.map(window::Page::from)))
     };

@@ -27,16 +27,10 @@ pub(super) type Pages<'a, E> = Box<dyn Iterator<Item = Result<Page<'a>, E>> + Se
 
 /// The pages of a print.
 pub(super) fn of_print(print: &Print) -> Pages<'_, Infallible> {
-    let count = print.layers.len();
-    let pages = (0..=count).map(move |index| {
-        let layer = index.checked_sub(1);
-        let range = layer.map_or(&print.start, |layer| &print.layers[layer].moves).clone();
-        let note = |at: usize| print.notes.partition_point(|note| note.at < at);
-        let last = if index == count { print.notes.len() } else { note(range.end) };
-        let first = if index == 0 { 0 } else { note(range.start) };
-        let notes = Cow::Borrowed(&print.notes[first..last]);
-        let first = range.start;
-        Ok(Page { layer, first, moves: Cow::Borrowed(&print.moves[range]), notes })
+    let pages = (0..=print.layers.len()).map(move |index| {
+        let (range, notes) = print.section(index);
+        let (first, moves) = (range.start, Cow::Borrowed(&print.moves[range]));
+        Ok(Page { layer: index.checked_sub(1), first, moves, notes: Cow::Borrowed(notes) })
     });
     Box::new(pages)
 }

@@ -61,12 +61,16 @@ impl<R: BufRead> Limited<R> {
 impl Counter {
     fn count(&mut self, bytes: &[u8]) -> Result<(), TooLong> {
         let (Some(&first), Some(&last)) = (bytes.first(), bytes.last()) else { return Ok(()) };
-        let ends = |byte: u8| byte == b'\n' || byte == b'\r';
-        let begins = |before: u8, byte: u8| ends(before) && !ends(byte) && byte != b';';
+        let ends = |byte: u8| (byte == b'\n') | (byte == b'\r');
+        let begins = |before: u8, byte: u8| ends(before) & !ends(byte) & (byte != b';');
         self.moves += u64::from(begins(self.last, first));
-        // Two neighbours at a time, without a branch: many at once for the processor.
-        let pairs = bytes.iter().zip(&bytes[1..]);
-        self.moves += pairs.map(|(&one, &next)| u64::from(begins(one, next))).sum::<u64>();
+        // Two neighbours at a time, without a branch, and sums that fit a byte: many at once for the processor.
+        let most = usize::from(u8::MAX);
+        for (some, next) in bytes.chunks(most).zip(bytes[1..].chunks(most)) {
+            let pairs = some.iter().zip(next);
+            let begun: u8 = pairs.map(|(&one, &next)| u8::from(begins(one, next))).sum();
+            self.moves += u64::from(begun);
+        }
         let length = bytes.len() as u64;
         self.bytes += length;
         self.line = match bytes.iter().rposition(|&byte| ends(byte)) {

@@ -17,7 +17,7 @@ use super::facts::Gatherer;
 pub use super::step::{Layer, Note, Order, Step, What};
 use super::{Event, Facts, Firmware, Reading};
 use std::io::{self, BufRead};
-use std::ops::{Deref, DerefMut};
+use std::ops::{Deref, DerefMut, Range};
 
 /// Lines of code that the reader does not know and that are kept, of a file: the first show what
 /// it is.
@@ -92,6 +92,17 @@ impl Print {
     #[must_use]
     pub fn moves_of(&self, layer: &Layer) -> &[Step] {
         &self.moves[layer.moves.clone()]
+    }
+
+    /// The moves of the start, 0, or of a layer, from 1, and the notes before, between and after them.
+    #[must_use]
+    pub fn section(&self, index: usize) -> (Range<usize>, &[Note]) {
+        let layer = index.checked_sub(1);
+        let range = layer.map_or(&self.start, |layer| &self.layers[layer].moves).clone();
+        let note = |at: usize| self.notes.partition_point(|note| note.at < at);
+        let first = if index == 0 { 0 } else { note(range.start) };
+        let end = if index == self.layers.len() { self.notes.len() } else { note(range.end) };
+        (range, &self.notes[first..end])
     }
 
     /// The lines of all layers.

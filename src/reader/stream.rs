@@ -9,12 +9,14 @@
 //!    hands out section by section.
 //!
 //! So only the moves of a few blocks and of the layer that they belong to are held, and the moves are
-//! the same as those of [`Print`](super::Print), for any number of threads.
+//! the same as those of [`Print`], for any number of threads.
+//!
+//! A file with few moves is kept as a whole in the first pass, and not read again.
 
 use super::facts::Gatherer;
 use super::layers::Layers;
 use super::lines::{self, Place};
-use super::print::Kept;
+use super::print::{Kept, Print};
 use super::state::State;
 use super::step::{Layer, Note, Step};
 use super::{Event, Facts, Reading, Source};
@@ -28,11 +30,17 @@ const BLOCK: u64 = 1 << 18;
 /// Blocks that are read side by side at most, so that memory does not grow with the machine.
 const MOST_BLOCKS: usize = 16;
 
+/// Moves and notes of a file that is kept as a whole, at most: some 15 MB, of 10 MB of G-code. Two such files
+/// are compared in as much memory again as one needs that is read twice.
+const MOST_KEPT: usize = 300_000;
+
 /// A file that is read layer by layer.
 #[derive(Debug)]
 pub struct Stream {
     source: Source,
-    facts: Facts,
+    /// The file, without moves and notes unless it is kept as a whole.
+    print: Print,
+    is_whole: bool,
     /// Where blocks begin, and where the last one ends.
     places: Vec<Known>,
 }
@@ -72,13 +80,30 @@ impl Stream {
         reading: impl Into<Reading>,
         filament_diameter: f64,
     ) -> io::Result<Self> {
+        Self::keeping(MOST_KEPT, (source, reading.into()), filament_diameter)
+    }
+
+    /// As [`Self::open`]; a file with at most `most` moves and notes is kept.
+    fn keeping(
+        most: usize,
+        (source, reading): (Source, Reading),
+        filament_diameter: f64,
+    ) -> io::Result<Self> {
         let (mut gatherer, mut layers) = (Gatherer::default(), Layers::default());
-        let state = State::new(reading.into());
+        let mut kept = Some(Kept::default());
+        let state = State::new(reading);
         let mut known = Known { place: Place::default(), line: 0, moves: 0, state };
         let mut places = vec![known.clone()];
         let mut next = BLOCK;
         let end = {
-            let mut sink = |line: u64, event: Event| gatherer.event(line, &event);
+            let mut sink = |line: u64, event: Event| {
+                gatherer.event(line, &event);
+                let Some(all) = &mut kept else { return };
+                all.event(line, event);
+                if all.moves.len() + all.notes.len() > most {
+                    kept = None;
+                }
+            };
             let mut reader = source.reader();
             let end = lines::each(&mut reader, known.place, &mut |line, place| {
                 known.line += 1;
@@ -98,7 +123,16 @@ impl Stream {
         };
         let facts = gatherer.facts(known.state.summary, filament_diameter);
         places.push(Known { place: end, ..known });
-        Ok(Self { source, facts, places })
+        let is_whole = kept.is_some();
+        let Kept { mut moves, notes, .. } = kept.unwrap_or_default();
+        facts.measure(0, &mut moves);
+        Ok(Self { source, print: Print { facts, moves, notes }, is_whole, places })
+    }
+
+    /// The whole file, if it is kept.
+    #[must_use]
+    pub fn whole(&self) -> Option<&Print> {
+        self.is_whole.then_some(&self.print)
     }
 
     /// The file itself.
@@ -110,10 +144,10 @@ impl Stream {
     /// What is known of the file as a whole.
     #[must_use]
     pub fn facts(&self) -> &Facts {
-        &self.facts
+        &self.print.facts
     }
 
-    /// The start, then all layers in the file's order, read for the second time. Errors are what
+    /// The start, then all layers in the file's order, read for the second time if the file is not kept. Errors are what
     /// reading gives, and that the file is not the same any more; nothing comes after one.
     pub fn sections(&self) -> impl Iterator<Item = io::Result<Section>> + Send {
         Sections {
@@ -140,7 +174,7 @@ impl Stream {
         if kept.moves.len() != to.moves - from.moves || end.offset != to.place.offset {
             return Err(io::Error::other("it changed while it was read"));
         }
-        self.facts.measure(from.moves, &mut kept.moves);
+        self.print.facts.measure(from.moves, &mut kept.moves);
         kept.notes.iter_mut().for_each(|note| note.at += from.moves);
         Ok(kept)
     }
@@ -181,7 +215,18 @@ impl Sections<'_> {
     }
 
     fn section(&mut self, index: usize) -> io::Result<Section> {
-        let facts = &self.stream.facts;
+        let facts = self.stream.facts();
+        if let Some(print) = self.stream.whole() {
+            self.next = (index < facts.layers.len()).then_some(index + 1);
+            let (range, notes) = print.section(index);
+            let (first, moves) = (range.start, print.moves[range].to_vec());
+            return Ok(Section {
+                layer: index.checked_sub(1),
+                first,
+                moves,
+                notes: notes.to_vec(),
+            });
+        }
         let layer = index.checked_sub(1);
         let range = layer.map_or(&facts.start, |layer| &facts.layers[layer].moves).clone();
         let is_last = index == facts.layers.len();
@@ -251,12 +296,15 @@ mod tests {
 
     #[test]
     fn layers_one_by_one_are_those_of_the_whole_file() {
-        for (layers, marked) in [(0, false), (1, false), (40, false), (40, true)] {
+        for (layers, marked) in [(0, false), (1, false), (9, true), (40, false), (40, true)] {
             let text = text(layers, marked);
             let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
+            let is_kept = layers % 2 == 1;
+            let most = if is_kept { print.moves.len() + print.notes.len() } else { 1 };
             let source = Source::of_bytes(text.into_bytes());
-            let stream = Stream::open(source, Reading::default(), 1.75).unwrap();
+            let stream = Stream::keeping(most, (source, Reading::default()), 1.75).unwrap();
             assert_eq!(stream.facts(), &print.facts);
+            assert_eq!(stream.whole(), is_kept.then_some(&print));
             assert!(print.layers.len() >= layers && (!marked || print.layers.len() == layers));
             let sections: Vec<Section> = stream.sections().map(Result::unwrap).collect();
             assert_eq!(sections.len(), print.layers.len() + 1);
@@ -277,8 +325,11 @@ mod tests {
         let text = "x\n".repeat(100_000);
         let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
         assert_eq!((print.notes.len(), print.summary.unknown), (1000, 100_000));
-        let stream = Stream::open(Source::of_bytes(text.into()), Reading::default(), 1.75);
-        let notes = stream.unwrap().sections().map(|one| one.unwrap().notes.len()).sum::<usize>();
-        assert_eq!(notes, 1000);
+        for most in [999, MOST_KEPT] {
+            let source = Source::of_bytes(text.clone().into());
+            let stream = Stream::keeping(most, (source, Reading::default()), 1.75).unwrap();
+            let sections = stream.sections().map(Result::unwrap);
+            assert_eq!(sections.map(|one| one.notes.len()).sum::<usize>(), 1000);
+        }
     }
 }

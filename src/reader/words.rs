@@ -18,7 +18,7 @@ pub(super) struct Words<'a> {
 /// A line's code and its comment, which begins after the `;`. A line number before and a
 /// checksum after the code are left out.
 pub(super) fn split(line: &[u8]) -> (&[u8], Option<&[u8]>) {
-    let end = line.iter().position(|&byte| byte == b';' || byte == b'*');
+    let end = memchr::memchr2(b';', b'*', line);
     let (code, comment) = match end {
         Some(end) if line[end] == b';' => (&line[..end], Some(&line[end + 1..])),
         Some(end) => (&line[..end], None),
@@ -91,33 +91,55 @@ const LARGEST: f64 = 1e9;
 /// The decimal number that `text` begins with, and what follows it. G-code knows no
 /// exponents; digits that a double cannot hold are dropped.
 pub(super) fn number(text: &[u8]) -> (Option<f64>, &[u8]) {
-    let (negative, mut rest) = match text.split_first() {
+    let (negative, text) = match text.split_first() {
         Some((b'-', rest)) => (true, rest),
         Some((b'+', rest)) => (false, rest),
         _ => (false, text),
     };
-    let (mut digits, mut value, mut scale) = (0_usize, 0_u64, 0_usize);
-    let mut point = false;
-    while let Some((&byte, after)) = rest.split_first() {
-        match byte {
-            b'0'..=b'9' if value < 10_u64.pow(17) => {
-                value = 10 * value + u64::from(byte - b'0');
-                scale += usize::from(point);
-                digits += 1;
-            }
-            b'0'..=b'9' if point => digits += 1,
-            // Too long for any usable number: the check below rejects it.
-            b'0'..=b'9' => digits += 1,
-            b'.' if !point => point = true,
-            _ => break,
+    let whole = digits(text, 0);
+    let rest = &text[whole.count..];
+    let (part, rest) = match rest.split_first() {
+        Some((b'.', after)) => {
+            let part = digits(after, whole.value);
+            (part, &after[part.count..])
         }
-        rest = after;
-    }
-    let size = value as f64 / POWERS[scale.min(19)];
-    if digits == 0 || size > LARGEST {
+        _ => (Digits { value: whole.value, kept: 0, count: 0 }, rest),
+    };
+    // Of a whole number digits are dropped only where it is too large for any use.
+    let size = part.value as f64 / POWERS[part.kept.min(19)];
+    if whole.count + part.count == 0 || size > LARGEST {
         return (None, rest);
     }
     (Some(if negative { -size } else { size }), rest)
+}
+
+/// Digits one after the other.
+#[derive(Clone, Copy)]
+struct Digits {
+    /// What they say, after those before.
+    value: u64,
+    /// How many of them the value holds, and how many there are.
+    kept: usize,
+    count: usize,
+}
+
+/// The digits that `text` begins with, after others of this value.
+#[inline]
+fn digits(text: &[u8], mut value: u64) -> Digits {
+    let mut kept = 0;
+    let mut count = 0;
+    for byte in text {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            break;
+        }
+        count += 1;
+        if value < 10_u64.pow(17) {
+            value = 10 * value + u64::from(digit);
+            kept += 1;
+        }
+    }
+    Digits { value, kept, count }
 }
 
 #[cfg(test)]
