@@ -1,6 +1,7 @@
 //! A line with round ends -> what it covers, row by row.
 
 use crate::reader::print::Step;
+use crate::units::Bounded as _;
 use nalgebra::Vector2;
 
 /// All places within `radius` of the stretch from `from` to `to`, mm.
@@ -43,7 +44,12 @@ impl Capsule {
         } else {
             (0.0, 0.0, 0.0)
         };
-        Flanks { low, high, square: self.radius * self.radius, slope, shift, lift }
+        let straight = if rise > 0.0 {
+            [low[1] + lift.abs(), high[1] - lift.abs()]
+        } else {
+            [f64::INFINITY, f64::NEG_INFINITY]
+        };
+        Flanks { low, high, square: self.radius * self.radius, slope, shift, lift, straight }
     }
 }
 
@@ -61,29 +67,38 @@ pub(super) struct Flanks {
     shift: f64,
     /// How much lower than the ends the straight part of the right border ends; the left: higher.
     lift: f64,
+    /// From where to where along y both borders are straight.
+    straight: [f64; 2],
 }
 
 impl Flanks {
     /// What of the line at height `y` lies within: one stretch, since the shape has no dents.
+    ///
+    /// Where both borders are straight that is all that is asked for: most rows of a long line. Those of short
+    /// lines change from one border to another so often that taking one of three numbers is quicker than taking
+    /// one of three ways.
+    #[inline]
     pub(super) fn chord(&self, y: f64) -> Option<(f64, f64)> {
-        let circle = |end: [f64; 2]| {
-            let away = y - end[1];
-            (self.square - away * away).max(0.0).sqrt()
-        };
-        let (from, to) = if self.low[1] == self.high[1] {
-            let half = circle(self.low);
-            (self.low[0].min(self.high[0]) - half, self.low[0].max(self.high[0]) + half)
+        let ([low_x, low_y], [high_x, high_y]) = (self.low, self.high);
+        let middle = low_x + (y - low_y) * self.slope;
+        let (from, to) = if self.straight[0] <= y && y <= self.straight[1] {
+            (middle - self.shift, middle + self.shift)
         } else {
-            let flank = |lift: f64, side: f64| {
-                if y < self.low[1] - lift {
-                    self.low[0] + side * circle(self.low)
-                } else if y > self.high[1] - lift {
-                    self.high[0] + side * circle(self.high)
-                } else {
-                    self.low[0] + (y - self.low[1]) * self.slope + side * self.shift
-                }
+            let circle = |end_y: f64| {
+                let away = y - end_y;
+                (self.square - away * away).at_least(0.0).sqrt()
             };
-            (flank(-self.lift, -1.0), flank(self.lift, 1.0))
+            let (low, high) = (circle(low_y), circle(high_y));
+            if low_y == high_y {
+                (low_x.at_most(high_x) - low, low_x.at_least(high_x) + low)
+            } else {
+                let flank = |lift: f64, side: f64| {
+                    let straight = middle + side * self.shift;
+                    let upper = if y > high_y - lift { high_x + side * high } else { straight };
+                    if y < low_y - lift { low_x + side * low } else { upper }
+                };
+                (flank(-self.lift, -1.0), flank(self.lift, 1.0))
+            }
         };
         (from < to).then_some((from, to))
     }

@@ -76,6 +76,11 @@ const ROUND: f64 = 0.86;
 /// Lanes side by side in which a line's plastic is counted: it may run along a border of cells.
 const LANES: usize = 4;
 
+/// How much further apart the columns of a first look lie: a usual line still covers two. And the part of what
+/// makes a place open from which on such a look leaves a doubt.
+const COARSE: i32 = 4;
+const DOUBT: f64 = 0.5;
+
 /// Where lines of walls and skins are looked at.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Field {
@@ -122,6 +127,7 @@ fn is_thread(step: &Step, terms: &Terms) -> bool {
     step.height >= 0.9 * step.width && terms.width_by_plastic(step) <= ROUND * f64::from(step.width)
 }
 
+#[derive(Clone, Copy)]
 struct Judge<'a> {
     filled: &'a Filled<'a>,
     terms: &'a Terms,
@@ -143,10 +149,9 @@ impl Judge<'_> {
     fn layer(&self, layer: usize) -> Vec<Finding> {
         let mut cells = vec![Cell::default(); self.field.count[0] * self.field.count[1]];
         let own = self.filled.window.moves(layer);
+        let lines = self.filled.lines(layer).filter(|(step, _)| !is_thread(step, self.terms));
         let lines: Vec<(&Step, f64)> =
-            self.filled.lines(layer).filter(|(step, _)| !is_thread(step, self.terms)).collect();
-        let lines: Vec<(&Step, f64)> =
-            lines.into_iter().map(|(step, share)| (step, share * self.over(layer, step))).collect();
+            lines.map(|(step, share)| (step, share * self.over(layer, step))).collect();
         let threads = || own.iter().filter(|step| step.is_line() && is_thread(step, self.terms));
         let counts = |step: &Step| is_solid(step) || step.role == Role::Ironing;
         for &(step, share) in lines.iter().filter(|(step, _)| counts(step)) {
@@ -155,22 +160,21 @@ impl Judge<'_> {
         let solids = || lines.iter().filter(|(step, _)| is_solid(step)).map(|(step, _)| *step);
         let sparse =
             || lines.iter().map(|(step, _)| *step).filter(|step| step.role == Role::Infill);
+        let coarse = self.coarser();
         for flipped in [false, true] {
+            if flipped {
+                // Few layers have gaps along columns: a first look tells most of the others.
+                let solid = coarse.drawn(solids(), flipped);
+                if coarse.open((layer, flipped), &solid, &cells, DOUBT).is_none() {
+                    continue;
+                }
+            }
             let solid = self.drawn(solids(), flipped);
             if !flipped {
                 self.share(&solid, flipped, |k, area| cells[k].room += area);
             }
             // Most layers have too few gaps for any place to be open: no more is drawn for them.
-            let between = gaps(&solid);
-            if self.field.lattice.area(&between) < LEAST_OPEN {
-                continue;
-            }
-            let open = between.and(&self.inside(layer, flipped));
-            let mut areas = vec![0.0; cells.len()];
-            self.share(&open, flipped, |k, area| areas[k] += area);
-            if !areas.iter().zip(&cells).any(|(open, cell)| is_open(*open, cell.room)) {
-                continue;
-            }
+            let Some(open) = self.open((layer, flipped), &solid, &cells, 1.0) else { continue };
             let all = sparse().chain(threads());
             let open = open.minus(&self.field.lattice.draw_on(&open, capsules(all, flipped)));
             self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
@@ -189,6 +193,36 @@ impl Judge<'_> {
         judged.collect()
     }
 
+    /// The same with columns and rows further apart.
+    fn coarser(&self) -> Self {
+        let lattice = self.field.lattice.coarser(COARSE);
+        Self { field: Field { lattice, ..self.field }, ..*self }
+    }
+
+    /// The gaps of a layer's walls and skins, if they make a place open, or this part of it.
+    fn open(
+        &self,
+        (layer, flipped): (usize, bool),
+        solid: &Rows,
+        cells: &[Cell],
+        part: f64,
+    ) -> Option<Rows> {
+        let between = gaps(solid);
+        if self.field.lattice.area(&between) < part * LEAST_OPEN {
+            return None;
+        }
+        let has_open = |gaps: &Rows| {
+            let mut areas = vec![0.0; cells.len()];
+            self.share(gaps, flipped, |k, area| areas[k] += area / part);
+            areas.iter().zip(cells).any(|(open, cell)| is_open(*open, cell.room))
+        };
+        if !has_open(&between) {
+            return None;
+        }
+        let open = between.and(&self.inside(layer, flipped));
+        has_open(&open).then_some(open)
+    }
+
     /// The layer's height over that of the room below a line: more than 1 of one that ends below the layer's
     /// top, as on a slope, for the room above is not its own.
     fn over(&self, layer: usize, step: &Step) -> f64 {
@@ -200,25 +234,55 @@ impl Judge<'_> {
 
     /// Adds the share of a line's plastic to the cells that it lies in.
     fn add_plastic(&self, step: &Step, share: f64, cells: &mut [Cell]) {
-        let mut add = |cell: Option<usize>, plastic: f64| {
+        // One by one, so that sums do not depend on how pieces are counted, to the last digit.
+        let mut add = |cell: Option<usize>, plastic: f64, pieces: usize| {
             if let Some(cell) = cell.and_then(|k| cells.get_mut(k)) {
-                *(if is_solid(step) { &mut cell.plastic } else { &mut cell.ironed }) += plastic;
+                let sum = if is_solid(step) { &mut cell.plastic } else { &mut cell.ironed };
+                *sum = (0..pieces).fold(*sum, |sum, _| sum + plastic);
             }
         };
         let plastic = self.terms.plastic(step) * share;
         let (low, high) = Capsule::of(step, 1.0).extent();
         let ends = [self.cell(low), self.cell(high)];
         if ends[0].is_some() && ends[0] == ends[1] {
-            return add(ends[0], plastic);
+            return add(ends[0], plastic, 1);
         }
+        let pieces = Samples::of(step, PIECE);
+        let each = plastic / step.length() * pieces.length_of_each() / LANES as f64;
         let lane = f64::from(step.width) / LANES as f64;
-        for piece in Samples::of(step, PIECE) {
-            for k in 0..LANES {
-                let aside = (k as f64 + 0.5 - LANES as f64 / 2.0) * lane;
-                let at = segment::along(piece.at, aside, piece.across);
-                add(self.cell(at), plastic / step.length() * piece.length / LANES as f64);
-            }
+        for k in 0..LANES {
+            let aside = (k as f64 + 0.5 - LANES as f64 / 2.0) * lane;
+            self.along(pieces.row(aside), |cell, count| add(cell, each, count));
         }
+    }
+
+    /// Hands the cells of places in a row to `sink`, each with how many of the places lie in it.
+    fn along(
+        &self,
+        (first, by, count): ([f64; 2], [f64; 2], usize),
+        mut sink: impl FnMut(Option<usize>, usize),
+    ) {
+        let mut done = 0;
+        while done < count {
+            let at = segment::along(first, done as f64, by);
+            let cell = self.cell(at);
+            let more = if cell.is_some() { self.places_ahead(at, by) } else { 0 };
+            let here = more.saturating_add(1).min(count - done);
+            sink(cell, here);
+            done += here;
+        }
+    }
+
+    /// How many places after one lie in its cell, if each lies so far from the one before.
+    fn places_ahead(&self, at: [f64; 2], by: [f64; 2]) -> usize {
+        let [x, y] = [0, 1].map(|axis| {
+            let from = (at[axis] - self.field.low[axis]) / self.field.side;
+            let part = from - f64::from(from as u32);
+            let room = if by[axis] > 0.0 { 1.0 - part } else { part };
+            // Endless along a border: no place is beyond.
+            room * self.field.side / by[axis].abs()
+        });
+        x.min(y) as usize
     }
 
     /// What lines cover.

@@ -37,6 +37,11 @@ impl Lattice {
         Self { pitch: to_units(pitch.max(side / most)).max(1) }
     }
 
+    /// Rows so many times as far apart.
+    pub(super) fn coarser(self, times: Coord) -> Self {
+        Self { pitch: self.pitch.saturating_mul(times) }
+    }
+
     /// Distance of the rows, mm.
     pub(super) fn pitch(self) -> f64 {
         to_mm(self.pitch)
@@ -44,7 +49,12 @@ impl Lattice {
 
     /// The rows whose middles lie in `from..to`, mm.
     pub(super) fn range(self, from: f64, to: f64) -> std::ops::Range<i32> {
-        let first = |at: f64| (at / self.pitch() - 0.5).ceil() as i32;
+        // Rounded up, which `f64::ceil` does by a call on some processors.
+        let first = |at: f64| {
+            let at = at / self.pitch() - 0.5;
+            let towards_zero = at as i32;
+            towards_zero + i32::from(at > f64::from(towards_zero))
+        };
         first(from)..first(to)
     }
 

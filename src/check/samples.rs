@@ -35,6 +35,21 @@ impl Samples {
         Self { from, way, length, count, next: 0 }
     }
 
+    /// Length of each, mm.
+    pub(super) fn length_of_each(&self) -> f64 {
+        self.length / self.count as f64
+    }
+
+    /// The middles of all, so far to the left of the line, mm: the first, how far each lies from the one before,
+    /// and how many there are.
+    pub(super) fn row(&self, aside: f64) -> ([f64; 2], [f64; 2], usize) {
+        let (count, [x, y, _], [dx, dy, _]) = (self.count as f64, self.from, self.way);
+        let across = [-dy / self.length, dx / self.length];
+        let by = [dx / count, dy / count];
+        let first = segment::along([x, y], 0.5, by);
+        (segment::along(first, aside, across), by, self.count)
+    }
+
     /// Those whose middles lie between two places, from 0 to 1.
     pub(super) fn between(self, from: f64, to: f64) -> impl Iterator<Item = Sample> {
         let count = self.count as f64;
