@@ -15,11 +15,12 @@
 //! layers at which they lie, piece by piece: they close what is exposed there. Those that lie above the
 //! model's surface, or beside it, lie outside it: the height of a slope belongs to no layer. Volumes of plastic are summed up on the way.
 
+use super::bead::Bead;
 use super::beads::place;
 use super::belongs::{SAME_HEIGHT, is_of_part, is_stray};
 use super::capsule::Capsule;
 use super::finding::{Code, Finding, Place, short};
-use super::laid::{Bead, Seen};
+use super::laid::Seen;
 use super::part::Section;
 use super::roof::Roof;
 use super::rows::Lattice;
@@ -316,8 +317,7 @@ fn near_outline<'s>(
         let line = Bead::of(step);
         let reach = line.radius + mm + lattice.pitch();
         ways.clear();
-        outline
-            .near(&line, reach, &mut seen, &mut |_, border| ways.extend(line.way(border, reach)));
+        outline.near(&line, reach, &mut seen, |_, border| ways.extend(line.way(border, reach)));
         united(&mut ways, 0.0);
         // Where it does not come near, it lies inside or outside all along.
         let (mut at, count) = (0.0, ways.len());

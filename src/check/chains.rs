@@ -1,6 +1,6 @@
 //! Moves of a layer -> its chains, and where a line runs on another.
 
-use super::laid::Bead;
+use super::bead::Bead;
 use crate::reader::Role;
 use crate::reader::print::Step;
 use std::ops::Range;

@@ -4,10 +4,11 @@
 //! of a bead of infill lies within [`GAP`]. Both are as wide as boxes of their plastic: what files
 //! say of widths differs from slicer to slicer. Thick beads count on all layers that they fill.
 
+use super::bead::Bead;
 use super::beads::place;
 use super::filled::Filled;
 use super::finding::{Code, Finding, Findings, Place, short};
-use super::laid::{Bead, Laid, Seen};
+use super::laid::{Laid, Seen};
 use super::runs::united;
 use super::terms::Terms;
 use crate::reader::Role;
@@ -93,7 +94,7 @@ pub(super) fn layer(filled: &Filled<'_>, terms: &Terms, layer: usize) -> Contact
         let wall = Bead { radius: side, ..Bead::of(step) };
         let edges = [side, -side].map(|side| wall.aside(side));
         touched.clear();
-        sparse.near(&wall, 0.0, &mut seen, &mut |_, bead| {
+        sparse.near(&wall, 0.0, &mut seen, |_, bead| {
             touched.extend(edges.iter().filter_map(|edge| edge.way(bead, bead.radius)));
         });
         united(&mut touched, 0.0);

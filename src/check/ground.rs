@@ -3,7 +3,8 @@
 //! Words: a place of a line is *carried* if plastic or the bed reaches up to its lower side there, below
 //! its middle or anywhere across it. A layer's lines carry none of their own layer.
 
-use super::laid::{Bead, Laid, SUPPORT_GAP, Seen, within};
+use super::bead::{Bead, SUPPORT_GAP, within};
+use super::laid::{Laid, Seen};
 use crate::reader::Role;
 use crate::reader::print::Step;
 
@@ -42,20 +43,20 @@ impl<'a> Ground<'a> {
         needed <= 0.0 || self.layers.iter().any(|(_, laid)| laid.top >= needed && covers(laid))
     }
 
-    /// Hands the beads within `more` mm of a line that reach up to a height to `sink`, with their
-    /// layers.
+    /// Hands the beads within `more` mm of a line that reach up to a height to `sink`, with the places of
+    /// their layers among those of the ground.
     pub(super) fn near(
         &self,
         line: &Bead,
         (needed, more): (f64, f64),
         seen: &mut [Seen],
-        sink: &mut dyn FnMut(usize, &Bead),
+        mut sink: impl FnMut(usize, &Bead),
     ) {
-        for ((layer, laid), seen) in self.layers.iter().zip(seen) {
+        for (place, ((_, laid), seen)) in self.layers.iter().zip(seen).enumerate() {
             if laid.top >= needed {
-                laid.near(line, more, seen, &mut |_, bead| {
+                laid.near(line, more, seen, |_, bead| {
                     if bead.top() >= needed {
-                        sink(*layer, bead);
+                        sink(place, bead);
                     }
                 });
             }
@@ -74,7 +75,7 @@ impl<'a> Ground<'a> {
         let lowest = line.heights[0].min(line.heights[1]);
         for ((_, laid), seen) in self.layers.iter().zip(seen) {
             let mut deepest = 0.0_f64;
-            laid.near(line, 0.0, seen, &mut |_, bead| {
+            laid.near(line, 0.0, seen, |_, bead| {
                 if bead.highest() <= lowest {
                     return;
                 }
@@ -89,6 +90,16 @@ impl<'a> Ground<'a> {
             }
         }
         0.0
+    }
+
+    /// The number of the layer at a place of the ground.
+    pub(super) fn number(&self, place: usize) -> usize {
+        self.layers[place].0
+    }
+
+    /// How many chains each of its layers has.
+    pub(super) fn chains(&self) -> impl Iterator<Item = usize> {
+        self.layers.iter().map(|(_, laid)| laid.chains.len())
     }
 
     /// Room to mark beads in, for [`Self::near`] and [`Self::depth`].
@@ -157,7 +168,7 @@ mod tests {
         let carried = |from: f64, to: f64| {
             let other = bead(from, to, 0.2);
             let beside = long.way(&other, 0.2)?;
-            above(&long, &other, [0.05, 0.31]).and_then(|way| super::super::laid::both(way, beside))
+            above(&long, &other, [0.05, 0.31]).and_then(|way| super::super::bead::both(way, beside))
         };
         for (from, to) in [(0.0, 2.0), (5.0, 7.0), (11.0, 12.0), (7.0, 5.0), (6.0, 6.05)] {
             let [begin, end] = carried(from, to).unwrap();

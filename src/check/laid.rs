@@ -1,221 +1,24 @@
 //! Lines of a layer -> Laid: which of them lie near a line, and over which part of it.
 //!
 //! Words used here: a *chain* is lines one after the other without a break; a *bead* is a line as it is
-//! laid: all places within half of its width of the way of the nozzle; a *way* is the part of a line,
-//! from 0 at its beginning to 1 at its end, that lies within some distance of a bead: one stretch, since
-//! such a place has no dents; a *cell* is a square of the bed.
+//! laid ([`bead`](super::bead)); a *cell* is a square of the bed.
 //!
 //! Beads are sorted into the cells that they reach into. Those near a line are in the cells that the
 //! line reaches into, itself as wide as it is. So what a line costs is how many lines are near it, not
 //! how long it is.
 
+use super::bead::{Bead, both, within};
 use crate::geom::cells::Cells;
 use crate::geom::segment;
-use crate::reader::Role;
 use crate::reader::print::Step;
+use crate::units::Bounded as _;
 use std::ops::Range;
 
-/// Side of a cell, mm: two lines.
-const CELL: f64 = 1.0;
-
-/// Gap that may be between support and part, mm: it must come off. Two layers of 0.2 mm, and rounding.
-pub(super) const SUPPORT_GAP: f64 = 0.45;
+/// Side of a cell, mm: four lines. Long lines lie in many smaller ones, and are seen in each.
+const CELL: f64 = 2.0;
 
 /// Cells for each bead at most, and at least so many.
 const MOST_CELLS: (f64, f64) = (4.0, 256.0);
-
-/// A line with round ends, from above.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Bead {
-    pub(super) from: [f64; 2],
-    /// From its beginning to its end, of length 1.
-    pub(super) along: [f64; 2],
-    /// mm.
-    pub(super) length: f64,
-    /// Half of its width, mm.
-    pub(super) radius: f64,
-    /// Height of the nozzle at its beginning and its end, mm.
-    pub(super) heights: [f64; 2],
-    /// Its chain, from 0 in its layer.
-    pub(super) chain: u32,
-    /// Its line, by the moves of its layer.
-    pub(super) step: u32,
-    /// Length of its chain up to its end, mm.
-    pub(super) reach: f64,
-    /// Whether it is of support.
-    pub(super) is_support: bool,
-}
-
-impl Bead {
-    pub(super) fn of(step: &Step) -> Self {
-        let flat = |at: [f32; 3]| [f64::from(at[0]), f64::from(at[1])];
-        Self {
-            radius: f64::from(step.width) / 2.0,
-            heights: [step.from[2], step.to[2]].map(f64::from),
-            is_support: step.role == Role::Support,
-            ..Self::between(flat(step.from), flat(step.to))
-        }
-    }
-
-    /// A line without a width, from above.
-    pub(super) fn between(from: [f64; 2], to: [f64; 2]) -> Self {
-        let way = segment::way(from, to);
-        let length = segment::dot(way, way).sqrt();
-        let scale = 1.0 / length.max(f64::MIN_POSITIVE);
-        Self {
-            from,
-            along: [way[0] * scale, way[1] * scale],
-            length,
-            radius: 0.0,
-            heights: [0.0; 2],
-            chain: 0,
-            step: 0,
-            reach: 0.0,
-            is_support: false,
-        }
-    }
-
-    /// Height of the nozzle at its higher end, mm.
-    pub(super) fn highest(&self) -> f64 {
-        self.heights[0].max(self.heights[1])
-    }
-
-    /// How high what it carries may lie, mm: on support, with the gap by which that comes off.
-    pub(super) fn top(&self) -> f64 {
-        self.highest() + if self.is_support { SUPPORT_GAP } else { 0.0 }
-    }
-
-    /// Height of the nozzle at a part of it, from 0 to 1, mm.
-    pub(super) fn height(&self, part: f64) -> f64 {
-        self.heights[0] + part * (self.heights[1] - self.heights[0])
-    }
-
-    /// Height of the nozzle where it is nearest to a place, mm.
-    pub(super) fn height_at(&self, at: [f64; 2]) -> f64 {
-        if self.is_level() {
-            return self.heights[0];
-        }
-        let along = segment::dot(segment::way(self.from, at), self.along);
-        self.height((along / self.length).clamp(0.0, 1.0))
-    }
-
-    /// Height of the nozzle at a place beside it, mm, if it went on beyond its ends as it goes between them. A line
-    /// that is shorter than wide is as high as its middle.
-    pub(super) fn height_along(&self, at: [f64; 2]) -> f64 {
-        if self.is_level() || self.length < self.radius {
-            return self.middle();
-        }
-        let along = segment::dot(segment::way(self.from, at), self.along);
-        self.height(along / self.length)
-    }
-
-    /// Whether all of it lies at one height.
-    pub(super) fn is_level(&self) -> bool {
-        self.heights[0] == self.heights[1]
-    }
-
-    /// How far it lies above another line at a part of it, from 0 to 1, mm.
-    pub(super) fn above(&self, other: &Self, part: f64) -> f64 {
-        self.height(part) - other.height_at(self.place(part))
-    }
-
-    /// Height in its middle, mm.
-    pub(super) fn middle(&self) -> f64 {
-        0.5 * (self.heights[0] + self.heights[1])
-    }
-
-    /// The same line, as much to its left, mm; below 0 to its right.
-    pub(super) fn aside(&self, mm: f64) -> Self {
-        let [x, y] = self.along;
-        Self { from: segment::along(self.from, mm, [-y, x]), ..*self }
-    }
-
-    /// A place of it, from 0 to 1.
-    pub(super) fn place(&self, part: f64) -> [f64; 2] {
-        segment::along(self.from, part * self.length, self.along)
-    }
-
-    /// The part of this line that lies within `mm` of the middle of another.
-    pub(super) fn way(&self, other: &Self, mm: f64) -> Option<[f64; 2]> {
-        // As the other sees it: along itself, and to its side. Most lines are off to a side.
-        let [u, v] = segment::way(other.from, self.from);
-        let [x, y] = other.along;
-        let [dx, dy] = [self.along[0] * self.length, self.along[1] * self.length];
-        let is_off = |from: f64, to: f64, low: f64, high: f64| {
-            (from < low && to < low) || (from > high && to > high)
-        };
-        let (off, aside) = (x * v - y * u, x * dy - y * dx);
-        if is_off(off, off + aside, -mm, mm) {
-            return None;
-        }
-        let (at, by) = ([x * u + y * v, off], [x * dx + y * dy, aside]);
-        if is_off(at[0], at[0] + by[0], -mm, other.length + mm) {
-            return None;
-        }
-        let beside = within(at[1], by[1], [-mm, mm]).and_then(|beside| {
-            let between = within(at[0], by[0], [0.0, other.length])?;
-            both(beside, between)
-        });
-        // Its straight sides hold all of it, unless it leaves by an end.
-        let mut way = beside;
-        let ends = [0.0, other.length];
-        let leaves = |part: f64| !(ends[0]..=ends[1]).contains(&(at[0] + part * by[0]));
-        let is_whole = |[from, to]: [f64; 2]| {
-            let (before, after) = (from - 1e-9, to + 1e-9);
-            (from == 0.0 || !leaves(before)) && (to == 1.0 || !leaves(after))
-        };
-        if beside.is_some_and(is_whole) {
-            return beside;
-        }
-        for end in ends {
-            let round = in_circle([at[0] - end, at[1]], by, mm);
-            way = match (way, round) {
-                (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
-                (a, b) => a.or(b),
-            };
-        }
-        way
-    }
-
-    /// Whether a place lies within `mm` of its middle.
-    pub(super) fn is_near(&self, at: [f64; 2], mm: f64) -> bool {
-        let arm = segment::way(self.from, at);
-        let along = segment::dot(arm, self.along).clamp(0.0, self.length);
-        let off = segment::along(arm, -along, self.along);
-        segment::dot(off, off) <= mm * mm
-    }
-}
-
-/// The part from 0 to 1 over which `at + part · by` lies between two bounds.
-pub(super) fn within(at: f64, by: f64, [low, high]: [f64; 2]) -> Option<[f64; 2]> {
-    if by == 0.0 {
-        return (low <= at && at <= high).then_some([0.0, 1.0]);
-    }
-    let (a, b) = ((low - at) / by, (high - at) / by);
-    let (from, to) = (a.min(b).max(0.0), a.max(b).min(1.0));
-    (from <= to).then_some([from, to])
-}
-
-/// What two stretches have in common.
-pub(super) fn both(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
-    let (from, to) = (a[0].max(b[0]), a[1].min(b[1]));
-    (from <= to).then_some([from, to])
-}
-
-/// The part from 0 to 1 over which `at + part · by` lies in a circle around 0.
-fn in_circle(at: [f64; 2], by: [f64; 2], radius: f64) -> Option<[f64; 2]> {
-    let (square, half) = (segment::dot(by, by), segment::dot(at, by));
-    let rest = segment::dot(at, at) - radius * radius;
-    if square == 0.0 {
-        return (rest <= 0.0).then_some([0.0, 1.0]);
-    }
-    let root = half * half - square * rest;
-    if root < 0.0 {
-        return None;
-    }
-    let root = root.sqrt();
-    both([(-half - root) / square, (-half + root) / square], [0.0, 1.0])
-}
 
 /// The lines of a layer, but for those that iron.
 #[derive(Debug, Default)]
@@ -225,10 +28,19 @@ pub(super) struct Laid {
     pub(super) chains: Vec<Range<usize>>,
     field: Field,
     cells: Option<Cells<u32>>,
+    /// What each bead covers at most.
+    boxes: Vec<Extent>,
     /// The highest that its beads carry something at, mm.
     pub(super) top: f64,
     /// The highest way of the nozzle, mm.
     pub(super) highest: f64,
+}
+
+/// Lowest and highest x and y of what a line covers, mm.
+#[derive(Debug, Clone, Copy)]
+struct Extent {
+    low: [f64; 2],
+    high: [f64; 2],
 }
 
 /// Where cells lie.
@@ -274,9 +86,10 @@ impl Laid {
             self.top = self.top.max(bead.top());
             self.highest = self.highest.max(bead.highest());
         }
-        self.field = Field::over(&self.beads);
+        self.boxes = self.beads.iter().map(|bead| Extent::of(bead, 0.0)).collect();
+        self.field = Field::over(&self.boxes);
         let (field, beads) = (self.field, &self.beads);
-        let reach = |bead: u32| field.reach(&beads[bead as usize], 0.0);
+        let reach = |bead: u32| field.reach(&beads[bead as usize], 0.0).flatten();
         let count = field.count[0] * field.count[1];
         self.cells = Some(Cells::new(count, || 0..beads.len() as u32, reach));
         self
@@ -288,14 +101,26 @@ impl Laid {
         line: &Bead,
         more: f64,
         seen: &mut Seen,
-        sink: &mut dyn FnMut(usize, &Bead),
+        sink: impl FnMut(usize, &Bead),
+    ) {
+        self.near_before(self.beads.len(), (line, more), seen, sink);
+    }
+
+    /// As [`Self::near`], of the beads before one alone.
+    pub(super) fn near_before(
+        &self,
+        end: usize,
+        (line, more): (&Bead, f64),
+        seen: &mut Seen,
+        mut sink: impl FnMut(usize, &Bead),
     ) {
         let Some(cells) = &self.cells else { return };
         seen.next(self.beads.len());
-        for cell in self.field.reach(line, more) {
-            for &bead in cells.of(cell..cell + 1) {
+        let own = Extent::of(line, more);
+        for row in self.field.reach(line, more) {
+            for &bead in cells.of(row) {
                 let bead = bead as usize;
-                if seen.is_new(bead) {
+                if bead < end && self.boxes[bead].meets(&own) && seen.is_new(bead) {
                     sink(bead, &self.beads[bead]);
                 }
             }
@@ -342,22 +167,41 @@ impl Seen {
     }
 }
 
+impl Extent {
+    /// Of all places within `more` mm of a bead.
+    fn of(bead: &Bead, more: f64) -> Self {
+        let (from, to, radius) = (bead.from, bead.place(1.0), bead.radius + more);
+        let ([x, y], [to_x, to_y]) = (from, to);
+        Self {
+            low: [x.at_most(to_x) - radius, y.at_most(to_y) - radius],
+            high: [x.at_least(to_x) + radius, y.at_least(to_y) + radius],
+        }
+    }
+
+    #[inline]
+    fn meets(&self, other: &Self) -> bool {
+        self.low[0] <= other.high[0]
+            && other.low[0] <= self.high[0]
+            && self.low[1] <= other.high[1]
+            && other.low[1] <= self.high[1]
+    }
+}
+
 impl Field {
-    fn over(beads: &[Bead]) -> Self {
+    /// Over all beads, by what they cover.
+    fn over(boxes: &[Extent]) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for bead in beads {
-            for at in [bead.from, bead.place(1.0)] {
-                for axis in 0..2 {
-                    low[axis] = low[axis].min(at[axis] - bead.radius);
-                    high[axis] = high[axis].max(at[axis] + bead.radius);
-                }
+        for one in boxes {
+            for axis in 0..2 {
+                low[axis] = low[axis].at_most(one.low[axis]);
+                high[axis] = high[axis].at_least(one.high[axis]);
             }
         }
-        if beads.is_empty() {
+        if boxes.is_empty() {
             return Self { low: [0.0; 2], side: CELL, count: [1; 2] };
         }
         let sides = segment::way(low, high);
-        let most = MOST_CELLS.0 * beads.len() as f64 + MOST_CELLS.1;
+        let most = MOST_CELLS.0 * boxes.len() as f64 + MOST_CELLS.1;
         let longest = sides[0].max(sides[1]);
         let side = CELL.max((sides[0] * sides[1] / most).sqrt()).max(longest / most);
         Self { low, side, count: sides.map(|length| (length / side) as usize + 1) }
@@ -370,8 +214,9 @@ impl Field {
         is_in.then_some(x as usize + y as usize * self.count[0])
     }
 
-    /// The cells within `more` mm of a bead.
-    fn reach(self, bead: &Bead, more: f64) -> impl Iterator<Item = usize> {
+    /// The cells within `more` mm of a bead: those of one row after the other.
+    #[inline]
+    fn reach(self, bead: &Bead, more: f64) -> impl Iterator<Item = Range<usize>> {
         let radius = bead.radius + more;
         // In cells from the lowest corner.
         let scale = 1.0 / self.side;
@@ -380,18 +225,21 @@ impl Field {
         let y = (bead.from[1] - self.low[1]) * scale;
         let (dx, dy) = (bead.along[0] * length, bead.along[1] * length);
         let span = move |from: f64, to: f64, count: usize| {
-            let first = (from - radius).max(0.0) as usize;
-            let end = (to + radius + 1.0).max(0.0) as usize;
+            let first = (from - radius).at_least(0.0) as usize;
+            let end = (to + radius + 1.0).at_least(0.0) as usize;
             first..end.min(count)
         };
-        let rows = span(y.min(y + dy), y.max(y + dy), self.count[1]);
-        rows.flat_map(move |row| {
-            let low = row as f64 - radius;
-            let part = within(y, dy, [low, low + 1.0 + 2.0 * radius]);
-            let [from, to] = part.map_or([0.0, 1.0], |part| part.map(|part| x + part * dx));
-            let columns =
-                if part.is_some() { span(from.min(to), from.max(to), self.count[0]) } else { 0..0 };
-            columns.map(move |column| column + row * self.count[0])
+        let (low, high) = (y.at_most(y + dy), y.at_least(y + dy));
+        span(low, high, self.count[1]).map(move |row| {
+            let bounds = [row as f64 - radius, row as f64 + 1.0 + radius];
+            // Most lines are short: all of them is near the row.
+            let is_whole = bounds[0] <= low && high <= bounds[1];
+            let part = if is_whole { Some([0.0, 1.0]) } else { within(y, dy, bounds) };
+            let Some([from, to]) = part else { return 0..0 };
+            let (from, to) = (x + from * dx, x + to * dx);
+            let columns = span(from.at_most(to), from.at_least(to), self.count[0]);
+            let first = row * self.count[0];
+            if columns.is_empty() { 0..0 } else { first + columns.start..first + columns.end }
         })
     }
 }
@@ -399,6 +247,7 @@ impl Field {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reader::Role;
     use proptest::prelude::*;
 
     fn step(from: [f64; 2], to: [f64; 2], width: f64) -> Step {
@@ -419,24 +268,6 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_way_is_what_lies_within_the_distance(
-            lines in prop::array::uniform4([0.0..9.0_f64, 0.0..9.0_f64]),
-            mm in 0.1..2.0_f64,
-        ) {
-            let [a, b, c, d] = lines;
-            let (line, other) = (Bead::of(&step(a, b, 0.4)), Bead::of(&step(c, d, 0.4)));
-            let way = line.way(&other, mm);
-            for k in 0..=200 {
-                let part = f64::from(k) / 200.0;
-                let distance = segment::distance2(line.place(part), [other.from, other.place(1.0)]).sqrt();
-                if (distance - mm).abs() > 1e-3 {
-                    let is_in = way.is_some_and(|[from, to]| from <= part && part <= to);
-                    prop_assert_eq!(is_in, distance < mm, "{} {:?}", part, way);
-                }
-            }
-        }
-
-        #[test]
         fn all_beads_near_a_line_are_found_once(
             lines in prop::collection::vec([0.0..30.0_f64, 0.0..30.0_f64, -9.0..9.0_f64, -9.0..9.0_f64], 1..40),
             line in [-5.0..35.0_f64, -5.0..35.0_f64, -9.0..9.0_f64, -9.0..9.0_f64],
@@ -447,7 +278,7 @@ mod tests {
             let (line, mut seen) = (Bead::of(&of(line)), Seen::default());
             for _ in 0..2 {
                 let mut found = Vec::new();
-                laid.near(&line, 0.3, &mut seen, &mut |k, _| found.push(k));
+                laid.near(&line, 0.3, &mut seen, |k, _| found.push(k));
                 found.sort_unstable();
                 prop_assert!(found.windows(2).all(|two| two[0] < two[1]));
                 for (k, bead) in laid.beads.iter().enumerate() {

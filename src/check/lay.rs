@@ -15,13 +15,15 @@
 //! its own layer.
 
 use super::anchors::{self, LEAST_RUN, Loose, Piece};
+use super::bead::{Bead, both};
 use super::beads::place;
 use super::belongs::is_stray;
 use super::bodies::Start;
+use super::carriers::Carriers;
 use super::chains::{CORE, SAME_HEIGHT, chains_of, is_ironing, runs_on};
 use super::finding::{Code, Finding, Place, short};
 use super::ground::{Carrier, Ground, PITCH, above, bed_room, below, lower_side, room_below};
-use super::laid::{Bead, Laid, Seen, both};
+use super::laid::{Laid, Seen};
 use super::moves::ROUNDING;
 use super::part::Part;
 use super::runs::{Runs, Twice, united};
@@ -122,6 +124,7 @@ pub(super) struct Judge<'a> {
     /// Beads of this layer, and of those below, that were looked at for a line.
     seen: Seen,
     seen_below: Vec<Seen>,
+    carriers: Carriers,
     pub(super) found: Vec<Finding>,
     measured: Measured,
     /// How deep a line of this layer lies in what the layers before have printed, mm, and the line
@@ -133,9 +136,9 @@ pub(super) struct Judge<'a> {
 #[derive(Default)]
 struct Ways {
     carried: Vec<[f64; 2]>,
-    /// Carried on the middle, and beside it: by what.
+    /// Carried on the middle, and beside it: by which chain of which layer of the ground.
     middle: Vec<[f64; 2]>,
-    beside: Vec<(Carrier, [f64; 2])>,
+    beside: Vec<((usize, u32), [f64; 2])>,
     laid: Vec<[f64; 2]>,
 }
 
@@ -160,6 +163,7 @@ impl<'a> Judge<'a> {
             touching,
             seen: Seen::default(),
             seen_below: ground.seen(),
+            carriers: Carriers::new(ground),
             found: Vec::new(),
             measured: Measured::default(),
             fall: None,
@@ -188,18 +192,20 @@ impl<'a> Judge<'a> {
     /// Lays a chain, of many straight lines.
     fn lay(&mut self, chain: usize, ways: &mut Ways) -> Line {
         let beads = self.laid.chains[chain].clone();
-        let (mut runs, mut twice, mut carriers) = (Runs::default(), Twice::default(), Vec::new());
+        let (mut runs, mut twice) = (Runs::default(), Twice::default());
+        self.carriers.begin();
         for index in beads.clone() {
             let bead = &self.laid.beads[index];
             let step = &self.moves[bead.step as usize];
             self.find_fall(bead, step, beads.start);
-            self.carry(bead, step, ways, &mut carriers);
+            self.carry(bead, step, ways);
             self.touch(bead, step, index, ways);
             united(&mut ways.carried, 0.0);
             runs.add(index - beads.start, bead.length, &ways.carried);
             united(&mut ways.laid, CLOSED / bead.length);
             twice.step(&ways.laid, bead.length, step);
         }
+        let carriers = self.carriers.take();
         let length = self.laid.beads[beads.clone()].iter().map(|bead| bead.length).sum();
         for (long, step) in twice.ends(length) {
             let text = format!("{} mm of a line lie on another of the layer", short(long));
@@ -231,27 +237,28 @@ impl<'a> Judge<'a> {
     }
 
     /// Finds what carries a line.
-    fn carry(&mut self, bead: &Bead, step: &Step, ways: &mut Ways, carriers: &mut Vec<Carrier>) {
+    fn carry(&mut self, bead: &Bead, step: &Step, ways: &mut Ways) {
         ways.carried.clear();
         ways.middle.clear();
         ways.beside.clear();
         ways.laid.clear();
+        let (ground, carriers) = (self.ground, &mut self.carriers);
         // What lies lower falls into other lines before it lies on one.
         let is_highest = bead.middle() > self.highest - SAME_HEIGHT;
         let mut is_whole = false;
         if let Some(way) = below(bead, bed_room(step)) {
             is_whole = way == [0.0, 1.0];
             ways.carried.push(way);
-            add(carriers, Carrier::Bed);
+            carriers.add_bed();
         }
         let room = room_below(step);
         let needed = bead.heights[0].min(bead.heights[1]) - room;
-        self.ground.near(bead, (needed, SLACK), &mut self.seen_below, &mut |layer, other| {
+        ground.near(bead, (needed, SLACK), &mut self.seen_below, |place, other| {
             if is_highest {
                 ways.laid.extend(runs_on(bead, other));
             }
-            let carrier = Carrier::Chain(layer, other.chain);
-            let is_known = carriers.contains(&carrier);
+            let carrier = (place, other.chain);
+            let is_known = carriers.has(carrier);
             if is_whole && is_known {
                 return;
             }
@@ -271,7 +278,7 @@ impl<'a> Judge<'a> {
             match bead.way(other, other.radius + SLACK).and_then(|way| both(way, side)) {
                 Some(middle) => {
                     ways.middle.push(middle);
-                    carriers.push(carrier);
+                    carriers.add(ground, carrier);
                 }
                 None => ways.beside.push((carrier, side)),
             }
@@ -281,7 +288,7 @@ impl<'a> Judge<'a> {
             united(&mut ways.middle, 0.0);
             for (carrier, [from, to]) in ways.beside.drain(..) {
                 if !ways.middle.iter().any(|middle| middle[0] <= from && to <= middle[1]) {
-                    add(carriers, carrier);
+                    carriers.add(ground, carrier);
                 }
             }
         }
@@ -296,10 +303,7 @@ impl<'a> Judge<'a> {
         let over = OVER * f64::from(step.height);
         let (mut fall, room) = (0.0_f64, room_below(step));
         let (touching, chain) = (&mut self.touching, bead.chain as usize);
-        self.laid.near(bead, BESIDE, &mut self.seen, &mut |k, other| {
-            if k >= index {
-                return;
-            }
+        self.laid.near_before(index, (bead, BESIDE), &mut self.seen, |_, other| {
             let is_own = other.chain == bead.chain;
             if !is_own
                 && touching.root(chain) != touching.root(other.chain as usize)
@@ -349,7 +353,7 @@ impl<'a> Judge<'a> {
             let bead = Bead::of(step);
             self.find_fall(&bead, step, usize::MAX);
             let mut covered = Vec::new();
-            self.laid.near(&bead, 0.0, &mut self.seen, &mut |_, other| {
+            self.laid.near(&bead, 0.0, &mut self.seen, |_, other| {
                 covered.extend(bead.way(other, other.radius));
             });
             united(&mut covered, 0.0);
@@ -485,12 +489,6 @@ impl<'a> Judge<'a> {
 
 fn length_of(samples: &[Sample]) -> f64 {
     samples.iter().map(|sample| sample.length).sum()
-}
-
-fn add(carriers: &mut Vec<Carrier>, carrier: Carrier) {
-    if !carriers.contains(&carrier) {
-        carriers.push(carrier);
-    }
 }
 
 /// Whether lines of this role are printed beside the part, which does not stand by them.

@@ -16,8 +16,9 @@
 //! What lies within a distance of the outline is what capsules around its segments cover: an area is
 //! grown and shrunk by an exact distance that way.
 
+use super::bead::Bead;
 use super::capsule::Capsule;
-use super::laid::{Bead, Laid};
+use super::laid::Laid;
 use super::rows::{Lattice, united};
 use crate::geom::cells::Cells;
 use crate::geom::segment;

@@ -17,13 +17,14 @@
 //!
 //! Bodies are put together in the file's order at the end.
 
+use super::bead::SUPPORT_GAP;
 use super::beads::place;
 use super::bodies::Bodies;
 use super::chains::{chains_of, is_ironing};
 use super::filled::Filled;
 use super::finding::{Code, Finding, Findings, short};
 use super::ground::{Carrier, Ground};
-use super::laid::{Laid, SUPPORT_GAP};
+use super::laid::Laid;
 use super::lay::{Judge, Judged, Measured, Patch};
 use super::part::Part;
 use super::raft;

@@ -30,10 +30,10 @@ impl<T: Copy + Default> Cells<T> {
         }
         let mut sorted = vec![T::default(); sum as usize];
         for item in items() {
-            for cell in reach(item) {
+            reach(item).for_each(|cell| {
                 sorted[starts[cell + 1] as usize] = item;
                 starts[cell + 1] += 1;
-            }
+            });
         }
         starts.pop();
         Self { starts, items: sorted }
