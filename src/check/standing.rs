@@ -64,7 +64,6 @@ impl Standing {
     /// How high plastic stands within `radius` mm of a place.
     pub(super) fn around(&mut self, [x, y]: [f64; 2], radius: f64) -> f64 {
         self.draw();
-        let cell = |at: f64| (at / CELL).floor() as i32;
         let mut most = 0.0_f32;
         // Nearly always they lie in one tile.
         let mut known: Option<([i32; 2], Option<usize>)> = None;
@@ -101,8 +100,7 @@ impl Standing {
         let mut known: Option<([i32; 2], usize)> = None;
         for k in 0..=count {
             let part = k as f64 / count as f64;
-            let at = [x + part * way[0], y + part * way[1]];
-            let (at, index) = place(at.map(|at| (at / CELL).floor() as i32));
+            let (at, index) = place([cell(x + part * way[0]), cell(y + part * way[1])]);
             let tile = match known {
                 Some((last, tile)) if last == at => tile,
                 _ => match self.tile(at) {
@@ -130,11 +128,19 @@ impl Standing {
     }
 }
 
+/// The row or column of a place: rounded down, which `f64::floor` does by a call on some processors.
+fn cell(at: f64) -> i32 {
+    let at = at / CELL;
+    let towards_zero = at as i32;
+    towards_zero - i32::from(at < f64::from(towards_zero))
+}
+
 /// The tile of a cell, and which of its cells it is.
 fn place(cell: [i32; 2]) -> ([i32; 2], usize) {
     let side = SIDE as i32;
-    let [x, y] = cell.map(|k| k.rem_euclid(side) as usize);
-    (cell.map(|k| k.div_euclid(side)), y * SIDE + x)
+    let [column, row] = cell;
+    let (x, y) = (column.rem_euclid(side) as usize, row.rem_euclid(side) as usize);
+    ([column.div_euclid(side), row.div_euclid(side)], y * SIDE + x)
 }
 
 #[cfg(test)]
