@@ -17,6 +17,10 @@ use std::ops::Range;
 /// Side of a cell, mm: four lines. Long lines lie in many smaller ones, and are seen in each.
 const CELL: f64 = 2.0;
 
+/// How far around a bead it is sorted into cells, mm: lines of one layer touch within it, so that a line finds
+/// those that it touches in its own cells.
+pub(super) const AROUND: f64 = 0.07;
+
 /// Cells for each bead at most, and at least so many.
 const MOST_CELLS: (f64, f64) = (4.0, 256.0);
 
@@ -30,6 +34,9 @@ pub(super) struct Laid {
     cells: Option<Cells<u32>>,
     /// What each bead covers at most.
     boxes: Vec<Extent>,
+    /// The cells of each bead, row by row, and where those of each bead end.
+    rows: Vec<Range<u32>>,
+    ends: Vec<u32>,
     /// The highest that its beads carry something at, mm.
     pub(super) top: f64,
     /// The highest way of the nozzle, mm.
@@ -88,11 +95,23 @@ impl Laid {
         }
         self.boxes = self.beads.iter().map(|bead| Extent::of(bead, 0.0)).collect();
         self.field = Field::over(&self.boxes);
-        let (field, beads) = (self.field, &self.beads);
-        let reach = |bead: u32| field.reach(&beads[bead as usize], 0.0).flatten();
-        let count = field.count[0] * field.count[1];
-        self.cells = Some(Cells::new(count, || 0..beads.len() as u32, reach));
+        for bead in &self.beads {
+            let cells = self.field.reach(bead, AROUND).filter(|cells| !cells.is_empty());
+            self.rows.extend(cells.map(|cells| cells.start as u32..cells.end as u32));
+            self.ends.push(self.rows.len() as u32);
+        }
+        let count = self.field.count[0] * self.field.count[1];
+        let beads = || 0..self.beads.len() as u32;
+        let reach = |bead: u32| self.rows_of(bead as usize).iter().cloned().flatten();
+        let reach = |bead: u32| reach(bead).map(|cell| cell as usize);
+        self.cells = Some(Cells::new(count, beads, reach));
         self
+    }
+
+    /// The cells that a bead is sorted into.
+    fn rows_of(&self, bead: usize) -> &[Range<u32>] {
+        let first = bead.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.rows[first as usize..self.ends[bead] as usize]
     }
 
     /// Hands the beads that may lie within `more` mm of a line to `sink`, each once, in any order.
@@ -103,21 +122,28 @@ impl Laid {
         seen: &mut Seen,
         sink: impl FnMut(usize, &Bead),
     ) {
-        self.near_before(self.beads.len(), (line, more), seen, sink);
+        let cells = self.field.reach(line, more);
+        self.among((self.beads.len(), Extent::of(line, more)), cells, seen, sink);
     }
 
-    /// As [`Self::near`], of the beads before one alone.
-    pub(super) fn near_before(
+    /// Hands the beads before one of them that may lie within [`AROUND`] of it to `sink`, as [`Self::near`].
+    pub(super) fn before(&self, bead: usize, seen: &mut Seen, sink: impl FnMut(usize, &Bead)) {
+        let cells = self.rows_of(bead).iter().map(|row| row.start as usize..row.end as usize);
+        self.among((bead, Extent::of(&self.beads[bead], AROUND)), cells, seen, sink);
+    }
+
+    /// Hands the beads before `end` in some cells that may reach into a box to `sink`, each once.
+    #[inline]
+    fn among(
         &self,
-        end: usize,
-        (line, more): (&Bead, f64),
+        (end, own): (usize, Extent),
+        rows: impl Iterator<Item = Range<usize>>,
         seen: &mut Seen,
         mut sink: impl FnMut(usize, &Bead),
     ) {
         let Some(cells) = &self.cells else { return };
         seen.next(self.beads.len());
-        let own = Extent::of(line, more);
-        for row in self.field.reach(line, more) {
+        for row in rows {
             for &bead in cells.of(row) {
                 let bead = bead as usize;
                 if bead < end && self.boxes[bead].meets(&own) && seen.is_new(bead) {

@@ -23,7 +23,7 @@ use super::carriers::Carriers;
 use super::chains::{CORE, SAME_HEIGHT, chains_of, is_ironing, runs_on};
 use super::finding::{Code, Finding, Place, short};
 use super::ground::{Carrier, Ground, PITCH, above, bed_room, below, lower_side, room_below};
-use super::laid::{Laid, Seen};
+use super::laid::{AROUND, Laid, Seen};
 use super::moves::ROUNDING;
 use super::part::Part;
 use super::runs::{Runs, Twice, united};
@@ -60,9 +60,6 @@ const LEAST_STRAY: f64 = 2.0;
 /// A skin over a slope lies on a staircase whose treads stand over its base by so many layers: at its edge a line
 /// may begin in one.
 const TREAD: f64 = 0.5;
-
-/// Lines this near to each other touch, mm: a sixth of a line.
-const BESIDE: f64 = 0.07;
 
 /// What was measured.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -245,7 +242,7 @@ impl<'a> Judge<'a> {
         let (ground, carriers) = (self.ground, &mut self.carriers);
         // What lies lower falls into other lines before it lies on one.
         let is_highest = bead.middle() > self.highest - SAME_HEIGHT;
-        let mut is_whole = false;
+        let (mut is_whole, mut is_full) = (false, false);
         if let Some(way) = below(bead, bed_room(step)) {
             is_whole = way == [0.0, 1.0];
             ways.carried.push(way);
@@ -259,7 +256,9 @@ impl<'a> Judge<'a> {
             }
             let carrier = (place, other.chain);
             let is_known = carriers.has(carrier);
-            if is_whole && is_known {
+            // Of a line that lies on others as a whole, chains beside it carry nothing more.
+            let carries_more = || !is_full || bead.way(other, other.radius + SLACK).is_some();
+            if is_whole && (is_known || !carries_more()) {
                 return;
             }
             let gap = other.top() - other.highest() + room;
@@ -277,6 +276,7 @@ impl<'a> Judge<'a> {
             }
             match bead.way(other, other.radius + SLACK).and_then(|way| both(way, side)) {
                 Some(middle) => {
+                    is_full |= middle == [0.0, 1.0];
                     ways.middle.push(middle);
                     carriers.add(ground, carrier);
                 }
@@ -303,11 +303,11 @@ impl<'a> Judge<'a> {
         let over = OVER * f64::from(step.height);
         let (mut fall, room) = (0.0_f64, room_below(step));
         let (touching, chain) = (&mut self.touching, bead.chain as usize);
-        self.laid.near_before(index, (bead, BESIDE), &mut self.seen, |_, other| {
+        self.laid.before(index, &mut self.seen, |_, other| {
             let is_own = other.chain == bead.chain;
             if !is_own
                 && touching.root(chain) != touching.root(other.chain as usize)
-                && bead.way(other, bead.radius + other.radius + BESIDE).is_some()
+                && bead.way(other, bead.radius + other.radius + AROUND).is_some()
             {
                 touching.join(chain, other.chain as usize);
             }
