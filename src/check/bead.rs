@@ -11,6 +11,7 @@
 use crate::geom::segment;
 use crate::reader::Role;
 use crate::reader::print::Step;
+use crate::units::Bounded as _;
 
 /// Gap that may be between support and part, mm: it must come off. Two layers of 0.2 mm, and rounding.
 pub(super) const SUPPORT_GAP: f64 = 0.45;
@@ -68,7 +69,7 @@ impl Bead {
 
     /// Height of the nozzle at its higher end, mm.
     pub(super) fn highest(&self) -> f64 {
-        self.heights[0].max(self.heights[1])
+        self.heights[0].at_least(self.heights[1])
     }
 
     /// How high what it carries may lie, mm: on support, with the gap by which that comes off.
@@ -161,7 +162,7 @@ impl Bead {
         for end in ends {
             let round = in_circle([at[0] - end, at[1]], by, mm);
             way = match (way, round) {
-                (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
+                (Some(a), Some(b)) => Some([a[0].at_most(b[0]), a[1].at_least(b[1])]),
                 (a, b) => a.or(b),
             };
         }
@@ -183,13 +184,13 @@ pub(super) fn within(at: f64, by: f64, [low, high]: [f64; 2]) -> Option<[f64; 2]
         return (low <= at && at <= high).then_some([0.0, 1.0]);
     }
     let (a, b) = ((low - at) / by, (high - at) / by);
-    let (from, to) = (a.min(b).max(0.0), a.max(b).min(1.0));
+    let (from, to) = (a.at_most(b).at_least(0.0), a.at_least(b).at_most(1.0));
     (from <= to).then_some([from, to])
 }
 
 /// What two stretches have in common.
 pub(super) fn both(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
-    let (from, to) = (a[0].max(b[0]), a[1].min(b[1]));
+    let (from, to) = (a[0].at_least(b[0]), a[1].at_most(b[1]));
     (from <= to).then_some([from, to])
 }
 

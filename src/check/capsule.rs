@@ -2,7 +2,6 @@
 
 use crate::reader::print::Step;
 use crate::units::Bounded as _;
-use nalgebra::Vector2;
 
 /// All places within `radius` of the stretch from `from` to `to`, mm.
 #[derive(Debug, Clone, Copy)]
@@ -28,9 +27,11 @@ impl Capsule {
 
     /// Lowest and highest x and y.
     pub(super) fn extent(&self) -> ([f64; 2], [f64; 2]) {
-        let (from, to) = (Vector2::from(self.from), Vector2::from(self.to));
-        let (low, high) = from.inf_sup(&to);
-        (low.add_scalar(-self.radius).into(), high.add_scalar(self.radius).into())
+        let ([x, y], [to_x, to_y]) = (self.from, self.to);
+        (
+            [x.at_most(to_x) - self.radius, y.at_most(to_y) - self.radius],
+            [x.at_least(to_x) + self.radius, y.at_least(to_y) + self.radius],
+        )
     }
 
     /// Its borders.

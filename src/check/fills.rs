@@ -24,7 +24,7 @@ use crate::geom::segment;
 use crate::geom::spans::{Rows, Span};
 use crate::reader::Role;
 use crate::reader::print::Step;
-use crate::units::{to_mm, to_units};
+use crate::units::{Bounded as _, to_mm, to_units};
 
 /// Distance of rows, mm: an eighth of a usual line, so that a line along a row is covered by eight.
 const PITCH: f64 = 0.05;
@@ -312,11 +312,12 @@ impl Judge<'_> {
             }
             let base = y as usize * strides[across];
             for span in row {
-                let [mut from, to] = [span.start, span.end]
-                    .map(|at| ((to_mm(at) - self.field.low[along]) / self.field.side).max(0.0));
+                let [mut from, to] = [span.start, span.end].map(|at| {
+                    ((to_mm(at) - self.field.low[along]) / self.field.side).at_least(0.0)
+                });
                 while from < to {
                     let k = from as usize;
-                    let end = to.min((k + 1) as f64);
+                    let end = to.at_most((k + 1) as f64);
                     if k < self.field.count[along] {
                         let area = (end - from) * self.field.side * self.field.lattice.pitch();
                         sink(base + k * strides[along], area);

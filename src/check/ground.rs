@@ -54,8 +54,9 @@ impl<'a> Ground<'a> {
     ) {
         for (place, ((_, laid), seen)) in self.layers.iter().zip(seen).enumerate() {
             if laid.top >= needed {
+                let is_flat = laid.least_top >= needed;
                 laid.near(line, more, seen, |_, bead| {
-                    if bead.top() >= needed {
+                    if is_flat || bead.top() >= needed {
                         sink(place, bead);
                     }
                 });

@@ -37,8 +37,9 @@ pub(super) struct Laid {
     /// The cells of each bead, row by row, and where those of each bead end.
     rows: Vec<Range<u32>>,
     ends: Vec<u32>,
-    /// The highest that its beads carry something at, mm.
+    /// The highest that its beads carry something at, and what each carries at least, mm.
     pub(super) top: f64,
+    pub(super) least_top: f64,
     /// The highest way of the nozzle, mm.
     pub(super) highest: f64,
 }
@@ -89,8 +90,10 @@ impl Laid {
     }
 
     fn sorted(mut self) -> Self {
+        self.least_top = f64::INFINITY;
         for bead in &self.beads {
             self.top = self.top.max(bead.top());
+            self.least_top = self.least_top.min(bead.top());
             self.highest = self.highest.max(bead.highest());
         }
         self.boxes = self.beads.iter().map(|bead| Extent::of(bead, 0.0)).collect();

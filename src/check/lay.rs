@@ -27,10 +27,11 @@ use super::laid::{AROUND, Laid, Seen};
 use super::moves::ROUNDING;
 use super::part::Part;
 use super::runs::{Runs, Twice, united};
-use super::samples::{Sample, Samples};
+use super::samples::{Sample, Samples, length_of};
 use super::sets::Sets;
 use crate::reader::Role;
 use crate::reader::print::{Layer, Step};
+use crate::units::Bounded as _;
 use std::ops::Range;
 
 /// A patch with shorter lines in all is no layer that is missing below, but a blob, mm.
@@ -240,8 +241,10 @@ impl<'a> Judge<'a> {
         ways.beside.clear();
         ways.laid.clear();
         let (ground, carriers) = (self.ground, &mut self.carriers);
-        // What lies lower falls into other lines before it lies on one.
-        let is_highest = bead.middle() > self.highest - SAME_HEIGHT;
+        // What lies lower falls into other lines before it lies on one; higher than all lies on none.
+        let lowest = bead.heights[0].at_most(bead.heights[1]);
+        let may_run =
+            bead.middle() > self.highest - SAME_HEIGHT && lowest < self.highest + SAME_HEIGHT;
         let (mut is_whole, mut is_full) = (false, false);
         if let Some(way) = below(bead, bed_room(step)) {
             is_whole = way == [0.0, 1.0];
@@ -249,10 +252,10 @@ impl<'a> Judge<'a> {
             carriers.add_bed();
         }
         let room = room_below(step);
-        let needed = bead.heights[0].min(bead.heights[1]) - room;
+        let needed = lowest - room;
         ground.near(bead, (needed, SLACK), &mut self.seen_below, |place, other| {
-            if is_highest {
-                ways.laid.extend(runs_on(bead, other));
+            if may_run && let Some(way) = runs_on(bead, other) {
+                ways.laid.push(way);
             }
             let carrier = (place, other.chain);
             let is_known = carriers.has(carrier);
@@ -261,10 +264,10 @@ impl<'a> Judge<'a> {
             if is_whole && (is_known || !carries_more()) {
                 return;
             }
-            let gap = other.top() - other.highest() + room;
             let low = if other.is_level() {
                 below(bead, other.top() + room)
             } else {
+                let gap = other.top() - other.highest() + room;
                 above(bead, other, [f64::NEG_INFINITY, gap])
             };
             let side = bead.way(other, other.radius + bead.radius + SLACK);
@@ -303,19 +306,23 @@ impl<'a> Judge<'a> {
         let over = OVER * f64::from(step.height);
         let (mut fall, room) = (0.0_f64, room_below(step));
         let (touching, chain) = (&mut self.touching, bead.chain as usize);
+        let mut root = touching.root(chain);
         self.laid.before(index, &mut self.seen, |_, other| {
             let is_own = other.chain == bead.chain;
             if !is_own
-                && touching.root(chain) != touching.root(other.chain as usize)
+                && root != touching.root(other.chain as usize)
                 && bead.way(other, bead.radius + other.radius + AROUND).is_some()
             {
                 touching.join(chain, other.chain as usize);
+                root = touching.root(chain);
             }
             let is_behind = !is_own || bead.reach - other.reach > BEHIND;
             if !is_behind {
                 return;
             }
-            ways.laid.extend(runs_on(bead, other));
+            if let Some(way) = runs_on(bead, other) {
+                ways.laid.push(way);
+            }
             if is_off {
                 let under = bead.way(other, other.radius + SLACK);
                 let carried = under.zip(above(bead, other, [over, room]));
@@ -485,10 +492,6 @@ impl<'a> Judge<'a> {
             bottom: step.heights()[0] - f64::from(step.height),
         })
     }
-}
-
-fn length_of(samples: &[Sample]) -> f64 {
-    samples.iter().map(|sample| sample.length).sum()
 }
 
 /// Whether lines of this role are printed beside the part, which does not stand by them.

@@ -76,3 +76,8 @@ impl Iterator for Samples {
         })
     }
 }
+
+/// Length of some pieces, mm.
+pub(super) fn length_of(samples: &[Sample]) -> f64 {
+    samples.iter().map(|sample| sample.length).sum()
+}

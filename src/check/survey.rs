@@ -19,6 +19,7 @@ use super::terms::Terms;
 use super::window::{Page, Pages};
 use crate::reader::print::Step;
 use crate::reader::{Facts, Role};
+use crate::units::Bounded as _;
 use std::collections::BTreeMap;
 
 /// Layers on which is looked where the part lies, spread over the print.
@@ -297,8 +298,8 @@ fn between(facts: &Facts, bottoms: &[f64]) -> Vec<bool> {
 /// What either covers.
 pub(super) fn both(a: Extent, b: Extent) -> Extent {
     let (Some((low, high)), Some((from, to))) = (a, b) else { return a.or(b) };
-    let lower = [low[0].min(from[0]), low[1].min(from[1])];
-    Some((lower, [high[0].max(to[0]), high[1].max(to[1])]))
+    let lower = [low[0].at_most(from[0]), low[1].at_most(from[1])];
+    Some((lower, [high[0].at_least(to[0]), high[1].at_least(to[1])]))
 }
 
 impl Counted {

@@ -99,8 +99,9 @@ pub fn subtract(a: &[Span], b: &[Span], out: &mut Vec<Span>) {
 
 /// Appends the union of `spans`, which may overlap and come in any order. Sorts `spans`.
 pub fn merge(spans: &mut [Span], out: &mut Vec<Span>) {
+    // Where they end does not matter to the union.
     if spans.len() > 1 {
-        spans.sort_unstable();
+        spans.sort_unstable_by_key(|span| span.start);
     }
     let base = out.len();
     for &span in spans.iter() {
