@@ -69,21 +69,29 @@ impl Nearest {
         self.shrink(0, 0..self.points.len(), self.places[k]);
     }
 
-    /// Measures the nodes around a place of the order anew.
+    /// Measures the nodes around a place of the order anew, of which the point was taken. What lies on no side of a
+    /// box leaves it as it is.
     fn shrink(&mut self, node: usize, range: Range<usize>, place: usize) {
-        self.nodes[node] = if let Some([lower, upper]) = halves(&range) {
+        let Point { x, y } = self.points[self.order[place]];
+        let is_within =
+            |(low, high): (Point, Point)| low.x < x && x < high.x && low.y < y && y < high.y;
+        let keeps = self.nodes[node].is_some_and(is_within);
+        if let Some([lower, upper]) = halves(&range) {
             let [one, other] = [2 * node + 1, 2 * node + 2];
             if lower.contains(&place) {
                 self.shrink(one, lower, place);
             } else {
                 self.shrink(other, upper, place);
             }
-            let both = [self.nodes[one], self.nodes[other]];
-            extent(both.iter().flatten().flat_map(|(low, high)| [low, high]))
-        } else {
+            if !keeps {
+                let both = [self.nodes[one], self.nodes[other]];
+                self.nodes[node] =
+                    extent(both.iter().flatten().flat_map(|(low, high)| [low, high]));
+            }
+        } else if !keeps {
             let left = self.order[range].iter().filter(|&&k| self.is_left[k]);
-            extent(left.map(|&k| &self.points[k]))
-        };
+            self.nodes[node] = extent(left.map(|&k| &self.points[k]));
+        }
     }
 
     /// The number of the point that is nearest to `at` among those that are left; of equally near

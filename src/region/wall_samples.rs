@@ -311,8 +311,10 @@ impl Behind {
     /// For a row that crosses the edge near `u`, with the solid to the right or to the left.
     fn new(fill: &[Span], exposed: &[Span], u: Coord, right: bool, pitch: Coord) -> Option<Self> {
         let end = |s: &Span| if right { s.start } else { s.end };
-        let near = |s: &&Span| (end(s) - u).abs() <= pitch / 4;
-        let fill = fill.iter().filter(near).min_by_key(|s| (end(s) - u).abs())?;
+        // On a plate a row has spans of all parts: few of them begin or end near here.
+        let near = fill.partition_point(|s| end(s) < u - pitch / 4);
+        let near = fill[near..].iter().take_while(|s| end(s) <= u + pitch / 4);
+        let fill = near.min_by_key(|s| (end(s) - u).abs())?;
         let from = exposed.partition_point(|s| s.end <= fill.start);
         let to = exposed.partition_point(|s| s.start < fill.end);
         let here = exposed.get(from..to).unwrap_or_default().iter();
