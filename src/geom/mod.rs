@@ -8,6 +8,7 @@ pub mod follow;
 pub mod frame;
 pub mod hull;
 pub mod islands;
+mod lookup;
 pub mod nearest;
 pub mod nest;
 pub mod outline;

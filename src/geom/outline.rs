@@ -49,15 +49,18 @@ impl Columns<'_> {
         // Turned left, their u is v, and column c is their row −c; else their u is −v.
         let (j, sign) = if self.left_turn { (-c, 1) } else { (c, -1) };
         let starts = inside_above == self.left_turn;
-        let end = |s: &Span| sign * if starts { s.start } else { s.end };
-        self.rows.row(j).iter().map(end).find(|v| (low..=high).contains(v))
+        let end = |s: &Span| if starts { s.start } else { s.end };
+        let (low, high) = if self.left_turn { (low, high) } else { (-high, -low) };
+        let row = self.rows.row(j);
+        let first = row.get(row.partition_point(|s| end(s) < low)).map(end);
+        first.filter(|end| *end <= high).map(|end| sign * end)
     }
 
     /// The span of column `c` that holds `v`.
     #[must_use]
     pub fn chord(&self, c: i32, v: Coord) -> Option<Span> {
         let (j, v) = if self.left_turn { (-c, v) } else { (c, -v) };
-        self.rows.row(j).iter().copied().find(|s| s.start <= v && v <= s.end)
+        self.rows.span_at(j, v)
     }
 
     /// What of `rows`, `pitch` apart, columns hold: of each column half its distance to both sides.
@@ -252,7 +255,10 @@ impl<'a> Grid<'a> {
             let left = outside.0 < inside.0;
             let end = |s: &Span| if left { s.start } else { s.end };
             let u = end(&self.runs[run].span);
-            let same = |b: &Bounds<'_>| b.rows.row(inside.1).iter().any(|s| end(s) == u);
+            let same = |b: &Bounds<'_>| {
+                let row = b.rows.row(inside.1);
+                row.get(row.partition_point(|s| end(s) < u)).is_some_and(|s| end(s) == u)
+            };
             let wall = self.bounds.iter().any(same);
             let end = SpanEnd { row: inside.1, u, left };
             return Corner { at: Point { x: u, y: v }, end: Some(end), wall };

@@ -162,8 +162,8 @@ impl Covered {
 fn bridge_gaps(fill: &Arc<Rows>, skin: Rows, infill: Rows, least: Coord) -> Areas {
     let is_gap = |j: i32, span: Span| {
         span.len() < i64::from(least)
-            && skin.row(j).iter().any(|s| s.end == span.start)
-            && skin.row(j).iter().any(|s| s.start == span.end)
+            && skin.span_at(j, span.start).is_some_and(|s| s.end == span.start)
+            && skin.span_at(j, span.end).is_some_and(|s| s.start == span.end)
     };
     if !infill.iter().any(|(j, row)| row.iter().any(|&s| is_gap(j, s))) {
         return Areas { skin: Arc::new(skin), infill, fill: fill.clone(), ..Areas::default() };

@@ -105,7 +105,7 @@ fn nearest_row(v: Coord, pitch: Coord) -> i32 {
 }
 
 fn holds(rows: &Rows, p: Point, pitch: Coord) -> bool {
-    rows.row(nearest_row(p.y, pitch)).iter().any(|s| s.start <= p.x && p.x <= s.end)
+    rows.span_at(nearest_row(p.y, pitch), p.x).is_some()
 }
 
 /// Places on `line`, at most `step` apart.

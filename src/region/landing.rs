@@ -181,7 +181,7 @@ pub fn land(
     // The cells have round ends: each ends half a width before its line does, but not at the skin.
     let spans = more.iter().flat_map(|(j, row)| row.iter().map(move |s| (j, *s)));
     let cells = spans.filter_map(|(j, s)| {
-        let line = longer.row(j).iter().find(|line| line.overlaps(s))?;
+        let line = longer.overlapping(j, s)?;
         let (start, end) =
             ((line.start + w / 2).max(s.start - w), (line.end - w / 2).min(s.end + w));
         Some((j, Span { start: start.min(end), end }))

@@ -163,7 +163,7 @@ fn edges(wall: &Wall, line_width: Coord) -> impl Iterator<Item = Edge> {
 fn holds(rows: &Rows, raster: Raster, p: Point) -> bool {
     let Point { x: u, y: v } = raster.frame.enter(p);
     let row = (v + raster.pitch / 2).div_euclid(raster.pitch);
-    rows.row(row).iter().any(|span| span.start <= u && u <= span.end)
+    rows.span_at(row, u).is_some()
 }
 
 /// A wall without what lies in tops.

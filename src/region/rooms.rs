@@ -135,14 +135,20 @@ fn stacks(rows: &Rows, pitch: Coord, columns: &Columns<'_>, limit: Coord) -> Opt
     let (mut before, mut wide, mut wide_here) = (0..0, Vec::new(), Vec::new());
     for (row, all) in rows.iter() {
         let first = spans.len();
+        let mut passed = 0;
         for &span in all {
-            let below = before.clone().filter(|&k: &usize| spans[k].span.overlaps(span));
+            // Rows are sorted: what ends before this one begins is done with.
+            before.start +=
+                spans[before.clone()].iter().take_while(|n| n.span.end <= span.start).count();
+            passed += wide[passed..].iter().take_while(|w: &&Span| w.end <= span.start).count();
+            let meets = |k: &usize| spans[*k].span.start < span.end;
+            let below = before.clone().take_while(meets);
             if !is_narrow(row, span) {
                 wide_here.push(span);
                 below.for_each(|k| stacks.root(k).tip = true);
                 continue;
             }
-            let tip = wide.iter().any(|w: &Span| w.overlaps(span));
+            let tip = wide.get(passed).is_some_and(|w| w.overlaps(span));
             stacks.add(Stack { rows: (row, row), widest: span.len(), tip });
             below.for_each(|k| stacks.join(k, spans.len()));
             spans.push(Narrow { row, span });
@@ -208,7 +214,8 @@ pub(super) fn whole(region: &Rows, narrow: &Rows, least: Coord) -> Rows {
     let inside = region.and(narrow);
     let beside = |j: i32, s: Span| {
         s.len() < i64::from(least)
-            && inside.row(j).iter().any(|n| n.end == s.start || n.start == s.end)
+            && (inside.span_at(j, s.start).is_some_and(|n| n.end == s.start)
+                || inside.span_at(j, s.end).is_some_and(|n| n.start == s.end))
     };
     let bits = region.minus(&inside).filter(beside);
     if bits.is_empty() { inside } else { inside.or(&bits) }

@@ -208,12 +208,11 @@ fn lay(
     let more = (anchor - aside).max(0);
     let skin = lengthened(&open, more).and(&fill);
     // A line never jumps over a hole to reach its anchor.
-    let skin = skin.filter(|j, span| open.row(j).iter().any(|s| s.overlaps(span)));
+    let skin = skin.filter(|j, span| open.overlapping(j, span).is_some());
     let columns = widened(&open_across, (more + pitch / 2) / pitch).and(&fill_across);
     // A place between two rows has no line, and takes none from others.
     let has_line = |c: i32, span: Span| {
-        let holds = |s: &Span| s.start <= -c * pitch && -c * pitch <= s.end;
-        crossed(span.start, span.end, pitch).any(|j| skin.row(j).iter().any(holds))
+        crossed(span.start, span.end, pitch).any(|j| skin.span_at(j, -c * pitch).is_some())
     };
     let columns = columns.filter(|c, span| span.len() >= i64::from(pitch) && has_line(c, span));
     Skin {

@@ -108,7 +108,7 @@ pub fn without_threads(own: &Rows, whole: &Rows, pitch: Coord) -> Rows {
         if above(s.start) <= s.end {
             return true;
         }
-        let around = whole.row(j).iter().find(|w| w.start <= s.start && s.end <= w.end);
+        let around = whole.span_at(j, s.start).filter(|w| s.end <= w.end);
         let ends = around.map_or([true; 2], |w| [w.start == s.start, w.end == s.end]);
         match ends {
             [true, true] => true,
