@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use crate::common::{Kind, Solid, slice, solid::circle};
+use crate::common::{Kind, Move, Solid, slice, solid::circle};
 use proptest::prelude::*;
 use slicer::check::finding::{Code, Finding};
 use slicer::check::terms::Terms;
@@ -105,5 +105,24 @@ fn slopes_flatter_than_the_threshold_get_support() {
             let found = length(&cone, &[("layer_height", height)]) > 0.0;
             assert_eq!(found, wanted, "{degrees} {height}");
         }
+    }
+}
+
+/// A house whose eaves hang all around it.
+#[test]
+fn support_under_eaves_is_one_folded_strip() {
+    for at in [0.0, 0.8, 1.6] {
+        let house = Solid::cuboid([-20.0, -15.0 + at, 0.0], [20.0, 15.0 + at, 14.0]);
+        let roof = Solid::cuboid([-21.2, -16.2 + at, 12.0], [21.2, 16.2 + at, 14.0]);
+        let part = house.and(&roof);
+        let run = slice(&part.stl(), "generic-marlin", &[("support.enabled", "true")]);
+        let found = faults(&run.text);
+        assert!(found.is_empty(), "{found:?}");
+        // The ring's middle line is 150 mm long.
+        let layers = 10..50;
+        let is_there = |line: &&Move| line.layer.is_some_and(|k| layers.contains(&k));
+        let lines = run.print.of(Kind::Support).filter(is_there);
+        let per_layer = lines.map(Move::length).sum::<f64>() / layers.len() as f64;
+        assert!(per_layer < 1.9 * 150.0 && per_layer > 1.2 * 150.0, "{at}: {per_layer}");
     }
 }

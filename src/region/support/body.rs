@@ -1,24 +1,28 @@
 //! Rows -> sparse lines and outlines: how the body of support is laid, so that it hangs together.
 //!
 //! Words: a *tie* is an outline that is printed on every few layers, so that no line between two of
-//! them is too high to stand alone. A piece is *held* if all of it lies near its lines
-//! ([`mod@super::held`]).
+//! them is too high to stand alone. A place is *weak* if it lies far from its lines
+//! ([`mod@super::held`]), or if its line is a *stub*: short, and part of no zigzag.
 //!
 //! Lines that are joined at their ends to a zigzag stand like a folded sheet. So a piece that its
 //! lines hold, and that is broad enough with them alone, needs no outline: only ties, unless its lines
-//! are one zigzag. Any other piece, and one with short lines that are part of no zigzag, gets an
-//! outline on every layer. Its lines end there; where they are short they brace the two sides, and a
-//! few of them do.
+//! are one zigzag. What is weak of it gets an outline on every layer, and with it what lies around up to
+//! the nearest line; the rest does not. Narrow strips have lines across ([`mod@super::strips`]).
+//! A piece that is thin, or mostly weak, gets an outline as a whole.
+//!
+//! Lines end at an outline. Where they are short they brace its two sides, and a few of them do.
+//! Long ones that run beside it hold nothing that it does not.
 
-use super::held::is_held;
+use super::held::{loose, reach};
 use super::outline::outlines;
-use super::params::SupportParams;
-use super::pieces::Pieces;
+use super::params::{BODIES, SupportParams};
+use super::pieces::{Pieces, turned};
+use super::strips::upright;
 use crate::geom::Contour;
 use crate::geom::polyline::{Polyline, length};
 use crate::geom::section::Section;
 use crate::geom::spans::{Rows, Span};
-use crate::pattern::SparsePattern as _;
+use crate::pattern::{Lines, SparsePattern as _};
 use crate::units::{Coord, to_mm};
 
 /// The ends of support lines lie this far inside the outline, in hundredths of a line's width: their
@@ -39,44 +43,69 @@ const BRACE: Coord = 2;
 /// See [`BRACE`]. More layers save little; the sides are held at this many layer heights.
 const SELDOM: usize = 4;
 
+/// Longer lines that are nowhere further than this from the outline, in line widths, are left out.
+const BESIDE: Coord = 3;
+
 /// Ties lie on one layer of so many: of 0.2 mm, a line of 0.4 mm between two is four times as high
 /// as it is wide.
 const TIED: usize = 8;
 
+/// A piece gets an outline as a whole if this part of it would get one in any case.
+const MOSTLY: f64 = 0.6;
+
+/// Where a layer of support has what.
+pub(super) struct Places<'a> {
+    /// The body.
+    pub(super) body: &'a Rows,
+    /// Where lines run across.
+    pub(super) strips: &'a Rows,
+    /// What carries the interface of the next layer.
+    pub(super) carries: &'a Rows,
+}
+
 /// How a piece hangs together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug)]
 enum Hold {
     /// All of its lines are one zigzag.
     Zigzag,
-    /// Its lines need ties.
-    Ties,
+    /// Its lines need ties, and these places an outline.
+    Ties(Rows),
     /// It needs an outline.
     Outline,
 }
 
-/// The outlines of `rows` of layer `k`, and the rows of zigzags and of lines that end at the outlines.
-pub(super) fn lay(rows: &Rows, k: usize, params: &SupportParams) -> (Vec<Contour>, [Rows; 2]) {
-    if !params.has_outline || rows.is_empty() {
-        return (Vec::new(), [rows.clone(), Rows::default()]);
+/// The outlines of the body of layer `k`, and where its lines run, by pattern.
+pub(super) fn lay(
+    places: &Places<'_>,
+    k: usize,
+    params: &SupportParams,
+) -> (Vec<Contour>, [Rows; BODIES]) {
+    let mut body: [Rows; BODIES] = std::array::from_fn(|_| Rows::default());
+    if !params.has_outline || places.body.is_empty() {
+        body[0] = places.body.clone();
+        return (Vec::new(), body);
     }
     let (w, raster) = (params.least, params.raster());
     let half = w * NARROW / 200;
-    let rows = rows.erode(half, raster.pitch).dilate(half, raster.pitch).and(rows);
-    let pieces = Pieces::new(&rows);
-    let is_outlined: Vec<bool> = (0..pieces.count())
-        .map(|piece| match hold(&pieces.keep(&rows, |other| other == piece), params) {
-            Hold::Zigzag => false,
-            Hold::Ties => k.is_multiple_of(TIED),
-            Hold::Outline => true,
-        })
-        .collect();
-    let zigzags = pieces.keep(&rows, |piece| !is_outlined[piece]);
-    let outlined = pieces.keep(&rows, |piece| is_outlined[piece]);
-
-    let outlines = outlines(&outlined, raster.pitch, raster.frame, 4 * w);
+    let rows = places.body.erode(half, raster.pitch).dilate(half, raster.pitch).and(places.body);
+    let outlined = outlined(&rows, places.strips, k, params);
     let lines = outlined.erode(w * LINES_FROM_OUTLINE / 100, raster.pitch);
-    let lines = lines.filter(|_, span| k.is_multiple_of(SELDOM) || span.len() > brace(params));
-    (outlines, [zigzags, lines])
+    let zigzags = rows.minus(&outlined.dilate(w * LINES_FROM_OUTLINE / 100, raster.pitch));
+    let outlines = outlines(&outlined, raster.pitch, raster.frame, 4 * w);
+
+    let is_brace = |span: Span| span.len() <= brace(params);
+    let [along, across] = apart(&lines, places.strips, params);
+    let core = outlined.erode(BESIDE * w, raster.pitch);
+    let meets = |rows: &Rows, j: i32, span: Span| rows.row(j).iter().any(|s| s.overlaps(span));
+    let seldom = k.is_multiple_of(SELDOM);
+    let lines = along.filter(|j, span| {
+        let brace = || seldom || meets(places.carries, j, span);
+        if is_brace(span) { brace() } else { meets(&core, j, span) }
+    });
+    let carries = if seldom { Rows::default() } else { turned(places.carries, raster.pitch) };
+    let braces = across.filter(|j, span| seldom || meets(&carries, j, span));
+    let [zigzags, waves] = apart(&zigzags, places.strips, params);
+    (outlines, [zigzags, lines, waves, braces])
 }
 
 /// The longest brace, grid units.
@@ -84,36 +113,173 @@ fn brace(params: &SupportParams) -> i64 {
     i64::from(BRACE * params.lines.stride * params.raster().pitch)
 }
 
+/// What of `rows` gets lines along, and what of it lines across, on their rasters.
+fn apart(rows: &Rows, strips: &Rows, params: &SupportParams) -> [Rows; 2] {
+    if strips.is_empty() {
+        return [rows.clone(), Rows::default()];
+    }
+    [rows.minus(strips), turned(&rows.and(strips), params.raster().pitch)]
+}
+
+/// What of the body gets an outline on layer `k`.
+fn outlined(rows: &Rows, strips: &Rows, k: usize, params: &SupportParams) -> Rows {
+    let pieces = Pieces::new(rows);
+    let mut parts = Vec::new();
+    let whole: Vec<bool> = (0..pieces.count())
+        .map(|piece| {
+            let piece = pieces.keep(rows, |other| other == piece);
+            match hold(&piece, strips, params) {
+                Hold::Zigzag => false,
+                Hold::Ties(part) => {
+                    parts.push(part);
+                    k.is_multiple_of(TIED)
+                }
+                Hold::Outline => true,
+            }
+        })
+        .collect();
+    let whole = pieces.keep(rows, |piece| whole[piece]);
+    Rows::united(&[&whole].into_iter().chain(&parts).collect::<Vec<_>>())
+}
+
 /// How `piece` hangs together.
-fn hold(piece: &Rows, params: &SupportParams) -> Hold {
-    let (lines, w) = (&params.lines, params.least);
-    if !is_broad(piece, params) || !is_held(lines, piece) {
+fn hold(piece: &Rows, strips: &Rows, params: &SupportParams) -> Hold {
+    let [along, across] = apart(piece, strips, params);
+    if !is_broad([&along, &across], params) {
         return Hold::Outline;
     }
-    let strands = lines.strands(piece, w, w);
-    let is_stub =
-        |strand: &Polyline| strand.len() < LEAST_POINTS && length(strand) <= brace(params);
-    if strands.iter().any(is_stub) {
+    let (weak, strands) = weak(&params.lines, &along, params);
+    let (weak_across, strands_across) = self::weak(&params.crossing, &across, params);
+    let weak = weak.or(&upright(&weak_across, params));
+    if weak.is_empty() {
+        let is_one = strands + strands_across == 1;
+        return if is_one { Hold::Zigzag } else { Hold::Ties(Rows::default()) };
+    }
+    // As far as the next line, which is left out.
+    let pitch = params.raster().pitch;
+    let far = (reach(&params.lines) + 1) * pitch + params.least;
+    let part = piece.and(&weak.dilate(far, pitch));
+    if part.total() as f64 >= MOSTLY * piece.total() as f64 {
         Hold::Outline
-    } else if strands.len() == 1 && strands[0].len() >= LEAST_POINTS {
-        Hold::Zigzag
     } else {
-        Hold::Ties
+        Hold::Ties(part)
     }
 }
 
-/// Whether the lines of a piece alone are as thick as support must be, and at least two.
-fn is_broad(piece: &Rows, params: &SupportParams) -> bool {
-    let (lines, pitch) = (&params.lines, params.raster().pitch);
+/// The weak places of `rows` with these lines, and the number of strands.
+fn weak(lines: &Lines, rows: &Rows, params: &SupportParams) -> (Rows, usize) {
+    if rows.is_empty() {
+        return (Rows::default(), 0);
+    }
+    let strands = lines.strands(rows, params.least, params.least);
+    let is_stub =
+        |strand: &&Polyline| strand.len() < LEAST_POINTS && length(strand) <= brace(params);
+    let mut stubs: Vec<(i32, Span)> = strands
+        .iter()
+        .filter(is_stub)
+        .filter_map(|strand| {
+            let (a, b) = (strand.first()?, strand.last()?);
+            let span = Span { start: a.u.min(b.u), end: a.u.max(b.u) };
+            Some((a.v.div_euclid(lines.raster.pitch), span))
+        })
+        .collect();
+    stubs.sort_unstable_by_key(|(j, span)| (*j, span.start));
+    let mut weak = Rows::starting_at(stubs.first().map_or(0, |(j, _)| *j));
+    for row in stubs.chunk_by(|a, b| a.0 == b.0) {
+        while weak.range().end < row[0].0 {
+            weak.push_row(|_| ());
+        }
+        weak.push_row(|spans| spans.extend(row.iter().map(|(_, span)| *span)));
+    }
+    (weak.or(&loose(lines, rows)), strands.len())
+}
+
+/// Whether lines along and across alone are as thick as support must be, and at least two.
+fn is_broad([along, across]: [&Rows; 2], params: &SupportParams) -> bool {
+    let pitch = params.raster().pitch;
     let long = |span: &&Span| span.len() >= i64::from(params.least);
+    let w = to_mm(params.least);
     let mut section: Option<Section> = None;
-    for (j, row) in piece.iter().filter(|(j, _)| lines.prints(*j)) {
-        let y = to_mm(j * pitch);
-        for &span in row.iter().filter(long) {
-            let near = || Section::near([to_mm(span.start), y]);
-            section.get_or_insert_with(near).add(span, y, to_mm(params.least));
+    let mut add = |span: Span, y: f64, wide: f64| {
+        let near = || Section::near([to_mm(span.start), y]);
+        section.get_or_insert_with(near).add(span, y, wide);
+    };
+    for (j, row) in along.iter().filter(|(j, _)| params.lines.prints(*j)) {
+        row.iter().filter(long).for_each(|&span| add(span, to_mm(j * pitch), w));
+    }
+    let half = params.least / 2;
+    for (j, row) in across.iter().filter(|(j, _)| params.crossing.prints(*j)) {
+        let line = Span { start: -j * pitch - half, end: -j * pitch + half };
+        for span in row.iter().filter(long) {
+            add(line, 0.5 * (to_mm(span.start) + to_mm(span.end)), to_mm(span.end - span.start));
         }
     }
     let least = to_mm((params.min_width - params.least).max(2 * params.least));
     section.is_some_and(|section| section.thickness() >= least)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::edges;
+    use crate::profile;
+    use crate::region::support::strips::strips;
+
+    fn params() -> SupportParams {
+        let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
+        settings.support.enabled = true;
+        SupportParams::new(&settings).unwrap()
+    }
+
+    /// A rectangle on the rows of support, which are 0.2 mm apart.
+    fn block(rows: std::ops::Range<i32>, start: Coord, end: Coord) -> Rows {
+        let mut out = Rows::starting_at(rows.start);
+        rows.for_each(|_| out.push_row(|spans| spans.push(Span { start, end })));
+        out
+    }
+
+    /// What is laid, and the length of its outlines, mm.
+    fn laid(body: &Rows, carries: &Rows, k: usize) -> (f64, [Rows; BODIES]) {
+        let params = params();
+        let strips = strips(body, &params);
+        let (outlines, rows) = lay(&Places { body, strips: &strips, carries }, k, &params);
+        let around = outlines.iter().flat_map(|one| edges(one)).map(|(p, q)| p.distance(q));
+        (around.sum::<f64>() / 10_000.0, rows)
+    }
+
+    #[test]
+    fn a_ring_whose_sides_lie_between_lines_gets_ties_and_no_outlines() {
+        let ring = block(3..160, 0, 450_000).minus(&block(13..151, 19_000, 431_000));
+        let [(between, rows), (tied, _)] = [1, TIED].map(|k| laid(&ring, &Rows::default(), k));
+        assert!(between < 1.0, "{between}");
+        assert!(tied > 280.0, "{tied}");
+        assert!(!rows[0].is_empty() && !rows[2].is_empty() && rows[1].is_empty());
+    }
+
+    #[test]
+    fn only_what_is_weak_of_a_piece_gets_an_outline() {
+        // A foot with a narrow arm, whose line no join leads to.
+        let foot = block(0..91, 0, 400_000);
+        let arm = block(91..112, 180_000, 220_000);
+        let (around, rows) = laid(&foot.or(&arm), &Rows::default(), 1);
+        assert!((10.0..30.0).contains(&around), "{around}");
+        assert!(rows[0].total() > 80 * 400_000);
+        // Alone it gets none.
+        assert!(laid(&foot, &Rows::default(), 1).0 < 1.0);
+    }
+
+    #[test]
+    fn lines_beside_an_outline_are_left_out_but_for_braces_below_an_interface() {
+        // Too thin without an outline, with one line along its middle.
+        let strip = block(-7..8, 0, 450_000);
+        let (around, rows) = laid(&strip, &Rows::default(), 1);
+        assert!(around > 90.0, "{around}");
+        assert!(rows.iter().all(Rows::is_empty), "{rows:?}");
+        // Across it lines are braces.
+        let strip = block(3..90, 0, 28_000);
+        let braces = |carries: &Rows, k: usize| laid(&strip, carries, k).1[1].total();
+        assert!(braces(&Rows::default(), SELDOM) > 0);
+        assert_eq!(braces(&Rows::default(), SELDOM + 1), 0);
+        assert!(braces(&strip, SELDOM + 1) > 0);
+    }
 }

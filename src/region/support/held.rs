@@ -11,11 +11,6 @@ use crate::pattern::Lines;
 /// overhang sags; with less, hardly any piece is held by its lines.
 const BEYOND: i32 = 60;
 
-/// Whether every place of a piece is held.
-pub(super) fn is_held(lines: &Lines, piece: &Rows) -> bool {
-    loose(lines, piece).is_empty()
-}
-
 /// What must be added to `rows` so that their loose places reach a line.
 pub(super) fn to_lines(lines: &Lines, rows: &Rows) -> Rows {
     let loose = loose(lines, rows);
@@ -43,12 +38,12 @@ pub(super) fn to_lines(lines: &Lines, rows: &Rows) -> Rows {
 }
 
 /// The number of rows that a line holds to both of its sides.
-fn reach(lines: &Lines) -> i32 {
+pub(super) fn reach(lines: &Lines) -> i32 {
     BEYOND * lines.stride / 100
 }
 
 /// The places of `rows` that are loose, but for short ones, over which lines across reach.
-fn loose(lines: &Lines, rows: &Rows) -> Rows {
+pub(super) fn loose(lines: &Lines, rows: &Rows) -> Rows {
     let up = held(lines, rows, rows.range());
     let mut down = held(lines, rows, rows.range().rev());
     down.reverse();
@@ -93,6 +88,10 @@ fn held(lines: &Lines, rows: &Rows, order: impl Iterator<Item = i32>) -> Vec<Vec
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn is_held(lines: &Lines, piece: &Rows) -> bool {
+        loose(lines, piece).is_empty()
+    }
 
     /// A rectangle from row `from` to row `to`.
     fn block(from: i32, to: i32) -> Rows {

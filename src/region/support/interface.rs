@@ -5,15 +5,17 @@
 //! the support's own lines, *across* the other one.
 //!
 //! The layer of the interface furthest from the part runs across the lines below it (or above it),
-//! which are far apart. From there to the part the direction changes from layer to layer.
+//! which are far apart. From there to the part the direction changes from layer to layer. In strips the
+//! lines below run across ([`mod@super::strips`]), and so the interface begins along.
 //!
 //! On slopes the top of support is a flight of narrow steps, each with lines too short to hold. So
 //! each is grown by a line's width, within the support.
 
-use super::body;
+use super::body::{self, Places};
 use super::columns::Column;
 use super::params::{SupportLayer, SupportParams};
 use super::pieces::{Pieces, across, without_specks};
+use super::strips::strips;
 use crate::geom::spans::Rows;
 
 /// The support of layer `k`, divided.
@@ -26,12 +28,21 @@ pub(super) fn divide(columns: &[Column], k: usize, params: &SupportParams) -> Su
         let interface = [Rows::default(), params.across(here)];
         return SupportLayer { interface, ..SupportLayer::default() };
     }
-    let [across, along] = interface(columns, k, params);
+    let pitch = params.raster().pitch;
+    let strips =
+        if params.has_outline { strips(&columns[k].all, params) } else { Rows::default() };
+    let [across, along] = interface(columns, k, &strips, params);
     let along = along.minus(&across);
     // Where the two meet, their outermost lines lie beside each other.
-    let dense = across.or(&along).dilate(params.least, params.raster().pitch);
-    let body = with_lines(&here.minus(&dense), &columns[k].beside.minus(&dense));
-    let (outlines, body) = body::lay(&body, k, params);
+    let dense = across.or(&along).dilate(params.least, pitch);
+    let mut beside = columns[k].beside.minus(&dense);
+    if !strips.is_empty() && !beside.is_empty() {
+        beside = beside.minus(&strips.dilate(params.lines.stride * pitch, pitch));
+    }
+    let body = with_lines(&here.minus(&dense), &beside);
+    let carries = ends(columns, k + params.interface_layers);
+    let places = Places { body: &body, strips: &strips, carries: &carries };
+    let (outlines, body) = body::lay(&places, k, params);
     SupportLayer { body, outlines, interface: [params.along(&along), params.across(&across)] }
 }
 
@@ -47,12 +58,23 @@ fn with_lines(body: &Rows, beside: &Rows) -> Rows {
     pieces.keep(&both, |piece| has_body[piece])
 }
 
-/// The interface of layer `k` with lines across and along those of the support.
-fn interface(columns: &[Column], k: usize, params: &SupportParams) -> [Rows; 2] {
+/// Where support of layer `k` ends below the part.
+fn ends(columns: &[Column], k: usize) -> Rows {
+    let Some(here) = columns.get(k) else { return Rows::default() };
+    columns.get(k + 1).map_or_else(|| here.reach.clone(), |above| here.reach.minus(&above.reach))
+}
+
+/// The interface of layer `k` with lines across and along those of the support. On `strips` they are
+/// exchanged.
+fn interface(
+    columns: &[Column],
+    k: usize,
+    strips: &Rows,
+    params: &SupportParams,
+) -> [Rows; 2] {
     let mut out = [Rows::default(), Rows::default()];
     let n = params.interface_layers;
-    let (none, pitch) = (Rows::default(), params.raster().pitch);
-    let reach = |k: usize| columns.get(k).map_or(&none, |column| &column.reach);
+    let pitch = params.raster().pitch;
     let all = |k: usize| &columns[k].all;
     // On a slope of the part support ends by less than a line on each layer: dense lines would
     // stand alone there.
@@ -61,15 +83,17 @@ fn interface(columns: &[Column], k: usize, params: &SupportParams) -> [Rows; 2] 
         ends.erode(params.least / 2, pitch).dilate(params.least / 2, pitch)
     };
     for rank in 1..=n {
-        let top = reach(k + rank - 1).minus(reach(k + rank));
+        let top = self::ends(columns, k + rank - 1);
         let bottom = if rank <= k { bottom(k + 1 - rank) } else { Rows::default() };
         let ends = top.or(&bottom);
         if ends.is_empty() {
             continue;
         }
         let wide = ends.dilate(params.least, pitch).and(all(k));
-        let out = &mut out[(n - rank) % 2];
-        *out = out.or(&wide);
+        let turn = (n - rank) % 2;
+        for (turn, rows) in [(turn, wide.minus(strips)), (1 - turn, wide.and(strips))] {
+            out[turn] = out[turn].or(&rows);
+        }
     }
     out.map(|rows| without_specks(&rows, params))
 }

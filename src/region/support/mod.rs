@@ -13,7 +13,8 @@
 //! 3. Support that stands on the part is removed if the settings allow only the bed. On the bed it
 //!    gets a brim. Specks are dropped, and what stands on nothing (`stand`).
 //! 4. `interface`: which places are dense. The others are the `body`, which gets a zigzag, or
-//!    lines and an `outline`; places far from any line are grown to one (`held`).
+//!    lines and an `outline`; places far from any line are grown to one (`held`), or get lines
+//!    across if they are narrow (`strips`).
 //!
 //! All of this happens on the rows of one raster, at most half a line apart. Layers are sliced block
 //! by block.
@@ -30,8 +31,9 @@ mod pieces;
 mod posts;
 mod printed;
 mod stand;
+mod strips;
 
-pub use params::{SupportLayer, SupportParams, SupportPatterns};
+pub use params::{BODIES, SupportLayer, SupportParams, SupportPatterns};
 
 use super::scan::Scan;
 use crate::geom::Point;

@@ -8,11 +8,16 @@ use crate::profile::{Settings, SupportBase};
 use crate::units::{Coord, to_units};
 use std::sync::Arc;
 
+/// Number of patterns of what is sparse.
+pub const BODIES: usize = 4;
+
 /// The numbers of support, in grid units.
 #[derive(Debug, Clone, Copy)]
 pub struct SupportParams {
     /// The lines, on rows fine enough to find every overhang. They are joined at their ends.
     pub(super) lines: Lines,
+    /// The same across, for narrow strips that lie between two of them.
+    pub(super) crossing: Lines,
     /// The lines of the interface in the same direction, and across.
     pub(super) interface: [Lines; 2],
     /// How far a layer may reach out without support, for each unit of its height.
@@ -41,8 +46,8 @@ pub struct SupportParams {
 /// The patterns of support.
 #[derive(Debug)]
 pub struct SupportPatterns {
-    /// Of what is sparse: zigzags, and lines that end at an outline.
-    pub body: [Pattern; 2],
+    /// Of what is sparse: zigzags, and lines that end at an outline; both also across, for strips.
+    pub body: [Pattern; BODIES],
     /// Of what is dense: in the same direction, and across.
     pub interface: [Pattern; 2],
 }
@@ -51,8 +56,8 @@ pub struct SupportPatterns {
 #[derive(Debug, Clone, Default)]
 pub struct SupportLayer {
     /// Where its sparse lines run, by pattern.
-    pub body: [Rows; 2],
-    /// The outlines at which the latter end.
+    pub body: [Rows; BODIES],
+    /// The outlines at which some of them end.
     pub outlines: Vec<Contour>,
     /// Where its dense lines run, by pattern.
     pub interface: [Rows; 2],
@@ -63,7 +68,8 @@ impl SupportParams {
     #[must_use]
     pub fn patterns(&self) -> SupportPatterns {
         let pattern = |lines| -> Pattern { Arc::new(lines) };
-        let body = [self.lines, Lines { joined: false, ..self.lines }];
+        let ends = |lines: Lines| Lines { joined: false, ..lines };
+        let body = [self.lines, ends(self.lines), self.crossing, ends(self.crossing)];
         SupportPatterns { body: body.map(pattern), interface: self.interface.map(pattern) }
     }
 
@@ -78,7 +84,8 @@ impl SupportParams {
         let support = &settings.support;
         let (w, spacing) = (to_units(settings.line_width), to_units(support.spacing));
         let degrees = settings.angle.degrees();
-        let lines = Lines::new(degrees, spacing, (w / 2).max(1));
+        let [lines, crossing] =
+            [0.0, 90.0].map(|turn| Lines::new(degrees + turn, spacing, (w / 2).max(1)));
         let pitch = w + to_units(support.interface_spacing);
         let interface = [0.0, 90.0].map(|turn| Lines::new(degrees + turn, pitch, pitch));
         let angle = support.threshold_angle.to_radians();
@@ -86,6 +93,7 @@ impl SupportParams {
             if support.threshold_angle >= 90.0 { 0.0 } else { libm::cos(angle) / libm::sin(angle) };
         support.enabled.then(|| Self {
             lines,
+            crossing,
             interface,
             lean,
             outset: to_units(support.expansion),

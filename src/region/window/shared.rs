@@ -8,7 +8,7 @@ use crate::region::dual::audit::Audit;
 use crate::region::dual::beads::{self, Counted};
 use crate::region::dual::groups::Block;
 use crate::region::per_raster::skin_turn;
-use crate::region::support::SupportLayer;
+use crate::region::support::{BODIES, SupportLayer};
 use crate::region::walls::{self, Wall};
 use crate::region::{Sparse, SupportLines, dual};
 
@@ -46,7 +46,7 @@ impl Window<'_> {
         let layers = &layers[block.layers.clone()];
         let width = self.params.walls.line_width;
         let rows = |n: usize| layers.iter().map(|layer| layer.body[n].clone()).collect();
-        let rows: [Vec<Rows>; 2] = [0, 1].map(rows);
+        let rows: [Vec<Rows>; BODIES] = std::array::from_fn(rows);
         let (bodies, audit) = dual::support(block, &rows, &patterns.body, self.grouping, width);
         // What carries the part is printed layer by layer, as finely as the part.
         let lines = |(layer, body): (&SupportLayer, Vec<Sparse>)| {

@@ -1,0 +1,80 @@
+//! Rows -> strips: narrow places that no line of support holds, so that lines across hold them.
+//!
+//! Words: a *column* is a row of the raster across the lines. A *strip* is loose among lines
+//! ([`mod@super::held`]), and so narrow that its columns are short: it runs along the lines, between
+//! two of them. A zigzag of lines across stands there like a folded sheet; two lines along its
+//! sides would each stand alone.
+
+use super::held::loose;
+use super::params::SupportParams;
+use super::pieces::{Pieces, turned};
+use crate::geom::spans::{Rows, Span};
+
+/// A strip is no wider than this, in distances of lines. Wider places have lines of their own.
+const WIDEST: i32 = 2;
+
+/// A strip has at least so many lines across: one alone is no zigzag.
+const LEAST_LINES: usize = 2;
+
+/// The strips of `all`.
+pub(super) fn strips(all: &Rows, params: &SupportParams) -> Rows {
+    let (lines, pitch) = (&params.lines, params.raster().pitch);
+    let loose = loose(lines, all);
+    if loose.is_empty() {
+        return loose;
+    }
+    let [columns, loose] = [all, &loose].map(|rows| turned(rows, pitch));
+    let widest = i64::from(WIDEST * lines.stride * pitch);
+    let meets = |rows: &Rows, j: i32, span: Span| rows.row(j).iter().any(|s| s.overlaps(span));
+    let narrow = columns.filter(|_, span| span.len() <= widest);
+    let seeds = narrow.filter(|j, span| meets(&loose, j, span));
+    // They go on to the next line across.
+    let near = seeds.dilate(params.crossing.stride * pitch, pitch);
+    let strips = narrow.filter(|j, span| meets(&near, j, span));
+    let pieces = Pieces::new(&strips);
+    let mut lines = vec![0; pieces.count()];
+    let printed = strips.filter(|j, _| params.crossing.prints(j));
+    pieces.meeting(&strips, &printed, |piece, _| lines[piece] += 1);
+    let strips = pieces.keep(&strips, |piece| lines[piece] >= LEAST_LINES);
+    // Turned back they are short by up to a pitch at each end.
+    upright(&strips, params).dilate(2 * pitch, pitch).and(all)
+}
+
+/// Columns on the rows of support.
+pub(super) fn upright(columns: &Rows, params: &SupportParams) -> Rows {
+    (0..3).fold(columns.clone(), |rows, _| turned(&rows, params.raster().pitch))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::profile;
+    use crate::units::Coord;
+
+    #[test]
+    fn a_strip_between_two_lines_is_found_and_what_lines_hold_is_not() {
+        let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
+        settings.support.enabled = true;
+        let params = SupportParams::new(&settings).unwrap();
+        assert_eq!((params.lines.stride, params.raster().pitch), (15, 2_000));
+        let block = |from: i32, to: i32, long: Coord| {
+            let mut rows = Rows::starting_at(from);
+            (from..to).for_each(|_| rows.push_row(|out| out.push(Span { start: 0, end: long })));
+            rows
+        };
+        let found = |rows: &Rows| strips(rows, &params);
+        assert_eq!(found(&block(3, 13, 450_000)), block(3, 13, 450_000));
+        // Lines hold these, or they are too short for a zigzag across.
+        assert!(found(&block(-3, 13, 450_000)).is_empty());
+        assert!(found(&block(0, 90, 450_000)).is_empty());
+        assert!(found(&block(3, 13, 25_000)).is_empty());
+        // Beneath a broad piece there are long columns.
+        assert!(found(&block(0, 42, 450_000)).is_empty());
+        // An arm of a broad piece is one; the piece is none.
+        let foot = block(-60, 30, 100_000);
+        let both = foot.or(&block(3, 13, 450_000));
+        let strip = found(&both);
+        assert!(strip.and(&foot).total() * 20 < strip.total(), "{strip:?}");
+        assert!(strip.total() > 9 * 340_000, "{strip:?}");
+    }
+}
