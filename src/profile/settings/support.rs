@@ -38,7 +38,7 @@ pub struct Support {
     /// Whether bridges get support, however short.
     #[schemars(extend("default" = false))]
     pub bridges: bool,
-    /// Longer bridges get support in any case.
+    /// Longer bridges get support: strips that leave no more than this free.
     #[schemars(range(min = 0, max = 500), extend("unit" = "mm", "default" = 20))]
     pub max_bridge: f64,
     /// Whether a line runs around the lines of support where they would stand alone.

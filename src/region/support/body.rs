@@ -53,14 +53,20 @@ const TIED: usize = 8;
 /// A piece gets an outline as a whole if this part of it would get one in any case.
 const MOSTLY: f64 = 0.6;
 
-/// Where a layer of support has what.
-pub(super) struct Places<'a> {
-    /// The body.
-    pub(super) body: &'a Rows,
+/// The body of a layer, and how it hangs together.
+#[derive(Debug, Default)]
+pub(super) struct Body {
+    rows: Rows,
     /// Where lines run across.
-    pub(super) strips: &'a Rows,
+    strips: Rows,
     /// What carries the interface of the next layer.
-    pub(super) carries: &'a Rows,
+    carries: Rows,
+    /// The pieces that get an outline on every layer.
+    thin: Rows,
+    /// Those that get ties.
+    tied: Rows,
+    /// What of them gets an outline on every layer.
+    weak: Rows,
 }
 
 /// How a piece hangs together.
@@ -74,38 +80,84 @@ enum Hold {
     Outline,
 }
 
-/// The outlines of the body of layer `k`, and where its lines run, by pattern.
-pub(super) fn lay(
-    places: &Places<'_>,
-    k: usize,
-    params: &SupportParams,
-) -> (Vec<Contour>, [Rows; BODIES]) {
-    let mut body: [Rows; BODIES] = std::array::from_fn(|_| Rows::default());
-    if !params.has_outline || places.body.is_empty() {
-        body[0] = places.body.clone();
-        return (Vec::new(), body);
+impl Body {
+    /// The body that covers `rows`, with lines across on `strips`. On `carries` the interface of the
+    /// next layer lies on it.
+    pub(super) fn new(rows: Rows, strips: Rows, carries: Rows, params: &SupportParams) -> Self {
+        if !params.has_outline || rows.is_empty() {
+            return Self { rows, ..Self::default() };
+        }
+        let rows = opened(&rows, params);
+        let pieces = Pieces::new(&rows);
+        let (mut thin, mut tied) = (vec![false; pieces.count()], vec![false; pieces.count()]);
+        let mut weak = Vec::new();
+        for piece in 0..pieces.count() {
+            match hold(&pieces.keep(&rows, |other| other == piece), &strips, params) {
+                Hold::Zigzag => {}
+                Hold::Ties(part) => {
+                    tied[piece] = true;
+                    weak.push(part);
+                }
+                Hold::Outline => thin[piece] = true,
+            }
+        }
+        let [thin, tied] = [thin, tied].map(|which| pieces.keep(&rows, |piece| which[piece]));
+        let weak = Rows::united(&weak.iter().collect::<Vec<_>>());
+        Self { rows, strips, carries, thin, tied, weak }
     }
-    let (w, raster) = (params.least, params.raster());
-    let half = w * NARROW / 200;
-    let rows = places.body.erode(half, raster.pitch).dilate(half, raster.pitch).and(places.body);
-    let outlined = outlined(&rows, places.strips, k, params);
-    let lines = outlined.erode(w * LINES_FROM_OUTLINE / 100, raster.pitch);
-    let zigzags = rows.minus(&outlined.dilate(w * LINES_FROM_OUTLINE / 100, raster.pitch));
-    let outlines = outlines(&outlined, raster.pitch, raster.frame, 4 * w);
 
-    let is_brace = |span: Span| span.len() <= brace(params);
-    let [along, across] = apart(&lines, places.strips, params);
-    let core = outlined.erode(BESIDE * w, raster.pitch);
-    let meets = |rows: &Rows, j: i32, span: Span| rows.row(j).iter().any(|s| s.overlaps(span));
-    let seldom = k.is_multiple_of(SELDOM);
-    let lines = along.filter(|j, span| {
-        let brace = || seldom || meets(places.carries, j, span);
-        if is_brace(span) { brace() } else { meets(&core, j, span) }
-    });
-    let carries = if seldom { Rows::default() } else { turned(places.carries, raster.pitch) };
-    let braces = across.filter(|j, span| seldom || meets(&carries, j, span));
-    let [zigzags, waves] = apart(&zigzags, places.strips, params);
-    (outlines, [zigzags, lines, waves, braces])
+    /// What is weak of the layer above, and has no line below it here, gets an outline here to stand on.
+    pub(super) fn carry(&mut self, above: &Self, params: &SupportParams) {
+        if above.weak.is_empty() {
+            return;
+        }
+        let least = i64::from(params.least);
+        let prints = |j: i32, span: Span| params.lines.prints(j) && span.len() >= least;
+        let lines = self.rows.filter(prints).or(&self.strips).or(&self.weak).or(&self.thin);
+        let pieces = Pieces::new(&above.weak);
+        let mut carried = vec![false; pieces.count()];
+        pieces.meeting(&above.weak, &lines, |piece, _| carried[piece] = true);
+        let falls = pieces.keep(&above.weak, |piece| !carried[piece]);
+        self.weak = self.weak.or(&falls.and(&self.rows));
+    }
+
+    /// The outlines of layer `k`, and where its lines run, by pattern.
+    pub(super) fn lay(self, k: usize, params: &SupportParams) -> (Vec<Contour>, [Rows; BODIES]) {
+        let Self { rows, strips, carries, thin, tied, weak } = self;
+        let mut outlined = thin.or(&weak);
+        if k.is_multiple_of(TIED) {
+            outlined = outlined.or(&tied);
+        }
+        if outlined.is_empty() {
+            let [along, across] = apart(&rows, &strips, params);
+            return (Vec::new(), [along, Rows::default(), across, Rows::default()]);
+        }
+        let raster = params.raster();
+        let inwards = params.least * LINES_FROM_OUTLINE / 100;
+        let lines = outlined.erode(inwards, raster.pitch);
+        let zigzags = rows.minus(&outlined.dilate(inwards, raster.pitch));
+        let outlines = outlines(&outlined, raster.pitch, raster.frame, 4 * params.least);
+
+        let meets = |rows: &Rows, j: i32, span: Span| rows.row(j).iter().any(|s| s.overlaps(span));
+        let [along, across] = apart(&lines, &strips, params);
+        let core = outlined.erode(BESIDE * params.least, raster.pitch);
+        let seldom = k.is_multiple_of(SELDOM);
+        let lines = along.filter(|j, span| {
+            let is_brace = span.len() <= brace(params);
+            let braces = || seldom || meets(&carries, j, span);
+            if is_brace { braces() } else { meets(&core, j, span) }
+        });
+        let carries = if seldom { Rows::default() } else { turned(&carries, raster.pitch) };
+        let braces = across.filter(|j, span| seldom || meets(&carries, j, span));
+        let [zigzags, waves] = apart(&zigzags, &strips, params);
+        (outlines, [zigzags, lines, waves, braces])
+    }
+}
+
+/// `rows` without what is narrower than a bead.
+fn opened(rows: &Rows, params: &SupportParams) -> Rows {
+    let (half, pitch) = (params.least * NARROW / 200, params.raster().pitch);
+    rows.erode(half, pitch).dilate(half, pitch).and(rows)
 }
 
 /// The longest brace, grid units.
@@ -119,27 +171,6 @@ fn apart(rows: &Rows, strips: &Rows, params: &SupportParams) -> [Rows; 2] {
         return [rows.clone(), Rows::default()];
     }
     [rows.minus(strips), turned(&rows.and(strips), params.raster().pitch)]
-}
-
-/// What of the body gets an outline on layer `k`.
-fn outlined(rows: &Rows, strips: &Rows, k: usize, params: &SupportParams) -> Rows {
-    let pieces = Pieces::new(rows);
-    let mut parts = Vec::new();
-    let whole: Vec<bool> = (0..pieces.count())
-        .map(|piece| {
-            let piece = pieces.keep(rows, |other| other == piece);
-            match hold(&piece, strips, params) {
-                Hold::Zigzag => false,
-                Hold::Ties(part) => {
-                    parts.push(part);
-                    k.is_multiple_of(TIED)
-                }
-                Hold::Outline => true,
-            }
-        })
-        .collect();
-    let whole = pieces.keep(rows, |piece| whole[piece]);
-    Rows::united(&[&whole].into_iter().chain(&parts).collect::<Vec<_>>())
 }
 
 /// How `piece` hangs together.
@@ -242,7 +273,8 @@ mod tests {
     fn laid(body: &Rows, carries: &Rows, k: usize) -> (f64, [Rows; BODIES]) {
         let params = params();
         let strips = strips(body, &params);
-        let (outlines, rows) = lay(&Places { body, strips: &strips, carries }, k, &params);
+        let body = Body::new(body.clone(), strips, carries.clone(), &params);
+        let (outlines, rows) = body.lay(k, &params);
         let around = outlines.iter().flat_map(|one| edges(one)).map(|(p, q)| p.distance(q));
         (around.sum::<f64>() / 10_000.0, rows)
     }
@@ -266,6 +298,20 @@ mod tests {
         assert!(rows[0].total() > 80 * 400_000);
         // Alone it gets none.
         assert!(laid(&foot, &Rows::default(), 1).0 < 1.0);
+    }
+
+    #[test]
+    fn an_outline_between_two_lines_stands_on_another() {
+        let params = params();
+        let body = |rows: &Rows| Body::new(rows.clone(), Rows::default(), Rows::default(), &params);
+        let (mut above, mut below) = (body(&block(0..91, 0, 400_000)), body(&block(0..91, 0, 400_000)));
+        above.weak = block(31..44, 100_000, 140_000);
+        below.carry(&above, &params);
+        assert_eq!(below.weak.total(), above.weak.total());
+        // This one lies on a line.
+        (above.weak, below.weak) = (block(28..44, 100_000, 140_000), Rows::default());
+        below.carry(&above, &params);
+        assert!(below.weak.is_empty());
     }
 
     #[test]

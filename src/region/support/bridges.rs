@@ -4,10 +4,13 @@
 //! layer goes on at both ends, over something that is printed.
 //!
 //! A piece of an overhang bridges if nearly all its rows lie in short anchored gaps, in the direction
-//! of the rows or across it.
+//! of the rows or across it. If they lie in anchored gaps that are too long, it bridges from *pier* to
+//! pier: strips of support that divide the gaps. Where both directions are about as long, it is not
+//! known in which the lines will run, and there are piers for both.
 
 use super::params::SupportParams;
 use super::pieces::{Pieces, turned};
+use super::strips::upright;
 use crate::geom::spans::{Rows, Span, intersect};
 use crate::units::Coord;
 
@@ -21,7 +24,12 @@ const ROUNDING: i64 = 200;
 /// Per cent of a piece's length that must bridge: corners are round, and rows touch them.
 const MOSTLY: i64 = 95;
 
-/// `hanging` without the pieces that bridge from place to place of `below`.
+/// Bridges are not laid along gaps that are longer than those in the other direction by this much, in
+/// per cent of the latter.
+const MUCH_LONGER: i64 = 125;
+
+/// `hanging` without the pieces that bridge from place to place of `below`, and without what bridges
+/// from pier to pier.
 pub(super) fn without_bridges(
     hanging: &Rows,
     [layer, below]: [&Rows; 2],
@@ -38,23 +46,80 @@ pub(super) fn without_bridges(
         pieces.shared(hanging, &gaps.dilate(reach, pitch), &mut sums);
         (0..pieces.count()).map(|k| 100 * sums[k] >= MOSTLY * lengths[k]).collect::<Vec<bool>>()
     };
-    let along = bridges(&gaps([layer, below], params, ROUNDING), pitch);
+    let longest = i64::from(params.longest_bridge) + ROUNDING;
+    let rows = gaps([layer, below], params);
+    let along = bridges(&rows.filter(|_, gap| gap.len() <= longest), pitch);
     if along.iter().all(|bridges| *bridges) {
         return Rows::default();
     }
+    // Across, a gap is known to a row at each edge. Turned back, by three more quarters, it may be
+    // short by a row at each edge.
     let [layer, below] = [layer, below].map(|rows| turned(rows, pitch));
-    // Across, a gap is known to a row at each edge.
-    let across = gaps([&layer, &below], params, ROUNDING + 2 * i64::from(pitch));
-    // Turned back, by three more quarters, it may be short by a row at each edge.
-    let across = (0..3).fold(across, |rows, _| turned(&rows, pitch));
-    let across = bridges(&across, 2 * pitch);
-    pieces.keep(hanging, |piece| !along[piece] && !across[piece])
+    let columns = gaps([&layer, &below], params);
+    let rough = longest + 2 * i64::from(pitch);
+    let short = columns.filter(|_, gap| gap.len() <= rough);
+    let across = bridges(&upright(&short, params), 2 * pitch);
+    let left = pieces.keep(hanging, |piece| !along[piece] && !across[piece]);
+    let is_long = |gaps: &Rows, most: i64| gaps.iter().flat_map(|(_, r)| r).any(|g| g.len() > most);
+    if left.is_empty() || !(is_long(&rows, longest) || is_long(&columns, rough)) {
+        return left;
+    }
+    let is_short = |piece: usize| along[piece] || across[piece];
+    let far = [bridges(&rows, pitch), bridges(&upright(&columns, params), 2 * pitch)];
+    let mut left = pieces.keep(hanging, |k| !is_short(k) && !far[0][k] && !far[1][k]);
+    for k in (0..pieces.count()).filter(|k| !is_short(*k) && (far[0][*k] || far[1][*k])) {
+        let piece = pieces.keep(hanging, |other| other == k);
+        let ways = [far[0][k].then_some(&rows), far[1][k].then_some(&columns)];
+        left = left.or(&piered(&piece, ways, params));
+    }
+    left
 }
 
-/// The anchored gaps of a layer that exceed the longest bridge by no more than `slack`.
-fn gaps([layer, below]: [&Rows; 2], params: &SupportParams, slack: i64) -> Rows {
+/// The piers of a piece that lies in gaps of one direction or both.
+fn piered(piece: &Rows, ways: [Option<&Rows>; 2], params: &SupportParams) -> Rows {
+    let pitch = params.raster().pitch;
+    let near = piece.dilate(pitch, pitch);
+    let near = [turned(&near, pitch), near];
+    let own = |gaps: Option<&Rows>, near: &Rows| {
+        let meets = |j: i32, gap: Span| near.row(j).iter().any(|span| span.overlaps(gap));
+        gaps.map(|gaps| gaps.filter(meets)).unwrap_or_default()
+    };
+    let [rows, columns] = [own(ways[0], &near[1]), own(ways[1], &near[0])];
+    let longest = |gaps: &Rows| gaps.iter().flat_map(|(_, row)| row).map(|gap| gap.len()).max();
+    let shorter = longest(&rows).into_iter().chain(longest(&columns)).min();
+    let most = shorter.map_or(0, |len| len * MUCH_LONGER / 100);
+    let [rows, columns] = [rows, columns].map(|gaps| match longest(&gaps) {
+        Some(len) if len <= most => piers(&gaps, params),
+        _ => Rows::default(),
+    });
+    piece.and(&rows.or(&upright(&columns, params)))
+}
+
+/// Strips that divide gaps which are too long.
+fn piers(gaps: &Rows, params: &SupportParams) -> Rows {
+    // They grow by the outset on both sides.
+    let wide = (params.min_width - 2 * params.outset).max(2 * params.least);
+    let grown = i64::from(wide + 2 * params.outset);
+    let longest = i64::from(params.longest_bridge);
+    let mut out = Rows::with_room_of(gaps, gaps.range().start);
+    for (_, row) in gaps.iter() {
+        out.push_row(|spans| {
+            for gap in row.iter().filter(|gap| gap.len() > longest + ROUNDING) {
+                // As many as leave no stretch that is too long, and all stretches alike.
+                let count = (gap.len() + grown - 1) / (longest + grown);
+                let free = (gap.len() - count * grown) / (count + 1);
+                let start = |i: i64| gap.start + (i * free + (i - 1) * grown) as Coord + params.outset;
+                let pier = |start: Coord| Span { start, end: start + wide };
+                spans.extend((1..=count).map(start).map(pier));
+            }
+        });
+    }
+    out
+}
+
+/// The anchored gaps of a layer.
+fn gaps([layer, below]: [&Rows; 2], params: &SupportParams) -> Rows {
     let anchor = i64::from(ANCHOR * params.least);
-    let longest = i64::from(params.longest_bridge) + slack;
     let mut carried = Vec::new();
     let mut out = Rows::with_room_of(layer, layer.range().start);
     for (j, row) in layer.iter() {
@@ -64,7 +129,7 @@ fn gaps([layer, below]: [&Rows; 2], params: &SupportParams, slack: i64) -> Rows 
                 intersect(&[*span], below.row(j), &mut carried);
                 carried.retain(|one| one.len() >= anchor);
                 let gaps = carried.windows(2).filter_map(|two| Span::new(two[0].end, two[1].start));
-                spans.extend(gaps.filter(|gap| gap.len() <= longest));
+                spans.extend(gaps);
             }
         });
     }
@@ -110,5 +175,29 @@ mod tests {
         let [hanging, layer, below] = plate(100_000, false);
         let one = below.filter(|_, span| span.start == 0);
         assert!(!without_bridges(&hanging, [&layer, &one], &params).is_empty());
+    }
+
+    #[test]
+    fn a_plate_that_is_too_long_bridges_from_pier_to_pier() {
+        let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
+        (settings.support.enabled, settings.support.max_bridge) = (true, 15.0);
+        let params = SupportParams::new(&settings).unwrap();
+        for (gap, piers) in [(162_000, 1), (330_000, 1), (350_000, 2), (525_000, 2), (560_000, 3)] {
+            for is_turned in [false, true] {
+                let [hanging, layer, below] = plate(gap, is_turned);
+                let left = without_bridges(&hanging, [&layer, &below], &params);
+                let left = if is_turned { upright(&left, &params) } else { left };
+                let left = left.dilate(params.outset, 2_000);
+                assert_eq!(Pieces::new(&left).count(), piers, "{gap} {is_turned}");
+                for j in 5..45 {
+                    let mut free = Vec::new();
+                    let whole = [Span { start: 30_000, end: 30_000 + gap }];
+                    crate::geom::spans::subtract(&whole, left.row(j), &mut free);
+                    let longest = free.iter().map(|span| span.len()).max().unwrap();
+                    assert!(longest <= 150_000 + 8_000, "{gap} {is_turned}: {free:?}");
+                    assert!(left.row(j).iter().all(|span| span.len() <= 50_000));
+                }
+            }
+        }
     }
 }

@@ -71,7 +71,8 @@ fn held(lines: &Lines, rows: &Rows, order: impl Iterator<Item = i32>) -> Vec<Vec
         steps += 1;
         if lines.prints(j) {
             steps = 0;
-            here.extend_from_slice(rows.row(j));
+            // Shorter ones than a line is wide are not printed.
+            here.extend(rows.row(j).iter().filter(|span| span.len() >= i64::from(2 * wider)));
         } else if let Some(before) = out.last().filter(|_| steps <= reach(lines)) {
             let grown = |s: &Span| Span { start: s.start - wider, end: s.end + wider };
             wide.clear();

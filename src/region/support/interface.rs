@@ -11,22 +11,47 @@
 //! On slopes the top of support is a flight of narrow steps, each with lines too short to hold. So
 //! each is grown by a line's width, within the support.
 
-use super::body::{self, Places};
+use super::body::Body;
 use super::columns::Column;
 use super::params::{SupportLayer, SupportParams};
 use super::pieces::{Pieces, across, without_specks};
 use super::strips::strips;
 use crate::geom::spans::Rows;
 
+/// The support of a layer, divided.
+#[derive(Debug, Default)]
+pub(super) struct Divided {
+    body: Body,
+    /// Where dense lines run, by pattern.
+    interface: [Rows; 2],
+}
+
+impl Divided {
+    /// The lines of layer `k`.
+    pub(super) fn lay(self, k: usize, params: &SupportParams) -> SupportLayer {
+        let (outlines, body) = self.body.lay(k, params);
+        SupportLayer { body, outlines, interface: self.interface }
+    }
+}
+
+/// What gets an outline on a layer, and would have nothing below it, gets one on those below.
+pub(super) fn carry(layers: &mut [Divided], params: &SupportParams) {
+    for k in (1..layers.len()).rev() {
+        if let [below, here] = &mut layers[k - 1..=k] {
+            below.body.carry(&here.body, params);
+        }
+    }
+}
+
 /// The support of layer `k`, divided.
-pub(super) fn divide(columns: &[Column], k: usize, params: &SupportParams) -> SupportLayer {
+pub(super) fn divide(columns: &[Column], k: usize, params: &SupportParams) -> Divided {
     let here = &columns[k].all;
     if here.is_empty() {
-        return SupportLayer::default();
+        return Divided::default();
     }
     if k == 0 && params.brim > 0 {
         let interface = [Rows::default(), params.across(here)];
-        return SupportLayer { interface, ..SupportLayer::default() };
+        return Divided { interface, ..Divided::default() };
     }
     let pitch = params.raster().pitch;
     let strips =
@@ -41,9 +66,10 @@ pub(super) fn divide(columns: &[Column], k: usize, params: &SupportParams) -> Su
     }
     let body = with_lines(&here.minus(&dense), &beside);
     let carries = ends(columns, k + params.interface_layers);
-    let places = Places { body: &body, strips: &strips, carries: &carries };
-    let (outlines, body) = body::lay(&places, k, params);
-    SupportLayer { body, outlines, interface: [params.along(&along), params.across(&across)] }
+    Divided {
+        body: Body::new(body, strips, carries, params),
+        interface: [params.along(&along), params.across(&across)],
+    }
 }
 
 /// A body with what it needs to be held by lines: those pieces of both that have some of the body in them.

@@ -14,7 +14,8 @@
 //!    gets a brim. Specks are dropped, and what stands on nothing (`stand`).
 //! 4. `interface`: which places are dense. The others are the `body`, which gets a zigzag, or
 //!    lines and an `outline`; places far from any line are grown to one (`held`), or get lines
-//!    across if they are narrow (`strips`).
+//!    across if they are narrow (`strips`). An outline that would have nothing below it
+//!    gets one there.
 //!
 //! All of this happens on the rows of one raster, at most half a line apart. Layers are sliced block
 //! by block.
@@ -40,6 +41,7 @@ use crate::geom::Point;
 use crate::geom::spans::Rows;
 use crate::slice::{Layer, Slicer};
 use columns::{Column, Window};
+use interface::Divided;
 use overhangs::LayerView;
 use printed::printed;
 use rayon::prelude::*;
@@ -79,7 +81,11 @@ pub fn supports(
         column.beside = column.beside.and(bed.inside());
     });
     stand::stand(&mut columns, params);
-    (0..columns.len()).into_par_iter().map(|k| interface::divide(&columns, k, params)).collect()
+    let divided = |k| interface::divide(&columns, k, params);
+    let mut layers: Vec<Divided> = (0..columns.len()).into_par_iter().map(divided).collect();
+    interface::carry(&mut layers, params);
+    let laid = |(k, layer): (usize, Divided)| layer.lay(k, params);
+    layers.into_par_iter().enumerate().map(laid).collect()
 }
 
 /// Grows the lowest layer, to hold on to the bed.

@@ -27,9 +27,9 @@ const MOST_WIDTH: Coord = 200_000;
 /// No post is thinner than so many lines at its thickest place, however long it is.
 const LEAST_LINES: Coord = 3;
 
-/// How far a thin piece grows on a layer, in pitches. It leans out by two layer heights then, which
-/// is no matter further down: wider layers carry narrower ones.
-const STEP: Coord = 2;
+/// How far a thin piece grows on a layer, in pitches of half a line: the beads at its edge lie with
+/// half of their width on those of the wider layer below.
+const STEP: Coord = 1;
 
 /// The pieces of the layer above, and the height of the top of each.
 #[derive(Default)]

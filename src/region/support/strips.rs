@@ -1,17 +1,21 @@
 //! Rows -> strips: narrow places that no line of support holds, so that lines across hold them.
 //!
-//! Words: a *column* is a row of the raster across the lines. A *strip* is loose among lines
-//! ([`mod@super::held`]), and so narrow that its columns are short: it runs along the lines, between
-//! two of them. A zigzag of lines across stands there like a folded sheet; two lines along its
-//! sides would each stand alone.
+//! Words: a *column* is a row of the raster across the lines. A place is *loose* if it lies far from
+//! any line ([`mod@super::held`]). A line is *alone* where it is long, and has no neighbour to be joined
+//! to. A *strip* is loose or has a line that is alone, and is so narrow that its columns are short:
+//! it runs along the lines. A zigzag of lines across stands there like a folded sheet; a line
+//! along it, or one on each of its sides, would stand alone.
 
 use super::held::loose;
 use super::params::SupportParams;
 use super::pieces::{Pieces, turned};
-use crate::geom::spans::{Rows, Span};
+use crate::geom::spans::{Rows, Span, subtract, unite};
 
 /// A strip is no wider than this, in distances of lines. Wider places have lines of their own.
 const WIDEST: i32 = 2;
+
+/// A line that is alone is longer than this, in distances of lines.
+const ALONE: i32 = 2;
 
 /// A strip has at least so many lines across: one alone is no zigzag.
 const LEAST_LINES: usize = 2;
@@ -19,15 +23,15 @@ const LEAST_LINES: usize = 2;
 /// The strips of `all`.
 pub(super) fn strips(all: &Rows, params: &SupportParams) -> Rows {
     let (lines, pitch) = (&params.lines, params.raster().pitch);
-    let loose = loose(lines, all);
-    if loose.is_empty() {
-        return loose;
+    let seeds = loose(lines, all).or(&alone(all, params).dilate(pitch, pitch));
+    if seeds.is_empty() {
+        return seeds;
     }
-    let [columns, loose] = [all, &loose].map(|rows| turned(rows, pitch));
+    let [columns, seeds] = [all, &seeds].map(|rows| turned(rows, pitch));
     let widest = i64::from(WIDEST * lines.stride * pitch);
     let meets = |rows: &Rows, j: i32, span: Span| rows.row(j).iter().any(|s| s.overlaps(span));
     let narrow = columns.filter(|_, span| span.len() <= widest);
-    let seeds = narrow.filter(|j, span| meets(&loose, j, span));
+    let seeds = narrow.filter(|j, span| meets(&seeds, j, span));
     // They go on to the next line across.
     let near = seeds.dilate(params.crossing.stride * pitch, pitch);
     let strips = narrow.filter(|j, span| meets(&near, j, span));
@@ -38,6 +42,24 @@ pub(super) fn strips(all: &Rows, params: &SupportParams) -> Rows {
     let strips = pieces.keep(&strips, |piece| lines[piece] >= LEAST_LINES);
     // Turned back they are short by up to a pitch at each end.
     upright(&strips, params).dilate(2 * pitch, pitch).and(all)
+}
+
+/// The long stretches of lines without another line on either side.
+fn alone(all: &Rows, params: &SupportParams) -> Rows {
+    let stride = params.lines.stride;
+    let longer = i64::from(ALONE * stride * params.raster().pitch);
+    let (mut beside, mut left) = (Vec::new(), Vec::new());
+    let mut out = Rows::starting_at(all.range().start);
+    for (j, row) in all.iter() {
+        left.clear();
+        if params.lines.prints(j) && row.iter().any(|span| span.len() > longer) {
+            beside.clear();
+            unite(all.row(j - stride), all.row(j + stride), &mut beside);
+            subtract(row, &beside, &mut left);
+        }
+        out.push_row(|spans| spans.extend(left.iter().filter(|span| span.len() > longer)));
+    }
+    out
 }
 
 /// Columns on the rows of support.
@@ -64,8 +86,11 @@ mod tests {
         };
         let found = |rows: &Rows| strips(rows, &params);
         assert_eq!(found(&block(3, 13, 450_000)), block(3, 13, 450_000));
+        // A line that is alone.
+        assert_eq!(found(&block(-3, 7, 450_000)), block(-3, 7, 450_000));
         // Lines hold these, or they are too short for a zigzag across.
-        assert!(found(&block(-3, 13, 450_000)).is_empty());
+        assert!(found(&block(-3, 7, 55_000)).is_empty());
+        assert!(found(&block(-3, 18, 450_000)).is_empty());
         assert!(found(&block(0, 90, 450_000)).is_empty());
         assert!(found(&block(3, 13, 25_000)).is_empty());
         // Beneath a broad piece there are long columns.
