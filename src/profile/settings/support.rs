@@ -18,7 +18,7 @@ pub struct Support {
     #[schemars(range(min = 0.1, max = 50), extend("unit" = "mm", "default" = 3))]
     pub spacing: f64,
     /// How far support reaches beyond the overhang.
-    #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 1.5))]
+    #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 0.8))]
     pub expansion: f64,
     /// Distance to the part, sideways.
     #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 0.6))]

@@ -46,9 +46,12 @@ const SELDOM: usize = 4;
 /// Longer lines that are nowhere further than this from the outline, in line widths, are left out.
 const BESIDE: Coord = 3;
 
-/// Ties lie on one layer of so many: of 0.2 mm, a line of 0.4 mm between two is four times as high
-/// as it is wide.
+/// Ties lie on one layer of so many where a line is part of no zigzag: of 0.2 mm, a line of 0.4 mm
+/// between two is four times as high as it is wide.
 const TIED: usize = 8;
+
+/// Ties lie on one layer of so many elsewhere: a zigzag is at least three times as thick as a line.
+const SELDOM_TIED: usize = 3 * TIED;
 
 /// A piece gets an outline as a whole if this part of it would get one in any case.
 const MOSTLY: f64 = 0.6;
@@ -65,19 +68,33 @@ pub(super) struct Body {
     thin: Rows,
     /// Those that get ties.
     tied: Rows,
+    /// What of them gets more: what is near a line that is part of no zigzag.
+    lone: Rows,
     /// What of them gets an outline on every layer.
     weak: Rows,
 }
+
+/// What gets an outline is left out of zigzags, and their rests are looked at again, so many times.
+const MOST_PASSES: usize = 3;
 
 /// How a piece hangs together.
 #[derive(Debug)]
 enum Hold {
     /// All of its lines are one zigzag.
     Zigzag,
-    /// Its lines need ties, and these places an outline.
-    Ties(Rows),
+    /// Its lines need ties.
+    Ties(Places),
     /// It needs an outline.
     Outline,
+}
+
+/// Places of a piece that need more than others.
+#[derive(Debug, Default)]
+struct Places {
+    /// They get an outline.
+    weak: Rows,
+    /// They have lines that are part of no zigzag.
+    lone: Rows,
 }
 
 impl Body {
@@ -90,20 +107,22 @@ impl Body {
         let rows = opened(&rows, params);
         let pieces = Pieces::new(&rows);
         let (mut thin, mut tied) = (vec![false; pieces.count()], vec![false; pieces.count()]);
-        let mut weak = Vec::new();
+        let (mut weak, mut lone) = (Vec::new(), Vec::new());
         for piece in 0..pieces.count() {
             match hold(&pieces.keep(&rows, |other| other == piece), &strips, params) {
                 Hold::Zigzag => {}
-                Hold::Ties(part) => {
+                Hold::Ties(places) => {
                     tied[piece] = true;
-                    weak.push(part);
+                    weak.push(places.weak);
+                    lone.push(places.lone);
                 }
                 Hold::Outline => thin[piece] = true,
             }
         }
         let [thin, tied] = [thin, tied].map(|which| pieces.keep(&rows, |piece| which[piece]));
-        let weak = Rows::united(&weak.iter().collect::<Vec<_>>());
-        Self { rows, strips, carries, thin, tied, weak }
+        let [weak, lone] =
+            [weak, lone].map(|parts| Rows::united(&parts.iter().collect::<Vec<_>>()));
+        Self { rows, strips, carries, thin, tied, lone, weak }
     }
 
     /// What is weak of the layer above, and has no line below it here, gets an outline here to stand on.
@@ -123,10 +142,10 @@ impl Body {
 
     /// The outlines of layer `k`, and where its lines run, by pattern.
     pub(super) fn lay(self, k: usize, params: &SupportParams) -> (Vec<Contour>, [Rows; BODIES]) {
-        let Self { rows, strips, carries, thin, tied, weak } = self;
+        let Self { rows, strips, carries, thin, tied, lone, weak } = self;
         let mut outlined = thin.or(&weak);
         if k.is_multiple_of(TIED) {
-            outlined = outlined.or(&tied);
+            outlined = outlined.or(if k.is_multiple_of(SELDOM_TIED) { &tied } else { &lone });
         }
         if outlined.is_empty() {
             let [along, across] = apart(&rows, &strips, params);
@@ -179,50 +198,89 @@ fn hold(piece: &Rows, strips: &Rows, params: &SupportParams) -> Hold {
     if !is_broad([&along, &across], params) {
         return Hold::Outline;
     }
-    let (weak, strands) = weak(&params.lines, &along, params);
-    let (weak_across, strands_across) = self::weak(&params.crossing, &across, params);
-    let weak = weak.or(&upright(&weak_across, params));
-    if weak.is_empty() {
-        let is_one = strands + strands_across == 1;
-        return if is_one { Hold::Zigzag } else { Hold::Ties(Rows::default()) };
-    }
-    // As far as the next line, which is left out.
     let pitch = params.raster().pitch;
+    let mut laid = Strands::of([&along, &across], params);
+    let loose = [loose(&params.lines, &along), upright(&loose(&params.crossing, &across), params)];
+    let mut found = loose[0].or(&loose[1]).or(&laid.stubs);
+    if found.is_empty() && laid.count == 1 && laid.lone.is_empty() {
+        return Hold::Zigzag;
+    }
+    // Up to the next line, which is left out: so others may lose what they were joined to.
     let far = (reach(&params.lines) + 1) * pitch + params.least;
-    let part = piece.and(&weak.dilate(far, pitch));
-    if part.total() as f64 >= MOSTLY * piece.total() as f64 {
-        Hold::Outline
-    } else {
-        Hold::Ties(part)
+    let mut weak = Rows::default();
+    for _ in 0..MOST_PASSES {
+        if found.is_empty() {
+            break;
+        }
+        weak = weak.or(&piece.and(&found.dilate(far, pitch)));
+        if weak.total() as f64 >= MOSTLY * piece.total() as f64 {
+            return Hold::Outline;
+        }
+        let [along, across] = apart(&piece.minus(&weak), strips, params);
+        laid = Strands::of([&along, &across], params);
+        found = std::mem::take(&mut laid.stubs);
+    }
+    // Ties reach around the next line.
+    let far = params.lines.stride * pitch + params.least;
+    Hold::Ties(Places { weak, lone: piece.and(&laid.lone.dilate(far, pitch)) })
+}
+
+/// How lines along and across lie in a piece.
+#[derive(Debug, Default)]
+struct Strands {
+    /// Number of zigzags and single lines.
+    count: usize,
+    /// The short ones of the single lines, and the others.
+    stubs: Rows,
+    lone: Rows,
+}
+
+impl Strands {
+    /// Of lines on these rows along and across.
+    fn of([along, across]: [&Rows; 2], params: &SupportParams) -> Self {
+        let (rows, columns) =
+            (Self::on(&params.lines, along, params), Self::on(&params.crossing, across, params));
+        Self {
+            count: rows.count + columns.count,
+            stubs: rows.stubs.or(&upright(&columns.stubs, params)),
+            lone: rows.lone.or(&upright(&columns.lone, params)),
+        }
+    }
+
+    /// Of these lines on their rows.
+    fn on(lines: &Lines, rows: &Rows, params: &SupportParams) -> Self {
+        if rows.is_empty() {
+            return Self::default();
+        }
+        let strands = lines.strands(rows, params.least, params.least);
+        let (stubs, lone): (Vec<&Polyline>, Vec<&Polyline>) = strands
+            .iter()
+            .filter(|strand| strand.len() < LEAST_POINTS)
+            .partition(|strand| length(strand) <= brace(params));
+        let [stubs, lone] = [stubs, lone].map(|which| on_rows(&which, lines.raster.pitch));
+        Self { count: strands.len(), stubs, lone }
     }
 }
 
-/// The weak places of `rows` with these lines, and the number of strands.
-fn weak(lines: &Lines, rows: &Rows, params: &SupportParams) -> (Rows, usize) {
-    if rows.is_empty() {
-        return (Rows::default(), 0);
-    }
-    let strands = lines.strands(rows, params.least, params.least);
-    let is_stub =
-        |strand: &&Polyline| strand.len() < LEAST_POINTS && length(strand) <= brace(params);
-    let mut stubs: Vec<(i32, Span)> = strands
+/// Single lines as rows, with a row on each side for what looks at them across.
+fn on_rows(lines: &[&Polyline], pitch: Coord) -> Rows {
+    let mut spans: Vec<(i32, Span)> = lines
         .iter()
-        .filter(is_stub)
-        .filter_map(|strand| {
-            let (a, b) = (strand.first()?, strand.last()?);
+        .filter_map(|line| {
+            let (a, b) = (line.first()?, line.last()?);
             let span = Span { start: a.u.min(b.u), end: a.u.max(b.u) };
-            Some((a.v.div_euclid(lines.raster.pitch), span))
+            Some((a.v.div_euclid(pitch), span))
         })
         .collect();
-    stubs.sort_unstable_by_key(|(j, span)| (*j, span.start));
-    let mut weak = Rows::starting_at(stubs.first().map_or(0, |(j, _)| *j));
-    for row in stubs.chunk_by(|a, b| a.0 == b.0) {
-        while weak.range().end < row[0].0 {
-            weak.push_row(|_| ());
+    spans.sort_unstable_by_key(|(j, span)| (*j, span.start));
+    let mut out = Rows::starting_at(spans.first().map_or(0, |(j, _)| *j));
+    for row in spans.chunk_by(|a, b| a.0 == b.0) {
+        while out.range().end < row[0].0 {
+            out.push_row(|_| ());
         }
-        weak.push_row(|spans| spans.extend(row.iter().map(|(_, span)| *span)));
+        out.push_row(|spans| spans.extend(row.iter().map(|(_, span)| *span)));
     }
-    (weak.or(&loose(lines, rows)), strands.len())
+    out.dilate(pitch, pitch)
 }
 
 /// Whether lines along and across alone are as thick as support must be, and at least two.
@@ -282,7 +340,7 @@ mod tests {
     #[test]
     fn a_ring_whose_sides_lie_between_lines_gets_ties_and_no_outlines() {
         let ring = block(3..160, 0, 450_000).minus(&block(13..151, 19_000, 431_000));
-        let [(between, rows), (tied, _)] = [1, TIED].map(|k| laid(&ring, &Rows::default(), k));
+        let [(between, rows), (tied, _)] = [1, SELDOM_TIED].map(|k| laid(&ring, &Rows::default(), k));
         assert!(between < 1.0, "{between}");
         assert!(tied > 280.0, "{tied}");
         assert!(!rows[0].is_empty() && !rows[2].is_empty() && rows[1].is_empty());

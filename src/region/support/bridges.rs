@@ -5,13 +5,15 @@
 //!
 //! A piece of an overhang bridges if nearly all its rows lie in short anchored gaps, in the direction
 //! of the rows or across it. If they lie in anchored gaps that are too long, it bridges from *pier* to
-//! pier: strips of support that divide the gaps. Where both directions are about as long, it is not
-//! known in which the lines will run, and there are piers for both.
+//! pier: strips of support that divide the gaps, across the direction in which its lines will run
+//! ([`mod@crate::region::bridge`]).
 
 use super::params::SupportParams;
 use super::pieces::{Pieces, turned};
 use super::strips::upright;
+use crate::geom::islands::Islands;
 use crate::geom::spans::{Rows, Span, intersect};
+use crate::region::bridge::direction::{self, COUNT, Site};
 use crate::units::Coord;
 
 /// How far the layer must reach over what carries it, in line widths. Less does not hold a line.
@@ -24,15 +26,15 @@ const ROUNDING: i64 = 200;
 /// Per cent of a piece's length that must bridge: corners are round, and rows touch them.
 const MOSTLY: i64 = 95;
 
-/// Bridges are not laid along gaps that are longer than those in the other direction by this much, in
-/// per cent of the latter.
-const MUCH_LONGER: i64 = 125;
+/// Lines of a bridge that are askew by no more than so many steps still cross the piers.
+const ASKEW: usize = 2;
 
 /// `hanging` without the pieces that bridge from place to place of `below`, and without what bridges
-/// from pier to pier.
+/// from pier to pier. Lines of skin run along the rows if `turn` is 0, else across.
 pub(super) fn without_bridges(
     hanging: &Rows,
     [layer, below]: [&Rows; 2],
+    turn: usize,
     params: &SupportParams,
 ) -> Rows {
     if params.longest_bridge <= 0 || hanging.is_empty() || below.is_empty() {
@@ -54,8 +56,8 @@ pub(super) fn without_bridges(
     }
     // Across, a gap is known to a row at each edge. Turned back, by three more quarters, it may be
     // short by a row at each edge.
-    let [layer, below] = [layer, below].map(|rows| turned(rows, pitch));
-    let columns = gaps([&layer, &below], params);
+    let [layer_across, below_across] = [layer, below].map(|rows| turned(rows, pitch));
+    let columns = gaps([&layer_across, &below_across], params);
     let rough = longest + 2 * i64::from(pitch);
     let short = columns.filter(|_, gap| gap.len() <= rough);
     let across = bridges(&upright(&short, params), 2 * pitch);
@@ -69,30 +71,41 @@ pub(super) fn without_bridges(
     let mut left = pieces.keep(hanging, |k| !is_short(k) && !far[0][k] && !far[1][k]);
     for k in (0..pieces.count()).filter(|k| !is_short(*k) && (far[0][*k] || far[1][*k])) {
         let piece = pieces.keep(hanging, |other| other == k);
-        let ways = [far[0][k].then_some(&rows), far[1][k].then_some(&columns)];
-        left = left.or(&piered(&piece, ways, params));
+        let way = way(&piece, [below, &below_across], turn, params).filter(|way| far[*way][k]);
+        let piers = match way {
+            Some(0) => piers(&near(&rows, &piece, params), params),
+            Some(_) => {
+                let near = near(&columns, &turned(&piece, pitch), params);
+                upright(&piers(&near, params), params)
+            }
+            None => piece.clone(),
+        };
+        left = left.or(&piers.and(&piece));
     }
     left
 }
 
-/// The piers of a piece that lies in gaps of one direction or both.
-fn piered(piece: &Rows, ways: [Option<&Rows>; 2], params: &SupportParams) -> Rows {
+/// Whether the lines of a bridge will run along the rows (0), across them (1), or neither.
+fn way(piece: &Rows, below: [&Rows; 2], turn: usize, params: &SupportParams) -> Option<usize> {
+    let pitch = params.raster().pitch;
+    let open = if turn == 0 { piece.clone() } else { turned(piece, pitch) };
+    let islands = Islands::new(&open);
+    let site = Site { island: 0, islands: &islands, carrier: below[turn], pitch };
+    let best = direction::best(&site, 2 * params.least);
+    let off = best % COUNT;
+    let is_near = |to: usize| off.abs_diff(to) <= ASKEW;
+    if is_near(0) || is_near(COUNT) {
+        Some(turn)
+    } else {
+        is_near(COUNT / 2).then_some(1 - turn)
+    }
+}
+
+/// The gaps that `piece` lies in.
+fn near(gaps: &Rows, piece: &Rows, params: &SupportParams) -> Rows {
     let pitch = params.raster().pitch;
     let near = piece.dilate(pitch, pitch);
-    let near = [turned(&near, pitch), near];
-    let own = |gaps: Option<&Rows>, near: &Rows| {
-        let meets = |j: i32, gap: Span| near.row(j).iter().any(|span| span.overlaps(gap));
-        gaps.map(|gaps| gaps.filter(meets)).unwrap_or_default()
-    };
-    let [rows, columns] = [own(ways[0], &near[1]), own(ways[1], &near[0])];
-    let longest = |gaps: &Rows| gaps.iter().flat_map(|(_, row)| row).map(|gap| gap.len()).max();
-    let shorter = longest(&rows).into_iter().chain(longest(&columns)).min();
-    let most = shorter.map_or(0, |len| len * MUCH_LONGER / 100);
-    let [rows, columns] = [rows, columns].map(|gaps| match longest(&gaps) {
-        Some(len) if len <= most => piers(&gaps, params),
-        _ => Rows::default(),
-    });
-    piece.and(&rows.or(&upright(&columns, params)))
+    gaps.filter(|j, gap| near.row(j).iter().any(|span| span.overlaps(gap)))
 }
 
 /// Strips that divide gaps which are too long.
@@ -167,14 +180,14 @@ mod tests {
                 [(100_000, true), (150_000, true), (150_100, true), (160_000, false)]
             {
                 let [hanging, layer, below] = plate(gap, is_turned);
-                let left = without_bridges(&hanging, [&layer, &below], &params);
+                let left = without_bridges(&hanging, [&layer, &below], 0, &params);
                 assert_eq!(left.is_empty(), bridges, "{gap} {is_turned}");
             }
         }
         // A balcony hangs on one side only.
         let [hanging, layer, below] = plate(100_000, false);
         let one = below.filter(|_, span| span.start == 0);
-        assert!(!without_bridges(&hanging, [&layer, &one], &params).is_empty());
+        assert!(!without_bridges(&hanging, [&layer, &one], 0, &params).is_empty());
     }
 
     #[test]
@@ -183,9 +196,9 @@ mod tests {
         (settings.support.enabled, settings.support.max_bridge) = (true, 15.0);
         let params = SupportParams::new(&settings).unwrap();
         for (gap, piers) in [(162_000, 1), (330_000, 1), (350_000, 2), (525_000, 2), (560_000, 3)] {
-            for is_turned in [false, true] {
+            for (is_turned, turn) in [(false, 0), (true, 0), (false, 1), (true, 1)] {
                 let [hanging, layer, below] = plate(gap, is_turned);
-                let left = without_bridges(&hanging, [&layer, &below], &params);
+                let left = without_bridges(&hanging, [&layer, &below], turn, &params);
                 let left = if is_turned { upright(&left, &params) } else { left };
                 let left = left.dilate(params.outset, 2_000);
                 assert_eq!(Pieces::new(&left).count(), piers, "{gap} {is_turned}");

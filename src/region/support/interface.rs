@@ -17,6 +17,7 @@ use super::params::{SupportLayer, SupportParams};
 use super::pieces::{Pieces, across, without_specks};
 use super::strips::strips;
 use crate::geom::spans::Rows;
+use rayon::prelude::*;
 
 /// The support of a layer, divided.
 #[derive(Debug, Default)]
@@ -34,17 +35,26 @@ impl Divided {
     }
 }
 
-/// What gets an outline on a layer, and would have nothing below it, gets one on those below.
-pub(super) fn carry(layers: &mut [Divided], params: &SupportParams) {
+/// The support of all layers, divided.
+pub(super) fn divided(columns: &[Column], params: &SupportParams) -> Vec<Divided> {
+    let strips = |column: &Column| {
+        if params.has_outline { strips(&column.all, params) } else { Rows::default() }
+    };
+    let strips: Vec<Rows> = columns.par_iter().map(strips).collect();
+    let divide = |k| divide((columns, &strips), k, params);
+    let mut layers: Vec<Divided> = (0..columns.len()).into_par_iter().map(divide).collect();
+    // What gets an outline on a layer, and would have nothing below it, gets one on those below.
     for k in (1..layers.len()).rev() {
         if let [below, here] = &mut layers[k - 1..=k] {
             below.body.carry(&here.body, params);
         }
     }
+    layers
 }
 
 /// The support of layer `k`, divided.
-pub(super) fn divide(columns: &[Column], k: usize, params: &SupportParams) -> Divided {
+fn divide(all: (&[Column], &[Rows]), k: usize, params: &SupportParams) -> Divided {
+    let (columns, strips) = (all.0, &all.1[k]);
     let here = &columns[k].all;
     if here.is_empty() {
         return Divided::default();
@@ -54,9 +64,7 @@ pub(super) fn divide(columns: &[Column], k: usize, params: &SupportParams) -> Di
         return Divided { interface, ..Divided::default() };
     }
     let pitch = params.raster().pitch;
-    let strips =
-        if params.has_outline { strips(&columns[k].all, params) } else { Rows::default() };
-    let [across, along] = interface(columns, k, &strips, params);
+    let [across, along] = interface(all, k, params);
     let along = along.minus(&across);
     // Where the two meet, their outermost lines lie beside each other.
     let dense = across.or(&along).dilate(params.least, pitch);
@@ -67,7 +75,7 @@ pub(super) fn divide(columns: &[Column], k: usize, params: &SupportParams) -> Di
     let body = with_lines(&here.minus(&dense), &beside);
     let carries = ends(columns, k + params.interface_layers);
     Divided {
-        body: Body::new(body, strips, carries, params),
+        body: Body::new(body, strips.clone(), carries, params),
         interface: [params.along(&along), params.across(&across)],
     }
 }
@@ -90,35 +98,39 @@ fn ends(columns: &[Column], k: usize) -> Rows {
     columns.get(k + 1).map_or_else(|| here.reach.clone(), |above| here.reach.minus(&above.reach))
 }
 
-/// The interface of layer `k` with lines across and along those of the support. On `strips` they are
-/// exchanged.
+/// The interface of layer `k` with lines across and along those of the support. Next to strips they
+/// are exchanged.
 fn interface(
-    columns: &[Column],
+    (columns, strips): (&[Column], &[Rows]),
     k: usize,
-    strips: &Rows,
     params: &SupportParams,
 ) -> [Rows; 2] {
     let mut out = [Rows::default(), Rows::default()];
     let n = params.interface_layers;
-    let pitch = params.raster().pitch;
+    let (none, pitch) = (Rows::default(), params.raster().pitch);
     let all = |k: usize| &columns[k].all;
     // On a slope of the part support ends by less than a line on each layer: dense lines would
-    // stand alone there.
+    // stand alone there. What is added beside the body begins there, too.
     let bottom = |k: usize| {
         let ends = all(k).minus(all(k - 1));
-        ends.erode(params.least / 2, pitch).dilate(params.least / 2, pitch)
+        let ends = ends.erode(params.least / 2, pitch).dilate(params.least / 2, pitch);
+        with_lines(&ends, &columns[k].beside.minus(&columns[k - 1].beside).minus(all(k - 1)))
     };
+    let own = all(k).or(&columns[k].beside);
     for rank in 1..=n {
-        let top = self::ends(columns, k + rank - 1);
         let bottom = if rank <= k { bottom(k + 1 - rank) } else { Rows::default() };
-        let ends = top.or(&bottom);
-        if ends.is_empty() {
-            continue;
-        }
-        let wide = ends.dilate(params.least, pitch).and(all(k));
-        let turn = (n - rank) % 2;
-        for (turn, rows) in [(turn, wide.minus(strips)), (1 - turn, wide.and(strips))] {
-            out[turn] = out[turn].or(&rows);
+        let first = n - rank;
+        // The body that a stack lies on, or that stands on it, is next to the layer of the highest rank.
+        let next = [k.checked_sub(first + 1), Some(k + first + 1)];
+        for (ends, next) in [self::ends(columns, k + rank - 1), bottom].into_iter().zip(next) {
+            if ends.is_empty() {
+                continue;
+            }
+            let wide = ends.dilate(params.least, pitch).and(&own);
+            let next = next.and_then(|k| strips.get(k)).unwrap_or(&none);
+            for (turn, rows) in [(first % 2, wide.minus(next)), (1 - first % 2, wide.and(next))] {
+                out[turn] = out[turn].or(&rows);
+            }
         }
     }
     out.map(|rows| without_specks(&rows, params))

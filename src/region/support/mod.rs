@@ -81,11 +81,8 @@ pub fn supports(
         column.beside = column.beside.and(bed.inside());
     });
     stand::stand(&mut columns, params);
-    let divided = |k| interface::divide(&columns, k, params);
-    let mut layers: Vec<Divided> = (0..columns.len()).into_par_iter().map(divided).collect();
-    interface::carry(&mut layers, params);
     let laid = |(k, layer): (usize, Divided)| layer.lay(k, params);
-    layers.into_par_iter().enumerate().map(laid).collect()
+    interface::divided(&columns, params).into_par_iter().enumerate().map(laid).collect()
 }
 
 /// Grows the lowest layer, to hold on to the bed.

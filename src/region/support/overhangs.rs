@@ -12,6 +12,7 @@ use super::params::SupportParams;
 use super::pieces::Pieces;
 use super::printed::printed;
 use crate::geom::spans::Rows;
+use crate::region::per_raster::skin_turn;
 use crate::region::scan::Scan;
 use crate::slice::Layer;
 use crate::units::{Coord, to_mm, to_units};
@@ -95,7 +96,8 @@ pub(super) struct Overhang {
 pub(super) fn overhang(layer: &LayerView, below: &LayerView, params: &SupportParams) -> Overhang {
     let pitch = params.raster().pitch;
     let hanging = sagging(layer.grown.minus(&below.carries), below, params);
-    let hanging = without_bridges(&hanging, [&layer.inside, &below.inside], params);
+    let turn = skin_turn(layer.index).0;
+    let hanging = without_bridges(&hanging, [&layer.inside, &below.inside], turn, params);
     if hanging.is_empty() {
         return Overhang { layer: layer.index, ..Overhang::default() };
     }
