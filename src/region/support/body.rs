@@ -75,7 +75,7 @@ pub(super) struct Body {
 }
 
 /// What gets an outline is left out of zigzags, and their rests are looked at again, so many times.
-const MOST_PASSES: usize = 3;
+const MOST_PASSES: usize = 6;
 
 /// How a piece hangs together.
 #[derive(Debug)]
@@ -152,7 +152,7 @@ impl Body {
             return (Vec::new(), [along, Rows::default(), across, Rows::default()]);
         }
         let raster = params.raster();
-        let inwards = params.least * LINES_FROM_OUTLINE / 100;
+        let inwards = inwards(params);
         let lines = outlined.erode(inwards, raster.pitch);
         let zigzags = rows.minus(&outlined.dilate(inwards, raster.pitch));
         let outlines = outlines(&outlined, raster.pitch, raster.frame, 4 * params.least);
@@ -182,6 +182,11 @@ fn opened(rows: &Rows, params: &SupportParams) -> Rows {
 /// The longest brace, grid units.
 fn brace(params: &SupportParams) -> i64 {
     i64::from(BRACE * params.lines.stride * params.raster().pitch)
+}
+
+/// How far lines end inside an outline.
+fn inwards(params: &SupportParams) -> Coord {
+    params.least * LINES_FROM_OUTLINE / 100
 }
 
 /// What of `rows` gets lines along, and what of it lines across, on their rasters.
@@ -216,7 +221,8 @@ fn hold(piece: &Rows, strips: &Rows, params: &SupportParams) -> Hold {
         if weak.total() as f64 >= MOSTLY * piece.total() as f64 {
             return Hold::Outline;
         }
-        let [along, across] = apart(&piece.minus(&weak), strips, params);
+        let left = piece.minus(&weak.dilate(inwards(params), pitch));
+        let [along, across] = apart(&left, strips, params);
         laid = Strands::of([&along, &across], params);
         found = std::mem::take(&mut laid.stubs);
     }
@@ -341,7 +347,8 @@ mod tests {
     fn a_ring_whose_sides_lie_between_lines_gets_ties_and_no_outlines() {
         let ring = block(3..160, 0, 450_000).minus(&block(13..151, 19_000, 431_000));
         let [(between, rows), (tied, _)] = [1, SELDOM_TIED].map(|k| laid(&ring, &Rows::default(), k));
-        assert!(between < 1.0, "{between}");
+        // But for a line at a corner.
+        assert!(between < 15.0, "{between}");
         assert!(tied > 280.0, "{tied}");
         assert!(!rows[0].is_empty() && !rows[2].is_empty() && rows[1].is_empty());
     }

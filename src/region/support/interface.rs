@@ -16,7 +16,7 @@ use super::columns::Column;
 use super::params::{SupportLayer, SupportParams};
 use super::pieces::{Pieces, across, without_specks};
 use super::strips::strips;
-use crate::geom::spans::Rows;
+use crate::geom::spans::{Rows, Span};
 use rayon::prelude::*;
 
 /// The support of a layer, divided.
@@ -65,9 +65,17 @@ fn divide(all: (&[Column], &[Rows]), k: usize, params: &SupportParams) -> Divide
     }
     let pitch = params.raster().pitch;
     let [across, along] = interface(all, k, params);
-    let along = along.minus(&across);
+    let mut parts = [along.minus(&across), across];
     // Where the two meet, their outermost lines lie beside each other.
-    let dense = across.or(&along).dilate(params.least, pitch);
+    let mut dense = parts[0].or(&parts[1]).dilate(params.least, pitch);
+    let rests = rests(&here.minus(&dense), strips, params);
+    if !dense.is_empty() && !rests.is_empty() {
+        let rests = rests.dilate(params.least + pitch, pitch).and(here);
+        parts[1] = with_lines(&parts[1], &rests);
+        parts[0] = with_lines(&parts[0], &rests).minus(&parts[1]);
+        dense = parts[0].or(&parts[1]).dilate(params.least, pitch);
+    }
+    let [along, across] = parts;
     let mut beside = columns[k].beside.minus(&dense);
     if !strips.is_empty() && !beside.is_empty() {
         beside = beside.minus(&strips.dilate(params.lines.stride * pitch, pitch));
@@ -78,6 +86,18 @@ fn divide(all: (&[Column], &[Rows]), k: usize, params: &SupportParams) -> Divide
         body: Body::new(body, strips.clone(), carries, params),
         interface: [params.along(&along), params.across(&across)],
     }
+}
+
+/// The pieces of a body without a line of their own. Beside the interface they belong to it: its lines
+/// reach that far, and an outline of theirs would have nothing below it.
+fn rests(body: &Rows, strips: &Rows, params: &SupportParams) -> Rows {
+    let prints =
+        |j: i32, span: Span| params.lines.prints(j) && span.len() >= i64::from(params.least);
+    let pieces = Pieces::new(body);
+    let mut has_line = vec![false; pieces.count()];
+    let lines = body.filter(prints).or(&body.and(strips));
+    pieces.meeting(body, &lines, |piece, _| has_line[piece] = true);
+    pieces.keep(body, |piece| !has_line[piece])
 }
 
 /// A body with what it needs to be held by lines: those pieces of both that have some of the body in them.
