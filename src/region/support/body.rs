@@ -77,26 +77,6 @@ pub(super) struct Body {
 /// What gets an outline is left out of zigzags, and their rests are looked at again, so many times.
 const MOST_PASSES: usize = 6;
 
-/// How a piece hangs together.
-#[derive(Debug)]
-enum Hold {
-    /// All of its lines are one zigzag.
-    Zigzag,
-    /// Its lines need ties.
-    Ties(Places),
-    /// It needs an outline.
-    Outline,
-}
-
-/// Places of a piece that need more than others.
-#[derive(Debug, Default)]
-struct Places {
-    /// They get an outline.
-    weak: Rows,
-    /// They have lines that are part of no zigzag.
-    lone: Rows,
-}
-
 impl Body {
     /// The body that covers `rows`, with lines across on `strips`. On `carries` the interface of the
     /// next layer lies on it.
@@ -106,22 +86,32 @@ impl Body {
         }
         let rows = opened(&rows, params);
         let pieces = Pieces::new(&rows);
-        let (mut thin, mut tied) = (vec![false; pieces.count()], vec![false; pieces.count()]);
-        let (mut weak, mut lone) = (Vec::new(), Vec::new());
-        for piece in 0..pieces.count() {
-            match hold(&pieces.keep(&rows, |other| other == piece), &strips, params) {
-                Hold::Zigzag => {}
-                Hold::Ties(places) => {
-                    tied[piece] = true;
-                    weak.push(places.weak);
-                    lone.push(places.lone);
-                }
-                Hold::Outline => thin[piece] = true,
-            }
+        let is_thin = |piece: usize| {
+            let piece = pieces.keep(&rows, |other| other == piece);
+            !is_broad(&apart(&piece, &strips, params), params)
+        };
+        let mut thin: Vec<bool> = (0..pieces.count()).map(is_thin).collect();
+        let broad = pieces.keep(&rows, |piece| !thin[piece]);
+        let (weak, strands) = weak(&broad, &strips, params);
+        // What is mostly weak gets an outline as a whole.
+        let mut of_weak = vec![0; pieces.count()];
+        pieces.shared(&rows, &weak, &mut of_weak);
+        for (piece, length) in pieces.lengths(&rows).into_iter().enumerate() {
+            thin[piece] |= of_weak[piece] as f64 >= MOSTLY * length as f64;
         }
-        let [thin, tied] = [thin, tied].map(|which| pieces.keep(&rows, |piece| which[piece]));
-        let [weak, lone] =
-            [weak, lone].map(|parts| Rows::united(&parts.iter().collect::<Vec<_>>()));
+        let heads = Pieces::new(&strands.heads);
+        let mut of_heads = vec![None; heads.count()];
+        pieces.meeting(&rows, &strands.heads, |piece, k| of_heads[heads.of(k)] = Some(piece));
+        let mut count = vec![0; pieces.count()];
+        of_heads.into_iter().flatten().for_each(|piece| count[piece] += 1);
+        let mut has_lone = vec![false; pieces.count()];
+        pieces.meeting(&rows, &strands.lone, |piece, _| has_lone[piece] = true);
+        let is_zigzag = |k: usize| count[k] <= 1 && of_weak[k] == 0 && !has_lone[k];
+        let tied = pieces.keep(&rows, |piece| !thin[piece] && !is_zigzag(piece));
+        let thin = pieces.keep(&rows, |piece| thin[piece]);
+        // Ties reach around the next line.
+        let lone = around(&strands.lone, &tied, params.lines.stride, params);
+        let weak = weak.minus(&thin);
         Self { rows, strips, carries, thin, tied, lone, weak }
     }
 
@@ -137,7 +127,14 @@ impl Body {
         let mut carried = vec![false; pieces.count()];
         pieces.meeting(&above.weak, &lines, |piece, _| carried[piece] = true);
         let falls = pieces.keep(&above.weak, |piece| !carried[piece]);
-        self.weak = self.weak.or(&falls.and(&self.rows));
+        let falls = falls.and(&self.rows);
+        if !falls.is_empty() {
+            // Lines may lose what they were joined to.
+            let far = params.lines.stride * params.raster().pitch + params.least;
+            let near = falls.dilate(far, params.raster().pitch).and(&self.rows);
+            self.lone = self.lone.or(&near.minus(&self.thin));
+            self.weak = self.weak.or(&falls);
+        }
     }
 
     /// The outlines of layer `k`, and where its lines run, by pattern.
@@ -197,45 +194,46 @@ fn apart(rows: &Rows, strips: &Rows, params: &SupportParams) -> [Rows; 2] {
     [rows.minus(strips), turned(&rows.and(strips), params.raster().pitch)]
 }
 
-/// How `piece` hangs together.
-fn hold(piece: &Rows, strips: &Rows, params: &SupportParams) -> Hold {
-    let [along, across] = apart(piece, strips, params);
-    if !is_broad([&along, &across], params) {
-        return Hold::Outline;
-    }
-    let pitch = params.raster().pitch;
-    let mut laid = Strands::of([&along, &across], params);
+/// The weak places of `rows` with what lies around them, and how lines lie in the rest.
+fn weak(rows: &Rows, strips: &Rows, params: &SupportParams) -> (Rows, Strands) {
+    let [along, across] = apart(rows, strips, params);
+    let mut strands = Strands::of([&along, &across], params);
     let loose = [loose(&params.lines, &along), upright(&loose(&params.crossing, &across), params)];
-    let mut found = loose[0].or(&loose[1]).or(&laid.stubs);
-    if found.is_empty() && laid.count == 1 && laid.lone.is_empty() {
-        return Hold::Zigzag;
-    }
-    // Up to the next line, which is left out: so others may lose what they were joined to.
-    let far = (reach(&params.lines) + 1) * pitch + params.least;
+    let mut found = loose[0].or(&loose[1]).or(&strands.stubs);
     let mut weak = Rows::default();
     for _ in 0..MOST_PASSES {
         if found.is_empty() {
             break;
         }
-        weak = weak.or(&piece.and(&found.dilate(far, pitch)));
-        if weak.total() as f64 >= MOSTLY * piece.total() as f64 {
-            return Hold::Outline;
-        }
-        let left = piece.minus(&weak.dilate(inwards(params), pitch));
+        // Up to the next line, which is left out: so others may lose what they were joined to.
+        weak = weak.or(&around(&found, rows, reach(&params.lines) + 1, params));
+        let left = rows.minus(&weak.dilate(inwards(params), params.raster().pitch));
         let [along, across] = apart(&left, strips, params);
-        laid = Strands::of([&along, &across], params);
-        found = std::mem::take(&mut laid.stubs);
+        strands = Strands::of([&along, &across], params);
+        found = std::mem::take(&mut strands.stubs);
     }
-    // Ties reach around the next line.
-    let far = params.lines.stride * pitch + params.least;
-    Hold::Ties(Places { weak, lone: piece.and(&laid.lone.dilate(far, pitch)) })
+    (weak, strands)
 }
 
-/// How lines along and across lie in a piece.
+/// What of the pieces of `rows` that have some of `places` lies around these, by so many pitches and a
+/// line's width.
+fn around(places: &Rows, rows: &Rows, far: i32, params: &SupportParams) -> Rows {
+    if places.is_empty() {
+        return Rows::default();
+    }
+    let pitch = params.raster().pitch;
+    let near = places.dilate(far * pitch + params.least, pitch).and(rows);
+    let pieces = Pieces::new(&near);
+    let mut meets = vec![false; pieces.count()];
+    pieces.meeting(&near, places, |piece, _| meets[piece] = true);
+    pieces.keep(&near, |piece| meets[piece])
+}
+
+/// How lines along and across lie.
 #[derive(Debug, Default)]
 struct Strands {
-    /// Number of zigzags and single lines.
-    count: usize,
+    /// A line of each zigzag, and each single line.
+    heads: Rows,
     /// The short ones of the single lines, and the others.
     stubs: Rows,
     lone: Rows,
@@ -247,7 +245,7 @@ impl Strands {
         let (rows, columns) =
             (Self::on(&params.lines, along, params), Self::on(&params.crossing, across, params));
         Self {
-            count: rows.count + columns.count,
+            heads: rows.heads.or(&upright(&columns.heads, params)),
             stubs: rows.stubs.or(&upright(&columns.stubs, params)),
             lone: rows.lone.or(&upright(&columns.lone, params)),
         }
@@ -263,21 +261,20 @@ impl Strands {
             .iter()
             .filter(|strand| strand.len() < LEAST_POINTS)
             .partition(|strand| length(strand) <= brace(params));
-        let [stubs, lone] = [stubs, lone].map(|which| on_rows(&which, lines.raster.pitch));
-        Self { count: strands.len(), stubs, lone }
+        let [heads, stubs, lone] = [strands.iter().collect(), stubs, lone]
+            .map(|which: Vec<&Polyline>| on_rows(&which, lines.raster.pitch));
+        Self { heads, stubs, lone }
     }
 }
 
-/// Single lines as rows, with a row on each side for what looks at them across.
-fn on_rows(lines: &[&Polyline], pitch: Coord) -> Rows {
-    let mut spans: Vec<(i32, Span)> = lines
-        .iter()
-        .filter_map(|line| {
-            let (a, b) = (line.first()?, line.last()?);
-            let span = Span { start: a.u.min(b.u), end: a.u.max(b.u) };
-            Some((a.v.div_euclid(pitch), span))
-        })
-        .collect();
+/// The first line of each strand as a row, with a row on each side for what looks at them across.
+fn on_rows(strands: &[&Polyline], pitch: Coord) -> Rows {
+    let line = |strand: &&Polyline| {
+        let (a, b) = (strand.first()?, strand.get(1)?);
+        let span = Span { start: a.u.min(b.u), end: a.u.max(b.u) };
+        (a.v == b.v).then_some((a.v.div_euclid(pitch), span))
+    };
+    let mut spans: Vec<(i32, Span)> = strands.iter().filter_map(line).collect();
     spans.sort_unstable_by_key(|(j, span)| (*j, span.start));
     let mut out = Rows::starting_at(spans.first().map_or(0, |(j, _)| *j));
     for row in spans.chunk_by(|a, b| a.0 == b.0) {
@@ -290,7 +287,7 @@ fn on_rows(lines: &[&Polyline], pitch: Coord) -> Rows {
 }
 
 /// Whether lines along and across alone are as thick as support must be, and at least two.
-fn is_broad([along, across]: [&Rows; 2], params: &SupportParams) -> bool {
+fn is_broad([along, across]: &[Rows; 2], params: &SupportParams) -> bool {
     let pitch = params.raster().pitch;
     let long = |span: &&Span| span.len() >= i64::from(params.least);
     let w = to_mm(params.least);
@@ -346,7 +343,8 @@ mod tests {
     #[test]
     fn a_ring_whose_sides_lie_between_lines_gets_ties_and_no_outlines() {
         let ring = block(3..160, 0, 450_000).minus(&block(13..151, 19_000, 431_000));
-        let [(between, rows), (tied, _)] = [1, SELDOM_TIED].map(|k| laid(&ring, &Rows::default(), k));
+        let [(between, rows), (tied, _)] =
+            [1, SELDOM_TIED].map(|k| laid(&ring, &Rows::default(), k));
         // But for a line at a corner.
         assert!(between < 15.0, "{between}");
         assert!(tied > 280.0, "{tied}");
@@ -369,7 +367,8 @@ mod tests {
     fn an_outline_between_two_lines_stands_on_another() {
         let params = params();
         let body = |rows: &Rows| Body::new(rows.clone(), Rows::default(), Rows::default(), &params);
-        let (mut above, mut below) = (body(&block(0..91, 0, 400_000)), body(&block(0..91, 0, 400_000)));
+        let (mut above, mut below) =
+            (body(&block(0..91, 0, 400_000)), body(&block(0..91, 0, 400_000)));
         above.weak = block(31..44, 100_000, 140_000);
         below.carry(&above, &params);
         assert_eq!(below.weak.total(), above.weak.total());

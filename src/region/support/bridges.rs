@@ -94,11 +94,7 @@ fn way(piece: &Rows, below: [&Rows; 2], turn: usize, params: &SupportParams) -> 
     let best = direction::best(&site, 2 * params.least);
     let off = best % COUNT;
     let is_near = |to: usize| off.abs_diff(to) <= ASKEW;
-    if is_near(0) || is_near(COUNT) {
-        Some(turn)
-    } else {
-        is_near(COUNT / 2).then_some(1 - turn)
-    }
+    if is_near(0) || is_near(COUNT) { Some(turn) } else { is_near(COUNT / 2).then_some(1 - turn) }
 }
 
 /// The gaps that `piece` lies in.
@@ -121,7 +117,8 @@ fn piers(gaps: &Rows, params: &SupportParams) -> Rows {
                 // As many as leave no stretch that is too long, and all stretches alike.
                 let count = (gap.len() + grown - 1) / (longest + grown);
                 let free = (gap.len() - count * grown) / (count + 1);
-                let start = |i: i64| gap.start + (i * free + (i - 1) * grown) as Coord + params.outset;
+                let start =
+                    |i: i64| gap.start + (i * free + (i - 1) * grown) as Coord + params.outset;
                 let pier = |start: Coord| Span { start, end: start + wide };
                 spans.extend((1..=count).map(start).map(pier));
             }
