@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use crate::common::{Kind, Move, Solid, slice, solid::circle};
+use crate::common::{Kind, Move, Run, Solid, slice, solid::circle};
 use proptest::prelude::*;
 use slicer::check::finding::{Code, Finding};
 use slicer::check::terms::Terms;
@@ -124,5 +124,63 @@ fn support_under_eaves_is_one_folded_strip() {
         let lines = run.print.of(Kind::Support).filter(is_there);
         let per_layer = lines.map(Move::length).sum::<f64>() / layers.len() as f64;
         assert!(per_layer < 1.9 * 150.0 && per_layer > 1.2 * 150.0, "{at}: {per_layer}");
+    }
+}
+
+/// The longest stretch of bridge lines over the middle of a part, `half` wide to both sides, with
+/// neither support nor a wall near it below, mm.
+fn longest_free(run: &Run, half: [f64; 2]) -> f64 {
+    let walls: Vec<&Move> = run.print.of(Kind::OuterWall).collect();
+    let middle = [0, 1].map(|axis| {
+        let ends = || walls.iter().map(|wall| wall.to[axis]);
+        0.5 * (ends().fold(f64::MAX, f64::min) + ends().fold(f64::MIN, f64::max))
+    });
+    let bridge: Vec<&Move> = run.print.of(Kind::Bridge).collect();
+    let first = bridge.iter().filter_map(|line| line.layer).min().unwrap();
+    let is_below = |line: &&Move| line.layer == Some(first - 2);
+    let support: Vec<&Move> = run.print.of(Kind::SupportInterface).filter(is_below).collect();
+    let carried = |at: [f64; 2]| {
+        let is_open = (0..2).all(|axis| (at[axis] - middle[axis]).abs() < half[axis]);
+        let near = |line: &&Move| {
+            (0..=40)
+                .map(|i| line.at(f64::from(i) / 40.0))
+                .any(|p| (p[0] - at[0]).hypot(p[1] - at[1]) < 0.7)
+        };
+        !is_open || support.iter().any(near)
+    };
+    let mut longest = 0.0_f64;
+    for line in bridge.iter().filter(|line| line.layer == Some(first)).step_by(5) {
+        let steps = (line.length() / 0.25).ceil().max(1.0);
+        let mut free = 0.0;
+        for i in 0..=steps as usize {
+            free =
+                if carried(line.at(i as f64 / steps)) { 0.0 } else { free + line.length() / steps };
+            longest = longest.max(free);
+        }
+    }
+    longest
+}
+
+/// Halls and bridges that are too long get support in strips, across the lines of their skin.
+#[test]
+fn a_long_bridge_lies_on_piers() {
+    let wall = |low: [f64; 2], high: [f64; 2]| {
+        Solid::cuboid([low[0], low[1], 0.0], [high[0], high[1], 5.2])
+    };
+    // Whole layers higher, the skin runs the other way.
+    for [x, y, low] in [[15.0, 15.2, 4.8], [15.0, 15.2, 5.0], [16.0, 12.0, 4.8]] {
+        let (a, b) = (x + 3.0, y + 3.0);
+        let hall = wall([-a, -b], [-x, b]).and(&wall([x, -b], [a, b]));
+        let hall = hall.and(&wall([-a, -b], [a, -y])).and(&wall([-a, y], [a, b]));
+        let part = hall.and(&Solid::cuboid([-a, -b, low], [a, b, low + 1.0]));
+        let set = [("support.enabled", "true"), ("angle", "0")];
+        let run = slice(&part.stl(), "generic-marlin", &set);
+        let found = faults(&run.text);
+        assert!(found.is_empty(), "{found:?}");
+        let free = longest_free(&run, [x - 0.5, y - 0.5]);
+        assert!(free > 5.0 && free < 20.5, "{x} {y} {low}: {free}");
+        let dense: f64 = run.print.of(Kind::SupportInterface).map(Move::length).sum();
+        // Two layers of lines 0.6 mm apart at the top and on the bed.
+        assert!(dense < 0.45 * 4.0 * 4.0 * x * y / 0.6, "{x} {y} {low}: {dense}");
     }
 }
