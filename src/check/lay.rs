@@ -252,8 +252,7 @@ impl<'a> Judge<'a> {
             carriers.add_bed();
         }
         let room = room_below(step);
-        let needed = lowest - room;
-        ground.near(bead, (needed, SLACK), &mut self.seen_below, |place, other| {
+        ground.near(bead, (lowest - room, SLACK), &mut self.seen_below, |place, other| {
             if may_run && let Some(way) = runs_on(bead, other) {
                 ways.laid.push(way);
             }
