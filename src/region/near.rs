@@ -3,6 +3,7 @@
 use crate::geom::cells::Cells;
 use crate::geom::{Contour, Point, edges, segment};
 use crate::units::Bounded as _;
+use std::cmp::Ordering;
 use std::ops::Range;
 
 /// Maximum number of cells along each side of an area. It bounds the memory for large parts; fewer
@@ -128,16 +129,10 @@ impl Near {
     pub(super) fn nearest(&self, p: [f64; 2], distance: f64) -> Option<Edge> {
         let square = distance * distance;
         let near = self.around(&[p], distance).flatten().filter(|edge| is_nearer(p, edge, square));
-        let mut nearest: Option<(f64, &Edge)> = None;
-        for edge in near {
-            let far = segment::distance2(p, *edge);
-            let is_better =
-                |(least, other): (f64, &Edge)| far < least || far == least && edge < other;
-            if nearest.is_none_or(is_better) {
-                nearest = Some((far, edge));
-            }
-        }
-        nearest.map(|(_, edge)| *edge)
+        let nearest = near.map(|edge| (segment::distance2(p, *edge), edge));
+        let order =
+            |a: &(f64, &Edge), b: &(f64, &Edge)| a.partial_cmp(b).unwrap_or(Ordering::Equal);
+        nearest.min_by(order).map(|(_, edge)| *edge)
     }
 
     /// Whether no wall is nearer than `distance` to any of `places`, which lie within the area.
