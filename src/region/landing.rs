@@ -40,6 +40,11 @@ const LEAST_REST: Coord = 2;
 /// one leaves ends in the air.
 const LONGEST: Coord = 12;
 
+/// A line that lies on nothing at all goes on to what is this far from the last line before it at most, in line
+/// widths: across a cell of thin infill in two or three directions. With a smaller value pieces of skin hang
+/// in such cells; a larger one bridges what should be infill.
+const LONGEST_LOOSE: Coord = 32;
+
 /// It goes on to what is solid if it is free for this long at most, in line widths. It may run along
 /// the lines below; a larger value makes lines that sag.
 const LONGEST_ALONG: Coord = 6;
@@ -73,10 +78,10 @@ pub fn beyond(skin: &Rows, around: &Around<'_>) -> Rows {
         if !infill.is_empty() && !below.is_empty() {
             let mirrored = |row: &[Span]| -> Vec<Span> { row.iter().rev().map(mirror).collect() };
             let ahead = Row { infill, below, printed };
-            found.extend(row.iter().filter_map(|s| ahead.beyond(s.end, around)));
+            found.extend(row.iter().filter_map(|s| ahead.beyond(*s, around)));
             let rows = [infill, below, printed].map(mirrored);
             let back = Row { infill: &rows[0], below: &rows[1], printed: &rows[2] };
-            let behind = row.iter().filter_map(|s| back.beyond(-s.start, around));
+            let behind = row.iter().filter_map(|s| back.beyond(mirror(s), around));
             found.extend(behind.map(|span| mirror(&span)));
         }
         out.push_row(|spans| merge(&mut found, spans));
@@ -97,10 +102,10 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// Where a skin that ends at `at` goes on; `None` if it lies on something there, or if nothing
+    /// Where a line of skin goes on at its end; `None` if it lies on something there, or if nothing
     /// is near enough.
-    fn beyond(&self, at: Coord, around: &Around<'_>) -> Option<Span> {
-        let w = around.line_width;
+    fn beyond(&self, skin: Span, around: &Around<'_>) -> Option<Span> {
+        let (w, at) = (around.line_width, skin.end);
         let room = self.infill.iter().find(|s| s.start == at)?;
         let void = self.below.iter().find(|s| s.start < at && at < s.end)?;
         let [least, over] = OVER_LINE.map(|quarters| quarters * w / 4);
@@ -112,7 +117,8 @@ impl Row<'_> {
         let line = self.printed.get(known).map(|s| s.start + over);
         // Where the infill below ends, skin or a wall lies below.
         let solid = (void.end + w).min(room.end);
-        let is_near = line.is_some_and(|line| line - carried <= LONGEST * w)
+        let longest = if carried <= skin.start { LONGEST_LOOSE } else { LONGEST };
+        let is_near = line.is_some_and(|line| line - carried <= longest * w)
             || solid - carried <= LONGEST_ALONG * w;
         if !is_near {
             return None;
@@ -138,7 +144,7 @@ pub struct Floor<'a> {
 impl Floor<'_> {
     /// The stretches of the rows of `raster` that lie on its lines, as far as `ends` may reach.
     fn printed(&self, raster: Raster, ends: &Ends) -> Rows {
-        let far = (LONGEST + 2) * self.line_width;
+        let far = (LONGEST_LOOSE + 2) * self.line_width;
         let is_near = |p: Point, q: Point| {
             p.x.max(q.x) >= ends.along.start - far && p.x.min(q.x) <= ends.along.end + far
         };
@@ -303,6 +309,23 @@ mod tests {
         };
         let more = beyond(&row(&[(-11_000, 11_000)]), &around);
         assert_eq!(more, row(&[(-21_000, -11_000), (11_000, 21_000)]));
+    }
+
+    #[test]
+    fn a_line_that_lies_on_nothing_goes_on_across_a_wide_cell() {
+        // What a line below holds ends in the air rather than that it bridges so much.
+        for (first, most) in [(-8_000, 11_000), (30_000, 33_000)] {
+            let lines = [(-44_000, -40_000), (first, first + 4_000), (52_000, 56_000)];
+            let around = Around {
+                infill: &row(&[(-90_000, -11_000), (11_000, 90_000)]),
+                below: &row(&[(-90_000, 90_000)]),
+                printed: &row(&lines),
+                line_width: W,
+            };
+            let more = beyond(&row(&[(-11_000, 11_000)]), &around);
+            let end = more.row(0).last().map_or(11_000, |s| s.end.max(11_000));
+            assert_eq!(end, most, "{first}");
+        }
     }
 
     #[test]
