@@ -1,5 +1,6 @@
 //! A line -> whether it is of the part, and of its layer.
 
+use super::laid::Bead;
 use crate::reader::Role;
 use crate::reader::print::{Layer, Step};
 
@@ -50,6 +51,15 @@ pub(super) fn pieces(step: &Step, layers: &[Layer]) -> Vec<(usize, Step)> {
         from = to;
     }
     pieces
+}
+
+/// How far beside its own width a line of a layer carries one that lies over it, mm: level lines as far as that one is
+/// wide, as those of layers below do, since a skin's line may lie half over the next tread of its staircase. Of a skin
+/// they carry only what lies over them: next to a line lies its neighbour down the slope.
+pub(super) fn carries_aside(step: &Step, layer: &Layer, bead: &Bead) -> f64 {
+    let is_tread = step.role != Role::NonPlanar
+        && step.heights().into_iter().all(|z| (z - layer.z).abs() < SAME_HEIGHT);
+    if is_tread { bead.radius } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@
 use super::anchors::{self, LEAST_RUN, Loose, Piece};
 use super::bead::{Bead, both};
 use super::beads::place;
-use super::belongs::is_stray;
+use super::belongs::{carries_aside, is_stray};
 use super::bodies::Start;
 use super::carriers::Carriers;
 use super::chains::{CORE, SAME_HEIGHT, chains_of, is_ironing, runs_on};
@@ -323,7 +323,8 @@ impl<'a> Judge<'a> {
                 ways.laid.push(way);
             }
             if is_off {
-                let under = bead.way(other, other.radius + SLACK);
+                let aside = carries_aside(&self.moves[other.step as usize], self.level, bead);
+                let under = bead.way(other, other.radius + aside + SLACK);
                 let carried = under.zip(above(bead, other, [over, room]));
                 ways.carried.extend(carried.and_then(|(a, b)| both(a, b)));
             }

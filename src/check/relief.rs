@@ -93,14 +93,15 @@ impl Relief {
         f64::from(self.highest)
     }
 
-    /// A line is laid; of a skin, cells keep how high they stood before.
-    pub(super) fn lay(&mut self, step: &Step, is_skin: bool) {
+    /// A line is laid; of a skin, cells keep how high they stood before. Where the nozzle `goes_on` beyond its end
+    /// with the next line, nothing stands as high there as its end, if it falls: the nozzle has passed.
+    pub(super) fn lay(&mut self, step: &Step, is_skin: bool, goes_on: bool) {
         if step.from.iter().chain(&step.to).any(|at| f64::from(at.abs()) > FARTHEST) {
             return;
         }
         self.highest = self.highest.max(step.from[2]).max(step.to[2]);
         let mut known: Option<([i32; 2], usize)> = None;
-        strips(step, CORNER, |strip| {
+        strips(step, CORNER, goes_on, |strip| {
             let mut column = strip.columns.start;
             while column < strip.columns.end {
                 let (at, index) = place([column, strip.row]);
@@ -303,8 +304,8 @@ impl Strip {
 
 /// Hands the cells that a line covers to `sink`, row by row: those whose middles lie within `grow` mm of
 /// it. With half a cell's diagonal they are all cells of which it covers something, as high as it is
-/// anywhere in them.
-fn strips(step: &Step, grow: f64, mut sink: impl FnMut(&Strip)) {
+/// anywhere in them. Beyond its ends it is as high as these; if it `falls_on`, it falls on beyond its lower one.
+fn strips(step: &Step, grow: f64, falls_on: bool, mut sink: impl FnMut(&Strip)) {
     let (from, to) = (step.from.map(f64::from), step.to.map(f64::from));
     let way = segment::way(from, to);
     let square = way[0] * way[0] + way[1] * way[1];
@@ -313,8 +314,11 @@ fn strips(step: &Step, grow: f64, mut sink: impl FnMut(&Strip)) {
     } else {
         (0.0, [0.0; 3])
     };
-    let ends = step.heights().map(|z| z + rise);
+    let mut ends = step.heights().map(|z| z + rise);
     let radius = f64::from(step.width) / 2.0 + grow;
+    if falls_on && way[2] < 0.0 && square > 0.0 {
+        ends[0] += radius * way[2] / square.sqrt();
+    }
     let line = Capsule { from: [from[0], from[1]], to: [to[0], to[1]], radius };
     let ((low, high), flanks) = (line.extent(), line.flanks());
     // Cells whose middles lie from one place to another.
@@ -331,7 +335,7 @@ fn strips(step: &Step, grow: f64, mut sink: impl FnMut(&Strip)) {
 
 /// As [`strips`], cell by cell, each with the line's height there.
 pub(super) fn footprint(step: &Step, grow: f64, mut sink: impl FnMut([i32; 2], f64)) {
-    strips(step, grow, |strip| {
+    strips(step, grow, false, |strip| {
         for (after, column) in strip.columns.clone().enumerate() {
             sink([column, strip.row], strip.height(after as i32));
         }
@@ -365,8 +369,8 @@ mod tests {
     #[test]
     fn lines_stand_as_wide_as_they_are_and_never_too_low() {
         let mut relief = Relief::default();
-        relief.lay(&step([-20.0, 5.0, 3.0], [20.0, 5.0, 3.0]), false);
-        relief.lay(&step([50.0, 5.0, 1.0], [60.0, 5.0, 3.0]), true);
+        relief.lay(&step([-20.0, 5.0, 3.0], [20.0, 5.0, 3.0]), false, false);
+        relief.lay(&step([50.0, 5.0, 1.0], [60.0, 5.0, 3.0]), true, false);
         assert_eq!(highest(&relief, [0.05, 5.15], 0.0), 3.0);
         assert_eq!(highest(&relief, [0.05, 5.35], 0.0), 0.0);
         assert_eq!(highest(&relief, [0.05, 5.95], 0.85), 3.0);
@@ -379,15 +383,40 @@ mod tests {
         assert_eq!(relief.before(cell(55.0, 5.0)), Some(0.0));
         assert_eq!(relief.before(cell(0.0, 5.0)), None);
         assert!((relief.at(cell(-3.0, 5.0)) - 3.0).abs() < 1e-6);
-        relief.lay(&step([0.0; 3], [9e8, 0.0, 3.0]), false);
+        relief.lay(&step([0.0; 3], [9e8, 0.0, 3.0]), false, false);
         assert_eq!(highest(&relief, [1000.0, 0.0], 1.0), 0.0);
+    }
+
+    #[test]
+    fn a_line_that_goes_on_down_a_slope_leaves_no_step_at_its_end() {
+        // Down by 0.4 for each mm, along x, in pieces of 0.4 mm.
+        let at = |k: u8| {
+            let x = 0.4 * f32::from(k);
+            [x, 5.0, 9.0 - 0.4 * x]
+        };
+        let laid = |goes_on: bool| {
+            let mut relief = Relief::default();
+            for k in 0..10 {
+                relief.lay(&step(at(k), at(k + 1)), true, goes_on && k < 9);
+            }
+            relief
+        };
+        let (whole, pieces) = (laid(true), laid(false));
+        let over = |relief: &Relief, x: f64| highest(relief, [x, 5.05], 0.0) - (9.0 - 0.4 * x);
+        for k in 0..35 {
+            let x = 0.25 + 0.1 * f64::from(k);
+            assert!((0.0..0.05).contains(&over(&whole, x)), "{x}: {}", over(&whole, x));
+        }
+        assert!(over(&pieces, 1.35) > 0.08);
+        // At its last end the nozzle has stopped.
+        assert!((highest(&whole, [4.15, 5.05], 0.0) - 7.4).abs() < 0.04);
     }
 
     #[test]
     fn what_does_not_count_is_left_out() {
         let mut relief = Relief::default();
-        relief.lay(&step([1.0, 1.0, 1.0], [30.0, 1.0, 1.0]), false);
-        relief.lay(&step([20.0, 20.0, 2.0], [21.0, 20.0, 2.0]), false);
+        relief.lay(&step([1.0, 1.0, 1.0], [30.0, 1.0, 1.0]), false, false);
+        relief.lay(&step([20.0, 20.0, 2.0], [21.0, 20.0, 2.0]), false, false);
         let mut seen = Vec::new();
         relief.look([15.0, 15.0], 20.0, &|_, z| z > 1.5, &mut |square, z| seen.push((square, z)));
         assert!(seen.len() < 300 && seen.iter().any(|(_, z)| *z > 1.9), "{}", seen.len());

@@ -15,7 +15,7 @@
 //!   staircase. Where there is but one, squares are larger than a tread.
 
 use super::finding::{Code, Finding, Findings, Place, short};
-use super::plies::{Field, strokes};
+use super::plies::{Field, Stroke, strokes};
 use super::relief::{CELL, Relief, footprint};
 use super::samples::Samples;
 use super::terms::Terms;
@@ -121,7 +121,7 @@ struct Map {
     top: Vec<f32>,
     plastic: Vec<f32>,
     plies: u16,
-    /// Height of most lines, mm.
+    /// How high a skin is, mm.
     height: f64,
 }
 
@@ -129,10 +129,10 @@ impl Map {
     fn of(skin: &Skin, field: Field, terms: &Terms) -> Self {
         let cells = field.cells();
         let (ply, top, plastic) = (vec![0; cells], vec![0.0; cells], vec![0.0; cells]);
-        let heights = skin.lines.iter().map(|step| f64::from(step.height)).collect();
-        let height = super::median(heights).unwrap_or_default();
-        let mut map = Self { field, ply, top, plastic, plies: 0, height };
-        for stroke in strokes(&skin.lines, &field) {
+        let mut map = Self { field, ply, top, plastic, plies: 0, height: 0.0 };
+        let strokes = strokes(&skin.lines, &field);
+        map.height = height(&skin.lines, &strokes);
+        for stroke in strokes {
             map.plies = map.plies.max(stroke.ply);
             for step in &skin.lines[stroke.lines.clone()] {
                 map.cover(step, stroke.ply);
@@ -181,6 +181,29 @@ impl Map {
         }
         lasts
     }
+}
+
+/// How high a skin is, mm: as half of a ply is, by length. The lowest ply fills the treads of a staircase, and is
+/// thinner all over where a level base reaches far up; so that ply counts in which lines are highest.
+fn height(lines: &[Step], strokes: &[Stroke]) -> f64 {
+    let mut plies: BTreeMap<u16, Vec<(f64, f64)>> = BTreeMap::new();
+    for stroke in strokes {
+        let own = lines[stroke.lines.clone()].iter();
+        let of = own.map(|step| (f64::from(step.height), step.plan_length()));
+        plies.entry(stroke.ply).or_default().extend(of);
+    }
+    let all: f64 = plies.values().flatten().map(|one| one.1).sum();
+    let middle = |own: &mut Vec<(f64, f64)>| {
+        own.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let whole: f64 = own.iter().map(|one| one.1).sum();
+        let mut so_far = 0.0;
+        let one = own.iter().find(|one| {
+            so_far += one.1;
+            so_far >= 0.5 * whole
+        });
+        one.filter(|_| whole >= LEAST_PLY * all).map(|one| one.0)
+    };
+    plies.values_mut().filter_map(middle).fold(0.0, f64::max)
 }
 
 /// All cells that hang together with one, itself included, and are such.
@@ -287,7 +310,8 @@ impl Judge<'_> {
                         let ends = [line * next + before * step, cell];
                         for gap in before + 1..k {
                             let cell = line * next + gap * step;
-                            is_open[cell] |= self.shows(cell, ends, &lasts);
+                            let part = (gap - before) as f64 / (k - before) as f64;
+                            is_open[cell] |= self.shows(cell, (ends, part), &lasts);
                         }
                     }
                     last = Some(k);
@@ -297,10 +321,11 @@ impl Judge<'_> {
         is_open
     }
 
-    /// Whether the base of a patch shows between two cells of it.
-    fn shows(&self, cell: usize, ends: [usize; 2], lasts: &[u16]) -> bool {
+    /// Whether the base of a patch shows between two cells of it, after a part of the way between them.
+    fn shows(&self, cell: usize, (ends, part): ([usize; 2], f64), lasts: &[u16]) -> bool {
         let map = &self.map;
-        let top = 0.5 * ends.map(|end| f64::from(map.top[end])).iter().sum::<f64>();
+        let [from, to] = ends.map(|end| f64::from(map.top[end]));
+        let top = from + part * (to - from);
         let plies = f64::from(lasts[ends[0]].max(lasts[ends[1]]).max(USUAL_PLIES));
         let depth = top - self.relief.at(map.field.of(cell));
         (SHOWS * map.height..(plies + SHOWS) * map.height).contains(&depth)

@@ -10,11 +10,15 @@ use super::relief::Relief;
 use super::skins::{Name, Skins};
 use super::sweep::Sweep;
 use super::terms::Terms;
+use crate::geom::segment;
 use crate::reader::Facts;
 use crate::reader::print::Step;
 
 /// Height of a layer where nobody tells one, mm.
 const SOME_HEIGHT: f64 = 0.2;
+
+/// Cosine of the angle up to which a line goes on as the one before.
+const STRAIGHT: f64 = 0.8;
 
 /// What stands, and what judges by it.
 pub(super) struct Slopes<'a> {
@@ -25,6 +29,8 @@ pub(super) struct Slopes<'a> {
     skins: Skins,
     /// The layer whose lines are those of a skin without marks.
     skin_of: Option<usize>,
+    /// The line before, whether it is of a skin. It is laid when it is known where the nozzle goes from its end.
+    last: Option<(Step, bool)>,
 }
 
 impl<'a> Slopes<'a> {
@@ -36,6 +42,7 @@ impl<'a> Slopes<'a> {
             sweep: terms.head.as_ref().map(Sweep::new),
             skins: Skins::default(),
             skin_of: None,
+            last: None,
         }
     }
 
@@ -53,6 +60,9 @@ impl<'a> Slopes<'a> {
     ) {
         let own = layer.and_then(|layer| self.facts.layers.get(layer));
         let height = own.map(|own| own.height).filter(|height| *height > 0.0);
+        if let Some((last, is_skin)) = self.last.take() {
+            self.relief.lay(&last, is_skin, step.is_line() && goes_on(&last, step));
+        }
         if let Some(sweep) = &mut self.sweep {
             sweep.step(step, &self.relief, height.unwrap_or(SOME_HEIGHT), found);
         }
@@ -74,11 +84,22 @@ impl<'a> Slopes<'a> {
             let counts = strays || matches!(name, Name::Patch(_));
             self.skins.line(name, step, (layer, counts));
         }
-        self.relief.lay(step, name.is_some());
+        self.last = Some((*step, name.is_some()));
     }
 
     /// Ends the file.
-    pub(super) fn finish(self, found: &mut Findings) {
+    pub(super) fn finish(mut self, found: &mut Findings) {
+        if let Some((last, is_skin)) = self.last.take() {
+            self.relief.lay(&last, is_skin, false);
+        }
         self.skins.finish(&self.relief, self.terms, found);
     }
+}
+
+/// Whether a line begins where the one before ends, and goes on in about its direction.
+fn goes_on(before: &Step, step: &Step) -> bool {
+    let way = |step: &Step| segment::way(step.from.map(f64::from), step.to.map(f64::from));
+    let ([ax, ay, _], [bx, by, _]) = (way(before), way(step));
+    let along = STRAIGHT * before.plan_length() * step.plan_length();
+    before.to == step.from && ax * bx + ay * by > along
 }

@@ -13,6 +13,7 @@ use crate::geom::segment::{along, dot, way};
 use crate::geom::{Contour, Point, edges};
 use crate::region::near::Near;
 use crate::region::taper::{Place, tapered};
+use crate::units::Bounded as _;
 
 /// Smaller cross products of two sides' directions count as straight on: the corner moves along
 /// the mean normal. Two nearly parallel lines meet too far away.
@@ -26,6 +27,15 @@ const BEAD: f64 = 0.5;
 /// neighbouring samples see very different rooms. A larger value lets a loop of short sides jump to and
 /// fro there; a smaller one leaves the ends of thin places open.
 const LEAN: f64 = 0.5;
+
+/// How far a corner may move, in line widths, before it is looked at whether its bead stays inside.
+const NEAR: f64 = 0.25;
+
+/// How far beyond its room a bead may reach at a corner, in line widths: tips of wedges do.
+const OUT: f64 = 0.25;
+
+/// Steps on the way to a corner, in line widths.
+const MARCH: f64 = 0.125;
 
 /// The bead at one place of a side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,7 +69,11 @@ pub(super) fn share(wall: &mut Wall, beads: &Near, layout: &Layout<'_>) {
         return;
     }
     steady(&mut sides, layout.line_width);
-    let Some(corners) = corners(&mut sides) else { return };
+    let Some(mut corners) = corners(&mut sides) else { return };
+    for (k, corner) in corners.iter_mut().enumerate() {
+        let before = &sides[(k + sides.len() - 1) % sides.len()];
+        *corner = inside(*corner, [before, &sides[k]], wall.depth, layout);
+    }
     let mut places = Vec::new();
     for (k, side) in sides.iter().enumerate() {
         let count = side.samples.len() as f64;
@@ -182,6 +196,28 @@ fn cut(before: &Sampled, after: &Sampled) -> Place {
         along(end, cross(between, after.way) / cross(before.way, after.way), before.way)
     };
     Place { at, width }
+}
+
+/// A corner that its bead reaches without leaving the part, or what lies between it and the outer loops: sides that
+/// are nearly parallel meet far outside.
+fn inside(corner: Place, [before, after]: [&Sampled; 2], depth: u32, layout: &Layout<'_>) -> Place {
+    let w = layout.line_width;
+    let end = along(before.from, 1.0, before.way);
+    let from = along(end, 0.5, way(end, after.from));
+    let ahead = way(from, corner.at);
+    let far = dot(ahead, ahead).sqrt();
+    if far <= NEAR * w {
+        return corner;
+    }
+    let outer = f64::from(depth) * corner.width.at_most(w) - layout.params.outside();
+    let clear = (outer + corner.width / 2.0 - OUT * w).at_least(MARCH * w);
+    let count = (far / (MARCH * w)).ceil();
+    let at = |k: usize| along(from, k as f64 / count, ahead);
+    let steps = count as usize;
+    match (1..=steps).find(|&k| !layout.outline.is_free(at(k), clear)) {
+        Some(k) => Place { at: at(k - 1), ..corner },
+        None => corner,
+    }
 }
 
 /// The corner between two sides: where the moved sides meet.

@@ -365,6 +365,35 @@ proptest! {
     }
 }
 
+/// A ragged outline as a surface's cut makes: a star of waves whose corners lie anywhere within 0.06 mm.
+fn ragged(size: f64, waves: [f64; 3], rough: &[f64]) -> Vec<Contour> {
+    let n = rough.len();
+    let corner = |k: usize| {
+        let degrees = 360.0 * k as f64 / n as f64;
+        let wave = |(count, part): (f64, f64)| part * sin_cos(count * degrees).0;
+        let all: f64 = [2.0, 3.0, 7.0].into_iter().zip(waves).map(wave).sum();
+        at(size * (1.0 + all).max(0.1) + 600.0 * rough[k], 0.0, degrees)
+    };
+    polygon::union(&[(0..n).map(corner).collect()])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn no_loop_pokes_out_of_a_ragged_outline(
+        count in 1..=3_u32,
+        size in 6_000.0..18_000.0,
+        waves in [-0.5..0.5, -0.5..0.5, -0.3..0.3],
+        rough in prop::collection::vec(-1.0..1.0, 24..60),
+    ) {
+        let outline = ragged(size, waves, &rough);
+        let Walls { walls, .. } = made(&outline, &params(count));
+        let loops: Vec<Wall> = walls.into_iter().filter(|wall| wall.closed).collect();
+        prop_assert!(outside(&outline, &loops) < 2_000.0, "{}", outside(&outline, &loops));
+    }
+}
+
 #[test]
 fn a_bar_of_exactly_the_least_thickness_gets_a_bead_whichever_way_it_lies() {
     for inset in [-25, 0, 25] {

@@ -1,0 +1,61 @@
+//! Slopes that were once called faulty -> prints with skins in which `check` finds no error.
+//!
+//! Each of these prints is sound, as a look at its cut shows; what was wrong was the verdict:
+//! - A line across a slope lies half over the next tread of its staircase, which is of the layer that the skins are
+//!   printed after.
+//! - The lowest skin is thin where a level layer ends just below it: a skin is as high as the ones above.
+//! - Down a slope each line ends higher than the next one lies. Nothing stands so high beyond its end.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use crate::common::damage::{Good, kinds};
+use crate::common::relief::Relief;
+use crate::common::{Run, slice};
+use slicer::check::finding::Code;
+use slicer::check::terms::Terms;
+use slicer::check::{Verdict, check};
+use slicer::{profile, reader};
+
+/// What `check` says of a print by its own settings.
+fn judged(run: &Run) -> Verdict {
+    let print = reader::Print::read(&mut run.text.as_bytes(), 1.75).unwrap();
+    let settings = profile::recorded(&print.values).unwrap().unwrap().settings;
+    let terms = Terms::new(Some(&settings), Some(&settings), &print);
+    assert!(terms.head.is_some() && print.facts.patches.len() == 1);
+    check(&print, &terms, None)
+}
+
+fn printed(part: &Relief, set: &[(&str, &str)]) -> Run {
+    let on = [("nonplanar.enabled", "true")];
+    slice(&part.solid().stl(), "generic-marlin", &[&on, set].concat())
+}
+
+#[test]
+fn lines_across_a_wedge_lie_on_its_treads() {
+    let across: &[(&str, &str)] =
+        &[("nonplanar.enabled", "true"), ("head.name", "v6"), ("nonplanar.directions", "auto")];
+    let good = Good::of("wedge.stl", "prusa-mk3s", across);
+    assert_eq!(kinds(&good.judge(&good.text)), []);
+    // Where the tread is missing, they do lie in the air.
+    let bare = good.with(|m| m.patch > 0 || m.e <= 0.0 || m.to[2] < 2.0);
+    assert!(kinds(&good.judge(&bare)).contains(&Code::InTheAir));
+}
+
+#[test]
+fn skins_of_a_valley_have_as_much_plastic_as_room() {
+    let surface = |x: f64, _| 3.0 + 0.012 * (x - 8.0) * (x - 8.0);
+    let valley = Relief { sides: [16.0, 12.0], surface, squares: [48, 1] };
+    for wall in ["0", "1", "2"] {
+        let run = printed(&valley, &[("nonplanar.wall", wall), ("layer_height", "0.3")]);
+        assert_eq!(kinds(&judged(&run)), [], "{wall}");
+    }
+}
+
+#[test]
+fn the_head_clears_the_slope_that_it_goes_down() {
+    let surface =
+        |x: f64, y: f64| (1600.0 - (x - 17.0) * (x - 17.0) - (y - 4.0) * (y - 4.0)).sqrt() - 34.0;
+    let cap = Relief { sides: [34.0, 8.0], surface, squares: [102, 24] };
+    let run = printed(&cap, &[("head.name", "v6"), ("layer_height", "0.3")]);
+    assert_eq!(kinds(&judged(&run)), []);
+}
