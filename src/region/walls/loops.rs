@@ -206,18 +206,19 @@ fn inside(corner: Place, [before, after]: [&Sampled; 2], depth: u32, layout: &La
     let from = along(end, 0.5, way(end, after.from));
     let ahead = way(from, corner.at);
     let far = dot(ahead, ahead).sqrt();
-    if far <= NEAR * w {
+    if far <= NEAR * w || !layout.params.holds_corners {
         return corner;
     }
     let outer = f64::from(depth) * corner.width.at_most(w) - layout.params.outside();
     let clear = (outer + corner.width / 2.0 - OUT * w).at_least(MARCH * w);
-    let count = (far / (MARCH * w)).ceil();
-    let at = |k: usize| along(from, k as f64 / count, ahead);
-    let steps = count as usize;
-    match (1..=steps).find(|&k| !layout.outline.is_free(at(k), clear)) {
-        Some(k) => Place { at: at(k - 1), ..corner },
-        None => corner,
+    let steps = (far / (MARCH * w)).ceil() as usize;
+    let at = |k: usize| along(from, k as f64 / steps as f64, ahead);
+    let is_free = |k: usize, clear: f64| layout.outline.is_free(at(k), clear);
+    if is_free(steps, clear) && (1..steps).all(|k| is_free(k, MARCH * w)) {
+        return corner;
     }
+    let last = (1..=steps).take_while(|&k| is_free(k, clear)).last();
+    Place { at: at(last.unwrap_or(0)), ..corner }
 }
 
 /// The corner between two sides: where the moved sides meet.
