@@ -93,15 +93,15 @@ impl Relief {
         f64::from(self.highest)
     }
 
-    /// A line is laid; of a skin, cells keep how high they stood before. Where the nozzle `goes_on` beyond its end
-    /// with the next line, nothing stands as high there as its end, if it falls: the nozzle has passed.
-    pub(super) fn lay(&mut self, step: &Step, is_skin: bool, goes_on: bool) {
+    /// A line is laid; of a skin, cells keep how high they stood before. Where its lower end is `joined` to another
+    /// line that goes on down the slope, nothing stands as high beyond it as that end: the nozzle passes there.
+    pub(super) fn lay(&mut self, step: &Step, is_skin: bool, joined: bool) {
         if step.from.iter().chain(&step.to).any(|at| f64::from(at.abs()) > FARTHEST) {
             return;
         }
         self.highest = self.highest.max(step.from[2]).max(step.to[2]);
         let mut known: Option<([i32; 2], usize)> = None;
-        strips(step, CORNER, goes_on, |strip| {
+        strips(step, CORNER, joined, |strip| {
             let mut column = strip.columns.start;
             while column < strip.columns.end {
                 let (at, index) = place([column, strip.row]);
@@ -304,8 +304,8 @@ impl Strip {
 
 /// Hands the cells that a line covers to `sink`, row by row: those whose middles lie within `grow` mm of
 /// it. With half a cell's diagonal they are all cells of which it covers something, as high as it is
-/// anywhere in them. Beyond its ends it is as high as these; if it `falls_on`, it falls on beyond its lower one.
-fn strips(step: &Step, grow: f64, falls_on: bool, mut sink: impl FnMut(&Strip)) {
+/// anywhere in them. Beyond its ends it is as high as these; if the lower one is `joined`, it falls on beyond that.
+fn strips(step: &Step, grow: f64, joined: bool, mut sink: impl FnMut(&Strip)) {
     let (from, to) = (step.from.map(f64::from), step.to.map(f64::from));
     let way = segment::way(from, to);
     let square = way[0] * way[0] + way[1] * way[1];
@@ -316,8 +316,8 @@ fn strips(step: &Step, grow: f64, falls_on: bool, mut sink: impl FnMut(&Strip)) 
     };
     let mut ends = step.heights().map(|z| z + rise);
     let radius = f64::from(step.width) / 2.0 + grow;
-    if falls_on && way[2] < 0.0 && square > 0.0 {
-        ends[0] += radius * way[2] / square.sqrt();
+    if joined && square > 0.0 {
+        ends[0] -= radius * way[2].abs() / square.sqrt();
     }
     let line = Capsule { from: [from[0], from[1]], to: [to[0], to[1]], radius };
     let ((low, high), flanks) = (line.extent(), line.flanks());
@@ -388,28 +388,31 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_goes_on_down_a_slope_leaves_no_step_at_its_end() {
-        // Down by 0.4 for each mm, along x, in pieces of 0.4 mm.
+    fn lines_that_go_on_along_a_slope_leave_no_steps() {
+        // Down by 0.4 for each mm, along x, in pieces of 0.4 mm, or up the same way.
         let at = |k: u8| {
             let x = 0.4 * f32::from(k);
             [x, 5.0, 9.0 - 0.4 * x]
         };
-        let laid = |goes_on: bool| {
+        let laid = |turned: bool, joined: bool| {
             let mut relief = Relief::default();
             for k in 0..10 {
-                relief.lay(&step(at(k), at(k + 1)), true, goes_on && k < 9);
+                let (from, to) = if turned { (at(k + 1), at(k)) } else { (at(k), at(k + 1)) };
+                relief.lay(&step(from, to), true, joined && k < 9);
             }
             relief
         };
-        let (whole, pieces) = (laid(true), laid(false));
         let over = |relief: &Relief, x: f64| highest(relief, [x, 5.05], 0.0) - (9.0 - 0.4 * x);
-        for k in 0..35 {
-            let x = 0.25 + 0.1 * f64::from(k);
-            assert!((0.0..0.05).contains(&over(&whole, x)), "{x}: {}", over(&whole, x));
+        for turned in [false, true] {
+            let (whole, pieces) = (laid(turned, true), laid(turned, false));
+            for k in 0..35 {
+                let x = 0.25 + 0.1 * f64::from(k);
+                assert!((0.0..0.05).contains(&over(&whole, x)), "{x}: {}", over(&whole, x));
+            }
+            assert!(over(&pieces, 1.35) > 0.08);
+            // At the lowest end the nozzle has stopped.
+            assert!((highest(&whole, [4.15, 5.05], 0.0) - 7.4).abs() < 0.04);
         }
-        assert!(over(&pieces, 1.35) > 0.08);
-        // At its last end the nozzle has stopped.
-        assert!((highest(&whole, [4.15, 5.05], 0.0) - 7.4).abs() < 0.04);
     }
 
     #[test]

@@ -29,8 +29,15 @@ pub(super) struct Slopes<'a> {
     skins: Skins,
     /// The layer whose lines are those of a skin without marks.
     skin_of: Option<usize>,
-    /// The line before, whether it is of a skin. It is laid when it is known where the nozzle goes from its end.
-    last: Option<(Step, bool)>,
+    /// The line before. It is laid when it is known where the nozzle goes from its end.
+    last: Option<Last>,
+}
+
+/// A line, whether it is of a skin, and whether it goes on as the one before.
+struct Last {
+    step: Step,
+    is_skin: bool,
+    came_on: bool,
 }
 
 impl<'a> Slopes<'a> {
@@ -60,9 +67,7 @@ impl<'a> Slopes<'a> {
     ) {
         let own = layer.and_then(|layer| self.facts.layers.get(layer));
         let height = own.map(|own| own.height).filter(|height| *height > 0.0);
-        if let Some((last, is_skin)) = self.last.take() {
-            self.relief.lay(&last, is_skin, step.is_line() && goes_on(&last, step));
-        }
+        let came_on = self.lay_last(Some(step));
         if let Some(sweep) = &mut self.sweep {
             sweep.step(step, &self.relief, height.unwrap_or(SOME_HEIGHT), found);
         }
@@ -84,14 +89,21 @@ impl<'a> Slopes<'a> {
             let counts = strays || matches!(name, Name::Patch(_));
             self.skins.line(name, step, (layer, counts));
         }
-        self.last = Some((*step, name.is_some()));
+        self.last = Some(Last { step: *step, is_skin: name.is_some(), came_on });
+    }
+
+    /// Lays the line before; whether the `next` move is a line that goes on as that one.
+    fn lay_last(&mut self, next: Option<&Step>) -> bool {
+        let Some(Last { step, is_skin, came_on }) = self.last.take() else { return false };
+        let on = next.is_some_and(|next| next.is_line() && goes_on(&step, next));
+        let falls = step.to[2] < step.from[2];
+        self.relief.lay(&step, is_skin, if falls { on } else { came_on });
+        on
     }
 
     /// Ends the file.
     pub(super) fn finish(mut self, found: &mut Findings) {
-        if let Some((last, is_skin)) = self.last.take() {
-            self.relief.lay(&last, is_skin, false);
-        }
+        self.lay_last(None);
         self.skins.finish(&self.relief, self.terms, found);
     }
 }
