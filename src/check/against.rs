@@ -7,6 +7,7 @@
 //!
 //! Everything is drawn into rows a twentieth of a mm apart, one set for each layer, and compared there:
 //! - rim less what is printed, in patches that are wide and large enough: an open outline;
+//! - islands of which nothing is printed: open outlines too, however small, if a line has room there;
 //! - exposed less closed, away from the rim: an open surface, where the file's own settings want skins;
 //! - lines less the cut, grown by what lines may stick out: lines outside the part.
 //!
@@ -23,12 +24,13 @@ use super::finding::{Code, Finding, Place, short};
 use super::laid::Seen;
 use super::part::Section;
 use super::roof::Roof;
-use super::rows::Lattice;
+use super::rows::{Lattice, Patch};
 use super::runs::united;
 use super::samples::Samples;
 use super::survey::Survey;
 use super::terms::Terms;
 use super::window::Window;
+use crate::geom::segment::distance2;
 use crate::geom::spans::Rows;
 use crate::reader::Role;
 use crate::reader::print::Step;
@@ -47,6 +49,12 @@ const NARROW: f64 = 0.1;
 /// Smaller patches are ignored, mm²: corners and ends of lines are round. A missing line of 2 mm is
 /// larger.
 const LEAST_AREA: f64 = 0.6;
+
+/// Smaller islands may be left out, mm²: less than a short line.
+const LEAST_ISLAND: f64 = 0.3;
+
+/// Islands narrower than this many line widths may be left out: the narrowest bead is a little narrower.
+const ISLAND: f64 = 0.9;
 
 /// Places narrower than this many line widths count as too narrow to print.
 pub(super) const PRINTABLE: f64 = 1.2;
@@ -127,8 +135,6 @@ impl Judge<'_> {
         let (printed, closed) = (own.or(&reaching), solid.or(&reaching));
         let printable = cut.opened(lattice, self.survey.line_width * PRINTABLE / 2.0);
         let along = cut.along(lattice, RIM);
-        let moved =
-            self.terms.moved_at(self.window.facts.layers[index].z - self.survey.heights[index]);
 
         let mut verdict = Verdict::default();
         let rim =
@@ -142,6 +148,7 @@ impl Judge<'_> {
             format!("{area} mm² along the outline are not printed")
         });
         verdict.findings.extend(patches);
+        self.add_islands(index, cut, &printed, &mut verdict);
 
         let exposed = self.exposed([below, cut, above]).and(&printable);
         let open = beside(exposed.minus(&closed));
@@ -256,6 +263,46 @@ impl Judge<'_> {
         [area, area - self.lattice.area(open)]
     }
 
+    /// Adds islands of a cut of which nothing is printed, if a line has room there. What is known to be open
+    /// along their outline is told once.
+    fn add_islands(&self, index: usize, cut: &Section, printed: &Rows, verdict: &mut Verdict) {
+        let (lattice, here) = (self.lattice, &cut.inside);
+        let bare = lattice.patches(&here.minus(printed));
+        let bare: Vec<&Patch> = bare.iter().filter(|patch| patch.area >= LEAST_ISLAND).collect();
+        if !self.terms.has_walls || bare.is_empty() {
+            return;
+        }
+        let islands = lattice.patches(here);
+        let is_whole = |one: &&&Patch| islands.iter().any(|island| island == **one);
+        let missing: Vec<&Patch> = bare.iter().filter(is_whole).copied().collect();
+        if missing.is_empty() {
+            return;
+        }
+        let layer = &self.window.facts.layers[index];
+        let moved = self.terms.moved_at(layer.z - self.survey.heights[index]);
+        let printable = cut.opened(lattice, self.survey.line_width * ISLAND / 2.0 + moved);
+        let told: Vec<[f64; 2]> = verdict.findings.iter().filter_map(|f| f.place.at_mm).collect();
+        for patch in missing.into_iter().filter(|patch| lattice.has(&printable, patch.at)) {
+            let near = |at: &[f64; 2]| distance2(*at, [patch.at; 2]) <= 2.0 * patch.area;
+            if told.iter().any(near) {
+                continue;
+            }
+            let text = format!("nothing is printed of an island of {} mm²", short(patch.area));
+            let finding = Finding::of(Code::OpenOutline, short(patch.area), "mm²", text);
+            verdict.findings.push(finding.at(self.place(index, patch.at)));
+        }
+    }
+
+    /// A place of a layer.
+    fn place(&self, index: usize, at: [f64; 2]) -> Place {
+        Place {
+            line: None,
+            layer: Some(index + 1),
+            z_mm: Some(short(self.window.facts.layers[index].z)),
+            at_mm: Some(at.map(short)),
+        }
+    }
+
     /// The patches that are wide and large enough to be faults.
     fn patches(
         &self,
@@ -269,14 +316,8 @@ impl Judge<'_> {
         }
         let found = self.lattice.patches(&self.lattice.opened(open, NARROW));
         let large = found.iter().filter(|patch| patch.area >= LEAST_AREA);
-        let place = |at: [f64; 2]| Place {
-            line: None,
-            layer: Some(index + 1),
-            z_mm: Some(short(self.window.facts.layers[index].z)),
-            at_mm: Some(at.map(short)),
-        };
         let finding = |area: f64| Finding::of(code, area, "mm²", text(short(area)));
-        large.map(|patch| finding(patch.area).at(place(patch.at))).collect()
+        large.map(|patch| finding(patch.area).at(self.place(index, patch.at))).collect()
     }
 
     /// Areas and plastic of walls and skins, and of sparse infill away from them.

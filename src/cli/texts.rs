@@ -53,7 +53,8 @@ Findings, each with a stable code, a place and a measure:
   wrong-marks          a patch of non-planar skin has no end, or, in files of this program, its number
                        comes twice
   wrong-size           the walls do not lie along the part's outline, or the height differs
-  open-outline         0.6 mm² or more of the outline is not printed
+  open-outline         0.6 mm² or more of the outline is not printed, or nothing of an island of
+                       0.3 mm² or more
   open-surface         0.6 mm² or more of a top or bottom surface is not printed
   outside-part         0.6 mm² or more is printed over 0.3 mm beside the part
   wrong-infill         another density of the infill than asked for, or none on some layers

@@ -21,7 +21,7 @@ use std::f64::consts::PI;
 const COMPACT: f64 = 6.0;
 
 /// How often the radius is halved in on: to a four hundredth.
-const HALVINGS: usize = 7;
+pub(super) const HALVINGS: usize = 7;
 
 /// The loops of the dots among `contours`, and the other contours. `None` if there are no dots.
 pub(super) fn dots(contours: &[Contour], params: &WallParams) -> Option<(Vec<Wall>, Vec<Contour>)> {

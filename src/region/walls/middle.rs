@@ -14,6 +14,7 @@
 //! 4. Join arcs whose ends meet, and drop short ones. Where walls cross, their ends run on
 //!    (`junctions`).
 
+use super::patches::Doubt;
 use super::{Layout, Share, Wall};
 use crate::geom::nearest::Nearest;
 use crate::geom::segment::{along, dot, way};
@@ -28,6 +29,9 @@ const STEP: f64 = 0.75;
 
 /// Turn between two samples at a corner, radians: 15°. See [`STEP`].
 const TURN: f64 = 0.26;
+
+/// Sharper corners that stick into the part keep loops away from what lies behind them, radians: 40°.
+const SHARP: f64 = 0.7;
 
 /// Two samples are neighbours if their middles are at most this far apart, in line widths. A
 /// smaller value breaks beads on the outside of bends, a larger one bridges gaps.
@@ -66,16 +70,20 @@ pub(super) struct Sample {
     pub(super) loops: u32,
     /// Whether this side lays the bead.
     leads: bool,
+    /// The place of the contour.
+    from: Doubt,
 }
 
 /// A run of neighbouring samples.
 pub(super) type Arc = Vec<Sample>;
 
-/// The arcs along which middle beads run.
-pub(super) fn beads(layout: &Layout<'_>) -> Vec<Arc> {
+/// The arcs along which middle beads run, and the places of the contour in doubt: there is no core, and
+/// none of these arcs runs.
+pub(super) fn beads(layout: &Layout<'_>) -> (Vec<Arc>, Vec<Doubt>) {
     let mut first = 0;
+    let mut doubts = Vec::new();
     let lap = |contour: &Contour| {
-        let lap = lap(contour, first, layout);
+        let lap = lap(contour, first, layout, &mut doubts);
         first += contour.len() as u32;
         lap
     };
@@ -87,7 +95,8 @@ pub(super) fn beads(layout: &Layout<'_>) -> Vec<Arc> {
     let near = Near::of_edges(sides.collect(), 2.0 * w);
     let is_left = |s: &Sample| !s.leads && near.is_free([s.place.at], SAME * s.place.width);
     let left = laps.iter().flat_map(|lap| arcs(lap, w, is_left));
-    all.extend(left.filter(|arc| length(arc) >= w));
+    let (left, mut short): (Vec<Arc>, Vec<Arc>) = left.partition(|arc| length(arc) >= w);
+    all.extend(left);
     join(&mut all, w);
     for arc in &mut all {
         sharpen(arc, layout);
@@ -97,8 +106,10 @@ pub(super) fn beads(layout: &Layout<'_>) -> Vec<Arc> {
             reach_end(arc, layout);
         }
     }
-    all.retain(|arc| is_long(arc, w));
-    all
+    let (all, dropped): (Vec<Arc>, Vec<Arc>) = all.into_iter().partition(|arc| is_long(arc, w));
+    short.extend(dropped);
+    doubts.extend(short.iter().flatten().map(|sample| sample.from));
+    (all, doubts)
 }
 
 /// The sides of middle beads, to find whether a place has one.
@@ -137,8 +148,14 @@ pub(super) fn wall(arc: &Arc) -> Wall {
     Wall { path, widths, closed, depth, layers: 1 }
 }
 
-/// The samples of a contour whose first side has the index `first`.
-fn lap(contour: &Contour, first: u32, layout: &Layout<'_>) -> Vec<Option<Sample>> {
+/// The samples of a contour whose first side has the index `first`. Those that find neither a core nor
+/// what is opposite are `doubts`.
+fn lap(
+    contour: &Contour,
+    first: u32,
+    layout: &Layout<'_>,
+    doubts: &mut Vec<Doubt>,
+) -> Vec<Option<Sample>> {
     let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
     let n = contour.len();
     let mut guess = layout.line_width;
@@ -152,24 +169,35 @@ fn lap(contour: &Contour, first: u32, layout: &Layout<'_>) -> Vec<Option<Sample>
         let normal = [-along_side[1], along_side[0]];
         let before = contour[(k + n - 1) % n];
         if side(before, p, q) < 0 {
+            let (from, turn) = turn((before, p), normal);
+            let sharp = turn.abs() > SHARP;
+            if sharp {
+                // Just between its sides: there loops are furthest from it.
+                let both = [0, 1].map(|k| from[k] + normal[k]);
+                let length = dot(both, both).sqrt().at_least(f64::MIN_POSITIVE);
+                doubts.push(Doubt { at: float(p), normal: both.map(|x| x / length), sharp });
+            }
             fan((before, p), normal, |normal| {
-                out.push(sample(float(p), normal, index, layout, &mut guess))
+                out.push(sample(
+                    Doubt { at: float(p), normal, sharp },
+                    index,
+                    layout,
+                    (&mut guess, doubts),
+                ))
             });
         }
         let count = (length / (STEP * layout.line_width)).ceil();
         out.extend((0..count as usize).map(|i| {
             let at = along(float(p), (i as f64 + 0.5) / count * length, along_side);
-            sample(at, normal, index, layout, &mut guess)
+            sample(Doubt { at, normal, sharp: false }, index, layout, (&mut guess, doubts))
         }));
     }
     out
 }
 
 /// Calls `at` with normals between that of the side before a corner and `to`.
-fn fan((before, corner): (Point, Point), to: [f64; 2], mut at: impl FnMut([f64; 2])) {
-    let length = before.distance(corner).at_least(1.0);
-    let from = [before.y - corner.y, corner.x - before.x].map(|x| f64::from(x) / length);
-    let turn = libm::atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
+fn fan(corner: (Point, Point), to: [f64; 2], mut at: impl FnMut([f64; 2])) {
+    let (from, turn) = turn(corner, to);
     let count = (turn.abs() / TURN).ceil();
     for i in 0..count as usize {
         let (sin, cos) = libm::sincos((i as f64 + 0.5) / count * turn);
@@ -177,21 +205,41 @@ fn fan((before, corner): (Point, Point), to: [f64; 2], mut at: impl FnMut([f64; 
     }
 }
 
+/// The normal of the side before a corner, and by how much that after it, `to`, is turned, radians.
+fn turn((before, corner): (Point, Point), to: [f64; 2]) -> ([f64; 2], f64) {
+    let length = before.distance(corner).at_least(1.0);
+    let from = [before.y - corner.y, corner.x - before.x].map(|x| f64::from(x) / length);
+    let sin = from[0] * to[1] - from[1] * to[0];
+    (from, libm::atan2(sin, from[0] * to[0] + from[1] * to[1]))
+}
+
 /// The middle bead opposite to a place of the contour, if there is one.
 fn sample(
-    at: [f64; 2],
-    normal: [f64; 2],
+    from: Doubt,
     index: u32,
     layout: &Layout<'_>,
-    guess: &mut f64,
+    (guess, doubts): (&mut f64, &mut Vec<Doubt>),
 ) -> Option<Sample> {
-    let (share, opposite) = layout.share(at, normal, guess).filter(|(share, _)| share.middle)?;
+    let Doubt { at, normal, .. } = from;
+    if layout.has_core(at, normal) {
+        return None;
+    }
+    let Some((share, opposite)) = layout.shared(at, normal, guess) else {
+        doubts.push(from);
+        return None;
+    };
+    if !share.middle {
+        return None;
+    }
     let Share { width, loops, .. } = share;
     let middle = along(at, opposite.radius, normal);
     let clear = if opposite.corner { CLEAR_OF_CORNER } else { CLEAR };
-    let clear = layout.outline.is_free(middle, clear * opposite.radius);
+    if !layout.outline.is_free(middle, clear * opposite.radius) {
+        doubts.push(from);
+        return None;
+    }
     let place = Place { at: middle, width };
-    clear.then_some(Sample { place, loops, leads: index < opposite.side })
+    Some(Sample { place, loops, leads: index < opposite.side, from })
 }
 
 /// The runs of neighbouring samples that are `wanted`. A run all around ends where it begins.

@@ -15,6 +15,7 @@
 //!    room for one, share the room evenly (`share_room`): loops are moved and widened
 //!    (`loops`), and the middle bead gets its share of the width (`middle`). Where walls meet, middle
 //!    beads run on into the room between them (`junctions`).
+//! 3. What is still open, though a bead has room there, gets loops of its own (`patches`).
 //!
 //! So the loops that exist decide where middle beads run, the middle beads that exist decide how wide
 //! the loops are, and no place gets two counts. A
@@ -28,6 +29,7 @@ mod junctions;
 mod loops;
 mod lost;
 mod middle;
+mod patches;
 mod room;
 mod share;
 pub mod thin;
@@ -79,11 +81,15 @@ pub fn walls(contours: &[Contour], may_be_thin: bool, params: &WallParams) -> Wa
     let Some((dots, others)) = dots else { return around_cores(contours, may_be_thin, params).0 };
     let (mut made, core) = around_cores(&others, may_be_thin, params);
     made.walls.extend(dots);
-    // The outer loops first, and middle beads last.
-    made.walls.sort_by_key(|wall| (!wall.closed, wall.depth));
+    in_order(&mut made.walls);
     // Dots have none.
     made.core = made.core.or(core);
     made
+}
+
+/// The outer loops first, and middle beads last.
+fn in_order(walls: &mut [Wall]) {
+    walls.sort_by_key(|wall| (!wall.closed, wall.depth));
 }
 
 /// The walls of contours that are no dots, and their core if they fill no part of it.
@@ -104,13 +110,20 @@ fn around_cores(
         core => return (Walls { walls, core: None, lost_mm2 }, core),
     };
     let layout = Layout::new(contours, &levels, &core, params);
-    let mut arcs = middle::beads(&layout);
+    let (mut arcs, doubts) = middle::beads(&layout);
     junctions::run_on(&mut arcs, &layout);
-    let beads: Vec<Wall> = arcs.iter().map(middle::wall).collect();
-    let near = middle::near(&beads, &layout);
+    let mut more: Vec<Wall> = arcs.iter().map(middle::wall).collect();
+    let near = middle::near(&more, &layout);
     walls.iter_mut().for_each(|wall| loops::share(wall, &near, &layout));
-    let lost_mm2 = (lost_mm2 - lost::under_beads(&beads)).max(0.0);
-    walls.extend(beads);
+    let loops = walls.len();
+    walls.append(&mut more);
+    let patches = patches::patches(&doubts, (&walls, &near), &core, &layout);
+    let are_any = !patches.is_empty();
+    walls.extend(patches);
+    let lost_mm2 = (lost_mm2 - lost::under_beads(&walls[loops..])).max(0.0);
+    if are_any {
+        in_order(&mut walls);
+    }
     (Walls { walls, core: Some(core), lost_mm2 }, None)
 }
 
@@ -220,9 +233,11 @@ impl<'a> Layout<'a> {
     /// is as for [`Outline::opposite`].
     fn share(&self, at: [f64; 2], normal: [f64; 2], guess: &mut f64) -> Option<(Share, Opposite)> {
         // Nearly everywhere the core is there: nothing else is asked for.
-        if self.has(self.params.count, at, normal) {
-            return None;
-        }
+        if self.has_core(at, normal) { None } else { self.shared(at, normal, guess) }
+    }
+
+    /// As [`Layout::share`] where no core is.
+    fn shared(&self, at: [f64; 2], normal: [f64; 2], guess: &mut f64) -> Option<(Share, Opposite)> {
         let opposite = self.outline.opposite(at, normal, guess)?;
         let reaches = |depth: u32| {
             self.inset(depth) < opposite.radius + BESIDE * self.line_width
@@ -242,6 +257,11 @@ impl<'a> Layout<'a> {
     fn is_clear(&self, at: [f64; 2], loops: u32, width: f64) -> bool {
         let deeper = &self.levels[loops as usize..];
         deeper.iter().all(|level| level.is_free([at], f64::midpoint(self.line_width, width)))
+    }
+
+    /// Whether the core runs beside the place `at` of the contour.
+    fn has_core(&self, at: [f64; 2], normal: [f64; 2]) -> bool {
+        self.has(self.params.count, at, normal)
     }
 
     /// Whether a loop of this depth, or the core, runs beside the place `at` of the contour.
