@@ -36,6 +36,7 @@ pub mod prepare;
 mod queue;
 pub mod rooms;
 pub mod scan;
+mod sides;
 mod stretches;
 pub mod support;
 mod taper;

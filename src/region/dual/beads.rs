@@ -6,11 +6,10 @@
 
 use super::groups::{Block, Grouping};
 use crate::geom::Point;
-use crate::geom::cells::Cells;
 use crate::geom::frame::Frame;
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::segment::distance2;
-use crate::region::near::{Area, Edge, Grid};
+use crate::region::sides::{Side, Sides};
 use crate::region::stretches::{Smooth, stretches};
 use crate::units::Coord;
 
@@ -98,10 +97,9 @@ impl Turn {
     }
 }
 
-/// The ways of beads with their widths, sorted into cells.
+/// The sides of the beads of another layer.
 struct Under {
-    grid: Grid,
-    cells: Cells<(Edge, f64)>,
+    sides: Sides,
     far: f64,
 }
 
@@ -109,23 +107,17 @@ impl Under {
     /// `None` without any beads.
     fn new(beads: &[Polyline], line_width: f64) -> Option<Self> {
         let at = |p: &LinePoint| [f64::from(p.u), f64::from(p.v)];
-        let ways = || {
-            let pairs = beads.iter().flat_map(|bead| bead.windows(2));
-            pairs.map(|pair| ([at(&pair[0]), at(&pair[1])], f64::from(pair[1].width)))
-        };
-        ways().next()?;
+        let pairs = beads.iter().flat_map(|bead| bead.windows(2));
+        let side = |pair: &[LinePoint]| ([at(&pair[0]), at(&pair[1])], f64::from(pair[1].width));
+        let all: Vec<Side> = pairs.map(side).collect();
         let far = ALIKE * line_width;
-        let area = Area::around(ways().flat_map(|(edge, _)| edge), far);
-        let grid = Grid::new(area, 4.0 * line_width);
-        let cells = Cells::new(grid.count(), ways, |(edge, _)| grid.cells(edge).flatten());
-        Some(Self { grid, cells, far })
+        (!all.is_empty()).then(|| Self { sides: Sides::new(all, 4.0 * line_width), far })
     }
 
     /// Whether a bead as wide as at `p` runs there.
     fn has(&self, p: &LinePoint) -> bool {
         let (at, width) = ([f64::from(p.u), f64::from(p.v)], f64::from(p.width));
-        let around = Area::around([at].into_iter(), self.far).corners();
-        self.grid.cells(around).flat_map(|cells| self.cells.of(cells)).any(|(edge, other)| {
+        self.sides.near(at, self.far).any(|(edge, other)| {
             (width - other).abs() <= self.far && distance2(at, *edge) <= self.far * self.far
         })
     }

@@ -170,16 +170,15 @@ fn lap(
         let before = contour[(k + n - 1) % n];
         if side(before, p, q) < 0 {
             let (from, turn) = turn((before, p), normal);
-            let sharp = turn.abs() > SHARP;
-            if sharp {
+            if turn.abs() > SHARP {
                 // Just between its sides: there loops are furthest from it.
                 let both = [0, 1].map(|k| from[k] + normal[k]);
                 let length = dot(both, both).sqrt().at_least(f64::MIN_POSITIVE);
-                doubts.push(Doubt { at: float(p), normal: both.map(|x| x / length), sharp });
+                doubts.push(Doubt { at: float(p), normal: both.map(|x| x / length), sharp: true });
             }
             fan((before, p), normal, |normal| {
                 out.push(sample(
-                    Doubt { at: float(p), normal, sharp },
+                    Doubt { at: float(p), normal, sharp: false },
                     index,
                     layout,
                     (&mut guess, doubts),

@@ -18,8 +18,9 @@ use super::{Layout, Wall};
 use crate::geom::boxes::Around;
 use crate::geom::segment::{along, distance2};
 use crate::geom::{Contour, Point, double_area, edges, encloses, polygon};
-use crate::region::near::{Area, Edge, Near};
-use crate::units::{Coord, nearest, sin_cos};
+use crate::region::near::{Area, Near};
+use crate::region::sides::{Side, Sides};
+use crate::units::{Bounded as _, Coord, nearest, sin_cos};
 use std::cell::LazyCell;
 use std::f64::consts::PI;
 
@@ -60,11 +61,8 @@ const END: usize = 6;
 /// What is cut is simplified within this (2 µm).
 const ROUNDING: Coord = 20;
 
-/// A side of a bead: its centre line and its width.
-type Side = (Edge, f64);
-
-/// The sides of all beads: most layers need none.
-type Sides<'a> = LazyCell<Vec<Side>, &'a dyn Fn() -> Vec<Side>>;
+/// The sides of all beads, and the width of the widest: most layers need none.
+type Beads<'a> = LazyCell<(Sides, f64), &'a dyn Fn() -> (Sides, f64)>;
 
 /// The loops of all patches. `walls` are all other beads, and the middle ones lie `near`.
 pub(super) fn patches(
@@ -76,15 +74,19 @@ pub(super) fn patches(
     if doubts.is_empty() {
         return Vec::new();
     }
-    let sides =
-        || walls.iter().flat_map(|wall| sides(wall, layout.line_width)).collect::<Vec<Side>>();
-    let sides = Sides::new(&sides);
+    let beads = || {
+        let all =
+            walls.iter().flat_map(|wall| sides(wall, layout.line_width)).collect::<Vec<Side>>();
+        let widest = all.iter().fold(0.0, |widest: f64, (_, width)| widest.at_least(*width));
+        (Sides::new(all, 2.0 * layout.line_width), widest)
+    };
+    let beads = Beads::new(&beads);
     let mut holes = bare(walls, layout);
-    holes.extend(doubts.iter().filter_map(|&doubt| hole(doubt, (&sides, near), layout)));
+    holes.extend(doubts.iter().filter_map(|&doubt| hole(doubt, (&beads, near), layout)));
     if holes.is_empty() {
         return Vec::new();
     }
-    let open = open(&holes, &sides, core, layout);
+    let open = open(&holes, beads.0.all(), core, layout);
     let depth =
         |p: Point| walls.iter().filter(|w| w.closed && encloses(edges(&w.path), p)).count() as u32;
     let outers = open.iter().filter(|c| double_area(c) > 0);
@@ -122,7 +124,7 @@ fn bare(walls: &[Wall], layout: &Layout<'_>) -> Vec<[f64; 2]> {
 }
 
 /// The first hole on the way from a doubt into the part.
-fn hole(doubt: Doubt, beads: (&Sides<'_>, &Near), layout: &Layout<'_>) -> Option<[f64; 2]> {
+fn hole(doubt: Doubt, beads: (&Beads<'_>, &Near), layout: &Layout<'_>) -> Option<[f64; 2]> {
     let (w, count) = (layout.line_width, layout.params.count);
     let edge = PART * layout.params.narrowest / 2.0;
     let at = |deep: f64| along(doubt.at, deep, doubt.normal);
@@ -147,16 +149,16 @@ fn hole(doubt: Doubt, beads: (&Sides<'_>, &Near), layout: &Layout<'_>) -> Option
 fn is_open(
     at: [f64; 2],
     radius: f64,
-    (sides, near): (&Sides<'_>, &Near),
+    (beads, near): (&Beads<'_>, &Near),
     layout: &Layout<'_>,
 ) -> bool {
     // A quick look, as loops lie without shares, and for beads as narrow as can be.
     let loops = radius + STEP * layout.line_width;
-    let beads = radius + PART * layout.params.narrowest / 2.0;
+    let narrow = radius + PART * layout.params.narrowest / 2.0;
     let is_clear = |(side, width): &Side| distance2(at, *side).sqrt() > radius + width / 2.0;
     layout.levels.iter().all(|level| level.is_free([at], loops))
-        && near.is_free([at], beads)
-        && sides.iter().all(is_clear)
+        && near.is_free([at], narrow)
+        && beads.0.near(at, radius + beads.1 / 2.0).all(is_clear)
 }
 
 /// What beads and core leave open around holes, without what is thinner than the narrowest bead.
