@@ -1,6 +1,6 @@
 //! A line -> whether it is of the part, and of its layer.
 
-use super::bead::Bead;
+use super::stack::bead::Bead;
 use crate::reader::Role;
 use crate::reader::print::{Layer, Step};
 

@@ -13,21 +13,22 @@
 //! So the findings and their order are the same for any number of threads, and only a window of layers
 //! is held.
 
-use super::against;
-use super::contact::{self, Contact, Contacts};
 use super::filled::Filled;
-use super::fills::{self, Field};
+use super::filled::contact::{self, Contact, Contacts};
+use super::filled::fills::{self, Field};
+use super::filled::posts::{self, Posts};
 use super::finding::{Code, Finding, Findings};
-use super::lay;
+use super::model::against;
+use super::model::align;
+use super::model::part::Part;
+use super::model::{Sums, Surfaces};
 use super::moves::Moves;
-use super::part::Part;
-use super::posts::{self, Posts};
 use super::stack::Stack;
-use super::surfaces::{Sums, Surfaces};
+use super::stack::lay;
 use super::survey::Survey;
 use super::terms::Terms;
 use super::window::{Pages, Window};
-use super::{Measures, Model, SCHEMA, Verdict, align, beads};
+use super::{Measures, Model, SCHEMA, Verdict, beads};
 use crate::reader::{Facts, Role};
 use rayon::prelude::*;
 use std::ops::Range;

@@ -15,55 +15,23 @@
 //! lines lie on each other is worked out between those that are near (`laid`); what they fill is drawn on
 //! rows of spans. A thick bead fills the layers below it too.
 
-mod against;
-mod air;
-mod align;
-mod anchors;
 mod asked;
-mod bead;
 mod beads;
 mod belongs;
-mod bodies;
 mod capsule;
-mod carriers;
-mod chains;
-mod changes;
-mod contact;
-mod dialect;
 mod filled;
-mod fills;
 pub mod finding;
-mod ground;
-mod heat;
 mod judge;
-mod laid;
-mod lay;
-mod limits;
-mod motors;
+mod model;
 mod moves;
-mod orders;
-mod part;
-mod patches;
-mod plies;
-mod posts;
-mod primed;
-mod raft;
-mod relief;
-mod roof;
 mod rows;
-mod runs;
 mod samples;
 mod sets;
-mod skins;
 mod slopes;
 mod stack;
 mod standing;
-mod surfaces;
 mod survey;
-mod sweep;
 pub mod terms;
-mod through;
-mod warmth;
 mod window;
 
 use crate::mesh::Mesh;

@@ -14,7 +14,7 @@
 use super::beads::{self, Usual};
 use super::belongs::{SOME_WIDTH, is_of_part, is_stray, pieces};
 use super::capsule::Capsule;
-use super::part::extent_of;
+use super::model::part::extent_of;
 use super::terms::Terms;
 use super::window::{Page, Pages};
 use crate::reader::print::Step;
