@@ -96,7 +96,7 @@ impl Turns {
             return Self::default();
         }
         let lines = |directions| lines(settings, directions);
-        let sparse: Vec<Vec<Pattern>> = match pattern(settings) {
+        let sparse: Vec<Vec<Pattern>> = match settings.printed_pattern() {
             profile::Pattern::Rectilinear => vec![lines(&[0.0]), lines(&[90.0])],
             profile::Pattern::Aligned => vec![lines(&[0.0])],
             profile::Pattern::Grid => vec![lines(&[0.0, 90.0])],
@@ -137,22 +137,6 @@ impl Turns {
     /// The rasters of all patterns, with repetitions.
     pub fn rasters(&self) -> impl Iterator<Item = Raster> {
         self.sparse.iter().flatten().map(|pattern| pattern.raster())
-    }
-}
-
-/// Densities from which lines that cross on a layer leave no room for each other, %. Where they cross they lie
-/// twice; beside that shafts stay open: of a grid of 100 % a quarter.
-const MOST_CROSSED: f64 = 90.0;
-
-/// The pattern that is printed: lines in one direction on each layer where the one that `settings` ask for
-/// cannot be as dense as they ask for.
-#[must_use]
-pub fn pattern(settings: &Settings) -> profile::Pattern {
-    match settings.pattern {
-        profile::Pattern::Grid | profile::Pattern::Triangles if settings.infill >= MOST_CROSSED => {
-            profile::Pattern::Rectilinear
-        }
-        asked => asked,
     }
 }
 

@@ -8,7 +8,7 @@
 //!
 //! All of it depends on the settings alone, never on a model.
 
-use super::{BrimPlace, DualRatio, Extrusion, ExtrusionModel, Machine, Origin, Settings};
+use super::{BrimPlace, DualRatio, Extrusion, ExtrusionModel, Machine, Origin, Pattern, Settings};
 use crate::head::Head;
 use std::f64::consts::PI;
 
@@ -17,6 +17,10 @@ const SLACK_MM: f64 = 1e-9;
 
 /// No print is as slow as this on purpose, mm/s: who asks for less has another unit in mind.
 const SLOW_MM_S: f64 = 2.0;
+
+/// Densities from which lines that cross on a layer leave no room for each other, %. Where they cross they lie
+/// twice; beside that shafts stay open: of a grid of 100 % a quarter.
+const MOST_CROSSED: f64 = 90.0;
 
 impl Machine {
     /// The lowest and the highest corner of the print volume, where parts may lie, mm.
@@ -64,6 +68,18 @@ impl Extrusion {
 }
 
 impl Settings {
+    /// The pattern of the infill that is printed: lines in one direction on each layer where the one asked for
+    /// cannot be as dense as it should be.
+    #[must_use]
+    pub fn printed_pattern(&self) -> Pattern {
+        match self.pattern {
+            Pattern::Grid | Pattern::Triangles if self.infill >= MOST_CROSSED => {
+                Pattern::Rectilinear
+            }
+            asked => asked,
+        }
+    }
+
     /// Solid layers at the top, at least; the thickness may ask for more.
     #[must_use]
     pub fn top_skins(&self) -> u32 {

@@ -2,6 +2,11 @@
 //!
 //! Words: a *piece* is a short way along the bead, of one width; its middle is what is tested. A *run*
 //! is a number of pieces, one after the other, with the same answer.
+//!
+//! 1. Cut the bead into pieces and test the middle of each. A ring is turned so that it begins where the
+//!    answer changes.
+//! 2. Smooth the runs: close short gaps, keep off from what fails, drop what is short.
+//! 3. Join the pieces of each run, with the bead's own corners.
 
 use crate::geom::Point;
 use crate::geom::polyline::{LinePoint, Polyline};

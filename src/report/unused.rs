@@ -2,7 +2,6 @@
 
 use crate::fill::Role;
 use crate::gcode::usage::Usage;
-use crate::pattern;
 use crate::profile::{BrimPlace, IroningPlace, Settings};
 use crate::warning::Warning;
 
@@ -17,7 +16,7 @@ pub(super) fn warnings(usage: &Usage, settings: &Settings) -> Vec<Warning> {
     if settings.ironing.place != IroningPlace::Off && !ironed {
         found.push(Warning::void(["ironing.where"], "no top is wide enough for its lines"));
     }
-    if pattern::pattern(settings) != settings.pattern {
+    if settings.printed_pattern() != settings.pattern {
         let why = "lines that cross cannot be so dense; they run in one direction on each layer";
         found.push(Warning::void(["pattern"], why));
     }
@@ -39,8 +38,7 @@ fn on_raft(settings: &Settings) -> Vec<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pattern::Turns;
-    use crate::profile::Profile;
+    use crate::profile::{Pattern, Profile};
 
     #[test]
     fn what_crosses_itself_is_not_printed_densely() {
@@ -48,11 +46,11 @@ mod tests {
             let given = Profile::builder("generic-marlin").set("pattern", pattern);
             let settings = given.set("infill", infill).load().unwrap().settings;
             let warnings = warnings(&Usage::default(), &settings);
-            (warnings.len(), Turns::new(&settings).of(0).len())
+            (warnings.len(), settings.printed_pattern())
         };
-        assert_eq!(told("grid", "100"), (1, 1));
-        assert_eq!(told("triangles", "95"), (1, 1));
-        assert_eq!(told("grid", "60"), (0, 2));
-        assert_eq!(told("rectilinear", "100"), (0, 1));
+        assert_eq!(told("grid", "100"), (1, Pattern::Rectilinear));
+        assert_eq!(told("triangles", "95"), (1, Pattern::Rectilinear));
+        assert_eq!(told("grid", "60"), (0, Pattern::Grid));
+        assert_eq!(told("rectilinear", "100"), (0, Pattern::Rectilinear));
     }
 }

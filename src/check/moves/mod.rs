@@ -5,18 +5,16 @@
 //! - plastic pushed out before the nozzle was set and waited for (once a file);
 //! - filament that is still pulled back when a line begins, or pushed out more than was pulled back;
 //! - lines outside the machine's volume, other moves beyond the nozzle's reach;
-//! - motors that would have to step too fast ([`motors`](super::motors));
+//! - motors that would have to step too fast ([`motors`]);
 //! - speeds in x and y beyond the machine's, and more plastic per second than the hot end melts.
 //!   Speeds of the filament alone are not judged, and speeds in z only of non-planar skin, of lines that
 //!   rise by more than a layer, in files of this program's, or beyond any machine's: firmwares cap them,
 //!   and slicers rely on that. A move that rises is as slow as the cap on z makes it;
-//! - travels through what stands ([`through`](super::through)); in files with lines over slopes all that the
-//!   head touches, and the skins there ([`slopes`](super::slopes)); and lines on what the start block primed
-//!   ([`primed`](super::primed)).
+//! - travels through what stands ([`through`]); in files with lines over slopes all that the head touches,
+//!   and the skins there ([`slopes`](super::slopes)); lines on what the start block primed ([`primed`]).
 //!
-//! Between the moves are commands: those that change the machine ([`changes`](super::changes)) and its limits
-//! ([`limits`](super::limits)), and those for heaters ([`warmth`](super::warmth)) and the fan
-//! ([`air`](super::air)).
+//! Between the moves are commands: those that change the machine ([`changes`]) and its limits
+//! ([`limits`]), and those for heaters ([`warmth`]) and the fan ([`air`]).
 //!
 //! Commands are judged once each, by a list of what the firmware knows. Klipper's macros cannot be
 //! judged, and are listed as such.

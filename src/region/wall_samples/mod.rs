@@ -19,6 +19,8 @@
 //! The constants are in line widths unless they say otherwise. Most are as old as this file, and
 //! the history records no measurements of them. So each says what it trades off.
 
+mod corners;
+
 use super::crossed::Crossed;
 use super::near::{Area, Near};
 use super::params::BeadParams;
@@ -76,11 +78,6 @@ const BEYOND: f64 = 0.6;
 /// smaller value rejects tapering strips. A larger one accepts corners, where the wall at the
 /// other end of the row is not opposite; above 0.2 the sample's own wall would pass.
 const SLOPE: f64 = 0.1;
-
-/// Length of the middle normal of a round corner. A corner of 90° to 180° gets three points; their
-/// two chords would cut inside the circle around the corner. At 1 beads come too near to the
-/// wall at such corners; a larger value leaves them further open.
-const ROUND: f64 = 1.2;
 
 /// Maximum length of a stretch that is too deep and yet gets beads, because narrow skin is on both
 /// sides. Near a corner a row runs inside the skin of the other wall, so the depth seems large.
@@ -160,7 +157,7 @@ fn finished(wall: &Contour, mut found: Vec<WallSample>, params: &BeadParams) -> 
     let perimeter = edges(wall).map(|(p, q)| p.distance(q)).sum::<f64>();
     bridge(&mut found, perimeter, params);
     smooth(&mut found, perimeter, params);
-    with_corners(wall, &found, perimeter, params)
+    corners::with_corners(wall, &found, perimeter, params)
 }
 
 impl WallSample {
@@ -448,66 +445,4 @@ fn smooth(samples: &mut [WallSample], perimeter: f64, params: &BeadParams) {
             (from..to).for_each(|k| samples[k % n].beads = other);
         }
     }
-}
-
-/// Adds the wall's own corners to the samples, with the skin of the nearest sample.
-fn with_corners(
-    wall: &Contour,
-    found: &[WallSample],
-    perimeter: f64,
-    params: &BeadParams,
-) -> Vec<WallSample> {
-    let most = SHORT * f64::from(params.line_width);
-    let n = wall.len();
-    let mut out = Vec::with_capacity(found.len() + n);
-    let mut position = 0.0;
-    let mut next = 0;
-    for (k, (p, q)) in edges(wall).enumerate() {
-        let (before, edge) = (Edge::new(wall[(k + n - 1) % n], p, 0.0), Edge::new(p, q, position));
-        let near = |k: usize| {
-            let sample = found[k % found.len()];
-            let away = (sample.position - position).abs();
-            (away.at_most(perimeter - away), sample)
-        };
-        let (a, b) = (near(next + found.len() - 1), near(next));
-        let nearest = if a.0 <= b.0 { a } else { b };
-        let gap = a.0 + b.0;
-        let alike = a.1.beads == b.1.beads && a.1.shared == b.1.shared;
-        let depth = if alike && gap > 0.0 {
-            (a.1.depth * b.0 + b.1.depth * a.0) / gap
-        } else {
-            nearest.1.depth
-        };
-        let beads = if nearest.0 <= most { nearest.1.beads } else { 0 };
-        let leads = a.1.leads || b.1.leads;
-        let corner = WallSample { at: edge.from, position, depth, leads, beads, ..nearest.1 };
-        add_corner(&before, &edge, corner, &mut out);
-        position += edge.length;
-        while let Some(sample) = found.get(next).filter(|s| s.position <= position) {
-            out.push(*sample);
-            next += 1;
-        }
-    }
-    // One sample is enough for each stretch without beads.
-    out.dedup_by(|b, a| a.beads == 0 && b.beads == 0);
-    out
-}
-
-/// Adds a corner between two edges: one point on its mitre, or three round points where the mitre
-/// would reach too far.
-fn add_corner(before: &Edge, after: &Edge, corner: WallSample, out: &mut Vec<WallSample>) {
-    let (a, b) = (before.normal(), after.normal());
-    let cosine = a[0] * b[0] + a[1] * b[1];
-    if cosine >= 0.0 {
-        let normal = [0, 1].map(|k| (a[k] + b[k]) / (1.0 + cosine));
-        out.push(WallSample { normal, ..corner });
-        return;
-    }
-    // The middle normal bisects the two, or points straight on where the wall turns back.
-    let length = (2.0 + 2.0 * cosine).at_least(0.0).sqrt();
-    let middle = [0, 1].map(|k| {
-        let ahead = if length > 0.1 { (a[k] + b[k]) / length } else { before.along[k] };
-        ahead * ROUND
-    });
-    out.extend([a, middle, b].map(|normal| WallSample { normal, ..corner }));
 }
