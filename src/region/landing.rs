@@ -42,7 +42,7 @@ const LONGEST: Coord = 12;
 
 /// A line that lies on nothing at all goes on to what is this far from the last line before it at most, in line
 /// widths: across a cell of thin infill in two or three directions. With a smaller value pieces of skin hang
-/// in such cells; a larger one bridges what should be infill.
+/// in such cells; a larger one bridges what should be infill. Infill in one direction has no cells.
 const LONGEST_LOOSE: Coord = 32;
 
 /// It goes on to what is solid if it is free for this long at most, in line widths. It may run along
@@ -64,6 +64,8 @@ pub struct Around<'a> {
     pub printed: &'a Rows,
     /// Width of a line.
     pub line_width: Coord,
+    /// Whether lines below cross each other.
+    pub crosses: bool,
 }
 
 /// Where the lines of `skin` go on through the infill, so that they end on something.
@@ -117,7 +119,8 @@ impl Row<'_> {
         let line = self.printed.get(known).map(|s| s.start + over);
         // Where the infill below ends, skin or a wall lies below.
         let solid = (void.end + w).min(room.end);
-        let longest = if carried <= skin.start { LONGEST_LOOSE } else { LONGEST };
+        let is_loose = around.crosses && carried <= skin.start;
+        let longest = if is_loose { LONGEST_LOOSE } else { LONGEST };
         let is_near = line.is_some_and(|line| line - carried <= longest * w)
             || solid - carried <= LONGEST_ALONG * w;
         if !is_near {
@@ -178,7 +181,9 @@ pub fn land(
         (floor.line_width, &areas.skin(along).infill, &floor.areas.skin(along).infill);
     let Some(ends) = Ends::of(&skin[0], infill, below) else { return skin };
     let printed = floor.printed(own[0], &ends);
-    let more = beyond(&skin[0], &Around { infill, below, printed: &printed, line_width: w });
+    let crosses = floor.patterns.len() > 1;
+    let beside = Around { infill, below, printed: &printed, line_width: w, crosses };
+    let more = beyond(&skin[0], &beside);
     let more = broad(more, floor.least_rows);
     if more.is_empty() {
         return skin;
@@ -280,6 +285,7 @@ mod tests {
             below: &row(&[(0, void)]),
             printed: &row(&lines),
             line_width: W,
+            crosses: true,
         };
         let more = beyond(&row(&[(0, at)]), &around);
         more.row(0).first().map_or(at, |s| s.end)
@@ -306,6 +312,7 @@ mod tests {
             below: &row(&[(-90_000, 90_000)]),
             printed: &row(&[(-22_000, -18_000), (-2_000, 2_000), (18_000, 22_000)]),
             line_width: W,
+            crosses: true,
         };
         let more = beyond(&row(&[(-11_000, 11_000)]), &around);
         assert_eq!(more, row(&[(-21_000, -11_000), (11_000, 21_000)]));
@@ -321,6 +328,7 @@ mod tests {
                 below: &row(&[(-90_000, 90_000)]),
                 printed: &row(&lines),
                 line_width: W,
+                crosses: true,
             };
             let more = beyond(&row(&[(-11_000, 11_000)]), &around);
             let end = more.row(0).last().map_or(11_000, |s| s.end.max(11_000));
