@@ -325,8 +325,14 @@ fn settings_of_the_first_format_are_read_as_todays() {
     let text = String::from_utf8(told.get_output().stdout.clone()).unwrap();
     let settings = text.lines().filter_map(|line| line.trim().strip_prefix("setting "));
     let differs = settings.filter(|s| !s.contains("nothing in A")).collect::<Vec<_>>();
-    let defaults =
-        ["corner_radius", "skin_reach", "speed.first_layer", "estimated printing", "filament used"];
+    let defaults = [
+        "corner_radius",
+        "skin_reach",
+        "speed.first_layer",
+        "support.expansion",
+        "estimated printing",
+        "filament used",
+    ];
     assert!(differs.iter().all(|s| defaults.iter().any(|key| s.starts_with(key))), "{differs:?}");
     for words in [&["check", OLD][..], &["estimate", OLD, "-p", "generic-marlin"]] {
         let told = slicer(words).assert().code(0).stderr("");
