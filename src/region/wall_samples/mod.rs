@@ -54,6 +54,10 @@ const MOST_ACROSS: usize = 5;
 /// A larger value makes single beads too wide; a smaller one makes pairs that are too thin.
 const SINGLE: f64 = 1.6;
 
+/// A narrower strip gets no more than two beads. A larger value makes them too wide; with a smaller one more
+/// strips get a third, which does not turn with them at corners.
+const PAIR: f64 = 3.2;
+
 /// Maximum depth for each bead on a short stretch where one bead more would be needed: stretching
 /// the others avoids a short extra bead. It is as wide as lines may get in gap closing. At
 /// [`WIDEST`] short extra beads would stay; a larger value makes bulges.
@@ -155,6 +159,7 @@ fn finished(wall: &Contour, mut found: Vec<WallSample>, params: &BeadParams) -> 
         return Vec::new();
     }
     let perimeter = edges(wall).map(|(p, q)| p.distance(q)).sum::<f64>();
+    leave_corners(&mut found, perimeter, params);
     bridge(&mut found, perimeter, params);
     smooth(&mut found, perimeter, params);
     corners::with_corners(wall, &found, perimeter, params)
@@ -362,7 +367,11 @@ fn reach(stretches: impl Iterator<Item = (i64, i64)>, pitch: Coord) -> i64 {
 
 /// The least width of a strip that gets `count` beads, at least 2, in line widths.
 fn least_of(count: usize) -> f64 {
-    if count == 2 { SINGLE } else { count as f64 - 0.5 }
+    match count {
+        2 => SINGLE,
+        3 => PAIR,
+        _ => count as f64 - 0.5,
+    }
 }
 
 /// Number of beads that cover a depth; 0 if it is too deep.
@@ -389,6 +398,18 @@ fn span(samples: &[WallSample], (from, to): (usize, usize), perimeter: f64) -> f
     let n = samples.len();
     let length = samples[to % n].position - samples[(from + n - 1) % n].position;
     if length > 0.0 { length } else { length + perimeter }
+}
+
+/// Takes the beads from short stretches of strips for more than two: at a corner a narrower strip seems up to
+/// twice as wide.
+fn leave_corners(samples: &mut [WallSample], perimeter: f64, params: &BeadParams) {
+    let (n, w) = (samples.len(), f64::from(params.line_width));
+    let is_wide = |s: &WallSample| s.shared && s.beads > 1;
+    for (from, to) in stretches(samples, is_wide) {
+        if is_wide(&samples[from % n]) && span(samples, (from, to), perimeter) < CORNER * w {
+            (from..to).for_each(|k| samples[k % n].beads = 0);
+        }
+    }
 }
 
 /// Gives beads to short stretches without beads between two with beads.
