@@ -12,13 +12,15 @@ const ALIKE: i32 = 10;
 
 /// For each wall of each layer of `block`, the number of layers it is printed for: 0 if a layer
 /// above prints it. The outer wall is always for its own layer. An inner one continues in a wall
-/// of the next layer that runs along it. Layers that have to be `thin` print nothing for others.
+/// of the next layer that runs along it. Layers that have to be `thin` print nothing for others, and a
+/// wall that `fills` a room, by its layer and number, is none here: it is laid with the beads of rooms.
 #[must_use]
 pub fn share(
     block: &Block,
     layers: &[&[Wall]],
     grouping: &Grouping,
     thin: &dyn Fn(usize) -> bool,
+    fills: &dyn Fn(usize, usize) -> bool,
     params: &WallParams,
 ) -> Vec<Vec<u32>> {
     let tolerance = params.line_width / ALIKE;
@@ -29,12 +31,13 @@ pub fn share(
             continue;
         }
         for (i, wall) in layers[n].iter().enumerate().filter(|(_, w)| w.depth > 0 && w.closed) {
-            if grouping.ends(grouping.wall_phase(wall.depth), k - 1, block) {
+            if fills(k, i) || grouping.ends(grouping.wall_phase(wall.depth), k - 1, block) {
                 continue;
             }
             let continues = |&j: &usize| {
                 let below = &layers[n - 1][j];
                 out[n - 1][j] > 0
+                    && !fills(k - 1, j)
                     && below.closed
                     && below.depth == wall.depth
                     && follow(&below.path, &wall.path, tolerance)
@@ -45,4 +48,32 @@ pub fn share(
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::Point;
+    use crate::profile::{self, DualMode};
+    use crate::region::RegionParams;
+
+    #[test]
+    fn a_wall_that_fills_a_room_on_one_layer_is_shared_with_none() {
+        let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
+        settings.dual.mode = DualMode::Pair;
+        let params = RegionParams::new(&settings).walls;
+        let grouping = Grouping::new(&settings.dual, 2);
+        let p = |x, y| Point { x, y };
+        let square = vec![p(0, 0), p(90_000, 0), p(90_000, 90_000), p(0, 90_000)];
+        let wall = Wall { path: square, widths: Vec::new(), closed: true, depth: 2, layers: 1 };
+        let walls = [wall];
+        let counts = |filling: Option<usize>| {
+            let fills = |k: usize, _: usize| Some(k) == filling;
+            let block = grouping.block(4, 100);
+            share(&block, &[&walls, &walls], &grouping, &|_| false, &fills, &params)
+        };
+        assert_eq!(counts(None), [[0], [2]]);
+        assert_eq!(counts(Some(4)), [[1], [1]]);
+        assert_eq!(counts(Some(5)), [[1], [1]]);
+    }
 }

@@ -19,7 +19,10 @@ impl Window<'_> {
         let layers: Vec<&[Wall]> = block.layers.clone().map(walls).collect();
         if self.grouping.shares(DualPart::InnerWalls) {
             let thin = |k: usize| self.is_thin(k);
-            walls::share(block, &layers, self.grouping, &thin, &self.params.walls)
+            let fills = |k: usize, i: usize| {
+                self.beads.get(k).is_some_and(|laid| laid.filling.contains(&i))
+            };
+            walls::share(block, &layers, self.grouping, &thin, &fills, &self.params.walls)
         } else {
             layers.iter().map(|walls| vec![1; walls.len()]).collect()
         }
