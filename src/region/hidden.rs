@@ -8,7 +8,7 @@ use super::classify::neighbours;
 use super::params::RegionParams;
 use super::per_raster::skin_turn;
 use super::prepare::LayerRows;
-use super::stretches::{Smooth, stretches};
+use super::stretches::{Smooth, parted, stretches};
 use super::walls::Wall;
 use crate::geom::Point;
 use crate::geom::outline::Columns;
@@ -60,10 +60,9 @@ pub fn beads(
     let place = |p: &LinePoint| Point { x: p.u, y: p.v };
     let covered = |p: &LinePoint| !exposed.holds(place(p));
     let all = beads.iter().flat_map(|bead| stretches(bead, pitch, smooth, covered));
-    let (hidden, others): (Vec<_>, Vec<_>) =
-        all.partition(|(is_covered, stretch)| *is_covered && is_inside(stretch, rooms));
-    let only = |of: Vec<(bool, Polyline)>| of.into_iter().map(|(_, stretch)| stretch).collect();
-    (only(hidden), only(others))
+    let [hidden, others] =
+        parted(all.map(|(covered, stretch)| (covered && is_inside(&stretch, rooms), stretch)));
+    (hidden, others)
 }
 
 /// Whether most of a bead lies in the `rooms`. Their rows leave out what lies between two of them.

@@ -40,6 +40,13 @@ impl Piece {
     }
 }
 
+/// Those stretches that pass, and the others.
+pub(super) fn parted(all: impl Iterator<Item = (bool, Polyline)>) -> [Vec<Polyline>; 2] {
+    let mut out = [Vec::new(), Vec::new()];
+    all.for_each(|(passes, stretch)| out[usize::from(!passes)].push(stretch));
+    out
+}
+
 /// Divides `bead` into stretches whose places pass, and those whose places do not. It is tested at places
 /// at most a `step` apart. A ring may begin elsewhere.
 pub(super) fn stretches(

@@ -10,7 +10,7 @@ use crate::geom::frame::Frame;
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::segment::distance2;
 use crate::region::sides::{Side, Sides};
-use crate::region::stretches::{Smooth, stretches};
+use crate::region::stretches::{Smooth, parted, stretches};
 use crate::units::Coord;
 
 /// Beads of two layers are printed at once if they are at most this far apart, and one at most so much
@@ -71,15 +71,14 @@ fn taken_over(
     let Some(under) = Under::new(&below, w) else { return Vec::new() };
     let smooth = Smooth { close: CLOSE * w, least: LEAST * w, ..Smooth::default() };
     let divided = own.iter().flat_map(|bead| stretches(bead, line_width, smooth, |p| under.has(p)));
-    let (both, alone): (Vec<_>, Vec<_>) = divided.partition(|(is_alike, _)| *is_alike);
-    let only = |of: Vec<(bool, Polyline)>| of.into_iter().map(|(_, bead)| bead).collect();
-    let both: Vec<Polyline> = only(both);
-    *own = only(alone);
+    let [both, alone] = parted(divided);
+    *own = alone;
     if let Some(over) = Under::new(&both, w) {
         let smooth = Smooth { close: CLOSE * w, ..Smooth::default() };
         let is_taken = |p: &LinePoint| over.has(&turn.enter(p));
         let divided = lower.iter().flat_map(|bead| stretches(bead, line_width, smooth, is_taken));
-        *lower = divided.filter(|(is_taken, _)| !is_taken).map(|(_, bead)| bead).collect();
+        let [_, left] = parted(divided);
+        *lower = left;
     }
     both
 }

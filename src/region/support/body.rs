@@ -154,17 +154,16 @@ impl Body {
         let zigzags = rows.minus(&outlined.dilate(inwards, raster.pitch));
         let outlines = outlines(&outlined, raster.pitch, raster.frame, 4 * params.least);
 
-        let meets = |rows: &Rows, j: i32, span: Span| rows.row(j).iter().any(|s| s.overlaps(span));
         let [along, across] = apart(&lines, &strips, params);
         let core = outlined.erode(BESIDE * params.least, raster.pitch);
         let seldom = k.is_multiple_of(SELDOM);
         let lines = along.filter(|j, span| {
             let is_brace = span.len() <= brace(params);
-            let braces = || seldom || meets(&carries, j, span);
-            if is_brace { braces() } else { meets(&core, j, span) }
+            let braces = || seldom || carries.overlapping(j, span).is_some();
+            if is_brace { braces() } else { core.overlapping(j, span).is_some() }
         });
         let carries = if seldom { Rows::default() } else { turned(&carries, raster.pitch) };
-        let braces = across.filter(|j, span| seldom || meets(&carries, j, span));
+        let braces = across.filter(|j, span| seldom || carries.overlapping(j, span).is_some());
         let [zigzags, waves] = apart(&zigzags, &strips, params);
         (outlines, [zigzags, lines, waves, braces])
     }

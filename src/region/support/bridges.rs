@@ -101,7 +101,7 @@ fn way(piece: &Rows, below: [&Rows; 2], turn: usize, params: &SupportParams) -> 
 fn near(gaps: &Rows, piece: &Rows, params: &SupportParams) -> Rows {
     let pitch = params.raster().pitch;
     let near = piece.dilate(pitch, pitch);
-    gaps.filter(|j, gap| near.row(j).iter().any(|span| span.overlaps(gap)))
+    gaps.filter(|j, gap| near.overlapping(j, gap).is_some())
 }
 
 /// Strips that divide gaps which are too long.

@@ -9,7 +9,7 @@
 use super::held::loose;
 use super::params::SupportParams;
 use super::pieces::{Pieces, turned};
-use crate::geom::spans::{Rows, Span, subtract, unite};
+use crate::geom::spans::{Rows, subtract, unite};
 
 /// A strip is no wider than this, in distances of lines. Wider places have lines of their own.
 const WIDEST: i32 = 2;
@@ -29,12 +29,11 @@ pub(super) fn strips(all: &Rows, params: &SupportParams) -> Rows {
     }
     let [columns, seeds] = [all, &seeds].map(|rows| turned(rows, pitch));
     let widest = i64::from(WIDEST * lines.stride * pitch);
-    let meets = |rows: &Rows, j: i32, span: Span| rows.row(j).iter().any(|s| s.overlaps(span));
     let narrow = columns.filter(|_, span| span.len() <= widest);
-    let seeds = narrow.filter(|j, span| meets(&seeds, j, span));
+    let seeds = narrow.filter(|j, span| seeds.overlapping(j, span).is_some());
     // They go on to the next line across.
     let near = seeds.dilate(params.crossing.stride * pitch, pitch);
-    let strips = narrow.filter(|j, span| meets(&near, j, span));
+    let strips = narrow.filter(|j, span| near.overlapping(j, span).is_some());
     let pieces = Pieces::new(&strips);
     let mut lines = vec![0; pieces.count()];
     let printed = strips.filter(|j, _| params.crossing.prints(j));
@@ -70,6 +69,7 @@ pub(super) fn upright(columns: &Rows, params: &SupportParams) -> Rows {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::spans::Span;
     use crate::profile;
     use crate::units::Coord;
 

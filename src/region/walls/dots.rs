@@ -21,7 +21,7 @@ use std::f64::consts::PI;
 const COMPACT: f64 = 6.0;
 
 /// How often the radius is halved in on: to a four hundredth.
-pub(super) const HALVINGS: usize = 7;
+const HALVINGS: usize = 7;
 
 /// The loops of the dots among `contours`, and the other contours. `None` if there are no dots.
 pub(super) fn dots(contours: &[Contour], params: &WallParams) -> Option<(Vec<Wall>, Vec<Contour>)> {
@@ -51,17 +51,22 @@ fn radius(contour: &Contour, params: &WallParams) -> Option<f64> {
             polygon::inset(std::slice::from_ref(contour), (nearest(radius) as Coord).max(1));
         !inset.is_empty()
     };
-    let mut low = (area / COMPACT).max(0.0).sqrt();
+    let low = (area / COMPACT).max(0.0).sqrt();
     if area <= 0.0 || low > most || !holds(low) {
         return None;
     }
-    let mut high = (area / PI).sqrt();
+    let [low, high] = halved([low, (area / PI).sqrt()], holds);
+    let radius = f64::midpoint(low, high);
+    (radius <= most && 2.0 * radius >= params.least_room.max(params.narrowest)).then_some(radius)
+}
+
+/// A narrow range around the largest radius that `holds`, of one from a radius that does to one that may not.
+pub(super) fn halved([mut low, mut high]: [f64; 2], holds: impl Fn(f64) -> bool) -> [f64; 2] {
     for _ in 0..HALVINGS {
         let middle = f64::midpoint(low, high);
         *(if holds(middle) { &mut low } else { &mut high }) = middle;
     }
-    let radius = f64::midpoint(low, high);
-    (radius <= most && 2.0 * radius >= params.least_room.max(params.narrowest)).then_some(radius)
+    [low, high]
 }
 
 /// The loops of a dot.

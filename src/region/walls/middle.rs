@@ -176,7 +176,7 @@ fn lap(
                 let length = dot(both, both).sqrt().at_least(f64::MIN_POSITIVE);
                 doubts.push(Doubt { at: float(p), normal: both.map(|x| x / length), sharp: true });
             }
-            fan((before, p), normal, |normal| {
+            fan(from, turn, |normal| {
                 out.push(sample(
                     Doubt { at: float(p), normal, sharp: false },
                     index,
@@ -194,9 +194,8 @@ fn lap(
     out
 }
 
-/// Calls `at` with normals between that of the side before a corner and `to`.
-fn fan(corner: (Point, Point), to: [f64; 2], mut at: impl FnMut([f64; 2])) {
-    let (from, turn) = turn(corner, to);
+/// Calls `at` with normals between that of the side before a corner, `from`, and what it is turned to.
+fn fan(from: [f64; 2], turn: f64, mut at: impl FnMut([f64; 2])) {
     let count = (turn.abs() / TURN).ceil();
     for i in 0..count as usize {
         let (sin, cos) = libm::sincos((i as f64 + 0.5) / count * turn);

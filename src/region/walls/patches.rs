@@ -13,7 +13,7 @@
 //! 2. Around the holes, take from the part what the beads and the core cover. Patches are left.
 //! 3. Fill each patch with loops that share the room of the largest circle in it, as dots are filled.
 
-use super::dots::HALVINGS;
+use super::dots::halved;
 use super::{Layout, Wall};
 use crate::geom::boxes::Around;
 use crate::geom::segment::{along, distance2};
@@ -187,12 +187,8 @@ fn open(holes: &[[f64; 2]], sides: &[Side], core: &[Contour], layout: &Layout<'_
 fn loops(patch: &[Contour], depth: u32, layout: &Layout<'_>) -> Vec<Wall> {
     let area = patch.iter().map(|c| double_area(c) as f64 / 2.0).sum::<f64>();
     let inset = |distance: f64| polygon::inset(patch, (nearest(distance) as Coord).max(1));
-    let (mut low, mut high) = (0.0, (area.max(0.0) / PI).sqrt());
-    for _ in 0..HALVINGS {
-        let middle = f64::midpoint(low, high);
-        *(if inset(middle).is_empty() { &mut high } else { &mut low }) = middle;
-    }
-    let half = low;
+    let widest = (area.max(0.0) / PI).sqrt();
+    let [half, _] = halved([0.0, widest], |radius| !inset(radius).is_empty());
     let narrowest = layout.params.narrowest;
     let count = (half / (WIDEST * layout.line_width)).ceil().min(half / narrowest).floor().max(1.0);
     let even = half / count;
