@@ -142,6 +142,23 @@ impl Near {
         self.around(&places, distance).all(|edges| edges.iter().all(far))
     }
 
+    /// The first edge within `distance` that a ray from `p` along `way` meets, of length 1, and how far away.
+    /// The ray lies within the area. Edges through `p` itself do not count.
+    pub(super) fn hit(&self, p: [f64; 2], way: [f64; 2], distance: f64) -> Option<(f64, Edge)> {
+        let end = segment::along(p, distance, way);
+        let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+        let met = |edge: &Edge| {
+            let along = segment::way(edge[0], edge[1]);
+            let from = segment::way(p, edge[0]);
+            let steep = cross(way, along);
+            let (away, part) = (cross(from, along) / steep, cross(from, way) / steep);
+            let is_met = away > 1.0 && away <= distance && (0.0..=1.0).contains(&part);
+            is_met.then_some((away, *edge))
+        };
+        let met = self.around(&[p, end], 0.0).flatten().filter_map(met);
+        met.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
     /// The edges in all cells that meet the box around `places` grown by `distance`, by rows of
     /// cells.
     fn around(
@@ -190,6 +207,12 @@ mod tests {
             assert!(near.is_free([at], far));
             assert!(!near.is_free([at], far + 1.0));
         }
+        // A ray meets what lies ahead.
+        assert_eq!(
+            near.hit([20_000.0, 40_000.0], [0.0, -1.0], 40_000.0),
+            bottom.map(|b| (40_000.0, b))
+        );
+        assert_eq!(near.hit([20_000.0, 40_000.0], [0.0, -1.0], 39_999.0), None);
         // Around a corner it is the corner itself that counts.
         assert!(near.is_free([[43_000.0, 44_000.0]], 5_000.0));
         assert!(!near.is_free([[43_000.0, 44_000.0]], 5_001.0));

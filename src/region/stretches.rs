@@ -20,7 +20,7 @@ pub(super) struct Smooth {
     pub(super) close: f64,
     /// Runs that pass keep so far from those that fail.
     pub(super) margin: f64,
-    /// Shorter runs that pass fail.
+    /// Shorter runs that pass, and are not the whole bead, fail.
     pub(super) least: f64,
 }
 
@@ -55,19 +55,22 @@ pub(super) fn stretches(
     smooth: Smooth,
     passes: impl Fn(&LinePoint) -> bool,
 ) -> Vec<(bool, Polyline)> {
-    let mut pieces = pieces(bead, step);
-    let mut flags: Vec<bool> = pieces.iter().map(|piece| passes(&piece.middle())).collect();
-    let Some(first) = flags.first().copied() else { return Vec::new() };
-    let Some(change) = flags.iter().position(|flag| *flag != first) else {
-        return vec![(first, bead.to_vec())];
-    };
+    let pieces = pieces(bead, step);
+    let flags = pieces.iter().map(|piece| passes(&piece.middle())).collect();
     let is_ring = bead.first().zip(bead.last()).is_some_and(|(a, b)| (a.u, a.v) == (b.u, b.v));
-    if is_ring {
-        pieces.rotate_left(change);
-        flags.rotate_left(change);
+    let mut runs = Runs { pieces, flags, is_ring };
+    runs.begin_at_a_change();
+    for smoothed in [Runs::close, Runs::keep_off, Runs::drop_short] {
+        smoothed(&mut runs, smooth);
+        runs.begin_at_a_change();
     }
-    smoothed(&mut flags, &pieces, smooth);
-    runs(&flags).into_iter().map(|run| (flags[run.start], joined(&pieces[run]))).collect()
+    match runs.all().as_slice() {
+        [] => Vec::new(),
+        [one] => vec![(runs.flags[one.start], bead.to_vec())],
+        more => {
+            more.iter().map(|r| (runs.flags[r.start], joined(&runs.pieces[r.clone()]))).collect()
+        }
+    }
 }
 
 fn pieces(bead: &[LinePoint], step: Coord) -> Vec<Piece> {
@@ -94,46 +97,83 @@ fn pieces(bead: &[LinePoint], step: Coord) -> Vec<Piece> {
     out
 }
 
-fn smoothed(flags: &mut [bool], pieces: &[Piece], smooth: Smooth) {
-    let length = |run: &Range<usize>| pieces[run.clone()].iter().map(|p| p.length).sum::<f64>();
-    for run in runs(flags) {
-        let inside = run.start > 0 && run.end < flags.len();
-        if !flags[run.start] && inside && length(&run) < smooth.close {
-            flags[run].fill(true);
-        }
-    }
-    for run in runs(flags).into_iter().filter(|run| flags[run.start]).collect::<Vec<_>>() {
-        // Pieces from an end of the run on that begin within the margin.
-        let near = |indices: &mut dyn Iterator<Item = usize>| -> usize {
-            let mut away = 0.0;
-            let is_near = |k: &usize| {
-                let is = away < smooth.margin;
-                away += pieces[*k].length;
-                is
-            };
-            indices.take_while(is_near).count()
-        };
-        let before = if run.start > 0 { near(&mut run.clone()) } else { 0 };
-        let after = if run.end < flags.len() { near(&mut run.clone().rev()) } else { 0 };
-        flags[run.start..run.start + before].fill(false);
-        flags[run.end - after..run.end].fill(false);
-    }
-    for run in runs(flags) {
-        if flags[run.start] && length(&run) < smooth.least {
-            flags[run].fill(false);
-        }
-    }
+/// The pieces of a bead, and whether each passes.
+struct Runs {
+    pieces: Vec<Piece>,
+    flags: Vec<bool>,
+    /// The last piece leads on to the first.
+    is_ring: bool,
 }
 
-/// The runs of equal flags.
-fn runs(flags: &[bool]) -> Vec<Range<usize>> {
-    let mut end = 0;
-    let run = |equal: &[bool]| {
-        let start = end;
-        end += equal.len();
-        start..end
-    };
-    flags.chunk_by(|a, b| a == b).map(run).collect()
+impl Runs {
+    /// Turns a ring that begins within a run so that it begins with one.
+    fn begin_at_a_change(&mut self) {
+        let within = self.is_ring && self.flags.first() == self.flags.last();
+        let change = self.flags.windows(2).position(|pair| pair[0] != pair[1]);
+        if let Some(before) = change.filter(|_| within) {
+            self.pieces.rotate_left(before + 1);
+            self.flags.rotate_left(before + 1);
+        }
+    }
+
+    fn all(&self) -> Vec<Range<usize>> {
+        let mut end = 0;
+        let run = |equal: &[bool]| {
+            let start = end;
+            end += equal.len();
+            start..end
+        };
+        self.flags.chunk_by(|a, b| a == b).map(run).collect()
+    }
+
+    /// Whether there are others before and behind a run.
+    fn neighbours(&self, run: &Range<usize>) -> [bool; 2] {
+        let goes_on = self.is_ring && run.len() < self.flags.len();
+        [goes_on || run.start > 0, goes_on || run.end < self.flags.len()]
+    }
+
+    fn length(&self, run: &Range<usize>) -> f64 {
+        self.pieces[run.clone()].iter().map(|p| p.length).sum()
+    }
+
+    fn close(&mut self, smooth: Smooth) {
+        for run in self.all() {
+            let inside = self.neighbours(&run) == [true; 2];
+            if !self.flags[run.start] && inside && self.length(&run) < smooth.close {
+                self.flags[run].fill(true);
+            }
+        }
+    }
+
+    fn keep_off(&mut self, smooth: Smooth) {
+        // How many pieces begin within the margin.
+        let near = |pieces: &mut dyn Iterator<Item = &Piece>| -> usize {
+            let mut away = 0.0;
+            let is_near = |piece: &&Piece| {
+                let is = away < smooth.margin;
+                away += piece.length;
+                is
+            };
+            pieces.take_while(is_near).count()
+        };
+        for run in self.all().into_iter().filter(|run| self.flags[run.start]).collect::<Vec<_>>() {
+            let [before, after] = self.neighbours(&run);
+            let pieces = &self.pieces[run.clone()];
+            let first = if before { near(&mut pieces.iter()) } else { 0 };
+            let last = if after { near(&mut pieces.iter().rev()) } else { 0 };
+            self.flags[run.start..run.start + first].fill(false);
+            self.flags[run.end - last..run.end].fill(false);
+        }
+    }
+
+    fn drop_short(&mut self, smooth: Smooth) {
+        for run in self.all() {
+            let is_part = self.neighbours(&run).contains(&true);
+            if self.flags[run.start] && is_part && self.length(&run) < smooth.least {
+                self.flags[run].fill(false);
+            }
+        }
+    }
 }
 
 /// The way along some pieces.
@@ -191,6 +231,16 @@ mod tests {
         assert_eq!(found.iter().map(|(passes, _)| *passes).collect::<Vec<_>>(), [false, true]);
         let [(_, fails), (_, passes)] = [&found[0], &found[1]].map(|(flag, one)| (flag, one));
         assert_eq!((length(fails), length(passes)), (64_000, 96_000));
+    }
+
+    #[test]
+    fn a_gap_where_a_ring_begins_is_closed() {
+        let ring =
+            [point(0, 0), point(40_000, 0), point(40_000, 40_000), point(0, 40_000), point(0, 0)];
+        let near_start = |p: &LinePoint| p.u + p.v < 5_000;
+        let smooth = Smooth { close: 13_000.0, ..Smooth::default() };
+        let found = stretches(&ring, STEP, smooth, |p| !near_start(p));
+        assert_eq!(found, [(true, ring.to_vec())]);
     }
 
     #[test]

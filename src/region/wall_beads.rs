@@ -327,6 +327,34 @@ mod tests {
     }
 
     #[test]
+    fn a_square_on_its_corner_gets_the_same_ring_wherever_rows_lie() {
+        // Every row ends beside a corner. 1.25 mm inside the walls: two beads of half of it.
+        let half = 14_500;
+        for (x, y) in [(0, 0), (0, 1_000), (1_300, 2_100), (2_000, 2_000), (700, 3_100)] {
+            let p = |u, v| Point { x: x + u, y: y + v };
+            let (beads, _) =
+                beads(&[vec![p(-half, 0), p(0, -half), p(half, 0), p(0, half)]], 60_000);
+            assert_eq!(beads.len(), 1, "{x} {y}: {beads:?}");
+            for p in &beads[0] {
+                let away = (p.u - x).abs() + (p.v - y).abs();
+                assert!(
+                    (p.width - 6_253).abs() <= 2 && (away - 4_422).abs() <= 2,
+                    "{x} {y}: {p:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_ring_turns_in_corners_a_little_sharper_than_square() {
+        // A square of 1.25 mm inside the walls whose corners are up to 2° off.
+        let p = |u, v| Point { x: u, y: v };
+        let (beads, _) =
+            beads(&[vec![p(-14_420, -220), p(200, -14_630), p(14_610, 0), p(0, 14_410)]], 60_000);
+        assert_eq!(beads.iter().map(Vec::len).collect::<Vec<_>>(), [5], "{beads:?}");
+    }
+
+    #[test]
     fn a_room_that_narrows_to_a_point_gets_no_ring_as_narrow_as_the_point() {
         for half in (9_000..=16_000).step_by(500) {
             for long in (14_000..=30_000).step_by(2_000) {

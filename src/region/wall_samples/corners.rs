@@ -1,6 +1,7 @@
 //! Wall and its samples -> samples with the wall's own corners, so that beads follow them.
 
-use super::{Edge, SHORT, WallSample};
+use super::measured::Side;
+use super::{SHORT, WallSample};
 use crate::geom::{Contour, edges};
 use crate::region::params::BeadParams;
 use crate::units::Bounded as _;
@@ -9,6 +10,10 @@ use crate::units::Bounded as _;
 /// two chords would cut inside the circle around the corner. At 1 beads come too near to the
 /// wall at such corners; a larger value leaves them further open.
 const ROUND: f64 = 1.2;
+
+/// The cosine of the turn up to which sides that meet inside a corner meet on its mitre: at a tip of 26°, which is
+/// 4.5 times as far away as the sides. In a sharper one the sides end where they come too near to the other.
+const SHARPEST: f64 = -0.9;
 
 /// Adds the wall's own corners to the samples, with the skin of the nearest sample.
 pub(super) fn with_corners(
@@ -23,7 +28,7 @@ pub(super) fn with_corners(
     let mut position = 0.0;
     let mut next = 0;
     for (k, (p, q)) in edges(wall).enumerate() {
-        let (before, edge) = (Edge::new(wall[(k + n - 1) % n], p, 0.0), Edge::new(p, q, position));
+        let (before, edge) = (Side::new(wall[(k + n - 1) % n], p, 0.0), Side::new(p, q, position));
         let near = |k: usize| {
             let sample = found[k % found.len()];
             let away = (sample.position - position).abs();
@@ -53,12 +58,14 @@ pub(super) fn with_corners(
     out
 }
 
-/// Adds a corner between two edges: one point on its mitre, or three round points where the mitre
-/// would reach too far.
-fn add_corner(before: &Edge, after: &Edge, corner: WallSample, out: &mut Vec<WallSample>) {
+/// Adds a corner between two edges. Where the wall turns towards the solid, the sides of a bead meet on the
+/// mitre, however sharp the corner is. Where it turns away by more than 90°, a mitre would reach too far:
+/// it gets three round points.
+fn add_corner(before: &Side, after: &Side, corner: WallSample, out: &mut Vec<WallSample>) {
     let (a, b) = (before.normal(), after.normal());
     let cosine = a[0] * b[0] + a[1] * b[1];
-    if cosine >= 0.0 {
+    let inwards = a[0] * b[1] - a[1] * b[0] > 0.0;
+    if cosine >= 0.0 || inwards && cosine > SHARPEST {
         let normal = [0, 1].map(|k| (a[k] + b[k]) / (1.0 + cosine));
         out.push(WallSample { normal, ..corner });
         return;

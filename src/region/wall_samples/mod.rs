@@ -20,13 +20,16 @@
 //! the history records no measurements of them. So each says what it trades off.
 
 mod corners;
+mod measured;
+
+use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::crossed::Crossed;
-use super::near::{Area, Near};
+use super::near::{Area, Edge, Near};
 use super::params::BeadParams;
-use crate::geom::spans::{Rows, Span};
-use crate::geom::{Contour, Point, edges};
-use crate::units::{Bounded as _, Coord, between, nearest};
+use crate::geom::segment::way;
+use crate::geom::{Contour, edges};
+use crate::units::Bounded as _;
 
 /// Maximum number of beads beside each other along one wall. More would replace zigzags that are
 /// wide enough to be fast; fewer leave rings of skin to zigzags that are nearly all turns.
@@ -102,7 +105,7 @@ const ALIKE: f64 = 1.5;
 /// Margin around the samples with beads within which wall edges are collected. It must reach from a
 /// sample to the middle of a bridged gap, and from there to the far side of the beads and to walls
 /// near them. If it is too small, beads may cross walls; a larger value sorts edges for nothing.
-const MARGIN: f64 = CORNER + 8.0;
+const MARGIN: f64 = 2.0 * (MOST_ACROSS as f64 + 0.5) + STRIP_TURN + 8.0;
 
 /// Side of the cells into which edges are sorted. It is larger than the distance of most queries, so
 /// that a query looks up few cells. It affects speed only: larger cells hold more edges to test.
@@ -137,7 +140,7 @@ pub(super) fn samples(
     params: &BeadParams,
 ) -> Option<(Vec<Vec<WallSample>>, Near)> {
     let mut laps: Vec<Vec<WallSample>> =
-        walls.iter().map(|w| measured(w, crossed, params)).collect();
+        walls.iter().map(|w| measured::measured(w, crossed, params)).collect();
     if laps.iter().flatten().all(|s| s.beads == 0) {
         return None;
     }
@@ -180,189 +183,67 @@ impl WallSample {
         (count / 2 + usize::from(is_odd && self.leads), across / count as f64)
     }
 
+    /// Whether the wall turns between this sample and another one by more than 45°.
+    fn turns_to(&self, other: &Self) -> bool {
+        let ([x, y], [u, v]) = (self.normal, other.normal);
+        x * u + y * v < FRAC_1_SQRT_2
+    }
+
     /// Checks that a shared sample really has another wall opposite, and decides which of the two
     /// leads. Past the middle of a strip the opposite wall is the nearer one. In a corner the wall
     /// at the other end of the row is not: then the sample loses its beads.
     fn confirm(&mut self, near: &Near, left_turn: bool, params: &BeadParams) {
         let across = 2.0 * (self.depth + f64::from(params.line_width) / 2.0);
         let beyond = [0, 1].map(|k| self.at[k] + BEYOND * across * self.normal[k]);
-        if let Some(other) = near.nearest(beyond, (1.0 - BEYOND + SLOPE) * across) {
+        let nearest = near.nearest(beyond, (1.0 - BEYOND + SLOPE) * across);
+        let opposite = match nearest {
+            Some(other) if self.stands_across(other) => self.measured_anew(near, params),
+            other => other,
+        };
+        if let Some(other) = opposite {
             self.leads = leads(self.normal, other, left_turn);
         } else {
             self.shared = false;
             self.beads = 0;
         }
     }
+
+    /// Whether another wall runs away from this one, as around a corner.
+    fn stands_across(&self, other: Edge) -> bool {
+        facing(self.normal, other) < FRAC_1_SQRT_2 / 2.0
+    }
+
+    /// Measures the strip at right angles to the wall, and gives the wall on the other side. Beside a square
+    /// corner, the row ends at the wall around it, and the strip seems narrower by up to a quarter.
+    fn measured_anew(&mut self, near: &Near, params: &BeadParams) -> Option<Edge> {
+        let w = f64::from(params.line_width);
+        let far = (1.0 + least_of(MOST_ACROSS + 1)) * w;
+        let (distance, other) = near.hit(self.at, self.normal, far)?;
+        let across = distance - w;
+        let count =
+            count_across(across / w).filter(|_| facing(self.normal, other) > FRAC_1_SQRT_2)?;
+        (self.depth, self.beads) = (across / 2.0, count.div_ceil(2));
+        Some(other)
+    }
+}
+
+/// The cosine of the angle between a wall's normal and the outward one of another wall's edge: 1 if they
+/// face each other.
+fn facing(normal: [f64; 2], [from, to]: Edge) -> f64 {
+    let [x, y] = way(from, to);
+    (normal[0] * y - normal[1] * x) / (x * x + y * y).sqrt().at_least(1.0)
 }
 
 /// Whether a wall with this normal leads the one with edge `other`. The sign of the difference of
 /// the two normals decides. The opposite wall sees the same difference with the other sign, so
 /// exactly one of the two leads, however they lean. It is the same one on layers whose lines run in the
 /// other direction, so that their beads lie on each other.
-fn leads(normal: [f64; 2], [from, to]: [[f64; 2]; 2], left_turn: bool) -> bool {
+fn leads(normal: [f64; 2], [from, to]: Edge, left_turn: bool) -> bool {
     let [x, y] = [to[0] - from[0], to[1] - from[1]];
     let length = (x * x + y * y).sqrt().at_least(1.0);
     let [x, y] = [normal[0] + y / length, normal[1] - x / length];
     let [x, y] = if left_turn { [x, y] } else { [-y, x] };
     x > 0.0 || (x == 0.0 && y > 0.0)
-}
-
-/// Samples a wall where rows cross its inner edge. Each edge is sampled on the raster whose rows
-/// cross it at 45° or steeper.
-fn measured(wall: &Contour, crossed: &Crossed<'_>, params: &BeadParams) -> Vec<WallSample> {
-    let turned = |p: Point| {
-        if crossed.left_turn { Point { x: p.y, y: -p.x } } else { Point { x: -p.y, y: p.x } }
-    };
-    let mut out = Vec::with_capacity(wall.len());
-    let mut position = 0.0;
-    for (p, q) in edges(wall) {
-        let steep = (q.y - p.y).abs() >= (q.x - p.x).abs();
-        let edge = Edge::new(p, q, position);
-        position += edge.length;
-        if steep {
-            edge.measure((p, q), (crossed.fill, crossed.skin), params, &mut out);
-        } else {
-            let ends = (turned(p), turned(q));
-            edge.measure(ends, (crossed.fill_columns, crossed.columns), params, &mut out);
-        }
-    }
-    out
-}
-
-/// An edge of a wall.
-struct Edge {
-    from: [f64; 2],
-    /// Its direction; the solid is on its left.
-    along: [f64; 2],
-    length: f64,
-    /// Position of its start.
-    position: f64,
-}
-
-impl Edge {
-    fn new(p: Point, q: Point, position: f64) -> Self {
-        let length = p.distance(q);
-        let [x, y] = [f64::from(q.x) - f64::from(p.x), f64::from(q.y) - f64::from(p.y)];
-        let from = [f64::from(p.x), f64::from(p.y)];
-        Self { from, along: [x / length.at_least(1.0), y / length.at_least(1.0)], length, position }
-    }
-
-    fn normal(&self) -> [f64; 2] {
-        [-self.along[1], self.along[0]]
-    }
-
-    /// Adds the samples where the rows of `fill` and `exposed` cross this edge. It runs from `p` to
-    /// `q` in the frame of these rows.
-    fn measure(
-        &self,
-        (p, q): (Point, Point),
-        (fill, exposed): (&Rows, &Rows),
-        params: &BeadParams,
-        out: &mut Vec<WallSample>,
-    ) {
-        let inset = f64::from(params.wall_to_fill);
-        let rise = f64::from(q.y) - f64::from(p.y);
-        let run = f64::from(q.x) - f64::from(p.x);
-        let by = |part: f64| nearest(inset * part / self.length.at_least(1.0)) as Coord;
-        let moved = |p: Point| Point { x: p.x - by(rise), y: p.y + by(run) };
-        let (a, b) = (moved(p), moved(q));
-        let up = a.y < b.y;
-        let (low, high) = if up { (a, b) } else { (b, a) };
-        let pitch = params.line_width;
-        let sine = rise.abs() / self.length.at_least(1.0);
-        let first = out.len();
-        for j in low.y.div_euclid(pitch) + 1..high.y.div_euclid(pitch) + 1 {
-            let v = j * pitch;
-            let u = between(low.x, high.x, (v, low.y, high.y));
-            let t = f64::from(v - a.y) / f64::from(b.y - a.y);
-            let at = [0, 1].map(|k| self.from[k] + t * self.length * self.along[k]);
-            let blank = WallSample {
-                at,
-                normal: self.normal(),
-                depth: 0.0,
-                shared: false,
-                leads: false,
-                beads: 0,
-                position: self.position + t * self.length,
-                skin: false,
-            };
-            if exposed.row(j).is_empty() {
-                out.push(blank);
-                continue;
-            }
-            let behind = Behind::new(fill.row(j), exposed.row(j), u, !up, pitch);
-            out.extend(behind.map(|b| b.sample(blank, sine, params)));
-        }
-        if !up {
-            out[first..].reverse();
-        }
-    }
-}
-
-/// What a row has behind the inner edge of the walls.
-struct Behind {
-    /// Length of the exposed skin that begins there.
-    skin: i64,
-    /// Length of the exposed skin at the other end.
-    other: i64,
-    /// Length of the row up to the walls at the other end.
-    room: i64,
-}
-
-impl Behind {
-    /// For a row that crosses the edge near `u`, with the solid to the right or to the left.
-    fn new(fill: &[Span], exposed: &[Span], u: Coord, right: bool, pitch: Coord) -> Option<Self> {
-        let end = |s: &Span| if right { s.start } else { s.end };
-        // On a plate a row has spans of all parts: few of them begin or end near here.
-        let near = fill.partition_point(|s| end(s) < u - pitch / 4);
-        let near = fill[near..].iter().take_while(|s| end(s) <= u + pitch / 4);
-        let fill = near.min_by_key(|s| (end(s) - u).abs())?;
-        let from = exposed.partition_point(|s| s.end <= fill.start);
-        let to = exposed.partition_point(|s| s.start < fill.end);
-        let here = exposed.get(from..to).unwrap_or_default().iter();
-        let distance = |a: Coord, b: Coord| i64::from(b) - i64::from(a);
-        let from_start = |s: &Span| (distance(fill.start, s.start), distance(fill.start, s.end));
-        let from_end = |s: &Span| (distance(s.end, fill.end), distance(s.start, fill.end));
-        let at_start = reach(here.clone().map(from_start), pitch);
-        let at_end = reach(here.rev().map(from_end), pitch);
-        let (skin, other) = if right { (at_start, at_end) } else { (at_end, at_start) };
-        Some(Self { skin, other, room: fill.len() })
-    }
-
-    /// Completes `blank` with what is behind it. `sine` is of the angle between row and edge.
-    fn sample(&self, blank: WallSample, sine: f64, params: &BeadParams) -> WallSample {
-        let w = f64::from(params.line_width);
-        let lead = f64::from(params.wall_to_fill) - w / 2.0;
-        let skin = self.skin > 0 || self.other > 0;
-        let depth = |length: i64| length as f64 * sine + lead;
-        // Beads cover at least their minimum width on either side.
-        let taken = |length: i64| if length > 0 { depth(length).max(NARROWEST * w) } else { 0.0 };
-        let across = depth(self.room) + lead;
-        if skin && across - taken(self.skin) - taken(self.other) <= GAP * w {
-            let depth = across / 2.0;
-            let count = (1..=MOST_ACROSS).find(|&count| across < least_of(count + 1) * w);
-            let beads = count.map_or(0, |count| count.div_ceil(2));
-            return WallSample { depth, shared: true, beads, skin: true, ..blank };
-        }
-        if self.skin == 0 {
-            return blank;
-        }
-        let depth = depth(self.skin);
-        WallSample { depth, beads: beads(depth, w), skin: true, ..blank }
-    }
-}
-
-/// How far exposed stretches reach, beginning at zero. A covered gap shorter than half a `pitch`
-/// is noise and does not end them.
-fn reach(stretches: impl Iterator<Item = (i64, i64)>, pitch: Coord) -> i64 {
-    let mut end = 0;
-    for (from, to) in stretches {
-        if from > end + i64::from(pitch / 2) {
-            break;
-        }
-        end = to;
-    }
-    end
 }
 
 /// The least width of a strip that gets `count` beads, at least 2, in line widths.
@@ -372,6 +253,11 @@ fn least_of(count: usize) -> f64 {
         3 => PAIR,
         _ => count as f64 - 0.5,
     }
+}
+
+/// Number of beads across a strip of this width in line widths; `None` if it is too wide.
+fn count_across(width: f64) -> Option<usize> {
+    (1..=MOST_ACROSS).find(|&count| width < least_of(count + 1))
 }
 
 /// Number of beads that cover a depth; 0 if it is too deep.
@@ -423,14 +309,16 @@ fn bridge(samples: &mut [WallSample], perimeter: f64, params: &BeadParams) {
         let deep = (from..to).any(|k| samples[k % n].skin);
         let (model, other) =
             if before.depth <= after.depth { (before, after) } else { (after, before) };
+        let turns = before.shared && after.shared && before.turns_to(&after);
         // A strip that narrows is no strip that turns.
-        if deep && model.shared && other.depth > ALIKE * model.depth {
+        if (deep || turns) && model.shared && other.depth > ALIKE * model.depth {
             continue;
         }
         let most = match deep {
-            false => SHORT * w,
+            _ if turns => 4.0 * model.depth + STRIP_TURN * w,
             true if model.shared => (4.0 * model.depth + STRIP_TURN * w).at_most(CORNER * w),
             true => CORNER * w,
+            false => SHORT * w,
         };
         if span(samples, (from, to), perimeter) > most {
             continue;
