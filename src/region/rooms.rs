@@ -8,9 +8,10 @@
 //!
 //! Algorithm: in a straight room of any direction, with chords `a` and `b` across each other, the
 //! width is `ab / √(a² + b²)`. Only spans shorter than √2 times the limit can be narrow, so that
-//! wide regions cost one comparison per span. Narrow spans on neighbouring rows form a stack. A
-//! low stack beside a wide place is a tip, and stays as it is. What is narrow on the columns is
-//! brought to the rows cell by cell, and the reverse, so that both rasters agree.
+//! wide regions cost one look at the columns per span. Narrow spans on neighbouring rows form a stack. A
+//! low stack beside a wide place is a tip, and stays as it is. What the columns do not have at all is
+//! narrow as well. What is narrow on the columns is brought to the rows cell by cell, and the reverse, so
+//! that both rasters agree.
 
 use super::scan::around;
 use crate::geom::Point;
@@ -77,10 +78,21 @@ fn columns<'a>(rows: [&'a Rows; 2], rasters: [Raster; 2], r: usize) -> Columns<'
     Columns { rows: rows[1 - r], pitch: rasters[1 - r].pitch, left_turn: r == 0 }
 }
 
-/// A narrow span and its row. It begins as a stack of its own.
+/// A narrow span and its row. It begins as a stack of its own, and stays one if the columns do not have it.
 struct Narrow {
     row: i32,
     span: Span,
+    alone: bool,
+}
+
+/// What a span is by its chords.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Chords {
+    Wide,
+    Narrow,
+    /// It is long, and the columns do not have its middle. Skins reach along their own lines: a strip between
+    /// two of them may be open on one raster and closed on the other.
+    Lone,
 }
 
 /// A stack of narrow spans: its lowest and highest row, its longest span, and whether it lies beside a
@@ -128,7 +140,6 @@ impl Stacks {
 
 /// The narrow spans of `rows` by their own chords, without tips; `None` if there are none.
 fn stacks(rows: &Rows, pitch: Coord, columns: &Columns<'_>, limit: Coord) -> Option<Rows> {
-    let is_narrow = |j: i32, s: Span| is_narrow(j * pitch, s, columns, limit);
     let mut spans: Vec<Narrow> = Vec::new();
     let mut stacks = Stacks::default();
     // The narrow spans of the row before, and the wide ones there and here.
@@ -142,16 +153,20 @@ fn stacks(rows: &Rows, pitch: Coord, columns: &Columns<'_>, limit: Coord) -> Opt
                 spans[before.clone()].iter().take_while(|n| n.span.end <= span.start).count();
             passed += wide[passed..].iter().take_while(|w: &&Span| w.end <= span.start).count();
             let meets = |k: &usize| spans[*k].span.start < span.end;
-            let below = before.clone().take_while(meets);
-            if !is_narrow(row, span) {
+            let below = before.clone().take_while(meets).filter(|k| !spans[*k].alone);
+            let chords = chords(row * pitch, span, columns, limit);
+            if chords == Chords::Wide {
                 wide_here.push(span);
                 below.for_each(|k| stacks.root(k).tip = true);
                 continue;
             }
-            let tip = wide.get(passed).is_some_and(|w| w.overlaps(span));
+            let alone = chords == Chords::Lone;
+            let tip = !alone && wide.get(passed).is_some_and(|w| w.overlaps(span));
             stacks.add(Stack { rows: (row, row), widest: span.len(), tip });
-            below.for_each(|k| stacks.join(k, spans.len()));
-            spans.push(Narrow { row, span });
+            if !alone {
+                below.for_each(|k| stacks.join(k, spans.len()));
+            }
+            spans.push(Narrow { row, span, alone });
         }
         before = first..spans.len();
         std::mem::swap(&mut wide, &mut wide_here);
@@ -172,17 +187,17 @@ fn stacks(rows: &Rows, pitch: Coord, columns: &Columns<'_>, limit: Coord) -> Opt
 }
 
 /// Whether a region is narrower than `limit` at the middle of `span`, which lies at `v`.
-fn is_narrow(v: Coord, span: Span, columns: &Columns<'_>, limit: Coord) -> bool {
+fn chords(v: Coord, span: Span, columns: &Columns<'_>, limit: Coord) -> Chords {
     let (a, limit) = (span.len(), i64::from(limit));
-    if a * a >= 2 * limit * limit {
-        return false;
-    }
     let middle = span.start + (a / 2) as Coord;
     let b = columns.chord((middle + columns.pitch / 2).div_euclid(columns.pitch), v);
+    if a * a >= 2 * limit * limit {
+        return if b.is_some() { Chords::Wide } else { Chords::Lone };
+    }
     // Longer chords make no difference, and their squares could be too large.
     let b = b.map_or(0, Span::len).min(100 * limit);
     let (a, b, limit) = (a as f64, b as f64, limit as f64);
-    a * a * b * b < limit * limit * (a * a + b * b)
+    if a * a * b * b < limit * limit * (a * a + b * b) { Chords::Narrow } else { Chords::Wide }
 }
 
 /// The columns as rows `pitch` apart: each as wide as their distance.
@@ -224,6 +239,7 @@ pub(super) fn whole(region: &Rows, narrow: &Rows, least: Coord) -> Rows {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geom::Contour;
     use crate::geom::frame::Frame;
     use crate::region::scan::Scan;
     use crate::units::{UNITS_PER_MM, sin_cos, to_mm, to_units};
@@ -246,6 +262,27 @@ mod tests {
         let area = |rows: &Rows| to_mm(W) * rows.total() as f64 / UNITS_PER_MM;
         let found = narrow(rows, rasters, LIMIT).unwrap_or_default();
         [0, 1].map(|r| (area(&found[r]), area(rows[r])))
+    }
+
+    /// Skins above and below a strip have reached over it on the columns alone.
+    #[test]
+    fn what_one_raster_lacks_is_narrow_on_the_other() {
+        let rasters = [0.0, 90.0].map(|a| Raster { frame: Frame::new(a), pitch: W });
+        let rect = |x: f64, y: f64| {
+            let p = |x, y| Point { x: to_units(x), y: to_units(y) };
+            vec![p(-x, -y), p(x, -y), p(x, y), p(-x, y)]
+        };
+        let rows =
+            |contours: &[Contour], r: usize| Scan::new(contours, rasters[r]).inside().clone();
+        // A wide place to the right of the strip is there on both, and stays.
+        let wide =
+            rect(2.0, 20.0).iter().map(|p| Point { x: p.x + to_units(14.0), y: p.y }).collect();
+        let strip = rows(&[rect(10.0, 0.5)], 0);
+        let (on_rows, on_columns) =
+            (strip.or(&rows(std::slice::from_ref(&wide), 0)), rows(&[wide], 1));
+        let found = narrow([&on_rows, &on_columns], rasters, 5_000).unwrap();
+        assert!(found[0].minus(&strip).is_empty() && strip.minus(&found[0]).is_empty());
+        assert!(found[1].is_empty());
     }
 
     /// The share of a rectangle that is narrow, on each raster.
