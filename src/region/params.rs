@@ -76,9 +76,6 @@ pub struct WallParams {
     pub narrowest: f64,
     /// Maximum width of a single bead, in line widths.
     pub widest: f64,
-    /// Whether corners of loops that share a room are held inside of it. What pokes out of the base of a skin is in
-    /// the head's way.
-    pub holds_corners: bool,
 }
 
 /// How far inside the contour lines may run.
@@ -236,7 +233,6 @@ impl RegionParams {
                 * settings.machine.nozzle_diameter
                 * UNITS_PER_MM,
             widest: settings.max_bead_width / 100.0,
-            holds_corners: settings.nonplanar.enabled,
         };
         let insets = Insets {
             fill: to_units(fill * w),

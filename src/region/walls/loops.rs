@@ -206,7 +206,7 @@ fn inside(corner: Place, [before, after]: [&Sampled; 2], depth: u32, layout: &La
     let from = along(end, 0.5, way(end, after.from));
     let ahead = way(from, corner.at);
     let far = dot(ahead, ahead).sqrt();
-    if far <= NEAR * w || !layout.params.holds_corners {
+    if far <= NEAR * w {
         return corner;
     }
     let outer = f64::from(depth) * corner.width.at_most(w) - layout.params.outside();

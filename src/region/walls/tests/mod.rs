@@ -390,8 +390,7 @@ proptest! {
         rough in prop::collection::vec(-1.0..1.0, 24..60),
     ) {
         let outline = ragged(size, waves, &rough);
-        let params = WallParams { holds_corners: true, ..params(count) };
-        let Walls { walls, .. } = made(&outline, &params);
+        let Walls { walls, .. } = made(&outline, &params(count));
         let loops: Vec<Wall> = walls.into_iter().filter(|wall| wall.closed).collect();
         prop_assert!(outside(&outline, &loops) < 2_000.0, "{}", outside(&outline, &loops));
     }
