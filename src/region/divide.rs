@@ -175,7 +175,8 @@ fn least_strip(areas: &LayerAreas, bridges: &[Skin], params: &RegionParams) -> C
     if skinned && !params.sparse.is_empty() { params.skins.reach } else { 0 }
 }
 
-/// The rooms of layer `k` too narrow for sparse lines, on the rasters of skins.
+/// The rooms of layer `k` too narrow for sparse lines, on the rasters of skins; all there is if the infill
+/// is solid.
 fn solid<'a>(
     k: usize,
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
@@ -183,6 +184,9 @@ fn solid<'a>(
 ) -> Option<[Rows; 2]> {
     let rows = layers(k)?;
     let fill = [0, 1].map(|r| &*rows.skin(r).fill);
+    if params.sparse.is_solid() {
+        return Some(fill.map(Rows::clone));
+    }
     rooms::narrow(fill, [0, 1].map(|r| params.rasters.skin(r)), params.skins.least_room)
 }
 

@@ -37,6 +37,9 @@ const OUT: f64 = 0.25;
 /// Steps on the way to a corner, in line widths.
 const MARCH: f64 = 0.125;
 
+/// What is taken of the distance that a corner should have from the outline, if no place on the way has more.
+const PARTS: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
+
 /// The bead at one place of a side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sample {
@@ -214,11 +217,13 @@ fn inside(corner: Place, [before, after]: [&Sampled; 2], depth: u32, layout: &La
     let steps = (far / (MARCH * w)).ceil() as usize;
     let at = |k: usize| along(from, k as f64 / steps as f64, ahead);
     let is_free = |k: usize, clear: f64| layout.outline.is_free(at(k), clear);
-    if is_free(steps, clear) && (1..steps).all(|k| is_free(k, MARCH * w)) {
+    let within = (1..=steps).take_while(|&k| is_free(k, MARCH * w)).last().unwrap_or(0);
+    if within == steps && is_free(steps, clear) {
         return corner;
     }
-    let last = (1..=steps).take_while(|&k| is_free(k, clear)).last();
-    Place { at: at(last.unwrap_or(0)), ..corner }
+    // Where nothing is as far from the outline as it should be, what is furthest.
+    let last = |part: &f64| (0..=within).rev().find(|&k| is_free(k, part * clear));
+    Place { at: at(PARTS.iter().find_map(last).unwrap_or(within)), ..corner }
 }
 
 /// The corner between two sides: where the moved sides meet.
