@@ -7,7 +7,6 @@
 //! along walls fill the narrow parts of both. Then, with the layer below, bridges take their place, and
 //! what is left is skin or infill. Last, strips in which no sparse line has room become skin.
 
-use super::Skin;
 use super::bridge::loose::{self, Beads, Below};
 use super::bridge::{self, Pair};
 use super::classify::{Areas, areas, areas_beside, exposed};
@@ -19,6 +18,7 @@ use super::per_raster::{PerRaster, skin_turn};
 use super::prepare::{LayerRows, Own, Whole};
 use super::rooms;
 use super::wall_beads::{taken, wall_beads};
+use super::{Skin, agreed};
 use crate::geom::Contour;
 use crate::geom::frame::Frame;
 use crate::geom::polyline::Polyline;
@@ -77,10 +77,17 @@ pub fn examine<'a>(
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
     params: &RegionParams,
 ) -> Examined {
-    let exposed =
-        |r: usize| exposed(own.layer.index, params.rasters.skin(r), layers, &params.skins);
-    let exposed = [0, 1].map(exposed);
-    let solid = solid(own.layer.index, layers, params);
+    let k = own.layer.index;
+    let exposed = |r: usize| exposed(k, params.rasters.skin(r), layers, &params.skins);
+    let mut exposed = [0, 1].map(exposed);
+    let (along, across) = skin_turn(k);
+    let its = [along, across].map(|r| params.rasters.skin(r));
+    if let Some(missed) = agreed::missed(&exposed[along], its[0], its[1])
+        && let Some(rows) = layers(k)
+    {
+        exposed[across] = exposed[across].or(&missed.and(&rows.skin(across).fill));
+    }
+    let solid = solid(k, layers, params);
     let beads = match &solid {
         Some([a, b]) => beads(own, &[exposed[0].or(a), exposed[1].or(b)], layers, params),
         None => beads(own, &exposed, layers, params),
@@ -118,7 +125,10 @@ pub fn divide<'a>(
         let Some(fill) = fill(raster) else { return Areas::default() };
         let uncovered = match index(raster) {
             Some(r) => Cow::Borrowed(&skins[r]),
-            None => Cow::Owned(exposed(raster)),
+            None => {
+                let rows = (along, &skins[skin_turn(k).0]);
+                agreed::with_missed(Cow::Owned(exposed(raster)), (raster, fill), rows)
+            }
         };
         let solid = solid.as_ref().map(|solid| on(solid, raster, fill));
         let uncovered = with_bare(uncovered, &cut, along.frame, (raster, fill), solid.as_ref());

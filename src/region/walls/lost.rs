@@ -17,13 +17,14 @@ const LEAST: f64 = 0.5;
 /// The area of `contours` that `walls` leave open outside the outer loops, mm². It is their area
 /// less that of the loops with a strip of the inset around them. The strip around a polygon has
 /// the area `P·d + d²·Σ tan(φ/2)`, with perimeter `P`, inset `d` and turns `φ`. The result is 0
-/// without walls, or with the wall on the contour. Loops must have their nominal inset.
+/// without walls, or with the wall on the contour, and less than nothing where loops hold too much. Loops must
+/// have their nominal inset.
 pub(super) fn outside_loops(contours: &[Contour], loops: &[Wall], params: &WallParams) -> f64 {
     if params.count == 0 || params.outer_inset == 0 {
         return 0.0;
     }
     let outer = loops.iter().filter(|w| w.depth == 0).map(|w| &w.path);
-    (outside(contours, outer, params.outer_inset) / (UNITS_PER_MM * UNITS_PER_MM)).max(0.0)
+    outside(contours, outer, params.outer_inset) / (UNITS_PER_MM * UNITS_PER_MM)
 }
 
 /// Whether something is too thin for an inset: `inner`, which are those of `outer` by `distance`, with

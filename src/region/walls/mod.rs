@@ -25,6 +25,7 @@
 //! beads.
 
 mod dots;
+mod islands;
 mod junctions;
 mod loops;
 mod lost;
@@ -78,12 +79,20 @@ pub struct Walls {
 #[must_use]
 pub fn walls(contours: &[Contour], may_be_thin: bool, params: &WallParams) -> Walls {
     let dots = if may_be_thin { dots::dots(contours, params) } else { None };
-    let Some((dots, others)) = dots else { return around_cores(contours, may_be_thin, params).0 };
-    let (mut made, core) = around_cores(&others, may_be_thin, params);
-    made.walls.extend(dots);
-    in_order(&mut made.walls);
-    // Dots have none.
-    made.core = made.core.or(core);
+    let mut made = match dots {
+        Some((dots, others)) => {
+            let (mut made, core) = around_cores(&others, may_be_thin, params);
+            made.walls.extend(dots);
+            // Dots have none.
+            made.core = made.core.or(core);
+            made
+        }
+        None => around_cores(contours, may_be_thin, params).0,
+    };
+    if let Some(core) = &made.core {
+        islands::settle(contours, &mut made.walls, core, params);
+        in_order(&mut made.walls);
+    }
     made
 }
 
@@ -105,9 +114,18 @@ fn around_cores(
     };
     let mut walls: Vec<Wall> = (0..).zip(&levels).flat_map(plain).collect();
     let lost_mm2 = lost::outside_loops(contours, &walls, params);
+    // What one island has too much makes up for nothing that another lacks.
+    let lost = |walls: &[Wall], beads: f64| {
+        let bare =
+            if may_be_thin && params.count > 0 { islands::bare(contours, walls) } else { 0.0 };
+        bare + (lost_mm2 - bare - beads).max(0.0)
+    };
     let core = match core {
         Some(core) if !whole => core,
-        core => return (Walls { walls, core: None, lost_mm2 }, core),
+        core => {
+            let lost_mm2 = lost(&walls, 0.0);
+            return (Walls { walls, core: None, lost_mm2 }, core);
+        }
     };
     let layout = Layout::new(contours, &levels, &core, params);
     let (mut arcs, doubts) = middle::beads(&layout);
@@ -120,7 +138,7 @@ fn around_cores(
     let patches = patches::patches(&doubts, (&walls, &near), &core, &layout);
     let are_any = !patches.is_empty();
     walls.extend(patches);
-    let lost_mm2 = (lost_mm2 - lost::under_beads(&walls[loops..])).max(0.0);
+    let lost_mm2 = lost(&walls, lost::under_beads(&walls[loops..]));
     if are_any {
         in_order(&mut walls);
     }

@@ -122,3 +122,64 @@ proptest! {
         }
     }
 }
+
+/// A flower: a circle with petals.
+fn flower(size: f64, petals: u32, part: f64, degrees: f64) -> Vec<Contour> {
+    let corner = |k: u32| {
+        let angle = 3.0 * f64::from(k);
+        let (_, cos) = sin_cos(angle * f64::from(petals));
+        at(size * (1.0 + part * cos), 0.0, degrees + angle)
+    };
+    vec![(0..120).map(corner).collect()]
+}
+
+#[test]
+fn explore() {
+    let mut seed = 1_u64;
+    let mut random = |a: f64, b: f64| {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        a + (b - a) * ((seed >> 33) as f64 / 2f64.powi(31))
+    };
+    for kind in 0..2 {
+        for count in 1..=3 {
+            let params = params_of(count, 0.4);
+            for _ in 0..40 {
+                let (size, petals, part, a, b, d) = (
+                    random(0.8, 4.0),
+                    random(3.0, 8.0) as u32,
+                    random(0.1, 0.6),
+                    random(6.0, 20.0),
+                    random(20.0, 120.0),
+                    random(0.0, 90.0),
+                );
+                let shape = match kind {
+                    0 => flower(size * 4000.0 / 1.5, petals, part, d),
+                    _ => triangle(size * 4000.0, a, b, d),
+                };
+                let r = nearest(0.95 * params.narrowest / 2.0) as Coord;
+                let inner = polygon::inset(&shape, r);
+                let area =
+                    |c: &[Contour]| c.iter().map(|c| double_area(c) as f64 / 2e8).sum::<f64>();
+                if inner.is_empty() {
+                    continue;
+                }
+                let room = area(&polygon::intersection(&shape, &polygon::outset(&inner, r)));
+                let made = made_of(&shape, &params);
+                let is_dot = made.core.as_ref().is_some_and(|c| c.is_empty());
+                let plastic = area(&shape) * filled(&shape, &made.walls);
+                let round = area(&shape) * ends(&shape, &made.walls);
+                println!(
+                    "KIND {kind} n {count} size {size:.2} petals {petals} part {part:.2} a {a:.0} b {b:.0} area {:.2} room {room:.2} core {:?} walls {:?} plastic/room {:.2} +ends {:.2} hole {:.2} out {:.2}",
+                    area(&shape),
+                    made.core.as_ref().map(|c| area(c)),
+                    made.walls.iter().map(|w| (w.closed, w.depth, w.widths[0])).collect::<Vec<_>>(),
+                    plastic / room,
+                    (plastic + round) / room,
+                    hole(&shape, &made) / 1e4,
+                    outside(&shape, &made.walls) / 1e4
+                );
+                let _ = is_dot;
+            }
+        }
+    }
+}
