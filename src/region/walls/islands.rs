@@ -15,7 +15,7 @@
 use super::Wall;
 use super::patches::{capsule, fitted, sides};
 use crate::geom::boxes::Around;
-use crate::geom::{Contour, double_area, polygon};
+use crate::geom::{Contour, Point, double_area, polygon};
 use crate::region::params::WallParams;
 use crate::region::taper::distance;
 use crate::units::{Coord, UNITS_PER_MM, nearest};
@@ -59,8 +59,7 @@ pub(super) fn settle(
     inside.flat_map(|&p| around.of(p)).for_each(|k| wide[k] = true);
     let mut of = vec![Vec::new(); contours.len()];
     for (index, wall) in walls.iter().enumerate() {
-        let place = wall.path.get(wall.path.len() / 2);
-        place.iter().flat_map(|&&p| around.of(p)).for_each(|k| of[k].push(index));
+        around_of(wall, &around).for_each(|k| of[k].push(index));
     }
     let mut taken = vec![false; walls.len()];
     let mut more = Vec::new();
@@ -81,6 +80,12 @@ pub(super) fn settle(
     walls.extend(more);
 }
 
+/// The islands that a wall lies in. Some corners of it may lie outside, between two petals.
+fn around_of(wall: &Wall, around: &Around<'_>) -> impl Iterator<Item = usize> {
+    let around = |p: &Point| Some(around.of(*p).collect::<Vec<_>>()).filter(|all| !all.is_empty());
+    wall.path.iter().find_map(around).unwrap_or_default().into_iter()
+}
+
 /// The area of those of several islands of which nothing is printed, mm².
 pub(super) fn bare(contours: &[Contour], walls: &[Wall]) -> f64 {
     let islands = || contours.iter().enumerate().filter(|(_, c)| double_area(c) > 0);
@@ -89,8 +94,7 @@ pub(super) fn bare(contours: &[Contour], walls: &[Wall]) -> f64 {
     }
     let around = Around::new(islands());
     let mut bare: Vec<bool> = contours.iter().map(|c| double_area(c) > 0).collect();
-    let places = walls.iter().filter_map(|wall| wall.path.get(wall.path.len() / 2));
-    places.flat_map(|&p| around.of(p)).for_each(|k| bare[k] = false);
+    walls.iter().flat_map(|wall| around_of(wall, &around)).for_each(|k| bare[k] = false);
     let lost = contours.iter().zip(bare).filter(|(_, bare)| *bare);
     lost.map(|(c, _)| area(std::slice::from_ref(c))).sum::<f64>() / (UNITS_PER_MM * UNITS_PER_MM)
 }
@@ -125,8 +129,14 @@ fn better(island: &Contour, its: Vec<Wall>, params: &WallParams) -> Option<Vec<W
         let Some((_, way)) = ways.min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
         fewer = way;
         consider(fewer.clone());
+        let share = area(whole) / plastic(&fewer, params).max(1.0);
+        if share < 1.0 {
+            consider(narrower(fewer.clone(), share, params));
+        }
     }
-    consider(narrower(its, share, params));
+    if share < 1.0 {
+        consider(narrower(its, share, params));
+    }
     for count in 1..=MOST as u32 {
         consider(fitted(&room, Some(count), 0, params));
     }
@@ -154,7 +164,8 @@ fn wrong((island, room): (&[Contour], &[Contour]), walls: &[Wall], params: &Wall
         walls.iter().flat_map(|wall| sides(wall, w)).map(|s| capsule(&s)).collect();
     let covered = polygon::union(&covered);
     let open = area(&polygon::difference(room, &covered, ROUNDING));
-    open + (plastic(walls, params) - area(&polygon::intersection(island, &covered))).max(0.0)
+    let outside = area(&covered) - area(&polygon::intersection(island, &covered));
+    open + outside + (plastic(walls, params) - area(&covered)).max(0.0)
 }
 
 /// The area of contours, square grid units.

@@ -174,11 +174,16 @@ fn lap(
                 // Just between its sides: there loops are furthest from it.
                 let both = [0, 1].map(|k| from[k] + normal[k]);
                 let length = dot(both, both).sqrt().at_least(f64::MIN_POSITIVE);
-                doubts.push(Doubt { at: float(p), normal: both.map(|x| x / length), sharp: true });
+                doubts.push(Doubt {
+                    at: float(p),
+                    normal: both.map(|x| x / length),
+                    sharp: true,
+                    deep: 0.0,
+                });
             }
             fan(from, turn, |normal| {
                 out.push(sample(
-                    Doubt { at: float(p), normal, sharp: false },
+                    Doubt { at: float(p), normal, sharp: false, deep: 0.0 },
                     index,
                     layout,
                     (&mut guess, doubts),
@@ -188,7 +193,12 @@ fn lap(
         let count = (length / (STEP * layout.line_width)).ceil();
         out.extend((0..count as usize).map(|i| {
             let at = along(float(p), (i as f64 + 0.5) / count * length, along_side);
-            sample(Doubt { at, normal, sharp: false }, index, layout, (&mut guess, doubts))
+            sample(
+                Doubt { at, normal, sharp: false, deep: 0.0 },
+                index,
+                layout,
+                (&mut guess, doubts),
+            )
         }));
     }
     out
@@ -223,9 +233,10 @@ fn sample(
         return None;
     }
     let Some((share, opposite)) = layout.shared(at, normal, guess) else {
-        doubts.push(from);
+        doubts.push(Doubt { deep: *guess, ..from });
         return None;
     };
+    let from = Doubt { deep: opposite.radius, ..from };
     if !share.middle {
         return None;
     }

@@ -9,7 +9,7 @@
 //! part, the inset for one more loop or for the core may be empty, though there is room for it. And a
 //! small shape that is neither a dot nor has opposite sides has no middle bead.
 //!
-//! 1. Look for a hole beside each doubt; from sharp corners walk into the part. Most layers have none.
+//! 1. Look for a hole beside each doubt and in the middle behind it; from sharp corners walk into the part. Most layers have none.
 //! 2. Around the holes, take from the part what the beads and the core cover. Patches are left.
 //! 3. Fill each patch with loops that share the room of the largest circle in it, as dots are filled.
 
@@ -33,6 +33,8 @@ pub(super) struct Doubt {
     pub(super) normal: [f64; 2],
     /// Whether it is a sharp corner that sticks into the part: holes may lie deep behind it.
     pub(super) sharp: bool,
+    /// The radius of the circle inside the part that touches this place, if one was looked for.
+    pub(super) deep: f64,
 }
 
 /// Steps of the walk into the part, in line widths; loops move by at most as much.
@@ -134,7 +136,13 @@ fn hole(doubt: Doubt, beads: (&Beads<'_>, &Near), layout: &Layout<'_>) -> Option
         return layout.outline.is_free(outmost, edge).then_some(outmost);
     }
     if !doubt.sharp {
-        return None;
+        // Between three sides there is no other one opposite, and the middle may be deep inside.
+        let middle = at(doubt.deep);
+        let is_hole = doubt.deep > layout.inset(0) + (0.5 + HOLE) * w
+            && layout.outline.is_free(middle, PART * doubt.deep)
+            && layout.levels[count as usize].is_free([middle], STEP * w)
+            && is_open(middle, HOLE * w, beads, layout);
+        return is_hole.then_some(middle);
     }
     let (first, step) = (layout.inset(0) + (0.5 + HOLE) * w, STEP * w);
     let steps = (2.0 * layout.inset(count + 1) / step) as usize;
