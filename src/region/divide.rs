@@ -82,7 +82,9 @@ pub fn examine<'a>(
     let mut exposed = [0, 1].map(exposed);
     let (along, across) = skin_turn(k);
     let its = [along, across].map(|r| params.rasters.skin(r));
-    if let Some(missed) = agreed::missed(&exposed[along], its[0], its[1])
+    // Sparse lines across a skin matter little. Solid ones would fill it twice.
+    if params.sparse.is_solid()
+        && let Some(missed) = agreed::missed(&exposed[along], its[0], its[1])
         && let Some(rows) = layers(k)
     {
         exposed[across] = exposed[across].or(&missed.and(&rows.skin(across).fill));
@@ -125,10 +127,7 @@ pub fn divide<'a>(
         let Some(fill) = fill(raster) else { return Areas::default() };
         let uncovered = match index(raster) {
             Some(r) => Cow::Borrowed(&skins[r]),
-            None => {
-                let rows = (along, &skins[skin_turn(k).0]);
-                agreed::with_missed(Cow::Owned(exposed(raster)), (raster, fill), rows)
-            }
+            None => Cow::Owned(exposed(raster)),
         };
         let solid = solid.as_ref().map(|solid| on(solid, raster, fill));
         let uncovered = with_bare(uncovered, &cut, along.frame, (raster, fill), solid.as_ref());

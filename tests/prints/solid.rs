@@ -52,20 +52,18 @@ fn solid_infill_reaches_the_walls() {
 }
 
 #[test]
-fn infill_never_runs_through_skin() {
+fn solid_infill_never_runs_through_skin() {
     // Steps narrower than a line, along the lines across the skin.
     let step = |k: usize| {
         let x = 14.0 - 0.2 * k as f64;
         Solid::cuboid([0.0, 0.0, 0.0], [x, 12.0, 2.0 + 0.2 * k as f64])
     };
     let stairs = (0..6).map(step).fold(Solid::default(), |all, one| all.and(&one));
-    for infill in ["20", "100"] {
-        let set = [("infill", infill), ("dual.mode", "interlaced"), ("angle", "0")];
-        let run = slice(&stairs.stl(), "generic-marlin", &set);
-        let twice = (4..14).map(|layer| shares(&run, layer, [6.0, 5.0])[1]);
-        let most = twice.fold(0.0, f64::max);
-        assert!(most < 0.02, "{infill} {most}");
-    }
+    let set = [("infill", "100"), ("dual.mode", "interlaced"), ("angle", "0")];
+    let run = slice(&stairs.stl(), "generic-marlin", &set);
+    let twice = (4..14).map(|layer| shares(&run, layer, [6.0, 5.0])[1]);
+    let most = twice.fold(0.0, f64::max);
+    assert!(most < 0.02, "{most}");
 }
 
 #[test]
