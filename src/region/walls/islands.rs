@@ -9,7 +9,7 @@
 //!
 //! 1. Sum up the plastic of each small island. Nearly all have as much as their area: nothing is done.
 //! 2. Else try other ways: without one or several beads, with narrower beads, with one, two or more loops.
-//! 3. Of each way, what it leaves open of the room and what it lays twice or outside are added. The way with
+//! 3. Of each way, what it leaves open and what it lays twice or outside are added. The way with
 //!    the smallest sum is taken, if it is better by what can be seen.
 
 use super::Wall;
@@ -37,8 +37,8 @@ const MOST: usize = 4;
 /// How much of the radius of the narrowest bead has to be free, for rounding.
 const PART: f64 = 0.95;
 
-/// What is cut is simplified within this (2 µm).
-const ROUNDING: Coord = 20;
+/// What is open counts this many times. With a smaller value thin strokes go where they meet.
+const OPEN: f64 = 1.5;
 
 /// Gives each small island of `contours` the walls that suit it best.
 pub(super) fn settle(
@@ -104,10 +104,13 @@ fn better(island: &Contour, its: Vec<Wall>, params: &WallParams) -> Option<Vec<W
     let whole = std::slice::from_ref(island);
     let by = (nearest(PART * params.narrowest / 2.0) as Coord).max(1);
     let room = polygon::intersection(whole, &polygon::outset(&polygon::inset(whole, by), by));
-    if room.is_empty() {
-        return None;
-    }
-    let wrong = |walls: &[Wall]| wrong((whole, &room), walls, params);
+    // Pointed corners that stick into a small island may leave no room for a mitred inset.
+    let room = match room.is_empty() {
+        true if its.is_empty() => return None,
+        true => whole.to_vec(),
+        false => room,
+    };
+    let wrong = |walls: &[Wall]| wrong(whole, walls, params);
     let least = BETTER * area(whole);
     let before = wrong(&its);
     let mut best = (before - least, None);
@@ -157,15 +160,16 @@ fn narrower(mut walls: Vec<Wall>, share: f64, params: &WallParams) -> Vec<Wall> 
     walls
 }
 
-/// What `walls` leave open of the room of an island, and what they lay twice or outside of it.
-fn wrong((island, room): (&[Contour], &[Contour]), walls: &[Wall], params: &WallParams) -> f64 {
+/// What `walls` leave open of an island, and what they lay twice or outside of it. What is open counts for more:
+/// the island looks like another.
+fn wrong(island: &[Contour], walls: &[Wall], params: &WallParams) -> f64 {
     let w = f64::from(params.line_width);
     let covered: Vec<Contour> =
         walls.iter().flat_map(|wall| sides(wall, w)).map(|s| capsule(&s)).collect();
     let covered = polygon::union(&covered);
-    let open = area(&polygon::difference(room, &covered, ROUNDING));
-    let outside = area(&covered) - area(&polygon::intersection(island, &covered));
-    open + outside + (plastic(walls, params) - area(&covered)).max(0.0)
+    let inside = area(&polygon::intersection(island, &covered));
+    let (open, outside) = (area(island) - inside, area(&covered) - inside);
+    OPEN * open + outside + (plastic(walls, params) - area(&covered)).max(0.0)
 }
 
 /// The area of contours, square grid units.
