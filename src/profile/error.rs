@@ -217,7 +217,7 @@ pub struct BlockError {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PlaceholderError {
     /// One that there is not.
-    #[error("unknown placeholder {{{name}}}; {}", placeholder_hint(name, known))]
+    #[error("unknown placeholder {{{}}}; {}", text::line(name), placeholder_hint(name, known))]
     Unknown {
         /// Its name.
         name: String,

@@ -1,7 +1,8 @@
 //! Contours and walls -> area: what is too thin to be printed.
 
 use super::Wall;
-use crate::geom::{Contour, double_area};
+use crate::geom::boxes::Around;
+use crate::geom::{Contour, Point, double_area};
 use crate::region::params::WallParams;
 use crate::units::{Coord, UNITS_PER_MM};
 
@@ -53,6 +54,25 @@ fn outside<'a>(
     };
     let whole: f64 = contours.iter().map(area).sum();
     whole - insets.map(|c| area(c) + strip(c)).sum::<f64>()
+}
+
+/// The islands that a wall lies in. Some corners of it may lie outside.
+fn around_of(wall: &Wall, around: &Around<'_>) -> impl Iterator<Item = usize> {
+    let around = |p: &Point| Some(around.of(*p).collect::<Vec<_>>()).filter(|all| !all.is_empty());
+    wall.path.iter().find_map(around).unwrap_or_default().into_iter()
+}
+
+/// The area of those of several islands of which nothing is printed, mm².
+pub(super) fn bare(contours: &[Contour], walls: &[Wall]) -> f64 {
+    let islands = || contours.iter().enumerate().filter(|(_, c)| double_area(c) > 0);
+    if islands().nth(1).is_none() {
+        return 0.0;
+    }
+    let around = Around::new(islands());
+    let mut bare: Vec<bool> = contours.iter().map(|c| double_area(c) > 0).collect();
+    walls.iter().flat_map(|wall| around_of(wall, &around)).for_each(|k| bare[k] = false);
+    let lost = contours.iter().zip(bare).filter(|(_, bare)| *bare);
+    lost.map(|(c, _)| double_area(c) as f64 / 2.0).sum::<f64>() / (UNITS_PER_MM * UNITS_PER_MM)
 }
 
 /// The area that single beads cover, mm², with a half circle at each end.

@@ -25,7 +25,6 @@
 //! beads.
 
 mod dots;
-mod islands;
 mod junctions;
 mod loops;
 mod lost;
@@ -79,20 +78,12 @@ pub struct Walls {
 #[must_use]
 pub fn walls(contours: &[Contour], may_be_thin: bool, params: &WallParams) -> Walls {
     let dots = if may_be_thin { dots::dots(contours, params) } else { None };
-    let mut made = match dots {
-        Some((dots, others)) => {
-            let (mut made, core) = around_cores(&others, may_be_thin, params);
-            made.walls.extend(dots);
-            // Dots have none.
-            made.core = made.core.or(core);
-            made
-        }
-        None => around_cores(contours, may_be_thin, params).0,
-    };
-    if let Some(core) = &made.core {
-        islands::settle(contours, &mut made.walls, core, params);
-        in_order(&mut made.walls);
-    }
+    let Some((dots, others)) = dots else { return around_cores(contours, may_be_thin, params).0 };
+    let (mut made, core) = around_cores(&others, may_be_thin, params);
+    made.walls.extend(dots);
+    in_order(&mut made.walls);
+    // Dots have none.
+    made.core = made.core.or(core);
     made
 }
 
@@ -116,8 +107,7 @@ fn around_cores(
     let lost_mm2 = lost::outside_loops(contours, &walls, params);
     // What one island has too much makes up for nothing that another lacks.
     let lost = |walls: &[Wall], beads: f64| {
-        let bare =
-            if may_be_thin && params.count > 0 { islands::bare(contours, walls) } else { 0.0 };
+        let bare = if may_be_thin && params.count > 0 { lost::bare(contours, walls) } else { 0.0 };
         bare + (lost_mm2 - bare - beads).max(0.0)
     };
     let core = match core {

@@ -19,7 +19,6 @@ use crate::geom::boxes::Around;
 use crate::geom::segment::{along, distance2};
 use crate::geom::{Contour, Point, double_area, edges, encloses, polygon};
 use crate::region::near::{Area, Near};
-use crate::region::params::WallParams;
 use crate::region::sides::{Side, Sides};
 use crate::units::{Bounded as _, Coord, nearest, sin_cos};
 use std::cell::LazyCell;
@@ -101,7 +100,7 @@ pub(super) fn patches(
         let inside = |c: &&Contour| double_area(c) < 0 && is_in(&c[0]);
         let group: Vec<Contour> =
             std::iter::once(outer).chain(open.iter().filter(inside)).cloned().collect();
-        fitted(&group, None, depth(outer[0]), layout.params)
+        loops(&group, depth(outer[0]), layout)
     };
     outers.flat_map(patch).collect()
 }
@@ -192,20 +191,14 @@ fn open(holes: &[[f64; 2]], sides: &[Side], core: &[Contour], layout: &Layout<'_
     polygon::intersection(&left, &polygon::outset(&polygon::inset(&left, by.max(1)), 2 * by.max(1)))
 }
 
-/// The loops in a patch, an outer contour and its holes: as many as given, or as fit best.
-pub(super) fn fitted(
-    patch: &[Contour],
-    count: Option<u32>,
-    depth: u32,
-    params: &WallParams,
-) -> Vec<Wall> {
+/// The loops in a patch: an outer contour and its holes.
+fn loops(patch: &[Contour], depth: u32, layout: &Layout<'_>) -> Vec<Wall> {
     let area = patch.iter().map(|c| double_area(c) as f64 / 2.0).sum::<f64>();
     let inset = |distance: f64| polygon::inset(patch, (nearest(distance) as Coord).max(1));
     let widest = (area.max(0.0) / PI).sqrt();
     let [half, _] = halved([0.0, widest], |radius| !inset(radius).is_empty());
-    let narrowest = params.narrowest;
-    let best = (half / (WIDEST * f64::from(params.line_width))).ceil();
-    let count = count.map_or(best, f64::from).min(half / narrowest).floor().max(1.0);
+    let narrowest = layout.params.narrowest;
+    let count = (half / (WIDEST * layout.line_width)).ceil().min(half / narrowest).floor().max(1.0);
     let even = half / count;
     let depths = 0..count as u32;
     let mut paths: Vec<(u32, Contour)> = depths
@@ -223,7 +216,7 @@ pub(super) fn fitted(
         }
     }
     // A wall, and no infill: that would have to be carried by others.
-    let most = params.count.saturating_sub(1).max(1);
+    let most = layout.params.count.saturating_sub(1).max(1);
     let wall = |(k, path): (u32, Contour)| Wall {
         widths: vec![nearest(width) as Coord; path.len()],
         ..Wall::closed(path, (depth + k).min(most))
@@ -236,7 +229,7 @@ fn length(path: &Contour) -> f64 {
 }
 
 /// The sides of a bead.
-pub(super) fn sides(wall: &Wall, line_width: f64) -> impl Iterator<Item = Side> + use<'_> {
+fn sides(wall: &Wall, line_width: f64) -> impl Iterator<Item = Side> + use<'_> {
     let width = move |k: usize| wall.widths.get(k).map_or(line_width, |&w| f64::from(w));
     let on = wall.path.windows(2).enumerate();
     let on = on.map(move |(k, p)| ([float(p[0]), float(p[1])], width(k + 1)));
@@ -245,7 +238,7 @@ pub(super) fn sides(wall: &Wall, line_width: f64) -> impl Iterator<Item = Side> 
 }
 
 /// What a side of a bead covers, with its round ends.
-pub(super) fn capsule(&([from, to], width): &Side) -> Contour {
+fn capsule(&([from, to], width): &Side) -> Contour {
     let ahead = libm::atan2(to[1] - from[1], to[0] - from[0]).to_degrees();
     let end = |at: [f64; 2], start: f64| {
         (0..=END).map(move |k| {

@@ -123,51 +123,6 @@ proptest! {
     }
 }
 
-/// A flower: a circle with petals.
-fn flower(size: f64, petals: u32, part: f64, degrees: f64) -> Vec<Contour> {
-    let corner = |k: u32| {
-        let angle = 3.0 * f64::from(k);
-        let (_, cos) = sin_cos(angle * f64::from(petals));
-        at(size * (1.0 + part * cos), 0.0, degrees + angle)
-    };
-    vec![(0..120).map(corner).collect()]
-}
-
-/// The area of contours, mm².
-fn area(contours: &[Contour]) -> f64 {
-    contours.iter().map(|c| double_area(c) as f64 / 2e8).sum()
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 100, ..ProptestConfig::default() })]
-
-    #[test]
-    fn small_islands_of_any_shape_get_their_plastic_and_no_more(
-        count in 1..=3_u32,
-        flowers in any::<bool>(),
-        size in 0.8..4.0_f64,
-        (petals, part) in (3..8_u32, 0.1..0.6),
-        (a, b) in (6.0..20.0, 20.0..120.0),
-        degrees in 0.0..90.0,
-    ) {
-        let params = params_of(count, 0.4);
-        let shape = match flowers {
-            true => flower(0.7 * size * W, petals, part, degrees),
-            false => triangle(size * W, a, b, degrees),
-        };
-        // What a bead reaches.
-        let by = nearest(0.95 * params.narrowest / 2.0) as Coord;
-        let inner = polygon::inset(&shape, by);
-        prop_assume!(!inner.is_empty());
-        let room = area(&polygon::intersection(&shape, &polygon::outset(&inner, by)));
-        let made = made_of(&shape, &params);
-        prop_assume!(made.core.is_some_and(|core| core.is_empty()));
-        let most = filled(&shape, &made.walls);
-        let least = (most + ends(&shape, &made.walls)) * area(&shape) / room;
-        prop_assert!(most < 1.6 && least > 0.65, "{most} {least}");
-    }
-}
-
 #[test]
 fn what_one_island_has_too_much_makes_up_for_nothing_that_another_lacks() {
     // Beads of the narrowest width hold more than there is room in a strip of 0.2 mm.
