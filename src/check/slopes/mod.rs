@@ -4,6 +4,7 @@
 //! files without such lines have none of it. Skins are told by the file's marks, else they are all lines of a
 //! layer from the first to the last that strays from its height.
 
+mod joints;
 pub(crate) mod plies;
 pub(crate) mod relief;
 pub(crate) mod skins;
@@ -12,18 +13,15 @@ pub(crate) mod sweep;
 use crate::check::belongs::is_stray;
 use crate::check::finding::Findings;
 use crate::check::terms::Terms;
-use crate::geom::segment;
 use crate::reader::Facts;
 use crate::reader::print::Step;
+use joints::joint;
 use relief::Relief;
 use skins::{Name, Skins};
 use sweep::Sweep;
 
 /// Height of a layer where nobody tells one, mm.
 const SOME_HEIGHT: f64 = 0.2;
-
-/// Cosine of the angle up to which a line goes on as the one before.
-const STRAIGHT: f64 = 0.8;
 
 /// What stands, and what judges by it.
 pub(crate) struct Slopes<'a> {
@@ -38,11 +36,11 @@ pub(crate) struct Slopes<'a> {
     last: Option<Last>,
 }
 
-/// A line, whether it is of a skin, and whether it goes on as the one before.
+/// A line, whether it is of a skin, and where it begins if it goes on as the one before.
 struct Last {
     step: Step,
     is_skin: bool,
-    came_on: bool,
+    came_on: Option<[f64; 2]>,
 }
 
 impl<'a> Slopes<'a> {
@@ -97,12 +95,11 @@ impl<'a> Slopes<'a> {
         self.last = Some(Last { step: *step, is_skin: name.is_some(), came_on });
     }
 
-    /// Lays the line before; whether the `next` move is a line that goes on as that one.
-    fn lay_last(&mut self, next: Option<&Step>) -> bool {
-        let Some(Last { step, is_skin, came_on }) = self.last.take() else { return false };
-        let on = next.is_some_and(|next| next.is_line() && goes_on(&step, next));
-        let falls = step.to[2] < step.from[2];
-        self.relief.lay(&step, is_skin, if falls { on } else { came_on });
+    /// Lays the line before; the joint of both, if the `next` move is a line that goes on as that one.
+    fn lay_last(&mut self, next: Option<&Step>) -> Option<[f64; 2]> {
+        let Last { step, is_skin, came_on } = self.last.take()?;
+        let on = next.filter(|next| next.is_line()).and_then(|next| joint(&step, next));
+        self.relief.lay(&step, is_skin, [came_on, on]);
         on
     }
 
@@ -111,12 +108,4 @@ impl<'a> Slopes<'a> {
         self.lay_last(None);
         self.skins.finish(&self.relief, self.terms, found);
     }
-}
-
-/// Whether a line begins where the one before ends, and goes on in about its direction.
-fn goes_on(before: &Step, step: &Step) -> bool {
-    let way = |step: &Step| segment::way(step.from.map(f64::from), step.to.map(f64::from));
-    let ([ax, ay, _], [bx, by, _]) = (way(before), way(step));
-    let along = STRAIGHT * before.plan_length() * step.plan_length();
-    before.to == step.from && ax * bx + ay * by > along
 }

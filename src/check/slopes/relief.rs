@@ -10,6 +10,7 @@
 //! [`Standing`](super::standing) is coarser and knows only the middles of lines: it is for files of which
 //! nobody says what hangs around the nozzle, and judges what lies under its flat end alone.
 
+use super::joints::{Joints, before};
 use crate::check::capsule::Capsule;
 use crate::geom::segment;
 use crate::reader::print::Step;
@@ -93,15 +94,14 @@ impl Relief {
         f64::from(self.highest)
     }
 
-    /// A line is laid; of a skin, cells keep how high they stood before. Where its lower end is `joined` to another
-    /// line that goes on down the slope, nothing stands as high beyond it as that end: the nozzle passes there.
-    pub(crate) fn lay(&mut self, step: &Step, is_skin: bool, joined: bool) {
+    /// A line is laid; of a skin, cells keep how high they stood before.
+    pub(super) fn lay(&mut self, step: &Step, is_skin: bool, joints: Joints) {
         if step.from.iter().chain(&step.to).any(|at| f64::from(at.abs()) > FARTHEST) {
             return;
         }
         self.highest = self.highest.max(step.from[2]).max(step.to[2]);
         let mut known: Option<([i32; 2], usize)> = None;
-        strips(step, CORNER, joined, |strip| {
+        strips(step, CORNER, joints, |strip| {
             let mut column = strip.columns.start;
             while column < strip.columns.end {
                 let (at, index) = place([column, strip.row]);
@@ -304,8 +304,8 @@ impl Strip {
 
 /// Hands the cells that a line covers to `sink`, row by row: those whose middles lie within `grow` mm of
 /// it. With half a cell's diagonal they are all cells of which it covers something, as high as it is
-/// anywhere in them. Beyond its ends it is as high as these; if the lower one is `joined`, it falls on beyond that.
-fn strips(step: &Step, grow: f64, joined: bool, mut sink: impl FnMut(&Strip)) {
+/// anywhere in them. Beyond its ends it is as high as these; at a joint it ends, see [`Joints`].
+fn strips(step: &Step, grow: f64, joints: Joints, mut sink: impl FnMut(&Strip)) {
     let (from, to) = (step.from.map(f64::from), step.to.map(f64::from));
     let way = segment::way(from, to);
     let square = way[0] * way[0] + way[1] * way[1];
@@ -316,7 +316,8 @@ fn strips(step: &Step, grow: f64, joined: bool, mut sink: impl FnMut(&Strip)) {
     };
     let mut ends = step.heights().map(|z| z + rise);
     let radius = f64::from(step.width) / 2.0 + grow;
-    if joined && square > 0.0 {
+    // On a slope a line goes down to the line that it is joined to.
+    if joints[usize::from(way[2] < 0.0)].is_some() && square > 0.0 {
         ends[0] -= radius * way[2].abs() / square.sqrt();
     }
     let line = Capsule { from: [from[0], from[1]], to: [to[0], to[1]], radius };
@@ -325,7 +326,11 @@ fn strips(step: &Step, grow: f64, joined: bool, mut sink: impl FnMut(&Strip)) {
     let first = |at: f64| (at / CELL - 0.5).ceil() as i32;
     for row in first(low[1])..first(high[1]) {
         let y = middle(row);
-        let Some((left, right)) = flanks.chord(y) else { continue };
+        let chord = flanks.chord(y);
+        let chord =
+            joints[0].map_or(chord, |[nx, ny]| before(chord?, y, (line.from, [-nx, -ny]), grow));
+        let chord = joints[1].map_or(chord, |by| before(chord?, y, (line.to, by), grow));
+        let Some((left, right)) = chord else { continue };
         let columns = first(left)..first(right);
         let by = [middle(columns.start) - from[0], y - from[1]];
         let first = from[2] + rise + by[0] * slope[0] + by[1] * slope[1];
@@ -335,7 +340,7 @@ fn strips(step: &Step, grow: f64, joined: bool, mut sink: impl FnMut(&Strip)) {
 
 /// As [`strips`], cell by cell, each with the line's height there.
 pub(crate) fn footprint(step: &Step, grow: f64, mut sink: impl FnMut([i32; 2], f64)) {
-    strips(step, grow, false, |strip| {
+    strips(step, grow, [None; 2], |strip| {
         for (after, column) in strip.columns.clone().enumerate() {
             sink([column, strip.row], strip.height(after as i32));
         }
@@ -369,8 +374,8 @@ mod tests {
     #[test]
     fn lines_stand_as_wide_as_they_are_and_never_too_low() {
         let mut relief = Relief::default();
-        relief.lay(&step([-20.0, 5.0, 3.0], [20.0, 5.0, 3.0]), false, false);
-        relief.lay(&step([50.0, 5.0, 1.0], [60.0, 5.0, 3.0]), true, false);
+        relief.lay(&step([-20.0, 5.0, 3.0], [20.0, 5.0, 3.0]), false, [None; 2]);
+        relief.lay(&step([50.0, 5.0, 1.0], [60.0, 5.0, 3.0]), true, [None; 2]);
         assert_eq!(highest(&relief, [0.05, 5.15], 0.0), 3.0);
         assert_eq!(highest(&relief, [0.05, 5.35], 0.0), 0.0);
         assert_eq!(highest(&relief, [0.05, 5.95], 0.85), 3.0);
@@ -383,7 +388,7 @@ mod tests {
         assert_eq!(relief.before(cell(55.0, 5.0)), Some(0.0));
         assert_eq!(relief.before(cell(0.0, 5.0)), None);
         assert!((relief.at(cell(-3.0, 5.0)) - 3.0).abs() < 1e-6);
-        relief.lay(&step([0.0; 3], [9e8, 0.0, 3.0]), false, false);
+        relief.lay(&step([0.0; 3], [9e8, 0.0, 3.0]), false, [None; 2]);
         assert_eq!(highest(&relief, [1000.0, 0.0], 1.0), 0.0);
     }
 
@@ -398,7 +403,10 @@ mod tests {
             let mut relief = Relief::default();
             for k in 0..10 {
                 let (from, to) = if turned { (at(k + 1), at(k)) } else { (at(k), at(k + 1)) };
-                relief.lay(&step(from, to), true, joined && k < 9);
+                let (is_first, is_last) = if turned { (k == 9, k == 0) } else { (k == 0, k == 9) };
+                let way = if turned { [-1.0, 0.0] } else { [1.0, 0.0] };
+                let joint = |is_end: bool| Some(way).filter(|_| joined && !is_end);
+                relief.lay(&step(from, to), true, [joint(is_first), joint(is_last)]);
             }
             relief
         };
@@ -416,10 +424,51 @@ mod tests {
     }
 
     #[test]
+    fn a_line_ends_where_the_next_one_goes_on() {
+        // Level, over an edge, and down by 0.5 for each mm; then the other way round.
+        let places = [[5.0, 5.0, 3.0], [9.0, 5.0, 3.0], [13.0, 5.0, 1.0]];
+        let ways = [vec![(0, 1), (1, 2)], vec![(2, 1), (1, 0)]];
+        for lines in ways {
+            let mut relief = Relief::default();
+            for (k, &(a, b)) in lines.iter().enumerate() {
+                let way = if a < b { [1.0, 0.0] } else { [-1.0, 0.0] };
+                let joints = [k == 1, k == 0].map(|is_joint| Some(way).filter(|_| is_joint));
+                relief.lay(&Step { width: 1.0, ..step(places[a], places[b]) }, true, joints);
+            }
+            for x in [9.15, 9.25, 9.45, 10.05] {
+                let over = highest(&relief, [x, 5.05], 0.0) - (3.0 - 0.5 * (x - 9.0));
+                assert!((0.0..0.12).contains(&over), "{x}: {over}");
+            }
+            assert!((highest(&relief, [8.95, 5.45], 0.0) - 3.0).abs() < 0.05);
+        }
+    }
+
+    #[test]
+    fn a_bend_leaves_no_gap_between_its_lines() {
+        // By a third of a right angle, and as wide as wide lines are.
+        let bend = [0.5_f32, 0.5 * 3.0_f32.sqrt()];
+        let [a, b] = [
+            step([5.0, 5.0, 2.0], [9.0, 5.0, 2.0]),
+            step([9.0, 5.0, 2.0], [9.0 + 4.0 * bend[1], 5.0 + 4.0 * bend[0], 2.0]),
+        ];
+        let [a, b] = [a, b].map(|step| Step { width: 1.5, ..step });
+        let middle = (15.0_f64.to_radians().cos(), 15.0_f64.to_radians().sin());
+        let joint = Some([middle.0, middle.1]);
+        let (mut whole, mut round) = (Relief::default(), Relief::default());
+        for (line, joints) in [(&a, [None, joint]), (&b, [joint, None])] {
+            whole.lay(line, true, joints);
+            round.lay(line, true, [None; 2]);
+        }
+        for (x, y) in (80..110).flat_map(|x| (35..75).map(move |y| (x, y))) {
+            assert_eq!(whole.at([x, y]), round.at([x, y]), "{x} {y}");
+        }
+    }
+
+    #[test]
     fn what_does_not_count_is_left_out() {
         let mut relief = Relief::default();
-        relief.lay(&step([1.0, 1.0, 1.0], [30.0, 1.0, 1.0]), false, false);
-        relief.lay(&step([20.0, 20.0, 2.0], [21.0, 20.0, 2.0]), false, false);
+        relief.lay(&step([1.0, 1.0, 1.0], [30.0, 1.0, 1.0]), false, [None; 2]);
+        relief.lay(&step([20.0, 20.0, 2.0], [21.0, 20.0, 2.0]), false, [None; 2]);
         let mut seen = Vec::new();
         relief.look([15.0, 15.0], 20.0, &|_, z| z > 1.5, &mut |square, z| seen.push((square, z)));
         assert!(seen.len() < 300 && seen.iter().any(|(_, z)| *z > 1.9), "{}", seen.len());

@@ -255,7 +255,7 @@ mod tests {
     /// What is found of a move beside a wall along y at x = 0, 10 mm high.
     fn beside(head: &Head, one: Step) -> Vec<Finding> {
         let mut relief = Relief::default();
-        relief.lay(&step([0.0, 0.0, 10.0], [0.0, 20.0, 10.0], 1.0), false, false);
+        relief.lay(&step([0.0, 0.0, 10.0], [0.0, 20.0, 10.0], 1.0), false, [None; 2]);
         let mut found = Findings::default();
         Sweep::new(head).step(&one, &relief, 0.2, &mut found);
         found.into_iter().collect()
@@ -302,7 +302,7 @@ mod tests {
     fn hits_are_counted_on_where_they_are_not_measured_any_more() {
         let head = named("v6").unwrap();
         let mut relief = Relief::default();
-        relief.lay(&step([0.0, 0.0, 10.0], [0.0, 20.0, 10.0], 1.0), false, false);
+        relief.lay(&step([0.0, 0.0, 10.0], [0.0, 20.0, 10.0], 1.0), false, [None; 2]);
         let (mut sweep, mut found) = (Sweep::new(&head), Findings::default());
         let all = MOST_MEASURED + 50;
         for _ in 0..all {
@@ -328,7 +328,7 @@ mod tests {
         ) {
             let head = named(name).unwrap();
             let mut relief = Relief::default();
-            lines.iter().for_each(|(from, to)| relief.lay(&step(*from, *to, 1.0), false, false));
+            lines.iter().for_each(|(from, to)| relief.lay(&step(*from, *to, 1.0), false, [None; 2]));
             let one = step(from, to, if prints { 1.0 } else { 0.0 });
             let (mut sweep, mut found) = (Sweep::new(&head), Findings::default());
             sweep.step(&one, &relief, 0.2, &mut found);
