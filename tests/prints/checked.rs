@@ -6,6 +6,7 @@
 //! - The lowest skin is thin where a level layer ends just below it: a skin is as high as the ones above.
 //! - Down a slope each line ends higher than the next one lies. Nothing stands so high beyond its end, on a rim above
 //!   the slope neither.
+//! - Wide lines spread their plastic over more than a square of a millimetre.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -66,5 +67,13 @@ fn the_head_clears_the_rim_that_it_comes_from() {
     let surface = |x: f64, _| 9.0 - 0.42 * (x - 6.0).max(0.0);
     let rim = Relief { sides: [18.0, 12.0], surface, squares: [3, 1] };
     let run = printed(&rim, &[("head.name", "v6"), ("machine.nozzle_diameter", "1.0")]);
+    assert_eq!(kinds(&judged(&run)), []);
+}
+
+#[test]
+fn wide_lines_on_a_roof_have_as_much_plastic_as_room() {
+    let surface = |x: f64, _| 3.0 + 0.3057 * (9.0 - (x - 9.0).abs());
+    let roof = Relief { sides: [18.0, 12.0], surface, squares: [2, 1] };
+    let run = printed(&roof, &[("head.name", "v6"), ("machine.nozzle_diameter", "0.8")]);
     assert_eq!(kinds(&judged(&run)), []);
 }

@@ -9,6 +9,8 @@ pub(crate) mod plies;
 pub(crate) mod relief;
 pub(crate) mod skins;
 pub(crate) mod sweep;
+#[cfg(test)]
+mod tests;
 
 use crate::check::belongs::is_stray;
 use crate::check::finding::Findings;

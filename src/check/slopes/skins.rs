@@ -8,8 +8,8 @@
 //!   if it lies between lines of the patch nearer to each other than [`GAP`], and what stands there lies as
 //!   far below them as skins are high. A place of open cells counts where it is [`NARROW`] wide all over,
 //!   and from [`LEAST_OPEN`] on: two and a half mm of one missing line.
-//! - In squares of [`WINDOW`] cells the plastic of all lines is compared with the room of the cells that
-//!   they cover. Squares with more than [`MOST_PLASTIC`] times as much count from [`LEAST_DOUBLE`] on in a
+//! - In squares of [`WINDOW`] cells, or more where lines are wide, the plastic of all lines is compared with the
+//!   room of the cells that they cover. Squares with more than [`MOST_PLASTIC`] times as much count from [`LEAST_DOUBLE`] on in a
 //!   patch, those with less than [`LEAST_PLASTIC`] times as much, as where lines of a lower skin are missing,
 //!   from [`LEAST_THIN`] on. All skins are judged: other slicers lay a first skin of one height on the treads of a
 //!   staircase. Where there is but one, squares are larger than a tread.
@@ -46,6 +46,10 @@ const USUAL_PLIES: u16 = 2;
 const WINDOW: usize = 10;
 const WIDE: usize = 40;
 
+/// Squares are at least so many lines wide: a line's plastic is evenly spread over its width, and over as much of its
+/// length, whatever lies under it.
+const LINES: f64 = 2.5;
+
 /// Part of a square's cells that the patch covers, for it to be judged.
 const LEAST_COVERED: f64 = 0.5;
 
@@ -53,7 +57,8 @@ const LEAST_COVERED: f64 = 0.5;
 const MOST_PLASTIC: f64 = 1.3;
 const LEAST_PLASTIC: f64 = 0.65;
 
-/// Least area with too much, and with too little, where the ends of lines are round, mm².
+/// Least area with too much, and with too little, where the ends of lines are round, mm². Of squares that are larger,
+/// one is the least.
 const LEAST_DOUBLE: f64 = 1.0;
 const LEAST_THIN: f64 = 4.0;
 
@@ -121,17 +126,20 @@ struct Map {
     top: Vec<f32>,
     plastic: Vec<f32>,
     plies: u16,
-    /// How high a skin is, mm.
+    /// How high a skin is, and how wide half of its lines are at most, mm.
     height: f64,
+    width: f64,
 }
 
 impl Map {
     fn of(skin: &Skin, field: Field, terms: &Terms) -> Self {
         let cells = field.cells();
         let (ply, top, plastic) = (vec![0; cells], vec![0.0; cells], vec![0.0; cells]);
-        let mut map = Self { field, ply, top, plastic, plies: 0, height: 0.0 };
+        let mut map = Self { field, ply, top, plastic, plies: 0, height: 0.0, width: 0.0 };
         let strokes = strokes(&skin.lines, &field);
         map.height = height(&skin.lines, &strokes);
+        let widths = skin.lines.iter().map(|step| (f64::from(step.width), step.plan_length()));
+        map.width = middle(&mut widths.collect()).map_or(0.0, |(width, _)| width);
         for stroke in strokes {
             map.plies = map.plies.max(stroke.ply);
             for step in &skin.lines[stroke.lines.clone()] {
@@ -193,17 +201,22 @@ fn height(lines: &[Step], strokes: &[Stroke]) -> f64 {
         plies.entry(stroke.ply).or_default().extend(of);
     }
     let all: f64 = plies.values().flatten().map(|one| one.1).sum();
-    let middle = |own: &mut Vec<(f64, f64)>| {
-        own.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        let whole: f64 = own.iter().map(|one| one.1).sum();
-        let mut so_far = 0.0;
-        let one = own.iter().find(|one| {
-            so_far += one.1;
-            so_far >= 0.5 * whole
-        });
-        one.filter(|_| whole >= LEAST_PLY * all).map(|one| one.0)
+    let of_ply = |own: &mut Vec<(f64, f64)>| {
+        middle(own).filter(|(_, whole)| *whole >= LEAST_PLY * all).map(|(height, _)| height)
     };
-    plies.values_mut().filter_map(middle).fold(0.0, f64::max)
+    plies.values_mut().filter_map(of_ply).fold(0.0, f64::max)
+}
+
+/// Of values with the lengths that have them: the one that half of the length reaches at most, and the whole length.
+fn middle(all: &mut Vec<(f64, f64)>) -> Option<(f64, f64)> {
+    all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let whole: f64 = all.iter().map(|one| one.1).sum();
+    let mut so_far = 0.0;
+    let one = all.iter().find(|one| {
+        so_far += one.1;
+        so_far >= 0.5 * whole
+    });
+    one.map(|one| (one.0, whole))
 }
 
 /// All cells that hang together with one, itself included, and are such.
@@ -334,34 +347,41 @@ impl Judge<'_> {
     /// Reports too much and too little plastic.
     fn double(&self, found: &mut Findings) {
         let is_single = self.map.plies < 2 && matches!(self.name, Name::Layer(_));
-        let side = if is_single { WIDE } else { WINDOW };
+        let lines = (LINES * self.map.width / CELL).round() as usize;
+        let side = if is_single { WIDE } else { WINDOW.max(lines) };
         let [columns, rows] = self.map.field.count;
         let (mut double, mut thin) = (Sum::default(), Sum::default());
         for row in (0..rows).step_by(side) {
             for column in (0..columns).step_by(side) {
-                let own = self.square([column, row], side);
-                let fills = own.plastic / own.room.max(f64::MIN_POSITIVE);
+                let own = self.square([column, row], side, self.map.plies);
                 if own.area < LEAST_COVERED * (CELL * side as f64).powi(2) {
                     continue;
-                } else if fills > MOST_PLASTIC {
-                    double.add(own);
-                } else if fills < LEAST_PLASTIC {
+                }
+                if own.fills() > MOST_PLASTIC {
+                    // A lower skin that lies under a small part of the one above it is no ply of its own.
+                    let plies = self.map.plies.max(USUAL_PLIES);
+                    let own = self.square([column, row], side, plies);
+                    if own.fills() > MOST_PLASTIC {
+                        double.add(own);
+                    }
+                } else if own.fills() < LEAST_PLASTIC {
                     thin.add(own);
                 }
             }
         }
         let mut tell = |sum: Sum, code: Code| {
-            let percent = short(100.0 * sum.plastic / sum.room.max(f64::MIN_POSITIVE));
+            let percent = short(100.0 * sum.fills());
             let (area, name) = (short(sum.area), self.name());
             let text = format!(
                 "{area} mm² of {name} take {percent} % of the plastic that they have room for"
             );
             found.add(Finding::of(code, area, "mm²", text).at(self.at(sum.middle)));
         };
-        if double.area >= LEAST_DOUBLE {
+        let one = if is_single { 0.0 } else { (CELL * side as f64).powi(2) };
+        if double.area >= LEAST_DOUBLE.max(one) {
             tell(double, Code::DoubleSkin);
         }
-        if thin.area >= LEAST_THIN {
+        if thin.area >= LEAST_THIN.max(one) {
             tell(thin, Code::UncoveredSkin);
         }
     }
@@ -375,11 +395,11 @@ impl Judge<'_> {
         known.reduce(f64::min).unwrap_or_default()
     }
 
-    /// What a square takes, and has room for.
-    fn square(&self, [column, row]: [usize; 2], side: usize) -> Sum {
+    /// What a square takes, and has room for under so many plies.
+    fn square(&self, [column, row]: [usize; 2], side: usize, plies: u16) -> Sum {
         let map = &self.map;
         let [columns, rows] = map.field.count;
-        let most = (f64::from(map.plies) + SHOWS) * map.height;
+        let most = (f64::from(plies) + SHOWS) * map.height;
         let middle = [(column + side / 2).min(columns - 1), (row + side / 2).min(rows - 1)];
         let mut sum = Sum { middle: middle[0] + middle[1] * columns, ..Sum::default() };
         for j in row..(row + side).min(rows) {
@@ -410,6 +430,11 @@ struct Sum {
 }
 
 impl Sum {
+    /// Plastic over room.
+    fn fills(&self) -> f64 {
+        self.plastic / self.room.max(f64::MIN_POSITIVE)
+    }
+
     fn add(&mut self, one: Self) {
         let off = (one.plastic - one.room).abs();
         if off > self.off {
