@@ -222,7 +222,20 @@ impl Pile {
     #[must_use]
     pub fn hit_printing(&self, head: &Head, tip: [f64; 3], layer_height: f64) -> Option<Hit> {
         let most = DEEPEST_PRESS * layer_height;
-        self.search(head, tip, [Some(most), None], &|hit| head.presses(hit, layer_height))
+        self.hit_but_press(head, tip, most, &|hit| head.presses(hit, layer_height))
+    }
+
+    /// As [`Self::hit`], where `spare` allows all that is no deeper than `most`, mm, within [`Head::press_radius`] of
+    /// the tip: faster, as [`Self::hit_printing`] is.
+    #[must_use]
+    pub fn hit_but_press(
+        &self,
+        head: &Head,
+        tip: [f64; 3],
+        most: f64,
+        spare: &dyn Fn(&Hit) -> bool,
+    ) -> Option<Hit> {
+        self.search(head, tip, [Some(most), None], spare)
     }
 
     fn search(

@@ -70,6 +70,18 @@ fn the_head_clears_the_rim_that_it_comes_from() {
     assert_eq!(kinds(&judged(&run)), []);
 }
 
+/// Not a verdict, but a print that was wrong: what is known of the surface alone is not known of wide lines on it.
+#[test]
+fn the_head_clears_the_sides_of_wide_lines() {
+    let surface =
+        |x: f64, y: f64| 5.0 + 3.0 * libm::sin((x - 12.0) / 8.0) * libm::cos((y - 10.0) / 7.0);
+    let hills = Relief { sides: [24.0, 20.0], surface, squares: [30, 30] };
+    let run = printed(&hills, &[("head.name", "v6"), ("machine.nozzle_diameter", "0.8")]);
+    assert_eq!(kinds(&judged(&run)), []);
+    let areas = run.report.nonplanar.as_ref().map(|skins| skins.areas.skin_mm2);
+    assert!(areas.is_some_and(|skin| skin > 400.0), "{areas:?}");
+}
+
 #[test]
 fn wide_lines_on_a_roof_have_as_much_plastic_as_room() {
     let surface = |x: f64, _| 3.0 + 0.3057 * (9.0 - (x - 9.0).abs());

@@ -53,7 +53,7 @@ pub(super) struct Piece {
     /// Its skins as they stand when all are laid.
     pub own: Arc<Pile>,
     /// Where these skins are not in the way of the head, at a glance.
-    pub glance: Arc<Glance>,
+    pub glance: Arc<Option<Glance>>,
 }
 
 /// The pieces of surface `number`.
@@ -178,7 +178,7 @@ fn under_support(scene: &Scene<'_>, field: &Field, places: &[Spot], out: &mut Re
 }
 
 /// The surface over an area as it stands when all skins are laid.
-fn standing(scene: &Scene<'_>, field: &Field, area: &[Contour]) -> (Pile, Glance) {
+fn standing(scene: &Scene<'_>, field: &Field, area: &[Contour]) -> (Pile, Option<Glance>) {
     let (low, high) = extent(area.iter().flatten()).unwrap_or_default();
     let floor = |v: Coord| v.div_euclid(CELL) - 1;
     let low = [floor(low.x), floor(low.y)];
@@ -201,22 +201,23 @@ fn standing(scene: &Scene<'_>, field: &Field, area: &[Contour]) -> (Pile, Glance
     }
     let known = || heights.iter().copied().filter(|z| z.is_finite()).map(f64::from);
     let most = known().fold(f64::MIN, f64::max) - known().fold(f64::MAX, f64::min);
-    let under =
-        Under::pressing(&scene.params.head, scene.params.press_layer_at_places(), most + SLACK);
-    (pile, Glance::new(low, columns, heights, under))
+    let layer = scene.params.press_layer_at_places();
+    let under = Under::pressing(&scene.params.head, layer, most + SLACK, None);
+    (pile, under.map(|under| Glance::new(low, columns, heights, under)))
 }
 
 /// Places where the head would touch the surface itself.
 fn in_its_own_way(
     scene: &Scene<'_>,
     field: &Field,
-    (own, glance): (&Pile, &Glance),
+    (own, glance): (&Pile, &Option<Glance>),
     area: &[Contour],
 ) -> Refused {
     let (params, layer) = (scene.params, scene.params.press_layer_at_places());
     let tried = |place: &Spot| {
         let cell = cell_of(*place);
-        let z = field.at(cell).filter(|z| !glance.is_clear(cell, mm(*z)))?;
+        let is_clear = |z: f64| glance.as_ref().is_some_and(|glance| glance.is_clear(cell, mm(z)));
+        let z = field.at(cell).filter(|z| !is_clear(*z))?;
         let [x, y] = grid::middle(cell);
         let hit = own.hit_printing(&params.head, [x, y, mm(z)], layer);
         hit.map(|_| (*place, Reason::Cone))

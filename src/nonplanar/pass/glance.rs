@@ -30,7 +30,7 @@ pub(super) struct Under {
     /// Radius of the circle round the tip where it begins, mm.
     from: f64,
     /// How much it rises for each mm outwards.
-    rise: f64,
+    pub(super) rise: f64,
 }
 
 impl Under {
@@ -44,20 +44,29 @@ impl Under {
     }
 
     /// The cone below a head for a surface into which it may press, with layers of this height, mm. The
-    /// surface rises by no more than `most`.
-    pub(super) fn pressing(head: &Head, layer: f64, most: f64) -> Self {
+    /// surface rises by no more than `most`, and its lines stand over it by `excess`, of which tips are as much
+    /// higher. `None` if nothing is spare then.
+    pub(super) fn pressing(
+        head: &Head,
+        layer: f64,
+        most: f64,
+        excess: Option<f64>,
+    ) -> Option<Self> {
+        // Lines are as wide as they are.
+        let (less, slack) = excess.map_or((0.0, SLACK), |excess| (excess, SLACK - WIDER));
         // A tip and a surface that both lie anywhere in their cells.
-        let spare = DEEPEST_PRESS * layer - layer / 4.0;
+        let spare = DEEPEST_PRESS * layer - layer / 4.0 - less;
         let from = head.flat / 2.0;
-        let pressed = spare / (from + SLACK).max(f64::MIN_POSITIVE);
+        let pressed = spare / (from + slack).max(f64::MIN_POSITIVE);
         // Beyond the ring where a touch may be press, nothing is spare.
-        let beyond = head.press_radius() + SLACK;
-        let flank =
-            head.underside([head.press_radius(), 0.0]).map_or(STEEPEST, |(z, _)| z / beyond);
-        let pressing = |r: f64| if r > head.press_radius() { 0.0 } else { spare };
-        let others = parts(head, most).map(|[r, z]| (z + pressing(r)) / (r + SLACK));
+        let beyond = head.press_radius() + slack;
+        let flank = head
+            .underside([head.press_radius(), 0.0])
+            .map_or(STEEPEST, |(z, _)| (z - less) / beyond);
+        let pressing = |r: f64| if r > head.press_radius() { -less } else { spare };
+        let others = parts(head, most).map(|[r, z]| (z + pressing(r)) / (r + slack));
         let least = others.fold(pressed.min(flank), f64::min);
-        Self { from: 0.0, rise: least.min(STEEPEST) }
+        (least > 0.0).then_some(Self { from: 0.0, rise: least.min(STEEPEST) })
     }
 }
 
@@ -210,7 +219,7 @@ mod tests {
             };
             let all = (0..SIDE * SIDE).map(|k| (k % SIDE, k / SIDE, at(k % SIDE, k / SIDE)));
             let (pile, heights) = pile(&all.collect::<Vec<_>>());
-            let glance = Glance::new([0, 0], SIDE, heights, Under::pressing(&head, 0.2, 10.0));
+            let glance = Glance::new([0, 0], SIDE, heights, Under::pressing(&head, 0.2, 10.0, None).unwrap());
             for (x, y) in (0..SIDE).step_by(7).flat_map(|x| (0..SIDE).step_by(7).map(move |y| (x, y))) {
                 let z = at(x, y);
                 if glance.is_clear([x as i32, y as i32], z + 1e-5) {
@@ -227,7 +236,12 @@ mod tests {
         let clear = |slope: f64| {
             let at = |k: usize| (k % SIDE, k / SIDE, (k % SIDE) as f64 * 0.1 * slope);
             let (_, heights) = pile(&(0..SIDE * SIDE).map(at).collect::<Vec<_>>());
-            let glance = Glance::new([0, 0], SIDE, heights, Under::pressing(&head, 0.2, 10.0));
+            let glance = Glance::new(
+                [0, 0],
+                SIDE,
+                heights,
+                Under::pressing(&head, 0.2, 10.0, None).unwrap(),
+            );
             glance.is_clear([30, 30], at(30).2 + 1e-5)
         };
         assert!(clear(0.3) && !clear(0.8));

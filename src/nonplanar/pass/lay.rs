@@ -9,6 +9,7 @@
 //! above all that it would touch, and by the clearance more. The first one comes from anywhere: it
 //! rises above all that stands.
 
+use super::beads::touches;
 use super::shrink::{Refused, refuse};
 use super::stack::Stack;
 use super::touch::{Touch, cell_at, up};
@@ -99,6 +100,11 @@ pub(super) fn lay(trial: &Trial<'_>, surface: &Surface, stack: &Stack<'_>) -> Co
             refuse(&mut coat.refused[i], place, reason);
         }
         coat.skins.push(paths);
+    }
+    for (of, touched) in
+        coat.refused.iter_mut().zip(touches((trial, surface), &coat.skins, layer_top))
+    {
+        touched.into_iter().for_each(|(place, reason)| refuse(of, place, reason));
     }
     coat
 }

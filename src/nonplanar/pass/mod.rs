@@ -5,7 +5,8 @@
 //! 2. Pieces come in the order of their homes; of those with one home, the one with the lower top first.
 //! 3. Layers are piled up to the home (`stack`), without the room of skins.
 //! 4. The piece shrinks to what passes there (`trial`), and is laid
-//!    (`lay`). If its lines refuse places, both are done again, a few times.
+//!    (`lay`). If its lines refuse places, or the head touches those laid before (`beads`), both are done again, a few
+//!    times.
 //! 5. What is left is a patch: its skins stand from now on.
 //!
 //! In each round more is cut out around what fails. What has faults after the last one is printed flat:
@@ -14,7 +15,9 @@
 //! What is found so may tell that some pieces came too late, since the places that made their homes high
 //! can never pass. Then all is done again with lower homes for these (`homes`), and kept if that gives more.
 
+mod beads;
 mod candidate;
+mod excess;
 mod glance;
 mod homes;
 mod lay;

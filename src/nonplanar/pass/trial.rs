@@ -19,6 +19,7 @@
 //!   stand beside them. They are tried the other way round: a head upside down over a pile of their tips.
 
 use super::candidate::{Ground, Piece};
+use super::excess::OfLines;
 use super::glance::{Glance, Under};
 use super::shrink::{Refused, most, nearest, refuse, shrink_all, widened};
 use super::stack::{Stack, WIDER, heights_over};
@@ -57,6 +58,8 @@ pub(super) struct Trial<'a> {
     pub others: Pile,
     /// Where what stands leaves room for the head, at a glance; `None` while that changes.
     glance: Option<Glance>,
+    /// Where lines on the surface leave room for it, at a glance; once it is asked for.
+    pub of_lines: OfLines,
     later: Option<Later>,
     /// What may fail now, if all places were tried before.
     fresh: Option<Fresh>,
@@ -93,8 +96,17 @@ impl<'a> Trial<'a> {
         let areas = vec![piece.area.clone(); scene.params.skins as usize];
         let later = Later::new(scene, piece, stack);
         let others = others(scene, &ground.field, piece, stack);
-        let mut trial =
-            Self { scene, ground, piece, areas, others, glance: None, later, fresh: None };
+        let mut trial = Self {
+            scene,
+            ground,
+            piece,
+            areas,
+            others,
+            glance: None,
+            of_lines: OfLines::default(),
+            later,
+            fresh: None,
+        };
         trial.cut_beneath(stack);
         trial
     }
@@ -174,7 +186,8 @@ impl<'a> Trial<'a> {
     pub(super) fn is_clear(&self, cell: Spot, tip: f64) -> bool {
         let surface = self.ground.field.at(cell).map(mm);
         self.glance.as_ref().is_some_and(|glance| glance.is_clear(cell, tip))
-            && surface.is_some_and(|z| self.piece.glance.is_clear(cell, z))
+            && (self.piece.glance.as_ref().as_ref().zip(surface))
+                .is_some_and(|(glance, z)| glance.is_clear(cell, z))
     }
 
     /// The places of each skin that fail. Where the lowest one touches nothing, those above do not either: their

@@ -39,7 +39,7 @@ const LEAST_OPEN: f64 = 1.25;
 
 /// A line's band is at most so wide, in line widths, as for lines of flat skins: the flat face of a
 /// nozzle still smooths a bead of this width.
-const WIDEST: f64 = 1.75;
+pub const WIDEST: f64 = 1.75;
 
 /// Bends of a line's middle and changes of its width up to this are left out (10 µm).
 const LEAST_BEND: f64 = 100.0;

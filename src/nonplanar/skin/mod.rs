@@ -21,6 +21,7 @@ mod runs;
 mod tests;
 mod walls;
 
+pub use lines::WIDEST;
 pub use relief::{Base, Relief};
 
 use super::params::NonPlanarParams;
