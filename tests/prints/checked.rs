@@ -89,3 +89,17 @@ fn wide_lines_on_a_roof_have_as_much_plastic_as_room() {
     let run = printed(&roof, &[("head.name", "v6"), ("machine.nozzle_diameter", "0.8")]);
     assert_eq!(kinds(&judged(&run)), []);
 }
+
+/// Not a verdict either: a turn at the end of a row fills what is open on its own side, and not beyond the row.
+#[test]
+fn the_narrow_end_of_a_patch_is_covered() {
+    let surface = |x: f64, y: f64| 5.67 + 0.042 * (x - 8.0) * (y - 9.5);
+    let saddle = Relief { sides: [16.0, 19.0], surface, squares: [39, 39] };
+    let set = [
+        ("head.name", "v6"),
+        ("machine.nozzle_diameter", "0.8"),
+        ("layer_height", "0.2"),
+        ("nonplanar.wall", "2"),
+    ];
+    assert_eq!(kinds(&judged(&printed(&saddle, &set))), []);
+}

@@ -62,15 +62,15 @@ pub(super) struct Spot {
 pub(super) type Joined = [bool; 2];
 
 /// The middle of the line `span` on row `j`, from the lesser u on, at least two places. `beside` are the
-/// spans of the rows below and above.
+/// spans of the rows below and above, `joined` tells of the turns to these.
 pub(super) fn spots(
     piece: &Piece,
     (j, span): (i32, Span),
     beside: [&[Span]; 2],
-    joined: Joined,
+    joined: [Joined; 2],
     shortest: Coord,
 ) -> Vec<Spot> {
-    let open = [0, 1].map(|side| open(piece, span, beside[side], joined));
+    let open = [0, 1].map(|side| open(piece, span, beside[side], (joined, side)));
     let all = sampled(piece, (j, span), &open, f64::from(shortest));
     let miss = |a: &Spot, b: &Spot, s: &Spot| {
         let part = (s.u - a.u) / (b.u - a.u);
@@ -135,12 +135,21 @@ fn stretch(span: &mut Span, [start, end]: [bool; 2], outer: Span, pitch: f64) {
 }
 
 /// Where a line is open towards a row with these lines, but for what the turns at its ends fill.
-fn open(piece: &Piece, span: Span, row: &[Span], joined: Joined) -> Vec<Span> {
+fn open(
+    piece: &Piece,
+    span: Span,
+    row: &[Span],
+    (joined, side): ([Joined; 2], usize),
+) -> Vec<Span> {
     let pitch = f64::from(piece.pitch);
     let mut open = Vec::new();
     subtract(&[span], row, &mut open);
+    // Where nothing lies beside all of the line, only a turn to that side fills anything.
+    let is_last = open[..] == [span];
+    let turns =
+        |end: usize| if is_last { joined[side][end] } else { joined[0][end] || joined[1][end] };
     open.retain(|s| {
-        let at_turn = joined[0] && s.start == span.start || joined[1] && s.end == span.end;
+        let at_turn = turns(0) && s.start == span.start || turns(1) && s.end == span.end;
         s.len() as f64 > pitch * if at_turn { LONGEST_RUN } else { LEAST_OPEN }
     });
     open

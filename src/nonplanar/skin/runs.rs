@@ -140,10 +140,15 @@ fn bead(piece: &Piece, rows: &[(i32, Vec<Span>)], links: &[Link], shortest: Coor
     let spans = |j: i32| row(j).map_or(&[] as &[Span], |(_, spans)| spans);
     let mut legs: Bead = Vec::with_capacity(2 * links.len());
     for (k, link) in links.iter().enumerate() {
-        let mut joined = Joined::default();
+        let mut joined = [Joined::default(); 2];
+        let above = |other: &Link| usize::from(other.row > link.row);
         let end = |side: Side| usize::from(side == Side::Right);
-        joined[end(link.from)] |= k > 0;
-        joined[end(link.from.other())] |= k + 1 < links.len();
+        if let Some(last) = k.checked_sub(1).and_then(|k| links.get(k)) {
+            joined[above(last)][end(link.from)] = true;
+        }
+        if let Some(next) = links.get(k + 1) {
+            joined[above(next)][end(link.from.other())] = true;
+        }
         let beside = [spans(link.row - 1), spans(link.row + 1)];
         let mut spots = spots(piece, (link.row, link.span), beside, joined, shortest);
         if link.from == Side::Right {
