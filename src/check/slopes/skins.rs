@@ -139,7 +139,7 @@ impl Map {
         let strokes = strokes(&skin.lines, &field);
         map.height = height(&skin.lines, &strokes);
         let widths = skin.lines.iter().map(|step| (f64::from(step.width), step.plan_length()));
-        map.width = middle(&mut widths.collect()).map_or(0.0, |(width, _)| width);
+        map.width = middle(&mut widths.collect::<Vec<_>>()).map_or(0.0, |(width, _)| width);
         for stroke in strokes {
             map.plies = map.plies.max(stroke.ply);
             for step in &skin.lines[stroke.lines.clone()] {
@@ -208,7 +208,7 @@ fn height(lines: &[Step], strokes: &[Stroke]) -> f64 {
 }
 
 /// Of values with the lengths that have them: the one that half of the length reaches at most, and the whole length.
-fn middle(all: &mut Vec<(f64, f64)>) -> Option<(f64, f64)> {
+fn middle(all: &mut [(f64, f64)]) -> Option<(f64, f64)> {
     all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let whole: f64 = all.iter().map(|one| one.1).sum();
     let mut so_far = 0.0;
