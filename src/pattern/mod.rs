@@ -29,9 +29,6 @@ use std::sync::Arc;
 /// where arcs are decimated; a larger one presses plastic into the wall.
 const RUN_OVERLAP: f64 = 0.25;
 
-/// Infill of this density, %, is solid: its lines lie side by side.
-const SOLID: f64 = 100.0;
-
 /// Lines or curves that fill a region sparsely. They are the same on every layer.
 ///
 /// A region is given as rows of [`Self::raster`]; strands are in that raster's frame. Strands
@@ -89,8 +86,6 @@ pub struct Turns {
     sparse: Vec<Vec<Pattern>>,
     /// Solid lines along the two rasters of skins, for rooms too narrow for sparse ones.
     dense: Vec<Pattern>,
-    /// Whether all is filled with these.
-    solid: bool,
 }
 
 impl Turns {
@@ -114,27 +109,14 @@ impl Turns {
                 ..Lines::new(settings.angle.degrees() + turn, width, width)
             })
         };
-        let (rooms, printed) = (settings.narrow_room > 0.0, settings.printed_pattern());
-        // Their ends and turns would lie on the edges of skin, and beside walls they leave gaps.
-        let solid = rooms && settings.infill >= SOLID;
-        let dense = match printed {
-            _ if !rooms || (settings.walls == 0 && !solid) => Vec::new(),
-            profile::Pattern::Aligned if solid => vec![dense(0.0)],
-            _ => vec![dense(0.0), dense(90.0)],
-        };
-        Self { sparse, dense, solid }
+        let rooms = settings.narrow_room > 0.0 && settings.walls > 0;
+        Self { sparse, dense: if rooms { vec![dense(0.0), dense(90.0)] } else { Vec::new() } }
     }
 
     /// The solid lines of turn `n`; `None` if no room gets any.
     #[must_use]
     pub fn dense(&self, n: usize) -> Option<&Pattern> {
-        self.dense.get(n % self.dense.len().max(1))
-    }
-
-    /// Whether the infill is so dense that all rooms are filled solidly.
-    #[must_use]
-    pub fn is_solid(&self) -> bool {
-        self.solid
+        self.dense.get(n % 2)
     }
 
     /// The patterns of turn `n`; none without infill.

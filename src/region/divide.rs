@@ -7,6 +7,7 @@
 //! along walls fill the narrow parts of both. Then, with the layer below, bridges take their place, and
 //! what is left is skin or infill. Last, strips in which no sparse line has room become skin.
 
+use super::Skin;
 use super::bridge::loose::{self, Beads, Below};
 use super::bridge::{self, Pair};
 use super::classify::{Areas, areas, areas_beside, exposed};
@@ -18,7 +19,6 @@ use super::per_raster::{PerRaster, skin_turn};
 use super::prepare::{LayerRows, Own, Whole};
 use super::rooms;
 use super::wall_beads::{taken, wall_beads};
-use super::{Skin, agreed};
 use crate::geom::Contour;
 use crate::geom::frame::Frame;
 use crate::geom::polyline::Polyline;
@@ -77,19 +77,10 @@ pub fn examine<'a>(
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
     params: &RegionParams,
 ) -> Examined {
-    let k = own.layer.index;
-    let exposed = |r: usize| exposed(k, params.rasters.skin(r), layers, &params.skins);
-    let mut exposed = [0, 1].map(exposed);
-    let (along, across) = skin_turn(k);
-    let its = [along, across].map(|r| params.rasters.skin(r));
-    // Sparse lines across a skin matter little. Solid ones would fill it twice.
-    if params.sparse.is_solid()
-        && let Some(missed) = agreed::missed(&exposed[along], its[0], its[1])
-        && let Some(rows) = layers(k)
-    {
-        exposed[across] = exposed[across].or(&missed.and(&rows.skin(across).fill));
-    }
-    let solid = solid(k, layers, params);
+    let exposed =
+        |r: usize| exposed(own.layer.index, params.rasters.skin(r), layers, &params.skins);
+    let exposed = [0, 1].map(exposed);
+    let solid = solid(own.layer.index, layers, params);
     let beads = match &solid {
         Some([a, b]) => beads(own, &[exposed[0].or(a), exposed[1].or(b)], layers, params),
         None => beads(own, &exposed, layers, params),
@@ -184,8 +175,7 @@ fn least_strip(areas: &LayerAreas, bridges: &[Skin], params: &RegionParams) -> C
     if skinned && !params.sparse.is_empty() { params.skins.reach } else { 0 }
 }
 
-/// The rooms of layer `k` too narrow for sparse lines, on the rasters of skins; all there is if the infill
-/// is solid.
+/// The rooms of layer `k` too narrow for sparse lines, on the rasters of skins.
 fn solid<'a>(
     k: usize,
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
@@ -193,9 +183,6 @@ fn solid<'a>(
 ) -> Option<[Rows; 2]> {
     let rows = layers(k)?;
     let fill = [0, 1].map(|r| &*rows.skin(r).fill);
-    if params.sparse.is_solid() {
-        return Some(fill.map(Rows::clone));
-    }
     rooms::narrow(fill, [0, 1].map(|r| params.rasters.skin(r)), params.skins.least_room)
 }
 

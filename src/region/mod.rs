@@ -14,7 +14,6 @@
 //! the wall beads they are its fill rows. Spans are sorted, disjoint, never empty. How an area is
 //! filled, and what to do where a line does not fit, is up to [`crate::fill`].
 
-pub mod agreed;
 pub mod angle;
 pub mod bridge;
 pub mod classify;
