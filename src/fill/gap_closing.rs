@@ -19,7 +19,6 @@
 //! space. How much room a line truly has beside it is kept with it, and [`skin`](super::skin) takes
 //! away what is too much.
 //!
-//! Without walls the outline takes their place: lines end half a width inside it, and are widened up to it.
 //! Only edges at a wall are closed. An edge at the infill has more skin than it needs.
 
 use super::variable_width::{Line, LineParams, SHORT_STRIP, Strip, WIDEST};
@@ -44,6 +43,8 @@ const AT_ENDS: usize = 6;
 /// Returns the lines of a skin and the beads along its slivers.
 #[must_use]
 pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Polyline>) {
+    // Without walls the skin ends at the outside of the part: nothing may be widened there.
+    let walled = params.walled;
     let mut strips = Strips::new(crossed.skin.range(), params);
     let mut thin = Vec::new();
     for extent in extents(crossed, params) {
@@ -55,10 +56,12 @@ pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Poly
     for (row, spans) in crossed.skin.iter() {
         for &span in spans {
             let mut line = Line { row, span, above: Vec::new(), below: Vec::new(), beside: 0.0 };
-            line.beside = strips.room_beside(row, span);
-            (line.above, line.below) = strips.beside(row, span);
-            add_ends(&mut line.above, span, crossed, (row, row + 1), params);
-            add_ends(&mut line.below, span, crossed, (row, row - 1), params);
+            if walled {
+                line.beside = strips.room_beside(row, span);
+                (line.above, line.below) = strips.beside(row, span);
+                add_ends(&mut line.above, span, crossed, (row, row + 1), params);
+                add_ends(&mut line.below, span, crossed, (row, row - 1), params);
+            }
             lines.push(line);
         }
     }

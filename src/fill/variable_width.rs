@@ -48,16 +48,18 @@ pub struct LineParams {
     pub line_width: Coord,
     /// How far lines reach into the innermost wall.
     pub overlap: Coord,
+    /// Whether a wall surrounds the lines.
+    pub walled: bool,
 }
 
 impl LineParams {
     /// Derives the numbers from `settings`.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
-        // Without walls there is nothing to overlap with.
-        let overlap = if settings.walls > 0 { settings.infill_overlap } else { 0.0 };
+        let walled = settings.walls > 0;
+        let overlap = if walled { settings.infill_overlap * settings.line_width } else { 0.0 };
         let line_width = to_units(settings.line_width);
-        Self { line_width, overlap: to_units(overlap * settings.line_width) }
+        Self { line_width, overlap: to_units(overlap), walled }
     }
 }
 

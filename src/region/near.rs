@@ -1,4 +1,11 @@
 //! Walls -> Near: their edges sorted into cells, to find the nearest one or whether a place is free.
+//!
+//! Words: a *cell* is a square of a *grid* over an area. An edge is *in* all cells that the box around it
+//! meets.
+//!
+//! A question looks at the edges of the cells that the box around its own places meets, grown by how far
+//! it looks. Answers are exact, and the same for any size of cells; that affects speed alone. Where edges
+//! are equally near, their order by corners decides.
 
 use crate::geom::cells::Cells;
 use crate::geom::{Contour, Point, edges, segment};

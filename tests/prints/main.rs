@@ -17,7 +17,6 @@ mod metamorphic;
 mod models;
 mod motion;
 mod narino;
-mod no_walls;
 mod nonplanar;
 mod printers;
 mod raft;

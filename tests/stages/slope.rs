@@ -196,7 +196,8 @@ fn missing_lines_leave_a_skin_open() {
             };
             let verdict = judge(&slope::file(form, joined, change), None);
             let found = largest(&verdict, Code::UncoveredSkin);
-            let bounds = if from < along { 0.5 * area..1.1 * area } else { 0.8 * area..1.1 * area };
+            // Squares that are judged are 1 mm wide and more.
+            let bounds = if from < along { 0.5 * area..1.2 * area } else { 0.8 * area..1.1 * area };
             assert!(bounds.contains(&found.measure), "{form:?} {joined} {found} {area}");
         }
     }
@@ -225,8 +226,8 @@ fn twice_the_flow_fills_a_skin_twice() {
             let change = |k| if k >= from { Change { flow: 2.0, ..SAME } } else { SAME };
             let verdict = judge(&slope::file(form, true, change), None);
             let found = largest(&verdict, Code::DoubleSkin);
-            // All of the slope's 200 mm², but for the ends of lines.
-            assert!(found.measure > 150.0 && found.measure < 215.0, "{found}");
+            // All of the slope's 200 mm², but for the ends of lines and squares that are open in part.
+            assert!(found.measure > 135.0 && found.measure < 215.0, "{found}");
             let percent = found.text.split("take ").nth(1).unwrap().split(' ').next().unwrap();
             let percent: f64 = percent.parse().unwrap();
             assert!((percent - 100.0 * times).abs() < 25.0, "{found}");
