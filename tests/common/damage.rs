@@ -68,34 +68,41 @@ fn word(line: &str, letter: char) -> Option<f64> {
 
 /// What `check` finds in `text`, against a fixture placed like this, by the file's own settings.
 pub(crate) fn judge(text: &str, stl: &str, placement: &Placement) -> Verdict {
+    by_its_own(text, file(stl), placement)
+}
+
+/// As [`judge`], against the bytes of a model that is left as it is.
+pub(crate) fn judge_made(text: &str, stl: &[u8]) -> Verdict {
+    by_its_own(text, slicer::Model::bytes("made.stl", stl.to_vec()), &as_it_is())
+}
+
+fn by_its_own(text: &str, model: slicer::Model, placement: &Placement) -> Verdict {
     let print = reader::Print::read(&mut text.as_bytes(), 1.75).unwrap();
     let recorded = profile::recorded(&print.values).unwrap();
     let settings = &recorded.unwrap().settings;
-    against(&print, (settings, Some(settings)), stl, placement)
+    against(&print, (settings, Some(settings)), model, placement)
 }
 
 /// As [`judge`], of a file that tells nothing of its settings, by a profile.
 pub(crate) fn judge_bare(text: &str, profile: &str, stl: &str) -> Verdict {
     let print = reader::Print::read(&mut text.as_bytes(), 1.75).unwrap();
     let settings = profile::load([profile], &[]).unwrap().settings;
-    against(&print, (&settings, None), stl, &as_it_is())
+    against(&print, (&settings, None), file(stl), &as_it_is())
+}
+
+fn file(stl: &str) -> slicer::Model {
+    slicer::Model::path(fixtures().join(stl).to_str().unwrap().to_owned())
 }
 
 fn against(
     print: &reader::Print,
     (settings, own): (&profile::Settings, Option<&profile::Settings>),
-    stl: &str,
+    model: slicer::Model,
     placement: &Placement,
 ) -> Verdict {
     let terms = Terms::new(Some(settings), own, print);
-    let path = fixtures().join(stl).to_str().unwrap().to_owned();
-    let placed = slicer::place(
-        &[slicer::Model::path(path)],
-        placement,
-        &slicer::bed(&settings.machine),
-        &Default::default(),
-    )
-    .unwrap();
+    let bed = slicer::bed(&settings.machine);
+    let placed = slicer::place(&[model], placement, &bed, &Default::default()).unwrap();
     check::check(print, &terms, Some(Model { mesh: &placed.mesh, offset: placed.offset }))
 }
 

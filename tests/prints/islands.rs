@@ -2,13 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use crate::common::damage::{errors, kinds};
+use crate::common::damage::{errors, judge_made, kinds};
 use crate::common::solid::{Outline, star};
-use crate::common::{Kind, Solid, as_it_is, slice};
+use crate::common::{Kind, Move, Solid, slice};
 use slicer::check::finding::Code;
-use slicer::check::terms::Terms;
-use slicer::check::{self, Verdict};
-use slicer::{Model, profile, reader};
 
 /// How far apart the islands stand, mm.
 const APART: f64 = 6.0;
@@ -27,27 +24,15 @@ fn row(outlines: &[Outline]) -> Solid {
     outlines.iter().enumerate().map(stand).fold(Solid::default(), |all, one| all.and(&one))
 }
 
-/// What `check` says of a text, against these bytes.
-fn judged(text: &str, stl: &[u8]) -> Verdict {
-    let print = reader::Print::read(&mut text.as_bytes(), 1.75).unwrap();
-    let settings = profile::recorded(&print.values).unwrap().unwrap().settings;
-    let terms = Terms::new(Some(&settings), Some(&settings), &print);
-    let bed = slicer::bed(&settings.machine);
-    let models = [Model::bytes("row.stl", stl.to_vec())];
-    let placed = slicer::place(&models, &as_it_is(), &bed, &Default::default()).unwrap();
-    check::check(&print, &terms, Some(check::Model { mesh: &placed.mesh, offset: placed.offset }))
-}
-
 #[test]
 fn an_island_without_any_plastic_is_told() {
     // 0.34 mm²: too little for a finding along its outline or of its surface.
     let outlines = [flower(1.6, 3, 0.1), flower(0.33, 3, 0.0), flower(1.6, 3, 0.1)];
     let stl = row(&outlines).stl();
     let run = slice(&stl, "generic-marlin", &[]);
-    assert_eq!(kinds(&judged(&run.text, &stl)), []);
+    assert_eq!(kinds(&judge_made(&run.text, &stl)), []);
     let middle = run.middle()[0];
-    let is_island =
-        |m: &crate::common::Move| m.kind != Kind::Custom && (m.to[0] - middle).abs() < APART / 2.0;
+    let is_island = |m: &Move| m.kind != Kind::Custom && (m.to[0] - middle).abs() < APART / 2.0;
     let mut lines: Vec<String> = run.text.lines().map(str::to_owned).collect();
     for bead in run.print.beads().filter(|m| m.layer == Some(3) && is_island(m)) {
         // The same way without plastic.
@@ -58,7 +43,7 @@ fn an_island_without_any_plastic_is_told() {
         *line = words.iter().filter(|word| *word != e).copied().collect::<Vec<_>>().join(" ");
         line.push_str(&format!("\n{set}"));
     }
-    let verdict = judged(&(lines.join("\n") + "\n"), &stl);
+    let verdict = judge_made(&(lines.join("\n") + "\n"), &stl);
     let told = errors(&verdict).find(|f| f.text.contains("nothing is printed of an island"));
     let told = told.unwrap_or_else(|| panic!("{:?}", kinds(&verdict)));
     assert_eq!((told.code, told.place.layer), (Code::OpenOutline, Some(4)));

@@ -226,8 +226,8 @@ fn twice_the_flow_fills_a_skin_twice() {
             let change = |k| if k >= from { Change { flow: 2.0, ..SAME } } else { SAME };
             let verdict = judge(&slope::file(form, true, change), None);
             let found = largest(&verdict, Code::DoubleSkin);
-            // All of the slope's 200 mm², but for the ends of lines and squares that are open in part.
-            assert!(found.measure > 135.0 && found.measure < 215.0, "{found}");
+            // All of the slope's 200 mm², but for the ends of lines.
+            assert!(found.measure > 150.0 && found.measure < 215.0, "{found}");
             let percent = found.text.split("take ").nth(1).unwrap().split(' ').next().unwrap();
             let percent: f64 = percent.parse().unwrap();
             assert!((percent - 100.0 * times).abs() < 25.0, "{found}");

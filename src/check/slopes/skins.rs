@@ -126,7 +126,7 @@ struct Map {
     top: Vec<f32>,
     plastic: Vec<f32>,
     plies: u16,
-    /// How high a skin is, and how wide half of its lines are at most, mm.
+    /// How high a skin is, and how wide the narrowest tenth of its lines is at most, mm.
     height: f64,
     width: f64,
 }
@@ -139,7 +139,7 @@ impl Map {
         let strokes = strokes(&skin.lines, &field);
         map.height = height(&skin.lines, &strokes);
         let widths = skin.lines.iter().map(|step| (f64::from(step.width), step.plan_length()));
-        map.width = middle(&mut widths.collect::<Vec<_>>()).map_or(0.0, |(width, _)| width);
+        map.width = reached(&mut widths.collect::<Vec<_>>(), 0.1).map_or(0.0, |(width, _)| width);
         for stroke in strokes {
             map.plies = map.plies.max(stroke.ply);
             for step in &skin.lines[stroke.lines.clone()] {
@@ -202,19 +202,20 @@ fn height(lines: &[Step], strokes: &[Stroke]) -> f64 {
     }
     let all: f64 = plies.values().flatten().map(|one| one.1).sum();
     let of_ply = |own: &mut Vec<(f64, f64)>| {
-        middle(own).filter(|(_, whole)| *whole >= LEAST_PLY * all).map(|(height, _)| height)
+        reached(own, 0.5).filter(|(_, whole)| *whole >= LEAST_PLY * all).map(|(height, _)| height)
     };
     plies.values_mut().filter_map(of_ply).fold(0.0, f64::max)
 }
 
-/// Of values with the lengths that have them: the one that half of the length reaches at most, and the whole length.
-fn middle(all: &mut [(f64, f64)]) -> Option<(f64, f64)> {
+/// Of values with the lengths that have them: the one that this part of the length reaches at most, and the whole
+/// length.
+fn reached(all: &mut [(f64, f64)], part: f64) -> Option<(f64, f64)> {
     all.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let whole: f64 = all.iter().map(|one| one.1).sum();
     let mut so_far = 0.0;
     let one = all.iter().find(|one| {
         so_far += one.1;
-        so_far >= 0.5 * whole
+        so_far >= part * whole
     });
     one.map(|one| (one.0, whole))
 }

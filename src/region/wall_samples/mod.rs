@@ -22,14 +22,13 @@
 mod corners;
 mod measured;
 
-use std::f64::consts::FRAC_1_SQRT_2;
-
 use super::crossed::Crossed;
 use super::near::{Area, Edge, Near};
 use super::params::BeadParams;
 use crate::geom::segment::way;
 use crate::geom::{Contour, edges};
 use crate::units::Bounded as _;
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Maximum number of beads beside each other along one wall. More would replace zigzags that are
 /// wide enough to be fast; fewer leave rings of skin to zigzags that are nearly all turns.
@@ -239,7 +238,7 @@ fn facing(normal: [f64; 2], [from, to]: Edge) -> f64 {
 /// exactly one of the two leads, however they lean. It is the same one on layers whose lines run in the
 /// other direction, so that their beads lie on each other.
 fn leads(normal: [f64; 2], [from, to]: Edge, left_turn: bool) -> bool {
-    let [x, y] = [to[0] - from[0], to[1] - from[1]];
+    let [x, y] = way(from, to);
     let length = (x * x + y * y).sqrt().at_least(1.0);
     let [x, y] = [normal[0] + y / length, normal[1] - x / length];
     let [x, y] = if left_turn { [x, y] } else { [-y, x] };
@@ -314,9 +313,10 @@ fn bridge(samples: &mut [WallSample], perimeter: f64, params: &BeadParams) {
         if (deep || turns) && model.shared && other.depth > ALIKE * model.depth {
             continue;
         }
+        let turn = 4.0 * model.depth + STRIP_TURN * w;
         let most = match deep {
-            _ if turns => 4.0 * model.depth + STRIP_TURN * w,
-            true if model.shared => (4.0 * model.depth + STRIP_TURN * w).at_most(CORNER * w),
+            _ if turns => turn,
+            true if model.shared => turn.at_most(CORNER * w),
             true => CORNER * w,
             false => SHORT * w,
         };

@@ -9,7 +9,8 @@
 //! part, the inset for one more loop or for the core may be empty, though there is room for it. And a
 //! small shape that is neither a dot nor has opposite sides has no middle bead.
 //!
-//! 1. Look for a hole beside each doubt and in the middle behind it; from sharp corners walk into the part. Most layers have none.
+//! 1. Look for a hole beside each doubt and in the middle behind it; from sharp corners walk into the part.
+//!    Most layers have none.
 //! 2. Around the holes, take from the part what the beads and the core cover. Patches are left.
 //! 3. Fill each patch with loops that share the room of the largest circle in it, as dots are filled.
 
