@@ -17,7 +17,8 @@ use std::sync::Arc;
 const LEAST_SKIN: Coord = 500;
 
 /// Skin and sparse infill of one layer on one raster. They are disjoint. Together they are the
-/// layer's fill rows without what wall beads take.
+/// layer's fill rows without what wall beads take, on the rasters of skins; on others infill also keeps
+/// off the skin lines that are printed.
 #[derive(Debug, Clone, Default)]
 pub struct Areas {
     /// Solid lines.
@@ -101,6 +102,12 @@ impl Areas {
             return self;
         }
         Self { infill: self.infill.minus(&dense), dense, ..self }
+    }
+
+    /// These areas without the infill in `taken`.
+    #[must_use]
+    pub fn beside(self, taken: &Rows) -> Self {
+        Self { infill: self.infill.minus(taken), ..self }
     }
 
     /// These areas with the part of the infill in `strips` skin.
