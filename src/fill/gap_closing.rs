@@ -40,6 +40,11 @@ const LEAST_COLUMNS: usize = 2;
 /// The two rasters tell the same edge apart by at most this, grid units: rounding.
 const ROUNDING: Coord = 2;
 
+/// At a wall that moves on by less than this part of the pitch from row to row, lines run straight up to it:
+/// their round ends cover what is open. A larger number presses plastic for a strip where there is none; a
+/// smaller one leaves notches at slanted walls.
+const STEEPEST: i64 = 8;
+
 /// Room for the strips added at the ends of a line: three at each end ([`add_end`]). Reserved at
 /// once to avoid reallocation; a wrong value costs time only.
 const AT_ENDS: usize = 6;
@@ -240,12 +245,15 @@ fn add_end(
     let inside = |u: Coord| span.start < u && u < span.end;
     let near = |u: Coord| (u - end).abs() <= SHORT_STRIP * pitch;
     let Some(edge) = edge.filter(|&u| inside(u) && near(u)) else { return };
-    strips.retain(|s| (s.u - end).abs() > (edge - end).abs());
     let run = i64::from(end) - i64::from(edge);
+    if run.abs() < i64::from(pitch) / STEEPEST {
+        return;
+    }
+    strips.retain(|s| (s.u - end).abs() > (edge - end).abs());
     // Both lines reach `overlap` into the wall, so the taper ends before the line.
     let taper = end - (run * i64::from(params.overlap) / i64::from(pitch)) as Coord;
     // Behind the edge the other row's line fills the room, so the strip ends abruptly.
-    let back = edge - (run.signum() as Coord) * pitch / 4;
+    let back = edge - (run.signum() * run.abs().min(i64::from(pitch / 4))) as Coord;
     let open = f64::from(pitch - params.overlap);
     let ends = [(back, 0.0), (edge, open), (taper, 0.0)];
     strips.reserve(AT_ENDS);
