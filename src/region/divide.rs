@@ -274,5 +274,6 @@ fn beads<'a>(
             innermost.map(|w| entered(&w.path)).collect()
         }
     };
-    wall_beads(&walls, &crossed, &params.beads)
+    let middle = own.walls.iter().filter(|w| w.depth >= count).map(|w| entered(&w.path));
+    wall_beads(&walls, &middle.collect::<Vec<_>>(), &crossed, &params.beads)
 }
