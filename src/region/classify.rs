@@ -119,12 +119,15 @@ impl Areas {
 }
 
 /// The layers that have to cover a place of layer `k` so that it is no skin. `None` if one of them is
-/// outside the part: then nothing is covered.
+/// outside the part, or if all is skin: then nothing is covered.
 pub(super) fn neighbours<'a>(
     k: usize,
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
     params: &SkinParams,
 ) -> Option<Vec<&'a LayerRows>> {
+    if params.everywhere {
+        return None;
+    }
     let below = (1..=params.bottom).map(|n| k.checked_sub(n).and_then(layers));
     let above = (1..=params.top).map(|n| layers(k + n));
     below.chain(above).collect()
