@@ -441,7 +441,7 @@ mod tests {
             hang: 0,
         };
         let points = places.iter().map(point).collect();
-        Path { role: Role::Skin, shape: Shape::Open, points, layers: 1, tool: 0 }
+        Path { role: Role::Skin, shape: Shape::Open, points, layers: 1 }
     }
 
     /// A path that rises by 0.3 mm over 0.4 mm and stays there, then one at the layer's own height.

@@ -434,7 +434,7 @@ mod tests {
             let height = 2_000 * layers as Coord;
             let point = |&x| PathPoint { at: Point { x, y }, z: 0, width: 4_000, height, hang: 0 };
             let points = xs.iter().map(point).collect();
-            Path { role, shape: Shape::Open, points, layers, tool: 0 }
+            Path { role, shape: Shape::Open, points, layers }
         };
         let wall = path(Role::OuterWall, 1, &[0, 100_000], 0);
         let thick = path(Role::Infill, 2, &[100_000, 0], 20_000);

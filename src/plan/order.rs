@@ -340,7 +340,7 @@ mod tests {
     fn line(x: Coord, role: Role) -> Path {
         let point = |y| place(x, y);
         let points = vec![point(0), point(10_000)];
-        Path { role, shape: Shape::Open, points, layers: 1, tool: 0 }
+        Path { role, shape: Shape::Open, points, layers: 1 }
     }
 
     fn places(paths: &[Path]) -> Vec<Coord> {

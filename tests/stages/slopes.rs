@@ -45,7 +45,7 @@ fn path(role: Role, places: &[([f64; 3], f64)]) -> Path {
         hang: 0,
     };
     let points = places.iter().map(point).collect();
-    Path { role, shape: Shape::Open, points, layers: 1, tool: 0 }
+    Path { role, shape: Shape::Open, points, layers: 1 }
 }
 
 /// A line of skin along x at this y, its height over the layer's top as `z` says.

@@ -50,7 +50,6 @@ pub struct AdhesionParams {
     line_width: Coord,
     /// Gaps in support up to this belong to it.
     support_gap: Coord,
-    tool: u8,
 }
 
 /// The first layer, and what an Adhesion has to know besides.
@@ -83,7 +82,6 @@ impl AdhesionParams {
             skirt,
             line_width: to_units(settings.line_width),
             support_gap: to_units(settings.support.spacing),
-            tool: u8::try_from(settings.machine.tool).unwrap_or(u8::MAX),
         })
     }
 
@@ -241,6 +239,6 @@ impl Bead {
         let point = |&at: &Point| PathPoint { at, z: 0, width, height, hang: 0 };
         let points = self.points.iter().chain(again).map(point).collect();
         let shape = self.ring.map_or(Shape::Open, |depth| Shape::Loop { depth });
-        Path { role, shape, points, layers: 1, tool: params.tool }
+        Path { role, shape, points, layers: 1 }
     }
 }
