@@ -26,7 +26,6 @@ mod model;
 mod moves;
 mod rows;
 mod samples;
-mod sets;
 mod slopes;
 mod stack;
 mod standing;

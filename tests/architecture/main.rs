@@ -81,10 +81,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
 const WITNESSES: &[&str] = &["reader", "estimate", "check", "diff", "roughness"];
 
 /// What witnesses may use of `geom`: distances to segments, sorting by counting, booleans of spans on a
-/// line, and the pieces of an arc. None knows what is sliced or printed, all are tested on their own by laws, and a
+/// line, the pieces of an arc, and which numbers hang together (union-find). None knows what is sliced or printed, all are tested on their own by laws, and a
 /// second version of them would only be another place for the same slip. Contours, offsets and
 /// rasters have a part in what is judged; of these a witness has its own.
-const SHARED_GEOMETRY: &[&str] = &["segment", "cells", "spans", "arc"];
+const SHARED_GEOMETRY: &[&str] = &["segment", "cells", "spans", "arc", "sets"];
 
 /// Modules that may use all others: the flow itself.
 const MAY_USE_ALL: &[&str] = &["lib", "pipeline", "compare"];

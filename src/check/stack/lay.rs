@@ -28,7 +28,7 @@ use crate::check::finding::{Code, Finding, Place, short};
 use crate::check::model::part::Part;
 use crate::check::moves::ROUNDING;
 use crate::check::samples::{Sample, Samples, length_of};
-use crate::check::sets::Sets;
+use crate::geom::sets::Sets;
 use crate::reader::Role;
 use crate::reader::print::{Layer, Step};
 use crate::units::Bounded as _;
