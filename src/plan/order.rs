@@ -248,10 +248,9 @@ fn entries(wall: &Path, params: &PlanParams) -> Vec<usize> {
     if wall.shape == Shape::Open {
         return vec![0, last];
     }
-    let rear = |&k: &usize| (-i64::from(wall.points[k].at.y), k);
     match params.seam {
         Seam::Nearest => (0..last.max(1)).collect(),
-        Seam::Rear => vec![(0..last).min_by_key(rear).unwrap_or_default()],
+        Seam::Rear => vec![seam::rearmost(wall)],
         Seam::Aligned | Seam::Random => vec![0],
     }
 }
