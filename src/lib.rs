@@ -82,6 +82,7 @@ pub use pipeline::place::{bed, place, suited};
 pub use pipeline::spool::slice_to;
 
 use error::{Error, Refusal, Result};
+use fill::adhesion::lift::Lift;
 use pipeline::batches::{self, Setup};
 use pipeline::curved::{self, Curved};
 use pipeline::footing::Footing;
@@ -91,7 +92,6 @@ use pipeline::prime;
 use pipeline::refuse;
 use pipeline::sticking::Sticking;
 use pipeline::thumbnails::thumbnails;
-use plan::lift::Lift;
 
 /// Slices `job` and writes the G-code to `out`, which is empty yet.
 ///

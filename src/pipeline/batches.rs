@@ -16,12 +16,13 @@
 use super::curved::Curved;
 use super::footing::Footing;
 use super::footprint::{Footprint, Rules, footprint};
+use super::raise::raise;
 use super::sticking::{Sticking, Stuck};
 use crate::error::{Refusal, Result};
+use crate::fill::adhesion::lift::Lift;
 use crate::fill::{self, FillParams, Path};
 use crate::gcode::Writer;
 use crate::geom::Point;
-use crate::plan::lift::Lift;
 use crate::plan::order::{self, Unordered};
 use crate::plan::{Head, PlanParams, Seams, Toolpath, travel};
 use crate::profile::Settings;
@@ -257,7 +258,7 @@ impl Orderer<'_> {
 
     /// The toolpaths, lifted by the raft. Before the first of them come those of the raft.
     fn lifted(&mut self, mut toolpaths: Vec<Toolpath>) -> Vec<Toolpath> {
-        self.lift.raise(&mut toolpaths);
+        raise(&mut toolpaths, self.lift);
         let (mut head, mut seams) = (Head::default(), Seams::default());
         let courses = self.sticking.raft().into_iter().map(|(layer, paths)| {
             let paths = Unordered::new(paths, &layer.contours, self.plan);

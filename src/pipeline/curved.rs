@@ -9,6 +9,7 @@
 //! 3. After the paths of a layer come the coats that wait for it.
 
 use crate::fill::Path;
+use crate::fill::adhesion::lift::Lift;
 use crate::geom::hull::hull;
 use crate::geom::{Point, polygon};
 use crate::head::named;
@@ -19,7 +20,6 @@ use crate::nonplanar::contour::{self, Contours};
 use crate::nonplanar::params::NonPlanarParams;
 use crate::nonplanar::surface::find::{Surfaces, surfaces, surfaces_for};
 use crate::nonplanar::{Patch, Patches, Props, Scene, Skirt, support_lines};
-use crate::plan::lift::Lift;
 use crate::plan::{Head, PlanParams, Toolpath, travel};
 use crate::profile::Settings;
 use crate::region::curved::CurvedTops;

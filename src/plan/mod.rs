@@ -6,7 +6,6 @@
 //! 3. [`tour`] reorders runs of them where that saves time.
 //! 4. [`travel`] decides for each path how the travel to it goes: straight or round a corner, with or
 //!    without a retraction.
-//! 5. [`lift`] raises what is planned above a raft.
 //!
 //! Of a path's role only its [`Place`](crate::fill::Place) matters here.
 //!
@@ -14,7 +13,6 @@
 
 mod crossings;
 mod detour;
-pub mod lift;
 mod marks;
 mod next;
 pub mod order;

@@ -6,12 +6,13 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use slicer::estimate::{Options, estimate};
+use slicer::fill::adhesion::lift::Lift;
 use slicer::fill::{Path, PathPoint, Role, Shape};
 use slicer::gcode::reshaped::Bound;
 use slicer::gcode::{Sums, Writer};
 use slicer::geom::Point;
 use slicer::motion::Limits;
-use slicer::plan::lift::Lift;
+use slicer::pipeline::raise::raise;
 use slicer::plan::{Head, PlanParams, PrintMove, Toolpath, travel};
 use slicer::profile::template::PrintFacts;
 use slicer::profile::{JunctionRule, Override, Settings, ValueOrigin, load};
@@ -437,7 +438,7 @@ fn a_raft_lifts_the_ways_to_a_patch_with_it() {
     let lift = Lift::new(&settings);
     assert!(lift.by() > 0);
     let mut toolpaths = layers(&[line(10.0, [1.0, 15.0, 29.0], ridge)], 4.5, &settings);
-    lift.raise(&mut toolpaths);
+    raise(&mut toolpaths, &lift);
     let overs: Vec<_> = toolpaths.iter().flat_map(|t| &t.moves).map(|next| next.over).collect();
     assert_eq!(overs, [0, 0, 0, 45_000 + lift.by(), 0]);
     let (text, _) = written(&toolpaths, &settings);

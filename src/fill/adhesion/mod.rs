@@ -9,6 +9,7 @@
 //! belongs to it.
 
 mod brim;
+pub mod lift;
 pub mod loose;
 pub mod raft;
 mod skirt;
