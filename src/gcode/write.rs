@@ -426,7 +426,7 @@ mod tests {
     use crate::fill::{Path, PathPoint, Shape};
     use crate::gcode::usage::Usage;
     use crate::geom::Point;
-    use crate::plan::{Head, PrintMove, Toolpath};
+    use crate::plan::{Nozzle, PrintMove, Toolpath};
     use crate::profile;
 
     fn toolpath() -> Toolpath {
@@ -441,7 +441,7 @@ mod tests {
         let moves = [(true, wall), (false, thick)];
         let moves =
             moves.map(|(retract, path)| PrintMove { retract, ..PrintMove::to(path) }).to_vec();
-        Toolpath { layer: 3, z: 8_000, height: 2_000, from: Head::default(), moves }
+        Toolpath { layer: 3, z: 8_000, height: 2_000, from: Nozzle::default(), moves }
     }
 
     fn text(profile: &str) -> String {

@@ -13,7 +13,7 @@ use slicer::gcode::{Sums, Writer};
 use slicer::geom::Point;
 use slicer::motion::Limits;
 use slicer::pipeline::raise::raise;
-use slicer::plan::{Head, PlanParams, PrintMove, Toolpath, travel};
+use slicer::plan::{Nozzle, PlanParams, PrintMove, Toolpath, travel};
 use slicer::profile::template::PrintFacts;
 use slicer::profile::{JunctionRule, Override, Settings, ValueOrigin, load};
 use std::io::Cursor;
@@ -67,16 +67,16 @@ fn layers(patch: &[Path], over: f64, settings: &Settings) -> Vec<Toolpath> {
     let corners = [[0.0, 0.0], [30.0, 0.0], [30.0, 30.0], [0.0, 30.0], [0.0, 0.0]];
     let square: Vec<_> = corners.map(|[x, y]| ([x, y, 0.0], 0.2)).to_vec();
     let wall = path(Role::OuterWall, &square);
-    let mut head = Head::default();
+    let mut nozzle = Nozzle::default();
     let mut all = Vec::new();
     for (layer, z) in [2_000, 4_000, 6_000, 8_000].into_iter().enumerate() {
         let moves = vec![PrintMove { retract: true, ..PrintMove::to(wall.clone()) }];
-        let mut toolpath = Toolpath { layer, z, height: 2_000, from: head, moves };
-        head = Head { at: Some(wall.end()), highest: head.highest.max(z) };
+        let mut toolpath = Toolpath { layer, z, height: 2_000, from: nozzle, moves };
+        nozzle = Nozzle { at: Some(wall.end()), highest: nozzle.highest.max(z) };
         if z == units(TOP) && !patch.is_empty() {
             let paths = patch.iter().map(|path| (path.clone(), units(over)));
             travel::add_patch(&mut toolpath, 7, paths, &plan);
-            head = head.after_patch(z, patch, units(settings.nonplanar.clearance));
+            nozzle = nozzle.after_patch(z, patch, units(settings.nonplanar.clearance));
         }
         all.push(toolpath);
     }
@@ -234,7 +234,7 @@ fn the_first_travel_of_a_print_rises_as_well() {
     let settings = settings("generic-marlin", &[]);
     let path = line(10.0, [1.0, 29.0], |_| 0.0);
     let moves = vec![PrintMove { over: 50_000, ..PrintMove::to(path) }];
-    let first = Toolpath { layer: 0, z: 2_000, height: 2_000, from: Head::default(), moves };
+    let first = Toolpath { layer: 0, z: 2_000, height: 2_000, from: Nozzle::default(), moves };
     let (text, _) = written(&[first], &settings);
     let travel = self::moves(&text).into_iter().find(Step::sideways).unwrap();
     assert_eq!((travel.from[2], travel.to[2], travel.prints), (5.0, 5.0, false));
