@@ -20,7 +20,7 @@ pub mod skin;
 pub mod variable_width;
 
 pub use path::{Path, PathPoint, Shape};
-pub use role::{Both, Place, Role, RoleFacts, RoleTable, Slows};
+pub use role::{Both, Order, Role, RoleFacts, RoleTable, Slows};
 
 use crate::geom::frame::Frame;
 use crate::geom::outline::{Bounds, Columns};

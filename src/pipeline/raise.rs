@@ -4,7 +4,7 @@
 //! the groups of dual injection are those of a print without a raft. Only then they are lifted.
 
 use crate::fill::adhesion::lift::Lift;
-use crate::fill::{Path, Place};
+use crate::fill::{Order, Path};
 use crate::plan::Toolpath;
 
 /// Lifts toolpaths that were planned on the bed. What is no part of the model reaches down to the
@@ -15,7 +15,7 @@ pub fn raise(toolpaths: &mut [Toolpath], lift: &Lift) {
     }
     for toolpath in toolpaths {
         let stands = |path: &Path| {
-            path.role.facts().place == Place::Helper && path.layers as usize == toolpath.layer + 1
+            path.role.facts().order == Order::Helper && path.layers as usize == toolpath.layer + 1
         };
         let paths = toolpath.moves.iter_mut().map(|next| &mut next.path);
         for path in paths.filter(|path| stands(path)) {

@@ -7,7 +7,7 @@
 //! 4. [`travel`] decides for each path how the travel to it goes: straight or round a corner, with or
 //!    without a retraction.
 //!
-//! Of a path's role only its [`Place`](crate::fill::Place) matters here.
+//! Of a path's role only its [`Order`](crate::fill::Order) matters here.
 //!
 //! Guaranteed to the next stage: every path comes once, in the order of printing.
 

@@ -14,7 +14,7 @@
 //! Nearly all changes are rejected by a bound that needs no square root. Only the few others compute
 //! whether their legs retract. Where a run begins and ends stays, so that layers remain independent.
 
-use crate::fill::{Path, Place, Shape};
+use crate::fill::{Order, Path, Shape};
 use crate::geom::Point;
 use std::cell::LazyCell;
 use std::ops::Range;
@@ -79,10 +79,10 @@ pub(super) fn free(path: &Path) -> Option<bool> {
     if matches!(path.shape, Shape::InTurn { .. }) {
         return None;
     }
-    match path.role.facts().place {
-        Place::Walls | Place::First | Place::Last => None,
-        Place::Inside => Some(false),
-        Place::Helper => Some(true),
+    match path.role.facts().order {
+        Order::Walls | Order::First | Order::Last => None,
+        Order::Inside => Some(false),
+        Order::Helper => Some(true),
     }
 }
 

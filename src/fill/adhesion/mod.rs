@@ -14,7 +14,7 @@ pub mod loose;
 pub mod raft;
 mod skirt;
 
-use super::{Path, PathPoint, Place, Role, Shape};
+use super::{Order, Path, PathPoint, Role, Shape};
 use crate::geom::boxes::Boxes;
 use crate::geom::nest::{Nest, extent};
 use crate::geom::{Contour, Point, edges, encloses, polygon};
@@ -165,7 +165,7 @@ impl AdhesionParams {
 
     /// What support covers of the bed.
     fn support(&self, paths: &[Path]) -> Vec<Contour> {
-        let lines = paths.iter().filter(|path| path.role.facts().place == Place::Helper);
+        let lines = paths.iter().filter(|path| path.role.facts().order == Order::Helper);
         let lines: Vec<Vec<Point>> =
             lines.map(|path| path.points.iter().map(|point| point.at).collect()).collect();
         if lines.is_empty() {
@@ -178,7 +178,7 @@ impl AdhesionParams {
 /// For each contour whether some line of the part begins inside it: what is too thin to be printed needs
 /// nothing to hold it.
 fn printed(base: &Base<'_>) -> Vec<bool> {
-    let of_part = base.paths.iter().filter(|path| path.role.facts().place.is_of_part());
+    let of_part = base.paths.iter().filter(|path| path.role.facts().order.is_of_part());
     let boxes = base.contours.iter().map(|contour| extent(contour).unwrap_or_default());
     let boxes = Boxes::new(boxes.collect());
     let mut printed = vec![false; base.contours.len()];
