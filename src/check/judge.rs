@@ -4,7 +4,7 @@
 //! and those of layers above that reach down into them.
 //!
 //! 1. All layers are surveyed: what must be known of all before any is judged ([`survey`](super::survey)).
-//! 2. The part, if it is given, is laid where it was printed ([`align`](super::align)).
+//! 2. The part, if it is given, is laid where it was printed ([`align`]).
 //! 3. Batch by batch, layers are judged side by side by those witnesses for which one layer is enough,
 //!    while the witnesses that go from move to move go through the same batch. What each has found is then
 //!    put together in the file's order.

@@ -275,6 +275,29 @@ fn the_table_of_contents_names_every_module() {
 }
 
 #[test]
+fn files_that_the_guide_names_are_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let guide = fs::read_dir(root.join("src/guide")).unwrap().map(|entry| entry.unwrap().path());
+    let texts = guide
+        .chain([root.join("README.md")])
+        .filter(|path| path.extension().is_some_and(|e| e == "md"));
+    let mut count = 0;
+    for path in texts {
+        let text = fs::read_to_string(&path).unwrap();
+        // What stands in `quotes`; `NAME` is what somebody will add.
+        let words = text.split('`').skip(1).step_by(2);
+        let is_path = |word: &&str| word.contains('/') || word.ends_with(".rs");
+        let words = words.filter(is_path).filter(|word| !word.contains([' ', '\n']));
+        for word in words.filter(|word| !word.contains("NAME")) {
+            count += 1;
+            let is_there = root.join("src").join(word).exists() || root.join(word).exists();
+            assert!(is_there, "{} names {word}, which is not there", path.display());
+        }
+    }
+    assert!(count > 50, "only {count} names of files were found");
+}
+
+#[test]
 fn every_source_begins_with_what_it_is() {
     for source in sources() {
         let first = source.text.lines().next().unwrap_or_default();
