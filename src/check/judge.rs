@@ -19,7 +19,7 @@ use super::filled::fills::{self, Field};
 use super::filled::posts::{self, Posts};
 use super::finding::{Code, Finding, Findings};
 use super::model::against;
-use super::model::align;
+use super::model::align::{self, Given};
 use super::model::part::Part;
 use super::model::{Sums, Surfaces};
 use super::moves::Moves;
@@ -52,8 +52,8 @@ pub(super) fn judge<'a, E: Send>(
     // A print wider than any machine is not checked place by place: its map would fill the memory.
     let absurd = is_absurd(&survey);
     let part = model.filter(|_| absurd.is_none()).and_then(|model| {
-        let say = (&mut found.placed, &mut found.notes);
-        align::place((facts, &survey), (model, terms), has_roles, say)
+        let given = Given { facts, survey: &survey, model, terms, has_roles };
+        align::place(given, &mut found.placed, &mut found.notes)
     });
     let mut judge = Judge::new((facts, &survey), terms, part.as_ref());
     judge.is_absurd = absurd.is_some();
