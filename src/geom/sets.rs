@@ -1,4 +1,4 @@
-//! Pairs that belong together -> Sets: which numbers hang together through any of the pairs.
+//! Pairs that belong together -> Sets: which numbers hang together through any of the pairs (union-find).
 //!
 //! Each number points to another of its set; following the pointers ends at the *root*, which points
 //! to itself. The least number of a set is its root, so that nothing depends on the order of pairs.
