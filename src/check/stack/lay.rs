@@ -2,7 +2,7 @@
 //!
 //! Words used here: a *chain* is lines one after the other without a break; a *patch* is all lines of a
 //! layer that touch; a *way* is a part of a line, from 0 to 1; a *run* is a stretch of a chain that
-//! is carried all along, or nowhere. What is judged is told in [`stack`](super::stack).
+//! is carried all along, or nowhere. What is judged is told in [`stack`](super).
 //!
 //! Chains are laid in the file's order, each on the ground and beside those of its layer before it:
 //! 1. the ways of each of its lines that are carried, or lie on another line, are found among the
