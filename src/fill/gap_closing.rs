@@ -24,9 +24,10 @@
 use super::variable_width::{Line, LineParams, SHORT_STRIP, Strip, WIDEST};
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::raster::crossed;
-use crate::geom::spans::Span;
+use crate::geom::spans::{Rows, Span};
 use crate::region::crossed::Crossed;
 use crate::units::Coord;
+use std::ops::Range;
 
 /// Narrower strips stay open (20 µm): about half the positioning error of a printer. A smaller
 /// value gives nearly every line of a slanted wall a changing width; a larger one leaves gaps.
@@ -35,6 +36,14 @@ const LEAST_STRIP: Coord = 200;
 /// Slivers seen by fewer columns in a row get no bead: one column gives one point, which has no
 /// length. 3, the first value, left slivers with two columns open.
 const LEAST_COLUMNS: usize = 2;
+
+/// The two rasters tell the same edge apart by at most this, grid units: rounding.
+const ROUNDING: Coord = 2;
+
+/// At a wall that moves on by less than this part of the pitch from row to row, lines run straight up to it:
+/// their round ends cover what is open. A larger number presses plastic for a strip where there is none; a
+/// smaller one leaves notches at slanted walls.
+const STEEPEST: i64 = 8;
 
 /// Room for the strips added at the ends of a line: three at each end ([`add_end`]). Reserved at
 /// once to avoid reallocation; a wrong value costs time only.
@@ -48,7 +57,8 @@ pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Poly
     let mut strips = Strips::new(crossed.skin.range(), params);
     let mut thin = Vec::new();
     for extent in extents(crossed, params) {
-        if !strips.add(&extent, params) && (extent.wall_low || extent.wall_high) {
+        let rows = rows_of(&extent, crossed.skin, params.line_width);
+        if !strips.add(&extent, rows, params) && (extent.wall_low || extent.wall_high) {
             thin.push(extent);
         }
     }
@@ -101,6 +111,17 @@ fn extents(crossed: &Crossed<'_>, params: &LineParams) -> Vec<Extent> {
     out
 }
 
+/// The rows, `pitch` apart, that cross `extent`. One along its very edge counts only if the skin has it:
+/// which of the rows along its edges an area has is for its scan to say.
+fn rows_of(extent: &Extent, skin: &Rows, pitch: Coord) -> Range<i32> {
+    let rows = crossed(extent.low, extent.high, pitch);
+    let is_lacking = |row: i32, edge: Coord| {
+        (row * pitch - edge).abs() <= ROUNDING && skin.span_at(row, extent.u).is_none()
+    };
+    let lacks = [is_lacking(rows.start, extent.low), is_lacking(rows.end - 1, extent.high)];
+    rows.start + i32::from(lacks[0])..rows.end - i32::from(lacks[1])
+}
+
 /// The strips beside the lines of each row, sorted by u.
 struct Strips {
     first: i32,
@@ -112,7 +133,7 @@ struct Strips {
 }
 
 impl Strips {
-    fn new(range: std::ops::Range<i32>, params: &LineParams) -> Self {
+    fn new(range: Range<i32>, params: &LineParams) -> Self {
         let empty = vec![Vec::new(); range.len()];
         Self {
             first: range.start,
@@ -159,10 +180,9 @@ impl Strips {
         usize::try_from(row - self.first).ok().filter(|&k| k < self.above.len())
     }
 
-    /// Adds the strips above the highest and below the lowest row within `extent`. Returns
+    /// Adds the strips above the highest and below the lowest of the `rows` within `extent`. Returns
     /// `false` if no row crosses it.
-    fn add(&mut self, extent: &Extent, params: &LineParams) -> bool {
-        let rows = crossed(extent.low, extent.high, self.pitch);
+    fn add(&mut self, extent: &Extent, rows: Range<i32>, params: &LineParams) -> bool {
         if rows.is_empty() {
             return false;
         }
@@ -225,12 +245,15 @@ fn add_end(
     let inside = |u: Coord| span.start < u && u < span.end;
     let near = |u: Coord| (u - end).abs() <= SHORT_STRIP * pitch;
     let Some(edge) = edge.filter(|&u| inside(u) && near(u)) else { return };
-    strips.retain(|s| (s.u - end).abs() > (edge - end).abs());
     let run = i64::from(end) - i64::from(edge);
+    if run.abs() < i64::from(pitch) / STEEPEST {
+        return;
+    }
+    strips.retain(|s| (s.u - end).abs() > (edge - end).abs());
     // Both lines reach `overlap` into the wall, so the taper ends before the line.
     let taper = end - (run * i64::from(params.overlap) / i64::from(pitch)) as Coord;
     // Behind the edge the other row's line fills the room, so the strip ends abruptly.
-    let back = edge - (run.signum() as Coord) * pitch / 4;
+    let back = edge - (run.signum() * run.abs().min(i64::from(pitch / 4))) as Coord;
     let open = f64::from(pitch - params.overlap);
     let ends = [(back, 0.0), (edge, open), (taper, 0.0)];
     strips.reserve(AT_ENDS);
@@ -309,6 +332,21 @@ mod tests {
         assert_eq!(points.len(), 2, "one straight line: {points:?}");
         assert!(points.iter().all(|p| p.width == params.line_width + open), "{points:?}");
         assert!(points.iter().all(|p| p.v == 40_000 + open / 2), "{points:?}");
+    }
+
+    #[test]
+    fn edges_along_a_row_leave_nothing_open() {
+        for (low, high) in [(-1_000, 44_000), (-4_000, 43_000), (-4_000, 44_000)] {
+            let (lines, _, params) = closed(rectangle((-50_000, low), (50_000, high)));
+            let printed = |line: &Line| points(line, Joined::default(), &params)[0];
+            let all: Vec<LinePoint> = lines.iter().map(printed).collect();
+            let first = all.iter().map(|p| p.v - p.width / 2).min().unwrap();
+            let last = all.iter().map(|p| p.v + p.width / 2).max().unwrap();
+            // Lines at the edge reach into it by the overlap less than half a line.
+            let beyond = params.line_width / 2 - params.overlap;
+            assert!(first <= low - beyond + LEAST_STRIP, "{low} to {high}: {first}");
+            assert!(last >= high + beyond - LEAST_STRIP, "{low} to {high}: {last}");
+        }
     }
 
     #[test]

@@ -74,11 +74,12 @@ impl Order {
 /// When a role is slowed down where a layer would take too little time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Slows {
-    /// What is not seen, before all else.
+    /// Infill, skins and support, before all else. A slower top skin looks no worse: all of a layer's
+    /// top has one speed.
     First,
     /// Walls that are not seen.
     Second,
-    /// What is seen, and what hangs: its speed shows.
+    /// What is seen beside that of other layers, and what hangs: its speed shows.
     Last,
 }
 

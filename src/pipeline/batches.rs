@@ -219,7 +219,7 @@ impl Orderer<'_> {
         };
         let mut filled: Vec<(Footprint, Vec<Path>)> = regions.par_iter().map(filled).collect();
         for (region, (_, paths)) in regions.iter().zip(&mut filled) {
-            paths.extend(self.sticking.layer(&region.layer, paths));
+            self.sticking.layer(&region.layer, paths);
         }
         let unordered = |(region, (footprint, paths)): (&Region, (Footprint, Vec<Path>))| {
             (footprint, Unordered::new(paths, &region.layer.contours, plan))

@@ -5,6 +5,7 @@
 
 use super::rise::rise;
 use crate::error::Refusal;
+use crate::fill::adhesion::clear::clear;
 use crate::fill::adhesion::lift::Lift;
 use crate::fill::adhesion::{Adhesion, AdhesionParams, Base};
 use crate::fill::{Path, Role};
@@ -72,12 +73,13 @@ impl<'a> Sticking<'a> {
         }
     }
 
-    /// What is printed first on a layer, of which `paths` are the others. Layers come from the lowest
-    /// on.
-    pub fn layer(&mut self, layer: &Layer, paths: &[Path]) -> Vec<Path> {
+    /// Adds what is printed first on a layer to its `paths`, and takes support out of its place. Layers
+    /// come from the lowest on.
+    pub fn layer(&mut self, layer: &Layer, paths: &mut Vec<Path>) {
         if let Some(params) = self.params.take_if(|_| layer.index == 0) {
             let mut adhesion = self.lay(&params, layer, paths);
             self.stuck = self.judge(&adhesion);
+            clear(paths, &adhesion.taken);
             adhesion.layers.resize(adhesion.layers.len().max(self.lift.layers()), Vec::new());
             self.layers = adhesion.layers.split_off(self.lift.layers());
             let layers = Heights::new(self.lift.heights.iter().copied());
@@ -88,7 +90,7 @@ impl<'a> Sticking<'a> {
             };
             self.raft = adhesion.layers.into_iter().enumerate().map(course).collect();
         }
-        self.layers.get_mut(layer.index).map(std::mem::take).unwrap_or_default()
+        paths.extend(self.layers.get_mut(layer.index).map(std::mem::take).unwrap_or_default());
     }
 
     /// The layers of a raft with what is printed on them; once, when the first layer was given.

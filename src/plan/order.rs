@@ -5,8 +5,9 @@
 //! - A *seam* is where a wall begins and ends.
 //!
 //! 1. Each path goes to the smallest outer contour around its start.
-//! 2. The island nearest to the nozzle is next. Its walls come first, then skin, then infill; the
-//!    next path is always the one with the nearest end. Helpers come after all islands; those that
+//! 2. The island nearest to the nozzle is next. Its walls come first, then skin and infill, and last what
+//!    is seen from above; the next path is always the one with the nearest end. Where it saves travel,
+//!    `tour` mixes skin and infill afterwards: the order of these two shows nowhere. Helpers come after all islands; those that
 //!    make the print stick, such as a brim, before them, in their own order. What is laid on the
 //!    others comes last, in its turn.
 //! 3. Walls are sorted by depth, from outside or from inside as the settings say. Their seams are at

@@ -14,7 +14,7 @@
 //! Nearly all changes are rejected by a bound that needs no square root. Only the few others compute
 //! whether their legs retract. Where a run begins and ends stays, so that layers remain independent.
 
-use crate::fill::{Order, Path, Shape};
+use crate::fill::{Order, Path, Role, Shape};
 use crate::geom::Point;
 use std::cell::LazyCell;
 use std::ops::Range;
@@ -74,15 +74,27 @@ pub fn improve(paths: Vec<Path>, from: Option<Point>, cost: &impl Cost) -> Vec<P
     paths.into_iter().flatten().collect()
 }
 
+/// Paths that may change places with each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Group {
+    /// Skin and infill, whose order shows nowhere.
+    Inside,
+    /// What is seen from above: the nozzle goes over it no more when it is laid last.
+    Top,
+    /// Support.
+    Helpers,
+}
+
 /// The group within which `path` may change places; `None` for what stays: walls, and what has its turn.
-pub(super) fn free(path: &Path) -> Option<bool> {
+pub(super) fn free(path: &Path) -> Option<Group> {
     if matches!(path.shape, Shape::InTurn { .. }) {
         return None;
     }
     match path.role.facts().order {
         Order::Walls | Order::First | Order::Last => None,
-        Order::Inside => Some(false),
-        Order::Helper => Some(true),
+        Order::Inside if path.role == Role::TopSkin => Some(Group::Top),
+        Order::Inside => Some(Group::Inside),
+        Order::Helper => Some(Group::Helpers),
     }
 }
 

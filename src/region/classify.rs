@@ -13,7 +13,8 @@ use crate::units::Coord;
 use std::sync::Arc;
 
 /// Skin and sparse infill of one layer on one raster. They are disjoint. Together they are the
-/// layer's fill rows without what wall beads take.
+/// layer's fill rows without what wall beads take, on the rasters of skins; on others infill also keeps
+/// off the skin lines that are printed.
 #[derive(Debug, Clone, Default)]
 pub struct Areas {
     /// Solid lines.
@@ -99,6 +100,12 @@ impl Areas {
         Self { infill: self.infill.minus(&dense), dense, ..self }
     }
 
+    /// These areas without the infill in `taken`.
+    #[must_use]
+    pub fn beside(self, taken: &Rows) -> Self {
+        Self { infill: self.infill.minus(taken), ..self }
+    }
+
     /// These areas with the part of the infill in `strips` skin.
     #[must_use]
     pub fn with_skin(self, strips: &Rows) -> Self {
@@ -108,12 +115,15 @@ impl Areas {
 }
 
 /// The layers that have to cover a place of layer `k` so that it is no skin. `None` if one of them is
-/// outside the part: then nothing is covered.
+/// outside the part, or if all is skin: then nothing is covered.
 pub(super) fn neighbours<'a>(
     k: usize,
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
     params: &SkinParams,
 ) -> Option<Vec<&'a LayerRows>> {
+    if params.everywhere {
+        return None;
+    }
     let below = (1..=params.bottom).map(|n| k.checked_sub(n).and_then(layers));
     let above = (1..=params.top).map(|n| layers(k + n));
     below.chain(above).collect()

@@ -18,6 +18,7 @@ use super::params::RegionParams;
 use super::per_raster::{PerRaster, skin_turn};
 use super::prepare::{LayerRows, Own, Whole};
 use super::rooms;
+use super::scan::around;
 use super::wall_beads::{taken, wall_beads};
 use crate::geom::Contour;
 use crate::geom::frame::Frame;
@@ -27,6 +28,10 @@ use crate::geom::spans::Rows;
 use crate::slice::Layer;
 use crate::units::Coord;
 use std::borrow::Cow;
+
+/// How far from a skin line's middle there is no infill on other rasters, % of half its width. At 100
+/// half of an infill line may lie on it; a larger value leaves a gap between the two.
+const BESIDE_SKIN: Coord = 150;
 
 /// Areas of one layer on both rasters of skins, and on the others that were requested.
 pub type LayerAreas = PerRaster<Areas>;
@@ -142,12 +147,32 @@ pub fn divide<'a>(
         }),
         None => areas,
     };
+    let areas = beside_skin(areas, skin_turn(k).0, both);
     let hanging = overhangs(k, &own.walls, layers, params);
     let filling = between_walls(k, &own.walls, layers, params);
     let (mut room_beads, beads) = hidden::beads(k, beads, solid.as_ref(), skins, params);
     let bead = |index: &usize| own.walls[*index].bead(along.frame, params.walls.line_width);
     room_beads.extend(filling.iter().map(bead));
     Divided { areas, beads, room_beads, filling, bridges, hanging }
+}
+
+/// `areas` whose infill keeps off the skin, which is printed on one of `both` rasters, the one `along`.
+/// On a raster with rows at other distances the same reach ends elsewhere, and an infill line would run
+/// along the last skin line, on it.
+fn beside_skin(areas: LayerAreas, along: usize, both: [Raster; 2]) -> LayerAreas {
+    let (skin, its) = (areas.skin(along).skin.clone(), both[along]);
+    if skin.is_empty() {
+        return areas;
+    }
+    let spans = || skin.iter().flat_map(|(j, row)| row.iter().map(move |span| (j, *span)));
+    areas.map_on(|raster, areas| {
+        if both.contains(&raster) || areas.infill.is_empty() {
+            return areas;
+        }
+        let edges = rooms::edges(spans(), its, raster).into_iter();
+        let near = edges.map(|(from, to, half)| (from, to, half * BESIDE_SKIN / 100));
+        areas.beside(&around(&near.collect::<Vec<_>>(), raster))
+    })
 }
 
 /// What is `uncovered` on a raster with these `fill` rows, and what beads that were `cut` out, given in the
@@ -249,5 +274,6 @@ fn beads<'a>(
             innermost.map(|w| entered(&w.path)).collect()
         }
     };
-    wall_beads(&walls, &crossed, &params.beads)
+    let middle = own.walls.iter().filter(|w| w.depth >= count).map(|w| entered(&w.path));
+    wall_beads(&walls, &middle.collect::<Vec<_>>(), &crossed, &params.beads)
 }

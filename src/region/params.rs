@@ -12,12 +12,13 @@
 //! Each struct is made from the settings alone. What the heights of the layers or the bodies decide, the
 //! pipeline fills in.
 
+use super::dual::groups::Grouping;
 use super::per_raster::Rasters;
 use crate::geom::Point;
 use crate::geom::frame::Frame;
 use crate::geom::raster::Raster;
 use crate::pattern::Turns;
-use crate::profile::{Ironing, IroningPlace, Settings};
+use crate::profile::{DualPart, Ironing, IroningPlace, Settings};
 use crate::units::{Coord, UNITS_PER_MM, to_units};
 
 /// Degrees from the lines of a top to those that iron it. Along them the nozzle would follow the
@@ -110,6 +111,8 @@ pub struct SkinParams {
     pub across_infill: bool,
     /// Rooms inside the walls narrower than this are skin.
     pub least_room: Coord,
+    /// All inside the walls is skin: infill of 100 % is closed up to the walls as skins are.
+    pub everywhere: bool,
 }
 
 /// How beads along walls are laid.
@@ -247,6 +250,8 @@ impl RegionParams {
         let skin =
             |turn| Raster { frame: Frame::new(settings.angle.degrees() + turn), pitch: line_width };
         let sparse = Turns::new(settings);
+        let shares_infill =
+            Grouping::new(&settings.dual, settings.dual_ratio()).shares(DualPart::Infill);
         Self {
             walls,
             insets,
@@ -258,6 +263,7 @@ impl RegionParams {
                 across_infill: settings.skin_across_infill,
                 // Without infill parts are meant to be hollow.
                 least_room: if sparse.is_empty() { 0 } else { to_units(settings.narrow_room) },
+                everywhere: settings.infill >= 100.0 && !shares_infill,
             },
             beads: BeadParams {
                 line_width,

@@ -58,14 +58,39 @@ impl Place {
     }
 }
 
+/// What beads keep away from.
+struct Around {
+    /// The innermost walls.
+    walls: Near,
+    /// Beads that lie between them already.
+    middle: Option<Near>,
+}
+
+impl Around {
+    /// Whether places of a bead of this `width` are `clear` of walls, and on no middle bead.
+    fn is_free<const N: usize>(&self, places: [[f64; 2]; N], clear: f64, width: f64) -> bool {
+        let is_beside = |middle: &Near| middle.is_free(places, width / 2.0);
+        self.walls.is_free(places, clear) && self.middle.as_ref().is_none_or(is_beside)
+    }
+}
+
 /// The beads that cover the narrow parts of the exposed skin `crossed` along `walls`. These are
-/// the innermost walls, in the frame of the raster that is printed.
+/// the innermost walls, in the frame of the raster that is printed; `middle` are the beads between them.
 #[must_use]
-pub fn wall_beads(walls: &[Contour], crossed: &Crossed<'_>, params: &BeadParams) -> Vec<Polyline> {
+pub fn wall_beads(
+    walls: &[Contour],
+    middle: &[Contour],
+    crossed: &Crossed<'_>,
+    params: &BeadParams,
+) -> Vec<Polyline> {
     if crossed.skin.is_empty() && crossed.columns.is_empty() {
         return Vec::new();
     }
-    let Some((laps, near)) = samples(walls, crossed, params) else { return Vec::new() };
+    let Some((laps, walls)) = samples(walls, crossed, params) else { return Vec::new() };
+    let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
+    let sides = middle.iter().flat_map(|b| b.windows(2)).map(|p| [float(p[0]), float(p[1])]);
+    let near = |sides: Vec<_>| Near::of_edges(sides, 2.0 * f64::from(params.line_width));
+    let near = Around { walls, middle: (!middle.is_empty()).then(|| near(sides.collect())) };
     let mut out = Vec::new();
     for lap in &laps {
         for index in 0..MOST_BEADS {
@@ -79,7 +104,7 @@ pub fn wall_beads(walls: &[Contour], crossed: &Crossed<'_>, params: &BeadParams)
 
 /// The place of bead `index` at a sample. `None` if there is no such bead, or if another wall is
 /// too near.
-fn place(sample: &WallSample, index: usize, near: &Near, params: &BeadParams) -> Option<Place> {
+fn place(sample: &WallSample, index: usize, near: &Around, params: &BeadParams) -> Option<Place> {
     let w = f64::from(params.line_width);
     let (count, width) = sample.laid(params);
     if index >= count {
@@ -88,7 +113,7 @@ fn place(sample: &WallSample, index: usize, near: &Near, params: &BeadParams) ->
     let away = w / 2.0 + (index as f64 + 0.5) * width;
     let [x, y] = [0, 1].map(|k| sample.at[k] + away * sample.normal[k]);
     let clear = away - SLACK * w;
-    near.is_free([[x, y]], clear).then_some(Place {
+    near.is_free([[x, y]], clear, width).then_some(Place {
         at: [x, y],
         width,
         clear,
@@ -98,7 +123,7 @@ fn place(sample: &WallSample, index: usize, near: &Near, params: &BeadParams) ->
 
 /// The arcs of bead `index` on a lap, without those that are too short. An arc that goes all
 /// around the wall ends where it begins.
-fn arcs(lap: &[WallSample], index: usize, near: &Near, params: &BeadParams) -> Vec<Vec<Place>> {
+fn arcs(lap: &[WallSample], index: usize, near: &Around, params: &BeadParams) -> Vec<Vec<Place>> {
     let short = SHORT * f64::from(params.line_width);
     // Start where there is no such bead, so that no arc is split. If it goes all around, close it.
     let bare = lap.iter().position(|s| s.beads <= index);
@@ -147,12 +172,13 @@ fn go_on(arc: &mut Vec<Place>) {
 
 /// Whether a bead may go straight from one place to the next: they are near, and no wall pokes in
 /// between.
-fn joins(a: &Place, b: &Place, near: &Near, params: &BeadParams) -> bool {
+fn joins(a: &Place, b: &Place, near: &Around, params: &BeadParams) -> bool {
     let w = f64::from(params.line_width);
     let far = distance(a.at, b.at);
     let clear = a.clear.min(b.clear) - SLACK * w;
     let on_the_way = |t: f64| [0, 1].map(|k| a.at[k] + t * (b.at[k] - a.at[k]));
-    far <= w / 2.0 || far <= SHORT * w && near.is_free([0.25, 0.5, 0.75].map(on_the_way), clear)
+    let places = || [0.25, 0.5, 0.75].map(on_the_way);
+    far <= w / 2.0 || far <= SHORT * w && near.is_free(places(), clear, a.width.min(b.width))
 }
 
 /// The area on `raster` that `beads`, given in `frame`, keep free of lines. Lines overlap with
@@ -220,7 +246,7 @@ mod tests {
             left_turn: true,
         };
         let walls = polygon::inset(part, params.walls.outer_inset);
-        (wall_beads(&walls, &crossed, &params.beads), params.beads)
+        (wall_beads(&walls, &[], &crossed, &params.beads), params.beads)
     }
 
     fn block(width: Coord, depth: Coord) -> Vec<Contour> {

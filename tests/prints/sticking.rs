@@ -48,6 +48,11 @@ fn apart(chains: &[Vec<Move>], width: f64) {
     }
 }
 
+/// The length of lines, in thousandths.
+fn length(chains: &[Vec<Move>]) -> i64 {
+    (chains.iter().flatten().map(Move::length).sum::<f64>() * 1000.0).round() as i64
+}
+
 /// The part's outline on the first layer, where it lies on the bed.
 fn section(run: &Run, solid: &Solid) -> Section {
     checks::section(&run.print, &solid.on_bed(run.middle()), 0)
@@ -162,18 +167,28 @@ fn brims_that_meet_grow_together() {
 }
 
 #[test]
-fn a_brim_keeps_off_support_and_off_what_has_none() {
+fn support_keeps_off_a_brim_and_a_brim_off_what_has_none() {
     let hat = Solid::cuboid([-3.0, -3.0, 0.0], [3.0, 3.0, 10.1])
         .and(&Solid::cuboid([-12.0, -12.0, 10.0], [12.0, 12.0, 12.0]));
     for set in [vec![], vec![("support.interface_layers", "0")], vec![("support.outline", "false")]]
     {
-        let mut set = set;
-        set.extend([("support.enabled", "true"), ("brim.where", "outside"), ("brim.width", "4")]);
+        let mut set = [
+            vec![("support.enabled", "true"), ("brim.where", "outside"), ("brim.width", "4")],
+            set,
+        ]
+        .concat();
         let run = slice_shipped(&hat.stl(), "generic-marlin", &set);
         let brim = first(&run, Kind::Brim);
         let support =
             [Kind::Support, Kind::SupportInterface].map(|kind| first(&run, kind)).concat();
-        assert!(!brim.is_empty() && !support.is_empty(), "{set:?}");
+        assert!(!support.is_empty(), "{set:?}");
+        // The foot is what needs to be held: support gives way to all of its brim.
+        set[0] = ("support.enabled", "false");
+        set.push(("floating", "warn"));
+        assert_eq!(
+            length(&brim),
+            length(&first(&slice_shipped(&hat.stl(), "generic-marlin", &set), Kind::Brim))
+        );
         for (_, at) in places(&brim) {
             let near = nearest(at, support.iter().flatten());
             assert!(near > run.settings.line_width - SLACK, "{set:?}: {near} mm at {at:?}");
@@ -268,6 +283,9 @@ fn feet_stand_alone_until_they_grow_together() {
     assert_eq!(why(&arch(3.0, 10.0)).as_deref(), Some("a thin foot"));
     // As thin, but joined right above the bed.
     assert_eq!(why(&arch(3.0, 1.0)), None);
+    // What stands inside letters that are cut into the bottom is thinner still.
+    assert_eq!(why(&arch(1.0, 1.5)), None);
+    assert_eq!(why(&arch(1.0, 3.0)).as_deref(), Some("a thin foot"));
     assert_eq!(why(&arch(10.0, 10.0)), None);
 }
 

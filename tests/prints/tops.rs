@@ -118,6 +118,27 @@ proptest! {
     }
 }
 
+#[test]
+fn what_is_seen_from_above_is_laid_last() {
+    let set = [("speed.top_skin", "17"), ("top_monotonic", "false"), ("seam", "rear")];
+    for dual in ["off", "pair"] {
+        let run =
+            slice(&stairs().stl(), "generic-marlin", &[&set[..], &[("dual.mode", dual)]].concat());
+        let seen: Vec<usize> = tops(&run).iter().map(|m| m.line).collect();
+        let beads = run.print.moves.iter().filter(|m| m.is_bead());
+        let inside: Vec<&Move> =
+            beads.filter(|m| matches!(m.kind, Kind::Skin | Kind::Infill)).collect();
+        let mut layers = 0;
+        for layer in inside.chunk_by(|a, b| a.layer == b.layer) {
+            let first = layer.iter().position(|m| seen.contains(&m.line)).unwrap_or(layer.len());
+            layers += usize::from(first > 0 && first < layer.len());
+            let after = layer[first..].iter().find(|m| !seen.contains(&m.line));
+            assert!(after.is_none(), "{dual}: {after:?}");
+        }
+        assert!(layers > 1, "{dual}: {layers} layers have both");
+    }
+}
+
 /// What irons.
 fn ironing(run: &Run) -> Vec<&Move> {
     run.print.of(Kind::Ironing).collect()

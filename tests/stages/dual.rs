@@ -276,6 +276,17 @@ proptest! {
 }
 
 #[test]
+fn rooms_that_are_solid_stay_so_where_remainders_are_dropped() {
+    let bar = Solid::cuboid([0.0; 3], [60.0, 6.0, 8.0]);
+    let filament = |remainder: &str| {
+        let set = [("dual.mode", "pair"), ("narrow_room", "7"), ("dual.remainder", remainder)];
+        slice_shipped(&bar.stl(), "generic-marlin", &set).report.filament.length_mm
+    };
+    let (kept, dropped) = (filament("thin"), filament("drop"));
+    assert!((dropped / kept - 1.0).abs() < 0.01, "{dropped} mm of {kept}");
+}
+
+#[test]
 fn directions_of_blocks_cross_whatever_their_lengths() {
     for mode in MODES {
         let settings = settings("generic-marlin", &[("dual.mode", mode)]);

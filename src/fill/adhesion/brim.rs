@@ -3,7 +3,7 @@
 //! - A *space* is what is open beside the part: all around it, or a hole. Islands in a hole stand in
 //!   its space.
 //! - A space has *sides*: the outer contours that stand in it, and the hole's own contour. Those that
-//!   get a brim are *chosen*; from the others, and from support, brim keeps away.
+//!   get a brim are *chosen*; from the others brim keeps away. Support keeps away from it.
 //! - A *ring* is all lines at one distance from the chosen sides, counted from 0 next to them.
 //!
 //! 1. For each ring, grow what the chosen sides enclose by its distance. Its outline are the lines.
@@ -68,8 +68,6 @@ impl BrimParams {
 pub(super) struct Ground<'a> {
     pub(super) contours: &'a [Contour],
     pub(super) nest: &'a Nest,
-    /// What support covers.
-    pub(super) support: &'a [Contour],
 }
 
 /// The brim of the outer contours that are `chosen`, in the order of printing.
@@ -100,7 +98,7 @@ impl<'a> Space<'a> {
         params: &'a BrimParams,
         hole: Option<usize>,
     ) -> Option<Self> {
-        let Ground { contours, nest, support } = ground;
+        let Ground { contours, nest } = ground;
         let (with, without): (Vec<usize>, Vec<usize>) =
             nest.within(hole).partition(|&k| params.outside && chosen[k]);
         let of =
@@ -113,7 +111,6 @@ impl<'a> Space<'a> {
             return None;
         }
         let mut kept_off = polygon::outset(&others, params.first);
-        kept_off.extend(polygon::outset(support, params.width / 2));
         if let Some(around) = around.as_ref().filter(|_| !has_room) {
             // Everything but the hole.
             kept_off.extend(frame(&bodies, around, params.reach()));
@@ -191,7 +188,7 @@ mod tests {
         };
         let contours: Vec<Contour> = (0..40).map(square).collect();
         let nest = Nest::new(&contours);
-        let ground = Ground { contours: &contours, nest: &nest, support: &[] };
+        let ground = Ground { contours: &contours, nest: &nest };
         let params =
             BrimParams { outside: true, inside: false, rings: 2, width: 4_000, first: 2_000 };
         let beads = brim(&ground, &[true; 40], &params);

@@ -12,7 +12,8 @@
 //!   part rises by 10 mm.
 //!
 //! An island by itself stands until it grows together with another one: a leg of a table is as high
-//! as the leg. All islands of a body stand together, then for its whole height.
+//! as the leg. One that does so within 2 mm is held soon enough. All islands of a body stand together,
+//! then for its whole height.
 
 use crate::geom::nest::Nest;
 use crate::geom::{Contour, Point, edges, side};
@@ -29,6 +30,10 @@ const SHARP: f64 = 0.766;
 
 /// Lower parts do not shrink enough to lift a corner, mm.
 const LEAST_CURLING: f64 = 10.0;
+
+/// An island that grows together with another one before this height, mm, is held soon enough: what
+/// is left standing inside letters that are cut into the bottom.
+const LEAST_ALONE: f64 = 2.0;
 
 /// Why an island would come loose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -103,7 +108,7 @@ pub(super) fn loose(
         let Some(Rise { alone, .. }) = rises.get(*k).copied() else { continue };
         let why = if pull > MOST_PULL {
             Loose::Tall
-        } else if moments.pull(alone) > MOST_PULL {
+        } else if moments.pull(alone) > MOST_PULL && to_mm(alone) >= LEAST_ALONE {
             Loose::ThinFoot
         } else if *is_sharp && to_mm(alone) >= LEAST_CURLING {
             Loose::SharpCorner

@@ -1,7 +1,8 @@
 //! First layer -> Adhesion: skirt, and brim or raft, which are printed before everything else.
 //!
 //! 1. [`loose`] tells which islands would come loose without a brim, if nobody has decided.
-//! 2. `brim` lays lines beside the islands that get one. With a raft there is none: [`raft`] lays a
+//! 2. `brim` lays lines beside the islands that get one, and [`mod@clear`] takes support out of their
+//!    place. With a raft there is none: [`raft`] lays a
 //!    plate under all that stands on the bed, and the part's layers come above it.
 //! 3. `skirt` lays loops around all of it.
 //!
@@ -9,6 +10,7 @@
 //! belongs to it.
 
 mod brim;
+pub mod clear;
 pub mod lift;
 pub mod loose;
 pub mod raft;
@@ -32,6 +34,8 @@ pub struct Adhesion {
     pub layers: Vec<Vec<Path>>,
     /// The outline of the raft.
     pub plate: Vec<Contour>,
+    /// Where no support may be printed on the first layer of the part: the brim with half a line around it.
+    pub taken: Vec<Contour>,
     /// The islands that would come loose, and why, if nobody has decided.
     pub loose: Vec<(usize, Loose)>,
     /// Outer contours of the first layer.
@@ -124,8 +128,8 @@ impl AdhesionParams {
                 chosen.fill(false);
                 adhesion.loose.iter().for_each(|(k, _)| chosen[*k] = true);
             }
-            let ground = Ground { contours: base.contours, nest: &nest, support: &support };
-            beads = brim::brim(&ground, &chosen, params);
+            beads = brim::brim(&Ground { contours: base.contours, nest: &nest }, &chosen, params);
+            adhesion.taken = self.taken(&beads, !support.is_empty());
         }
         self.paths(base, &beads, &support, &mut adhesion);
         adhesion
@@ -161,6 +165,22 @@ impl AdhesionParams {
             layers.resize(layers.len().max(k + 1), Vec::new());
             layers[k].extend(course);
         }
+    }
+
+    /// What a brim covers, with half a line around it; nothing if there is no support to keep off it.
+    fn taken(&self, brim: &[Bead], has_support: bool) -> Vec<Contour> {
+        if brim.is_empty() || !has_support {
+            return Vec::new();
+        }
+        let around = |bead: &Bead| {
+            bead.points
+                .iter()
+                .chain(bead.points.first().filter(|_| bead.ring.is_some()))
+                .copied()
+                .collect()
+        };
+        let lines: Vec<Vec<Point>> = brim.iter().map(around).collect();
+        polygon::covered(lines.iter().map(Vec::as_slice), 2 * self.line_width, 0)
     }
 
     /// What support covers of the bed.

@@ -166,7 +166,7 @@ pub struct Settings {
     #[schemars(range(min = 0, max = 20), extend("unit" = "mm", "default" = 1.2))]
     pub skin_reach: f64,
 
-    /// Density of the sparse infill.
+    /// Density of the sparse infill; at 100 it is laid as skin is, unless it is printed thick.
     #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 20))]
     pub infill: f64,
     /// Rooms inside the walls narrower than this are filled solid.

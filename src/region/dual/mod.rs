@@ -71,11 +71,13 @@ pub fn infill(
     }
     let kept = shortest(block, layers, grouping, turns, line_width);
     let patterns = turns.of(if grouping.shorter { block.layers.start + kept } else { block.turn });
-    if grouping.drops {
-        return dropped(block, layers, patterns, kept, line_width);
-    }
     let mut sharing = Sharing::new(DualPart::Infill, block, grouping, line_width);
-    for pattern in patterns.iter().chain(turns.dense(block.turn)) {
+    let shared = if grouping.drops { &[] } else { patterns };
+    if grouping.drops {
+        sharing.keep(patterns, layers, kept);
+    }
+    // Rooms that are solid are shared whatever becomes of sparse lines: dropped, they would be hollow.
+    for pattern in shared.iter().chain(turns.dense(block.turn)) {
         let rows: Vec<Rows> = layers.iter().map(|areas| rows(&**pattern, areas)).collect();
         let skin = |areas: &&'_ LayerAreas| areas.on(pattern.raster()).map(|a| a.skin.clone());
         let skins: Vec<Option<Arc<Rows>>> = layers.iter().map(skin).collect();
@@ -180,28 +182,6 @@ fn shortest(
     by_length.unwrap_or(0)
 }
 
-/// The rule of the thesis: one layer's infill is printed for all, the others' are dropped.
-fn dropped(
-    block: &Block,
-    layers: &[&LayerAreas],
-    patterns: &[Pattern],
-    kept: usize,
-    line_width: Coord,
-) -> (Vec<Vec<Sparse>>, Option<Audit>) {
-    let count = layers.len();
-    let mut audit = Audit::new(DualPart::Infill, block.layers.clone());
-    let mut out = vec![Vec::new(); count];
-    for sparse in plain(patterns, layers[kept], line_width) {
-        for areas in layers {
-            audit.plain(&*sparse.pattern, &rows(&*sparse.pattern, areas), line_width);
-        }
-        let sparse = Sparse { layers: count as u32, ..sparse };
-        audit.printed(&sparse, line_width);
-        out[count - 1].push(sparse);
-    }
-    (out, Some(audit))
-}
-
 /// Distributes the lines of a block among its layers.
 struct Sharing<'a> {
     block: &'a Block,
@@ -216,6 +196,19 @@ impl<'a> Sharing<'a> {
         let sparse = vec![Vec::new(); block.layers.len()];
         let audit = Audit::new(part, block.layers.clone());
         Self { block, grouping, line_width, sparse, audit }
+    }
+
+    /// The rule of the thesis: the lines of the layer `kept` are printed for all, those of the others
+    /// are dropped.
+    fn keep(&mut self, patterns: &[Pattern], layers: &[&LayerAreas], kept: usize) {
+        for sparse in plain(patterns, layers[kept], self.line_width) {
+            for areas in layers {
+                let rows = rows(&*sparse.pattern, areas);
+                self.audit.plain(&*sparse.pattern, &rows, self.line_width);
+            }
+            let sparse = Sparse { layers: layers.len() as u32, ..sparse };
+            self.sparse.last_mut().into_iter().for_each(|last| last.push(sparse.clone()));
+        }
     }
 
     /// Distributes the strands of `pattern`. `rows` is its region on each layer, `skins` are the
@@ -281,18 +274,18 @@ impl<'a> Sharing<'a> {
     }
 
     /// The lines of each layer. Thick ones are widened to carry the material of lines too short to
-    /// be printed.
+    /// be printed, unless that of whole layers is dropped. Solid ones have no room for it.
     fn finish(mut self) -> (Vec<Vec<Sparse>>, Audit) {
         let w = self.line_width;
+        let widens = |s: &Sparse| s.layers > 1 && !s.pattern.is_solid();
         let all = || self.sparse.iter().flatten();
         let material = |s: &Sparse| i64::from(s.layers) * s.length(w);
-        let thick: i64 = all().filter(|s| s.layers > 1).map(material).sum();
+        let thick: i64 = all().filter(|s| widens(s)).map(material).sum();
         let lost = self.audit.plain - all().map(material).sum::<i64>();
-        if thick > 0 && lost > 0 {
+        if thick > 0 && lost > 0 && !self.grouping.drops {
             let most = i64::from(w) * MOST_WIDENED / 100;
             let wider = ((i64::from(w) * lost + thick / 2) / thick).min(most) as Coord;
-            let is_sparse = |s: &&mut Sparse| s.layers > 1 && !s.pattern.is_solid();
-            let thick = self.sparse.iter_mut().flatten().filter(is_sparse);
+            let thick = self.sparse.iter_mut().flatten().filter(|s| widens(s));
             thick.for_each(|sparse| sparse.width += wider);
         }
         for sparse in self.sparse.iter().flatten() {

@@ -46,6 +46,10 @@ const CLEAR: f64 = 0.5;
 /// outer sides are further away than the bead shall come. A smaller value lays beads beyond the turn.
 const CLEAR_OF_CORNER: f64 = 0.9;
 
+/// Cosine of the angle between a bead and the contour beside it: 20°. In the bluntest wedge with a middle bead
+/// it is 16°; beads at larger angles do not run along their strip.
+const ALONG: f64 = 0.94;
+
 /// Shorter beads are dropped, in line widths: the outermost ones, and those between loops. They
 /// leave less open than a start and a stop spoil; a letter's dot is longer.
 const SHORT: [f64; 2] = [0.4, 2.0];
@@ -72,6 +76,14 @@ pub(super) struct Sample {
     leads: bool,
     /// The place of the contour.
     from: Doubt,
+}
+
+impl Sample {
+    /// The way along the contour that leads on as `way` does, of length 1.
+    fn ahead(&self, way: [f64; 2]) -> [f64; 2] {
+        let [x, y] = self.from.normal;
+        if dot([-y, x], way) < 0.0 { [y, -x] } else { [-y, x] }
+    }
 }
 
 /// A run of neighbouring samples.
@@ -353,8 +365,13 @@ fn nearest(arcs: &[Arc], k: usize, (ends, most): (&Nearest, f64)) -> Option<(usi
 /// Moves the last place of an arc on to the end of its strip: samples lie up to a step before it.
 fn reach_end(arc: &mut Arc, layout: &Layout<'_>) {
     let [.., before, last] = &mut arc[..] else { return };
-    let ahead = way(before.place.at, last.place.at);
-    let length = dot(ahead, ahead).sqrt().at_least(1.0);
+    let mut ahead = way(before.place.at, last.place.at);
+    let mut length = dot(ahead, ahead).sqrt().at_least(1.0);
+    // Two samples around a corner look across it: the strip goes on beside the contour.
+    let beside = last.ahead(ahead);
+    if dot(ahead, beside) < ALONG * length {
+        (ahead, length) = (beside, 1.0);
+    }
     let clear = CLEAR * last.place.width / 2.0 * f64::from(2 * last.loops + 1);
     let at = |far: f64| along(last.place.at, far / length, ahead);
     let step = STEP * layout.line_width;
@@ -375,10 +392,13 @@ fn reach_end(arc: &mut Arc, layout: &Layout<'_>) {
 fn sharpen(arc: &mut Arc, layout: &Layout<'_>) {
     let w = layout.line_width;
     let at = |arc: &Arc, k: usize| arc[k].place.at;
-    let mut k = 1;
-    while k + 2 < arc.len() {
+    let mut k = 0;
+    while k + 1 < arc.len() {
         let (a, b) = (at(arc, k), at(arc, k + 1));
-        let (before, after) = (way(at(arc, k - 1), a), way(b, at(arc, k + 2)));
+        // At its ends the arc runs as the contour beside it does.
+        let before = if k > 0 { way(at(arc, k - 1), a) } else { arc[k].ahead(way(a, b)) };
+        let after =
+            if k + 2 < arc.len() { way(b, at(arc, k + 2)) } else { arc[k + 1].ahead(way(a, b)) };
         if distance(a, b) > CORNER * w
             && let Some(corner) = meet(a, before, b, after, NEIGHBOURS * w)
             && let width = f64::midpoint(arc[k].place.width, arc[k + 1].place.width)

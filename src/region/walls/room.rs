@@ -7,11 +7,12 @@
 //!
 //! - A side with the normal `m` at the distance `h` from `p` touches the circle of the radius
 //!   `h / (1 − n·m)`.
-//! - A point at `q` from `p` touches the circle of the radius `q² / 2 n·q`.
+//! - A point at `q` from `p` touches the circle of the radius `q² / 2 n·q`, if the circle's centre lies
+//!   between the normals of the two sides that meet there. Elsewhere one of these sides is nearer.
 
 use crate::geom::cells::Cells;
 use crate::geom::segment::{along, dot, way};
-use crate::geom::{Contour, edges};
+use crate::geom::{Contour, Point, edges};
 use crate::region::near::{Area, Grid};
 use crate::region::params::WallParams;
 use crate::units::Bounded as _;
@@ -29,6 +30,9 @@ const OPPOSITE_CORNER: f64 = 0.5;
 /// hide what is opposite.
 const BOUNDS: f64 = 0.3;
 
+/// A centre this far beyond the normal of a side (5 µm) still lies between those of two: rounding.
+const ROUNDING: f64 = 50.0;
+
 /// How much larger than the last circle the first one is that is searched. It affects speed only.
 const GUESS: f64 = 1.15;
 
@@ -38,11 +42,21 @@ struct Side {
     from: [f64; 2],
     /// Its direction; the solid is on its left.
     along: [f64; 2],
+    /// The direction of the side before it.
+    before: [f64; 2],
     length: f64,
     index: u32,
 }
 
 impl Side {
+    /// The side from `p` to `q`, which are two; what lies before it is not known yet.
+    fn new(p: Point, q: Point, index: u32) -> Self {
+        let from = [f64::from(p.x), f64::from(p.y)];
+        let length = p.distance(q);
+        let along = way(from, [f64::from(q.x), f64::from(q.y)]).map(|x| x / length);
+        Self { from, along, before: [0.0; 2], length, index }
+    }
+
     fn normal(&self) -> [f64; 2] {
         [-self.along[1], self.along[0]]
     }
@@ -81,16 +95,21 @@ impl Outline {
     /// Sorts the sides of `contours`. Places with more room than the walls can share have nothing
     /// opposite.
     pub(super) fn new(contours: &[Contour], params: &WallParams) -> Self {
-        let sides: Vec<Side> = (0..)
-            .zip(contours.iter().flat_map(|c| edges(c)))
-            .filter(|(_, (p, q))| p != q)
-            .map(|(index, (p, q))| {
-                let from = [f64::from(p.x), f64::from(p.y)];
-                let way = way(from, [f64::from(q.x), f64::from(q.y)]);
-                let length = p.distance(q);
-                Side { from, along: way.map(|x| x / length), length, index }
-            })
-            .collect();
+        let mut sides: Vec<Side> = Vec::with_capacity(contours.iter().map(Vec::len).sum());
+        let mut index = 0;
+        for contour in contours {
+            let first = sides.len();
+            for (p, q) in edges(contour) {
+                if p != q {
+                    sides.push(Side::new(p, q, index));
+                }
+                index += 1;
+            }
+            for k in first..sides.len() {
+                let before = if k == first { sides.len() - 1 } else { k - 1 };
+                sides[k].before = sides[before].along;
+            }
+        }
         let w = f64::from(params.line_width);
         let most = w * (f64::from(params.count) + 0.85) + w / 2.0 - f64::from(params.outer_inset);
         let area = Area::around(sides.iter().map(|s| s.from), most);
@@ -171,7 +190,10 @@ fn touch(side: &Side, at: [f64; 2], normal: [f64; 2], most: f64) -> Option<Touch
         let square = dot(arm, arm);
         let radius = square / (2.0 * ahead);
         let facing = 2.0 * ahead * ahead / square.at_least(1.0) - 1.0;
-        if radius < least && facing > BOUNDS {
+        let centre = || way(side.from, along(at, radius, normal));
+        let is_between =
+            || dot(centre(), side.along) <= ROUNDING && dot(centre(), side.before) >= -ROUNDING;
+        if radius < least && facing > BOUNDS && is_between() {
             best = Some(Touch { radius, corner: true, opposite: facing >= OPPOSITE_CORNER });
         }
     }

@@ -1,0 +1,103 @@
+//! Everyday parts -> G-code, read back: nothing is printed twice, beside the part, or left open.
+//!
+//! What `check` says is the measure, but for corners, which are measured themselves. The parts are plates with
+//! steps, slots and strips: where rasters of other distances meet, where an edge lies exactly along a row,
+//! where beads of two kinds fill one room, and where a corner lies beside something thin.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+use crate::common::damage::{judge_made, kinds, warned};
+use crate::common::{Kind, Run, Solid, slice};
+use proptest::prelude::*;
+use slicer::check::finding::Code;
+
+/// A plate with a block on it: the skin of the plate ends on the infill of both.
+fn step(block: f64) -> Solid {
+    let plate = Solid::cuboid([0.0; 3], [24.0, 20.0, 2.4]);
+    plate.and(&Solid::cuboid([0.0; 3], [block, 20.0, 5.0]))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// At 15, 30 and 40 % sparse lines lie on a raster of their own, whose rows are not those of skins.
+    #[test]
+    fn infill_of_any_density_keeps_off_skin(
+        block in 4.0..20.0_f64,
+        infill in prop_oneof![
+            Just("15"), Just("30"), Just("33"), Just("40"), Just("60"), Just("80"), Just("100")
+        ],
+        dual in prop_oneof![Just("off"), Just("pair")],
+        turned in any::<bool>(),
+    ) {
+        let solid = if turned { step(block).quarter_turned() } else { step(block) };
+        let stl = solid.stl();
+        let run = slice(&stl, "generic-marlin", &[("infill", infill), ("dual.mode", dual)]);
+        prop_assert_eq!(kinds(&judge_made(&run.text, &stl)), []);
+    }
+}
+
+#[test]
+fn a_plate_whose_edge_lies_along_a_row_is_closed() {
+    // Of 0.8 mm and some: with two walls all skin. One of the rows of skin lies exactly where it ends.
+    for (y, line) in [(16.88, "0.4"), (16.08, "0.4"), (20.1, "0.5")] {
+        let stl = Solid::cuboid([0.0; 3], [17.34, y, 0.8]).stl();
+        let run = slice(&stl, "generic-marlin", &[("line_width", line)]);
+        assert_eq!(kinds(&judge_made(&run.text, &stl)), [], "{y} mm with lines of {line}");
+    }
+}
+
+/// A block with slots through it. Between the innermost of three walls there are rooms of a bead.
+#[test]
+fn rooms_that_cross_get_no_bead_twice() {
+    let block = Solid::cuboid([0.0; 3], [24.0, 24.0, 2.0]);
+    let slot =
+        |x: f64, half: f64| Solid::cuboid([x - half, 3.0, 0.0], [x + half, 21.0, 2.0]).inside_out();
+    let slots = [(4.0, 0.325), (8.0, 0.4), (12.0, 0.475), (16.0, 0.55), (20.0, 0.625)];
+    let solid = slots.into_iter().fold(block, |all, (x, half)| all.and(&slot(x, half)));
+    let stl = solid.stl();
+    for dual in ["off", "pair"] {
+        let run = slice(&stl, "generic-marlin", &[("walls", "3"), ("dual.mode", dual)]);
+        assert_eq!(kinds(&judge_made(&run.text, &stl)), [], "{dual}");
+    }
+}
+
+/// How far a wall reaches beyond the box of its part, mm.
+fn beyond(run: &Run, solid: &Solid) -> f64 {
+    let (low, high) = solid.on_bed(run.middle()).extent();
+    let out = |axis: usize, at: f64, half: f64| (at + half - high[axis]).max(low[axis] - at + half);
+    let beads = run.print.of(Kind::OuterWall).filter(|m| m.is_bead());
+    beads
+        .flat_map(|m| [(m.from, m.width / 2.0), (m.to, m.width / 2.0)])
+        .flat_map(|(at, half)| [0, 1].map(|axis| out(axis, at[axis], half)))
+        .fold(f64::MIN, f64::max)
+}
+
+/// A plate with a notch, alone and beside a strip that is thin: then thin places are looked for.
+#[test]
+fn corners_beside_something_thin_stay_square() {
+    for deep in [0.7, 0.9, 1.1, 1.3] {
+        let plate = Solid::cuboid([0.0; 3], [14.0, 24.0, 1.0]);
+        let notch = Solid::cuboid([14.0 - deep, 7.6, 0.0], [14.0, 16.4, 1.0]).inside_out();
+        let strip = Solid::cuboid([-4.0, 8.0, 0.0], [-2.24, 16.0, 1.0]);
+        let solid = plate.and(&notch).and(&strip);
+        let stl = solid.stl();
+        let run = slice(&stl, "generic-marlin", &[]);
+        let beyond = beyond(&run, &solid);
+        assert!(beyond < 0.03, "{deep} mm deep: {beyond} mm outside");
+        assert_eq!(kinds(&judge_made(&run.text, &stl)), [], "{deep}");
+    }
+}
+
+/// Lines of skin that meet a wall a little askew, as all do after a mesh was turned or scaled.
+#[test]
+fn skin_is_not_overfilled_along_a_wall_that_is_not_quite_square() {
+    for askew in [0.02, 0.1, 0.4, 1.0] {
+        let outline = vec![[0.0, 0.0], [30.0, 0.0], [30.0 + askew, 24.0], [0.0, 24.0]];
+        let stl = Solid::prism(&outline, 0.0, 1.2).stl();
+        let run = slice(&stl, "generic-marlin", &[]);
+        let verdict = judge_made(&run.text, &stl);
+        assert_eq!(kinds(&verdict), [], "{askew}");
+        assert!(!warned(&verdict).contains(&Code::Overfilled), "{askew}");
+    }
+}
