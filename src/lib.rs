@@ -13,6 +13,7 @@
 //! | [`profile`] | TOML -> settings |
 //! | [`mesh`] | bytes -> triangles: welded, mended, laid on the bed |
 //! | [`mod@slice`] | triangles -> layers of closed contours |
+//! | [`nonplanar`] | gentle tops -> skins that follow the surface, and their room in the layers |
 //! | [`region`] | layers -> walls, and spans of skin, sparse infill and support |
 //! | [`fill`] | regions -> paths |
 //! | [`plan`] | paths -> paths in order, with travels |
@@ -40,6 +41,7 @@
 //! | [`report`], [`warning`], [`error`] | what a run gives back |
 //! | [`mod@compare`] | one job, printed in several ways -> what each saves |
 //! | [`pattern`] | how sparse lines run |
+//! | [`head`] | what hangs around the nozzle, and what it would touch |
 //! | [`geom`], [`units`] | plane geometry on the integer grid |
 //! | [`text`] | names and texts of files, made safe to show |
 //! | [`render`] | triangles -> a picture |
@@ -82,6 +84,7 @@ pub use pipeline::place::{bed, place, suited};
 pub use pipeline::spool::slice_to;
 
 use error::{Error, Refusal, Result};
+use fill::adhesion::lift::Lift;
 use pipeline::batches::{self, Setup};
 use pipeline::curved::{self, Curved};
 use pipeline::footing::Footing;
@@ -91,7 +94,6 @@ use pipeline::prime;
 use pipeline::refuse;
 use pipeline::sticking::Sticking;
 use pipeline::thumbnails::thumbnails;
-use plan::lift::Lift;
 
 /// Slices `job` and writes the G-code to `out`, which is empty yet.
 ///

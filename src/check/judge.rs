@@ -4,7 +4,7 @@
 //! and those of layers above that reach down into them.
 //!
 //! 1. All layers are surveyed: what must be known of all before any is judged ([`survey`](super::survey)).
-//! 2. The part, if it is given, is laid where it was printed ([`align`](super::align)).
+//! 2. The part, if it is given, is laid where it was printed ([`align`]).
 //! 3. Batch by batch, layers are judged side by side by those witnesses for which one layer is enough,
 //!    while the witnesses that go from move to move go through the same batch. What each has found is then
 //!    put together in the file's order.
@@ -19,7 +19,7 @@ use super::filled::fills::{self, Field};
 use super::filled::posts::{self, Posts};
 use super::finding::{Code, Finding, Findings};
 use super::model::against;
-use super::model::align;
+use super::model::align::{self, Given};
 use super::model::part::Part;
 use super::model::{Sums, Surfaces};
 use super::moves::Moves;
@@ -52,8 +52,8 @@ pub(super) fn judge<'a, E: Send>(
     // A print wider than any machine is not checked place by place: its map would fill the memory.
     let absurd = is_absurd(&survey);
     let part = model.filter(|_| absurd.is_none()).and_then(|model| {
-        let say = (&mut found.placed, &mut found.notes);
-        align::place((facts, &survey), (model, terms), has_roles, say)
+        let given = Given { facts, survey: &survey, model, terms, has_roles };
+        align::place(given, &mut found.placed, &mut found.notes)
     });
     let mut judge = Judge::new((facts, &survey), terms, part.as_ref());
     judge.is_absurd = absurd.is_some();

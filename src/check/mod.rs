@@ -1,7 +1,9 @@
 //! Print + Terms + model -> Verdict: an independent witness of what a G-code file prints.
 //!
 //! It reads the finished text and shares no code with what slices, plans or writes, so that it does
-//! not repeat their faults. It works on any slicer's files; what a file gives no means to judge is
+//! not repeat their faults. What it does share decides nothing there: the mesh as it was read, the
+//! head and the settings of a profile, and of [`geom`](crate::geom) distances to segments, sorting into
+//! cells, booleans of spans and union-find, which have laws of their own. It works on any slicer's files; what a file gives no means to judge is
 //! listed as not judged.
 //!
 //! - A *finding* is one thing that is wrong, with a place, a measure and a severity: errors fail the
@@ -26,7 +28,6 @@ mod model;
 mod moves;
 mod rows;
 mod samples;
-mod sets;
 mod slopes;
 mod stack;
 mod standing;

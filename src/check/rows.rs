@@ -9,7 +9,7 @@
 //! grows and shrinks, cost what there are edges, not what there is area.
 
 use super::capsule::{Capsule, Flanks};
-use super::sets::Sets;
+use crate::geom::sets::Sets;
 use crate::geom::spans::{Rows, Span, intersect, merge, unite};
 use crate::units::{Coord, UNITS_PER_MM, to_mm, to_units};
 use std::ops::Range;
@@ -225,7 +225,7 @@ impl Lattice {
 }
 
 /// Adds a patch to another that it has become a part of.
-fn merged(patches: &mut [Patch], [whole, part]: [usize; 2]) {
+fn merged(patches: &mut [Patch], (whole, part): (usize, usize)) {
     let part = patches[part];
     let whole = &mut patches[whole];
     whole.area += part.area;

@@ -6,7 +6,7 @@
 //! A file is read several times, and never held as a whole:
 //! 1. the stream has its facts, and the estimate its times;
 //! 2. all layers are read for the boxes around them and for where commands belong ([`Side::new`]);
-//! 3. they are read again for each comparison ([`Side::halves`]), layer by layer beside those of the
+//! 3. they are read again for each comparison ([`Side::layer`]), layer by layer beside those of the
 //!    other file.
 
 use super::align::Level;

@@ -20,7 +20,7 @@ pub mod skin;
 pub mod variable_width;
 
 pub use path::{Path, PathPoint, Shape};
-pub use role::{Both, Place, Role, RoleFacts, RoleTable, Slows};
+pub use role::{Both, Order, Role, RoleFacts, RoleTable, Slows};
 
 use crate::geom::frame::Frame;
 use crate::geom::outline::{Bounds, Columns};
@@ -61,7 +61,6 @@ pub struct FillParams {
     gaps: bool,
     /// Plastic of ironing: 1 fills the distance of its lines.
     ironing_flow: f64,
-    tool: u8,
 }
 
 impl FillParams {
@@ -81,7 +80,6 @@ impl FillParams {
             monotonic: settings.top_monotonic,
             ironing_flow: settings.ironing.flow / 100.0,
             gaps: settings.speed.gap.is_some(),
-            tool: u8::try_from(settings.machine.tool).unwrap_or(u8::MAX),
         }
     }
 }
@@ -251,7 +249,7 @@ impl Maker<'_> {
 
     fn push(&mut self, role: Role, shape: Shape, layers: u32, points: Vec<PathPoint>) {
         if !points.is_empty() {
-            self.out.push(Path { role, shape, points, layers, tool: self.params.tool });
+            self.out.push(Path { role, shape, points, layers });
         }
     }
 

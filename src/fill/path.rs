@@ -48,8 +48,6 @@ pub struct Path {
     pub points: Vec<PathPoint>,
     /// How many layers it is printed for: its own and those below.
     pub layers: u32,
-    /// The tool that lays it.
-    pub tool: u8,
 }
 
 impl Path {
@@ -107,7 +105,7 @@ mod tests {
         };
         let points = corners.map(point).to_vec();
         let shape = Shape::Loop { depth: 0 };
-        Path { role: Role::OuterWall, shape, points, layers: 1, tool: 0 }
+        Path { role: Role::OuterWall, shape, points, layers: 1 }
     }
 
     /// The segments: both ends and the width of the bead between them.

@@ -50,7 +50,7 @@ pub enum Role {
 
 /// Where a role has its place in the order of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum Order {
     /// Before everything else of its island, by depth.
     Walls,
     /// Inside the walls of its island, role after role.
@@ -63,7 +63,7 @@ pub enum Place {
     Last,
 }
 
-impl Place {
+impl Order {
     /// Whether what is there is part of the model.
     #[must_use]
     pub fn is_of_part(self) -> bool {
@@ -91,7 +91,7 @@ pub struct RoleFacts {
     /// Its annotation in G-code, after `;TYPE:`, as viewers know it.
     pub annotation: &'static str,
     /// Its place in the order of a layer.
-    pub place: Place,
+    pub order: Order,
     /// Whether it may be printed for several layers at once.
     pub may_be_thick: bool,
     /// The settings keys of its speed, thin and thick.
@@ -182,7 +182,7 @@ fn own(speed: Option<f64>, key: &'static str, usual: &'static str) -> Both<&'sta
 const OUTER_WALL: RoleFacts = RoleFacts {
     name: "outer wall",
     annotation: "External perimeter",
-    place: Place::Walls,
+    order: Order::Walls,
     may_be_thick: false,
     speed_keys: |speed| own(speed.outer_wall, "speed.outer_wall", "speed.wall"),
     speed: |speed| Both::same(speed.outer_wall.unwrap_or(speed.wall)),
@@ -195,12 +195,12 @@ const OUTER_WALL: RoleFacts = RoleFacts {
 
 // As fast as walls: what holds a part on the bed is laid with care.
 const SKIRT: RoleFacts =
-    RoleFacts { name: "skirt", annotation: "Skirt/Brim", place: Place::First, ..OUTER_WALL };
+    RoleFacts { name: "skirt", annotation: "Skirt/Brim", order: Order::First, ..OUTER_WALL };
 
 const SKIN: RoleFacts = RoleFacts {
     name: "skin",
     annotation: "Solid infill",
-    place: Place::Inside,
+    order: Order::Inside,
     may_be_thick: true,
     speed_keys: |_| Both::same("speed.skin"),
     speed: |speed| Both::same(speed.skin),
@@ -239,7 +239,7 @@ const TOP_SKIN: RoleFacts = RoleFacts {
 const IRONING: RoleFacts = RoleFacts {
     name: "ironing",
     annotation: "Ironing",
-    place: Place::Last,
+    order: Order::Last,
     may_be_thick: false,
     speed_keys: |_| Both::same("speed.ironing"),
     speed: |speed| Both::same(speed.ironing),
@@ -253,7 +253,7 @@ const IRONING: RoleFacts = RoleFacts {
 const NON_PLANAR: RoleFacts = RoleFacts {
     name: "non-planar skin",
     annotation: TOP_SKIN.annotation,
-    place: Place::Last,
+    order: Order::Last,
     speed_keys: |_| Both::same("speed.nonplanar"),
     speed: |speed| Both::same(speed.nonplanar),
     slows: Slows::Last,
@@ -273,7 +273,7 @@ const GAP: RoleFacts = RoleFacts {
 const INFILL: RoleFacts = RoleFacts {
     name: "infill",
     annotation: "Internal infill",
-    place: Place::Inside,
+    order: Order::Inside,
     may_be_thick: true,
     speed_keys: |_| Both { thin: "speed.infill", thick: "speed.thick_infill" },
     speed: |speed| Both { thin: speed.infill, thick: speed.thick_infill },
@@ -287,7 +287,7 @@ const INFILL: RoleFacts = RoleFacts {
 const SUPPORT: RoleFacts = RoleFacts {
     name: "support",
     annotation: "Support material",
-    place: Place::Helper,
+    order: Order::Helper,
     may_be_thick: true,
     speed_keys: |_| Both::same("speed.support"),
     speed: |speed| Both::same(speed.support),

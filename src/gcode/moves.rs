@@ -429,7 +429,7 @@ fn length(from: &PathPoint, to: &PathPoint) -> f64 {
 mod tests {
     use super::*;
     use crate::fill::Shape;
-    use crate::plan::Head;
+    use crate::plan::Nozzle;
     use crate::profile;
 
     fn path(places: &[(Coord, Coord)], y: Coord) -> Path {
@@ -441,7 +441,7 @@ mod tests {
             hang: 0,
         };
         let points = places.iter().map(point).collect();
-        Path { role: Role::Skin, shape: Shape::Open, points, layers: 1, tool: 0 }
+        Path { role: Role::Skin, shape: Shape::Open, points, layers: 1 }
     }
 
     /// A path that rises by 0.3 mm over 0.4 mm and stays there, then one at the layer's own height.
@@ -449,7 +449,7 @@ mod tests {
         let rising = path(&[(0, 0), (4_000, 3_000), (100_000, 3_000)], 0);
         let flat = path(&[(100_000, 0), (0, 0)], 50_000);
         let moves = [rising, flat].map(PrintMove::to).to_vec();
-        let from = Head { at: Some(Point { x: 0, y: 0 }), highest };
+        let from = Nozzle { at: Some(Point { x: 0, y: 0 }), highest };
         Toolpath { layer: 4, z: 10_000, height: 2_000, from, moves }
     }
 

@@ -426,7 +426,7 @@ mod tests {
     use crate::fill::{Path, PathPoint, Shape};
     use crate::gcode::usage::Usage;
     use crate::geom::Point;
-    use crate::plan::{Head, PrintMove, Toolpath};
+    use crate::plan::{Nozzle, PrintMove, Toolpath};
     use crate::profile;
 
     fn toolpath() -> Toolpath {
@@ -434,14 +434,14 @@ mod tests {
             let height = 2_000 * layers as Coord;
             let point = |&x| PathPoint { at: Point { x, y }, z: 0, width: 4_000, height, hang: 0 };
             let points = xs.iter().map(point).collect();
-            Path { role, shape: Shape::Open, points, layers, tool: 0 }
+            Path { role, shape: Shape::Open, points, layers }
         };
         let wall = path(Role::OuterWall, 1, &[0, 100_000], 0);
         let thick = path(Role::Infill, 2, &[100_000, 0], 20_000);
         let moves = [(true, wall), (false, thick)];
         let moves =
             moves.map(|(retract, path)| PrintMove { retract, ..PrintMove::to(path) }).to_vec();
-        Toolpath { layer: 3, z: 8_000, height: 2_000, from: Head::default(), moves }
+        Toolpath { layer: 3, z: 8_000, height: 2_000, from: Nozzle::default(), moves }
     }
 
     fn text(profile: &str) -> String {

@@ -1,6 +1,6 @@
 //! Boxes -> Boxes: finds those around a place without asking each; so too which contours run around it.
 //!
-//! A box lies in a layer of square cells that are as wide as it is, or up to twice as wide. So it
+//! A hierarchical grid: a box lies in a layer of square cells that are as wide as it is, or up to twice as wide. So it
 //! reaches into at most four of them, and a place into one cell of each layer. Layers that hold no
 //! box are left out; there are at most 32 others.
 

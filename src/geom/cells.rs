@@ -1,4 +1,4 @@
-//! Items -> Cells: sorts items into all cells that they reach into, by counting.
+//! Items -> Cells: the buckets of a grid; sorts items into all cells that they reach into (counting sort).
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Points -> contour: the smallest convex one around them.
+//! Points -> contour: their convex hull.
 
 use super::{Contour, Point, side};
 

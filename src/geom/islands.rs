@@ -1,4 +1,4 @@
-//! Rows -> Islands: which spans hang together from row to row.
+//! Rows -> Islands: which spans hang together from row to row (connected components).
 //!
 //! Spans of neighbouring rows belong together if they share a place along the lines. Ends that only
 //! touch count: rounding must not split an island.

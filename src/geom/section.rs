@@ -32,13 +32,6 @@ impl Section {
         self.sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += area * more);
     }
 
-    /// The centre of gravity, mm.
-    #[must_use]
-    pub fn middle(&self) -> [f64; 2] {
-        let [area, x, y, ..] = self.sums;
-        [self.origin[0] + x / area, self.origin[1] + y / area]
-    }
-
     /// See the words of this file, mm; 0 of nothing.
     #[must_use]
     pub fn thickness(&self) -> f64 {
@@ -73,7 +66,5 @@ mod tests {
         assert!(is(Section::default(), 0.0));
         // Two lines far apart are as thick as the field between them, and more.
         assert!(strips(2, 10, 3.0).thickness() > 3.0);
-        let [x, y] = strips(20, 10, 0.5).middle();
-        assert!((x - 5.0).abs() < 1e-9 && (y - 4.75).abs() < 1e-9);
     }
 }

@@ -1,4 +1,4 @@
-//! Pairs that belong together -> Sets: which numbers hang together through any of the pairs.
+//! Pairs that belong together -> Sets: which numbers hang together through any of the pairs (union-find).
 //!
 //! Each number points to another of its set; following the pointers ends at the *root*, which points
 //! to itself. The least number of a set is its root, so that nothing depends on the order of pairs.
@@ -55,6 +55,26 @@ impl Sets {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Against the plain way: every pair paints one set in the other's colour.
+        #[test]
+        fn numbers_hang_together_through_any_pairs(
+            pairs in prop::collection::vec((0..30_usize, 0..30_usize), 0..40)
+        ) {
+            let mut sets = Sets::default();
+            let mut colours: Vec<usize> = (0..30).map(|_| sets.add()).collect();
+            for (a, b) in pairs {
+                let (x, y) = (colours[a], colours[b]);
+                let (old, young) = (x.min(y), x.max(y));
+                colours.iter_mut().filter(|one| **one == young).for_each(|one| *one = old);
+                prop_assert_eq!(sets.join(a, b), (x != y).then_some((old, young)));
+            }
+            let roots: Vec<usize> = (0..30).map(|one| sets.root(one)).collect();
+            prop_assert_eq!(roots, colours);
+        }
+    }
 
     #[test]
     fn what_hangs_together_has_its_least_number_as_root() {

@@ -9,6 +9,7 @@
 //! - A sweep is the deepest of its samples.
 
 use super::pile::{Hit, LEAST_TOUCH, Pile};
+use super::shape::Shape;
 use super::sweep::{SAMPLE, sweep};
 use super::tests::any_head;
 use super::{Head, Part};
@@ -24,7 +25,7 @@ fn brute(pile: &Pile, head: &Head, tip: [f64; 3], spare: &dyn Fn(&Hit) -> bool) 
             let half = pile.side() / 2.0;
             let edge = |sign: f64| [at[0] + sign * half - tip[0], at[1] + sign * half - tip[1]];
             let (low, high) = (edge(-1.0), edge(1.0));
-            let over = head.over(low, high);
+            let over = Shape::of(head).lowest(low, high).0;
             let height = pile.height([column, row]);
             let hit = Hit { part: Part::Flat, depth: height - tip[2] - over, at, height, tip };
             let deeper = best.is_none_or(|best| hit.depth > best.depth);

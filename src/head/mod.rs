@@ -54,9 +54,9 @@ pub enum Part {
 pub const DEEPEST_PRESS: f64 = 1.5;
 
 impl Head {
-    /// The steepest plane through the tip that cone and discs leave free, degrees; boxes have
-    /// [`Self::steepest_of_boxes`]. Beside the flat a plane always presses: the cone counts from the edge
-    /// of the ring where a touch may be press, [`Self::press_radius`].
+    /// The steepest plane through the tip that cone and discs leave free, degrees. Boxes do not count: only
+    /// a surface so large that it rises up to a box meets one. Beside the flat a plane always presses: the
+    /// cone counts from the edge of the ring where a touch may be press, [`Self::press_radius`].
     #[must_use]
     pub fn steepest(&self) -> f64 {
         let shape = Shape::of(self);
@@ -65,13 +65,6 @@ impl Head {
         let cone = (shape.cone_end > from).then_some(flank);
         let discs = self.discs.iter().map(|&[radius, z]| atan(z, radius));
         cone.into_iter().chain(discs).fold(90.0, f64::min)
-    }
-
-    /// The steepest plane through the tip that the boxes leave free in all its directions, degrees. It only
-    /// counts where a surface is so large that it rises up to a box.
-    #[must_use]
-    pub fn steepest_of_boxes(&self) -> f64 {
-        self.boxes.iter().map(|&area| atan(area[4], furthest(area))).fold(90.0, f64::min)
     }
 
     /// The steepest plane through the tip on which the flat's uphill edge presses no deeper than `most`,
@@ -124,13 +117,6 @@ impl Head {
     pub fn underside(&self, by: [f64; 2]) -> Option<(f64, Part)> {
         let (z, part) = Shape::of(self).lowest(by, by);
         part.map(|part| (z, part))
-    }
-
-    /// The lowest place of the underside over a rectangle from `low` to `high` beside the tip, mm; infinite
-    /// beyond its reach.
-    #[must_use]
-    pub fn over(&self, low: [f64; 2], high: [f64; 2]) -> f64 {
-        Shape::of(self).lowest(low, high).0
     }
 }
 
@@ -194,7 +180,7 @@ mod tests {
         // The nozzle alone ends with its cone.
         let nozzle = Head { discs: Vec::new(), boxes: Vec::new(), ..head };
         assert_eq!(
-            (nozzle.underside([2.6, 0.0]), nozzle.over([2.6, 0.0], [3.0, 1.0])),
+            (nozzle.underside([2.6, 0.0]), Shape::of(&nozzle).lowest([2.6, 0.0], [3.0, 1.0]).0),
             (None, f64::INFINITY)
         );
         assert!((nozzle.reach() - 2.5).abs() < 1e-9);
@@ -206,7 +192,6 @@ mod tests {
             |angle: f64, right: f64| assert!((angle - right).abs() < 0.05, "{angle} {right}");
         let v6 = named("v6").unwrap();
         near(v6.steepest(), 26.3);
-        near(v6.steepest_of_boxes(), 16.4);
         near(v6.steepest_press(0.2), 21.8);
         near(named("cautious").unwrap().steepest(), 4.3);
         near(named("long-0.6").unwrap().steepest(), 40.9);
@@ -221,7 +206,7 @@ mod tests {
             head in any_head(), x in -25.0..25.0, y in -25.0..25.0, w in 0.0..9.0, h in 0.0..9.0,
         ) {
             let (low, high) = ([x, y], [x + w, y + h]);
-            let over = head.over(low, high);
+            let over = Shape::of(&head).lowest(low, high).0;
             let mut least = f64::INFINITY;
             for i in 0..=30 {
                 for j in 0..=30 {

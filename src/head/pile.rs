@@ -93,8 +93,8 @@ impl Pile {
     }
 
     /// The side of a cell, mm.
-    #[must_use]
-    pub fn side(&self) -> f64 {
+    #[cfg(test)]
+    pub(super) fn side(&self) -> f64 {
         self.cell
     }
 
@@ -106,8 +106,8 @@ impl Pile {
     }
 
     /// The cell around a place; `None` beside the grid.
-    #[must_use]
-    pub fn cell(&self, at: [f64; 2]) -> Option<[usize; 2]> {
+    #[cfg(test)]
+    pub(super) fn cell(&self, at: [f64; 2]) -> Option<[usize; 2]> {
         let along = |axis: usize| ((at[axis] - self.low[axis]) / self.cell).floor();
         let (column, row, [columns, rows]) = (along(0), along(1), self.size());
         let inside = column >= 0.0 && row >= 0.0 && column < columns as f64 && row < rows as f64;

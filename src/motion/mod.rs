@@ -23,9 +23,6 @@ pub use limits::{Junction, Limits, Rates};
 
 use crate::units::MmPerS;
 
-/// The axes' places in every array of four.
-pub const AXES: [&str; 4] = ["x", "y", "z", "e"];
-
 /// A straight move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Move<T> {

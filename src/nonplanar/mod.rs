@@ -23,7 +23,7 @@ mod laws;
 mod tests;
 
 pub use field::Fields;
-pub use pass::{patches, patches_and_fields};
+pub use pass::patches_and_fields;
 pub use patch::{Patch, Patches, Stroke};
 pub use scene::{Props, Scene, Skirt, support_lines};
 pub use tally::{Areas, Reason};

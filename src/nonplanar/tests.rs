@@ -153,7 +153,7 @@ fn under(
         ceiling,
         params,
     };
-    let out = patches(&scene);
+    let out = patches_and_fields(&scene).0;
     let sum = out.mm2.total();
     assert!(
         (sum - surfaces.tops.all).abs() < 0.01 * surfaces.tops.all,

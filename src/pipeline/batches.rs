@@ -16,14 +16,15 @@
 use super::curved::Curved;
 use super::footing::Footing;
 use super::footprint::{Footprint, Rules, footprint};
+use super::raise::raise;
 use super::sticking::{Sticking, Stuck};
 use crate::error::{Refusal, Result};
+use crate::fill::adhesion::lift::Lift;
 use crate::fill::{self, FillParams, Path};
 use crate::gcode::Writer;
 use crate::geom::Point;
-use crate::plan::lift::Lift;
 use crate::plan::order::{self, Unordered};
-use crate::plan::{Head, PlanParams, Seams, Toolpath, travel};
+use crate::plan::{Nozzle, PlanParams, Seams, Toolpath, travel};
 use crate::profile::Settings;
 use crate::progress::Progress;
 use crate::region::dual::audit::Audit;
@@ -103,7 +104,7 @@ impl Setup {
             first: self.first.as_ref().map(|(_, fill)| fill),
             plan: &self.plan,
             lift: &self.lift,
-            head: Head::default(),
+            nozzle: Nozzle::default(),
             seams: Seams::default(),
             tally: Tally::default(),
             footing,
@@ -199,8 +200,8 @@ struct Orderer<'a> {
     first: Option<&'a FillParams>,
     plan: &'a PlanParams,
     lift: &'a Lift,
-    /// Where the head is after the layers so far.
-    head: Head,
+    /// Where the nozzle is after the layers so far.
+    nozzle: Nozzle,
     seams: Seams,
     tally: Tally,
     footing: Footing,
@@ -228,13 +229,13 @@ impl Orderer<'_> {
         // The end of a layer decides where the next begins, so that they are ordered in sequence.
         let mut ordered = Vec::with_capacity(regions.len());
         for (region, (footprint, paths)) in regions.iter().zip(unordered) {
-            let at = self.head.at.unwrap_or_default();
+            let at = self.nozzle.at.unwrap_or_default();
             let paths = order::order(paths, at, &mut self.seams, plan);
             let skins = self.curved.map(|c| c.after(region.layer.index)).unwrap_or_default();
-            let next = self.head.after(&region.layer, &paths);
+            let next = self.nozzle.after(&region.layer, &paths);
             let k = region.layer.index;
-            let next = self.curved.map_or(next, |c| c.head_after(next, k, &skins));
-            ordered.push((region, std::mem::replace(&mut self.head, next), paths, skins));
+            let next = self.curved.map_or(next, |c| c.nozzle_after(next, k, &skins));
+            ordered.push((region, std::mem::replace(&mut self.nozzle, next), paths, skins));
             self.tally.layer(region);
             self.footing.layer(footprint, region);
         }
@@ -257,17 +258,17 @@ impl Orderer<'_> {
 
     /// The toolpaths, lifted by the raft. Before the first of them come those of the raft.
     fn lifted(&mut self, mut toolpaths: Vec<Toolpath>) -> Vec<Toolpath> {
-        self.lift.raise(&mut toolpaths);
-        let (mut head, mut seams) = (Head::default(), Seams::default());
+        raise(&mut toolpaths, self.lift);
+        let (mut nozzle, mut seams) = (Nozzle::default(), Seams::default());
         let courses = self.sticking.raft().into_iter().map(|(layer, paths)| {
             let paths = Unordered::new(paths, &layer.contours, self.plan);
-            let paths = order::order(paths, head.at.unwrap_or_default(), &mut seams, self.plan);
-            let next = head.after(&layer, &paths);
-            travel::toolpath(&layer, paths, std::mem::replace(&mut head, next), self.plan)
+            let paths = order::order(paths, nozzle.at.unwrap_or_default(), &mut seams, self.plan);
+            let next = nozzle.after(&layer, &paths);
+            travel::toolpath(&layer, paths, std::mem::replace(&mut nozzle, next), self.plan)
         });
         let mut courses: Vec<Toolpath> = courses.collect();
         if let Some(first) = toolpaths.first_mut().filter(|_| !courses.is_empty()) {
-            first.from = head;
+            first.from = nozzle;
         }
         courses.append(&mut toolpaths);
         courses

@@ -9,6 +9,7 @@
 //! 3. After the paths of a layer come the coats that wait for it.
 
 use crate::fill::Path;
+use crate::fill::adhesion::lift::Lift;
 use crate::geom::hull::hull;
 use crate::geom::{Point, polygon};
 use crate::head::named;
@@ -19,8 +20,7 @@ use crate::nonplanar::contour::{self, Contours};
 use crate::nonplanar::params::NonPlanarParams;
 use crate::nonplanar::surface::find::{Surfaces, surfaces, surfaces_for};
 use crate::nonplanar::{Patch, Patches, Props, Scene, Skirt, support_lines};
-use crate::plan::lift::Lift;
-use crate::plan::{Head, PlanParams, Toolpath, travel};
+use crate::plan::{Nozzle, PlanParams, Toolpath, travel};
 use crate::profile::Settings;
 use crate::region::curved::CurvedTops;
 use crate::region::window::Support;
@@ -180,11 +180,11 @@ impl<'a> Curved<'a> {
         Coat { number: patch.number, paths, over }
     }
 
-    /// The head once the patches after layer `k` are printed as well; `head` is that after its paths.
+    /// The nozzle once the patches after layer `k` are printed as well; `nozzle` is that after its paths.
     #[must_use]
-    pub fn head_after(&self, head: Head, k: usize, coats: &[Coat]) -> Head {
+    pub fn nozzle_after(&self, nozzle: Nozzle, k: usize, coats: &[Coat]) -> Nozzle {
         let z = self.heights.top(k);
-        coats.iter().fold(head, |head, coat| head.after_patch(z, &coat.paths, self.clearance))
+        coats.iter().fold(nozzle, |nozzle, coat| nozzle.after_patch(z, &coat.paths, self.clearance))
     }
 
     /// The highest place of all patches above the bed, grid units; 0 without any.

@@ -17,9 +17,9 @@
 
 use super::footprint::{Footprint, Island};
 use crate::error::Hanging;
+use crate::fill::adhesion::lift::Lift;
 use crate::geom::Point;
 use crate::geom::sets::Sets;
-use crate::plan::lift::Lift;
 use crate::profile::{Floating, Settings, SupportBase};
 use crate::region::{Region, Sparse, SupportLines};
 use crate::units::{Coord, UNITS_PER_MM, sum_mm, to_mm};

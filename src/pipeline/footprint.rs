@@ -94,7 +94,7 @@ pub fn footprint(region: &Region, paths: &[Path], rules: Rules) -> Footprint {
     };
     let boxes = boxes_of(&islands);
     let mut beads = HashSet::new();
-    for path in paths.iter().filter(|path| path.role.facts().place.is_of_part()) {
+    for path in paths.iter().filter(|path| path.role.facts().order.is_of_part()) {
         let at = path.start();
         let holds = |k: &usize| islands.len() == 1 || islands[*k].encloses(at);
         // An only island may be missed by rounding.

@@ -2,8 +2,9 @@
 //!
 //! Here is all code that names several stages at once: reading and placing ([`place`]), planning
 //! in batches ([`batches`]), where raster lines lie ([`phase`]), what begins in the air ([`footing`]), skirt,
-//! brim and raft ([`sticking`]), skins that follow the surface ([`curved`]), the thumbnails
-//! ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs that cannot seek ([`spool`]).
+//! brim and raft ([`sticking`]), what a raft lifts ([`mod@raise`]), skins that follow the surface
+//! ([`curved`]), the thumbnails ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs
+//! that cannot seek ([`spool`]).
 
 pub mod batches;
 pub mod curved;
@@ -12,6 +13,7 @@ pub mod footprint;
 pub mod phase;
 pub mod place;
 pub mod prime;
+pub mod raise;
 pub mod refuse;
 mod rise;
 pub mod spool;
@@ -19,9 +21,9 @@ pub mod sticking;
 pub mod thumbnails;
 
 use crate::error::Refusal;
+use crate::fill::adhesion::lift::Lift;
 use crate::mesh::Mesh;
 use crate::mesh::place::Placed;
-use crate::plan::lift::Lift;
 use crate::profile::{Angle, Settings, TravelOrder};
 use crate::region::angle;
 use crate::slice::{Compensation, Heights, Slicer};

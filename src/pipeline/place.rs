@@ -1,10 +1,10 @@
 //! Model files -> Placed: reads the models and lays them on the machine's bed.
 
 use crate::error::Result;
+use crate::fill::adhesion::lift::Lift;
 use crate::geom::Point;
 use crate::job::Model;
 use crate::mesh::{self, Bed, Placement, place::Placed};
-use crate::plan::lift::Lift;
 use crate::profile::template::PrintFacts;
 use crate::profile::{Machine, Settings};
 use crate::progress::Progress;

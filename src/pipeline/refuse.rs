@@ -17,10 +17,10 @@
 //! The other way, to write all and to take it back, needs an output that can be taken back.
 
 use crate::error::{MOST_GAP_MM, Refusal, Result};
+use crate::fill::adhesion::lift::Lift;
 use crate::job::Job;
 use crate::mesh::Policy;
 use crate::mesh::place::Placed;
-use crate::plan::lift::Lift;
 use crate::profile::Settings;
 use crate::progress::Progress;
 use crate::slice::{Heights, Slicer};

@@ -6,12 +6,12 @@
 use super::rise::rise;
 use crate::error::Refusal;
 use crate::fill::adhesion::clear::clear;
+use crate::fill::adhesion::lift::Lift;
 use crate::fill::adhesion::{Adhesion, AdhesionParams, Base};
 use crate::fill::{Path, Role};
 use crate::geom::Point;
 use crate::geom::nest::{Nest, extent};
 use crate::mesh::place::Placed;
-use crate::plan::lift::Lift;
 use crate::profile::{BrimPlace, Settings};
 use crate::report::{BrimReport, RaftReport};
 use crate::slice::{Heights, Layer};

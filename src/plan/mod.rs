@@ -6,15 +6,13 @@
 //! 3. [`tour`] reorders runs of them where that saves time.
 //! 4. [`travel`] decides for each path how the travel to it goes: straight or round a corner, with or
 //!    without a retraction.
-//! 5. [`lift`] raises what is planned above a raft.
 //!
-//! Of a path's role only its [`Place`](crate::fill::Place) matters here.
+//! Of a path's role only its [`Order`](crate::fill::Order) matters here.
 //!
 //! Guaranteed to the next stage: every path comes once, in the order of printing.
 
 mod crossings;
 mod detour;
-pub mod lift;
 mod marks;
 mod next;
 pub mod order;
@@ -69,15 +67,15 @@ pub struct Toolpath {
     pub z: Coord,
     /// Height of the layer, grid units.
     pub height: Coord,
-    /// The head before this layer.
-    pub from: Head,
+    /// Where the nozzle is before this layer.
+    pub from: Nozzle,
     /// The paths.
     pub moves: Vec<PrintMove>,
 }
 
-/// The position of the head after some layers, and the height of what it must not hit.
+/// Where the nozzle is after some layers, and the height of what it must not hit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Head {
+pub struct Nozzle {
     /// Position of the nozzle, if known.
     pub at: Option<Point>,
     /// The greatest z printed so far, and over patches of non-planar skin the clearance more; grid units
@@ -85,14 +83,14 @@ pub struct Head {
     pub highest: Coord,
 }
 
-impl Head {
-    /// The head once `paths` of `layer` are printed as well.
+impl Nozzle {
+    /// The nozzle once `paths` of `layer` are printed as well.
     #[must_use]
     pub fn after(self, layer: &Layer, paths: &[Path]) -> Self {
         self.once(layer.z, paths, 0)
     }
 
-    /// The head once the paths of a patch are printed as well, over which travels keep the `clearance`.
+    /// The nozzle once the paths of a patch are printed as well, over which travels keep the `clearance`.
     /// `z` is the top of the layer that they are printed on. Grid units.
     #[must_use]
     pub fn after_patch(self, z: Coord, paths: &[Path], clearance: Coord) -> Self {

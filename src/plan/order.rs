@@ -23,7 +23,7 @@
 use super::next::Next;
 use super::seam::{self, Seams};
 use super::{PlanParams, tour};
-use crate::fill::{Path, Place, Role, Shape};
+use crate::fill::{Order, Path, Role, Shape};
 use crate::geom::boxes::Around;
 use crate::geom::nest::extent;
 use crate::geom::ranks::Ranks;
@@ -78,10 +78,10 @@ pub fn order(paths: Unordered, mut at: Point, seams: &mut Seams, params: &PlanPa
         let Island { mut walls, inside } = std::mem::take(&mut islands[k]);
         seams.place(&mut walls, params.seam);
         order_walls(walls, &mut at, params, &mut out);
-        order_by_role(inside, Place::Inside, &mut at, params, &mut out);
+        order_by_role(inside, Order::Inside, &mut at, params, &mut out);
     }
-    order_by_role(helpers, Place::Helper, &mut at, params, &mut out);
-    order_by_role(last, Place::Last, &mut at, params, &mut out);
+    order_by_role(helpers, Order::Helper, &mut at, params, &mut out);
+    order_by_role(last, Order::Last, &mut at, params, &mut out);
     if !params.as_listed && matches!(params.seam, Seam::Rear | Seam::Aligned) {
         lead_back(&mut out);
     }
@@ -92,7 +92,7 @@ pub fn order(paths: Unordered, mut at: Point, seams: &mut Seams, params: &PlanPa
 /// Sorts paths by role, and nearest first within a role. Then come those that have their turns.
 fn order_by_role(
     mut paths: Vec<Path>,
-    place: Place,
+    order: Order,
     at: &mut Point,
     params: &PlanParams,
     out: &mut Vec<Path>,
@@ -101,7 +101,7 @@ fn order_by_role(
         Shape::InTurn { turn } => Some(turn),
         Shape::Open | Shape::Loop { .. } => None,
     };
-    for role in Role::ALL.into_iter().filter(|role| role.facts().place == place) {
+    for role in Role::ALL.into_iter().filter(|role| role.facts().order == order) {
         let mut open: Vec<Path> = paths.extract_if(.., |path| path.role == role).collect();
         let mut in_turn: Vec<Path> = open.extract_if(.., |path| turn(path).is_some()).collect();
         if params.as_listed {
@@ -120,11 +120,11 @@ impl Unordered {
     /// walls have the order of the contours.
     #[must_use]
     pub fn new(mut paths: Vec<Path>, contours: &[Contour], params: &PlanParams) -> Self {
-        let mut take = |place: Place| -> Vec<Path> {
-            paths.extract_if(.., |path| path.role.facts().place == place).collect()
+        let mut take = |order: Order| -> Vec<Path> {
+            paths.extract_if(.., |path| path.role.facts().order == order).collect()
         };
-        let (first, helpers) = (take(Place::First), take(Place::Helper));
-        let last = take(Place::Last);
+        let (first, helpers) = (take(Order::First), take(Order::Helper));
+        let last = take(Order::Last);
         let islands =
             if params.as_listed { listed(paths, contours) } else { islands(paths, contours) };
         Self { islands, first, helpers, last }
@@ -134,7 +134,7 @@ impl Unordered {
 /// All paths, as one island.
 fn listed(mut paths: Vec<Path>, contours: &[Contour]) -> Vec<Island> {
     let ranks = Ranks::new(contours);
-    let is_wall = |path: &mut Path| path.role.facts().place == Place::Walls;
+    let is_wall = |path: &mut Path| path.role.facts().order == Order::Walls;
     let mut walls: Vec<Path> = paths.extract_if(.., is_wall).collect();
     walls.sort_by_cached_key(|wall| ranks.of(wall.points.iter().map(|p| p.at)));
     vec![Island { walls, inside: paths }]
@@ -157,7 +157,7 @@ fn islands(paths: Vec<Path>, contours: &[Contour]) -> Vec<Island> {
     };
     for path in paths {
         let island = &mut islands[island_of(path.start())];
-        let is_wall = path.role.facts().place == Place::Walls;
+        let is_wall = path.role.facts().order == Order::Walls;
         if is_wall { &mut island.walls } else { &mut island.inside }.push(path);
     }
     islands.retain(|i| !i.walls.is_empty() || !i.inside.is_empty());
@@ -249,10 +249,9 @@ fn entries(wall: &Path, params: &PlanParams) -> Vec<usize> {
     if wall.shape == Shape::Open {
         return vec![0, last];
     }
-    let rear = |&k: &usize| (-i64::from(wall.points[k].at.y), k);
     match params.seam {
         Seam::Nearest => (0..last.max(1)).collect(),
-        Seam::Rear => vec![(0..last).min_by_key(rear).unwrap_or_default()],
+        Seam::Rear => vec![seam::rearmost(wall)],
         Seam::Aligned | Seam::Random => vec![0],
     }
 }
@@ -341,7 +340,7 @@ mod tests {
     fn line(x: Coord, role: Role) -> Path {
         let point = |y| place(x, y);
         let points = vec![point(0), point(10_000)];
-        Path { role, shape: Shape::Open, points, layers: 1, tool: 0 }
+        Path { role, shape: Shape::Open, points, layers: 1 }
     }
 
     fn places(paths: &[Path]) -> Vec<Coord> {

@@ -287,9 +287,9 @@ fn height(from: Coord, to: Coord, share: f64) -> Coord {
     from + nearest(f64::from(to - from) * share) as Coord
 }
 
-/// The point of a closed wall furthest back.
-fn rearmost(wall: &Path) -> usize {
-    let key = |&k: &usize| (-i64::from(wall.points[k].at.y), wall.points[k].at.x);
+/// The point of a closed wall furthest back; of those the rightmost, wherever its list of points begins.
+pub(super) fn rearmost(wall: &Path) -> usize {
+    let key = |&k: &usize| (-i64::from(wall.points[k].at.y), -i64::from(wall.points[k].at.x));
     (0..wall.points.len() - 1).min_by_key(key).unwrap_or_default()
 }
 
@@ -317,4 +317,29 @@ fn mixed(n: u64) -> u64 {
     let n = (n ^ (n >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let n = (n ^ (n >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     n ^ (n >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fill::Role;
+
+    #[test]
+    fn the_rear_is_the_same_corner_wherever_the_list_begins() {
+        let corners = [(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)];
+        let point = |(x, y)| PathPoint { at: Point { x, y }, z: 0, width: 1, height: 1, hang: 0 };
+        let points = corners.map(point).to_vec();
+        let wall =
+            Path { role: Role::OuterWall, shape: Shape::Loop { depth: 0 }, points, layers: 1 };
+        for first in 0..4 {
+            for backwards in [false, true] {
+                let mut wall = wall.clone();
+                wall.begin_at(first);
+                if backwards {
+                    wall.reverse();
+                }
+                assert_eq!(wall.points[rearmost(&wall)].at, Point { x: 10, y: 10 });
+            }
+        }
+    }
 }

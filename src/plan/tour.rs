@@ -14,7 +14,7 @@
 //! Nearly all changes are rejected by a bound that needs no square root. Only the few others compute
 //! whether their legs retract. Where a run begins and ends stays, so that layers remain independent.
 
-use crate::fill::{Path, Place, Role, Shape};
+use crate::fill::{Order, Path, Role, Shape};
 use crate::geom::Point;
 use std::cell::LazyCell;
 use std::ops::Range;
@@ -90,11 +90,11 @@ pub(super) fn free(path: &Path) -> Option<Group> {
     if matches!(path.shape, Shape::InTurn { .. }) {
         return None;
     }
-    match path.role.facts().place {
-        Place::Walls | Place::First | Place::Last => None,
-        Place::Inside if path.role == Role::TopSkin => Some(Group::Top),
-        Place::Inside => Some(Group::Inside),
-        Place::Helper => Some(Group::Helpers),
+    match path.role.facts().order {
+        Order::Walls | Order::First | Order::Last => None,
+        Order::Inside if path.role == Role::TopSkin => Some(Group::Top),
+        Order::Inside => Some(Group::Inside),
+        Order::Helper => Some(Group::Helpers),
     }
 }
 

@@ -15,7 +15,7 @@ use super::crossings::Crossings;
 use super::detour::detour;
 use super::tour::{self, Cost};
 use super::wipe::wipe;
-use super::{Head, PlanParams, PrintMove, Toolpath};
+use super::{Nozzle, PlanParams, PrintMove, Toolpath};
 use crate::fill::{Path, Shape};
 use crate::geom::{Contour, Point};
 use crate::slice::Layer;
@@ -48,7 +48,7 @@ impl Travels<'_> {
         detour((from, to), self.contours, &self.crossings, params)
     }
 
-    /// The travel to `path` from where the head is; `last` is the path before it.
+    /// The travel to `path` from where the nozzle is; `last` is the path before it.
     fn to(&self, path: Path, at: Option<Point>, last: Option<&Path>) -> PrintMove {
         let Some(from) = at else {
             return PrintMove { retract: self.params.retracts, ..PrintMove::to(path) };
@@ -84,9 +84,9 @@ impl Cost for Travels<'_> {
     }
 }
 
-/// The toolpath of a layer whose paths are sorted; `from` is the head before it.
+/// The toolpath of a layer whose paths are sorted; `from` is where the nozzle is before it.
 #[must_use]
-pub fn toolpath(layer: &Layer, paths: Vec<Path>, from: Head, params: &PlanParams) -> Toolpath {
+pub fn toolpath(layer: &Layer, paths: Vec<Path>, from: Nozzle, params: &PlanParams) -> Toolpath {
     let moves = moves(paths, &layer.contours, from.at, params);
     Toolpath { layer: layer.index, z: layer.z, height: layer.height, from, moves }
 }

@@ -50,7 +50,7 @@ mod tests {
         let point =
             |&(x, y)| PathPoint { at: Point { x, y }, z: 0, width: 4_000, height: 2_000, hang: 0 };
         let points = places.iter().map(point).collect();
-        Path { role: Role::OuterWall, shape, points, layers: 1, tool: 0 }
+        Path { role: Role::OuterWall, shape, points, layers: 1 }
     }
 
     #[test]

@@ -277,13 +277,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_unique() {
-        for (i, key) in KEYS.iter().enumerate() {
-            assert!(KEYS[..i].iter().all(|other| other.name != key.name), "{}", key.name);
-        }
-    }
-
-    #[test]
     fn a_declaration_is_read_as_a_row() {
         let words = |list: &[&str]| list.iter().map(|word| (*word).to_owned()).collect();
         let kinds = [

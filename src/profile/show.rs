@@ -22,7 +22,7 @@ pub(super) const NOT_DUMPED: &[&str] = &["description", "machine.start_gcode", "
 
 /// The format of the settings, then all of them but the description and the blocks, as
 /// dotted key and TOML value on one line of less than 900 bytes, in the order of
-/// [`KEYS`](super::keys::KEYS). What a G-code file holds as comments.
+/// [`KEYS`]. What a G-code file holds as comments.
 #[must_use]
 pub fn dump(settings: &Settings) -> Vec<(String, String)> {
     let mut lines = values(settings);

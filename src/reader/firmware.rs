@@ -214,33 +214,57 @@ pub(super) enum Factors {
     Lines,
 }
 
-/// See the file's head for the columns and for where they are from.
-#[rustfmt::skip]
-static TABLE: [Rules; Firmware::NAMES.len()] = [
-    //  name               E with G91      G10                 M207              M200    A, B            G4                    M220, M221       turns   places
-    row("marlin",          Modes::Last,    G10::Retracts,      M207::Hops,       true,   Ab::Nothing,    Dwell::Seconds,       Factors::All,    true,   false),
-    row("marlin-1",        Modes::Either,  G10::Retracts,      M207::Hops,       true,   Ab::Nothing,    Dwell::Seconds,       Factors::All,    false,  false),
-    row("klipper",         Modes::Either,  G10::Retracts,      M207::Nothing,    false,  Ab::Nothing,    Dwell::Milliseconds,  Factors::All,    false,  false),
-    row("reprapfirmware",  Modes::Apart,   G10::RetractsBare,  M207::Surplus,    true,   Ab::Nothing,    Dwell::Seconds,       Factors::Lines,  false,  true),
-    row("sailfish",        Modes::Either,  G10::Offsets,       M207::Nothing,    false,  Ab::Filaments,  Dwell::Milliseconds,  Factors::All,    false,  false),
-    row("ultigcode",       Modes::Either,  G10::Retracts,      M207::Hops,       false,  Ab::Nothing,    Dwell::Seconds,       Factors::All,    false,  false),
-    row("repetier",        Modes::Either,  G10::Retracts,      M207::Jerk,       true,   Ab::Nothing,    Dwell::Seconds,       Factors::All,    false,  false),
-    row("smoothie",        Modes::Last,    G10::Retracts,      M207::HopsApart,  true,   Ab::Nothing,    Dwell::Sum,           Factors::All,    false,  false),
-    row("unknown",         Modes::Either,  G10::Guess,         M207::Hops,       true,   Ab::Found,      Dwell::Seconds,       Factors::All,    false,  true),
-];
+/// What most firmwares do: a row of the table tells in what its own differs.
+const USUAL: Rules = Rules {
+    name: "",
+    modes: Modes::Either,
+    g10: G10::Retracts,
+    m207: M207::Hops,
+    m200: true,
+    ab: Ab::Nothing,
+    dwell: Dwell::Seconds,
+    factors: Factors::All,
+    turns: false,
+    places: false,
+};
 
-#[allow(clippy::too_many_arguments, reason = "a row of the table")]
-const fn row(
-    name: &'static str,
-    modes: Modes,
-    g10: G10,
-    m207: M207,
-    m200: bool,
-    ab: Ab,
-    dwell: Dwell,
-    factors: Factors,
-    turns: bool,
-    places: bool,
-) -> Rules {
-    Rules { name, modes, g10, m207, m200, ab, dwell, factors, turns, places }
-}
+/// See the file's head for the words and for where the rows are from.
+static TABLE: [Rules; Firmware::NAMES.len()] = [
+    Rules { name: "marlin", modes: Modes::Last, turns: true, ..USUAL },
+    Rules { name: "marlin-1", ..USUAL },
+    Rules {
+        name: "klipper",
+        m207: M207::Nothing,
+        m200: false,
+        dwell: Dwell::Milliseconds,
+        ..USUAL
+    },
+    Rules {
+        name: "reprapfirmware",
+        modes: Modes::Apart,
+        g10: G10::RetractsBare,
+        m207: M207::Surplus,
+        factors: Factors::Lines,
+        places: true,
+        ..USUAL
+    },
+    Rules {
+        name: "sailfish",
+        g10: G10::Offsets,
+        m207: M207::Nothing,
+        m200: false,
+        ab: Ab::Filaments,
+        dwell: Dwell::Milliseconds,
+        ..USUAL
+    },
+    Rules { name: "ultigcode", m200: false, ..USUAL },
+    Rules { name: "repetier", m207: M207::Jerk, ..USUAL },
+    Rules {
+        name: "smoothie",
+        modes: Modes::Last,
+        m207: M207::HopsApart,
+        dwell: Dwell::Sum,
+        ..USUAL
+    },
+    Rules { name: "unknown", g10: G10::Guess, ab: Ab::Found, places: true, ..USUAL },
+];

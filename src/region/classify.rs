@@ -5,16 +5,12 @@
 //! infill begin inside this layer's walls. So a steep slope, which the walls already close, gets
 //! no thin ring of skin. Skin reaches a little under or over what covers it, to hold on.
 
-use super::params::SkinParams;
+use super::params::{NOISE, SkinParams};
 use super::prepare::LayerRows;
 use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span, intersect, subtract};
 use crate::units::Coord;
 use std::sync::Arc;
-
-/// Shorter skin on a row is dropped as noise of the contours (50 µm). A smaller value gives single
-/// specks of skin, each grown by the reach; a larger one leaves thin ledges open.
-const LEAST_SKIN: Coord = 500;
 
 /// Skin and sparse infill of one layer on one raster. They are disjoint. Together they are the
 /// layer's fill rows without what wall beads take, on the rasters of skins; on others infill also keeps
@@ -54,7 +50,7 @@ pub fn exposed<'a>(
             }
             None => left.extend_from_slice(row),
         }
-        let kept = left.iter().filter(|span| span.len() >= i64::from(LEAST_SKIN));
+        let kept = left.iter().filter(|span| span.len() >= NOISE);
         out.push_row(|spans| spans.extend(kept));
     }
     out
@@ -90,7 +86,7 @@ pub fn areas_beside(
     params: &SkinParams,
 ) -> Areas {
     let fill = Arc::new(fill.minus(taken));
-    let left = exposed.minus(taken).filter(|_, span| span.len() >= i64::from(LEAST_SKIN));
+    let left = exposed.minus(taken).filter(|_, span| span.len() >= NOISE);
     areas(&fill, &left, solid, pitch, params)
 }
 

@@ -7,15 +7,12 @@
 //! As with [`tops`](super::tops), a strip along what stands on the layer is left out if it is nowhere wide:
 //! such are the steps of a slope.
 
-use super::params::IroningParams;
+use super::params::{IroningParams, NOISE};
 use super::scan::Scan;
 use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span};
 use crate::geom::{Contour, Point};
 use crate::slice::Layer;
-
-/// Shorter stretches are noise of the contours (50 µm), as in [`classify`](super::classify).
-const NOISE: i64 = 500;
 
 /// What is ironed of one layer.
 #[derive(Debug, Clone)]

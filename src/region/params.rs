@@ -26,6 +26,11 @@ use crate::units::{Coord, UNITS_PER_MM, to_units};
 /// those of the layer below as well. PrusaSlicer and what descends from it do the same.
 const ACROSS: f64 = 45.0;
 
+/// Stretches of a row shorter than this are noise of the contours: 50 µm. A smaller value gives single
+/// specks of skin, each grown by the reach; a larger one leaves thin ledges open. It is one for all: with
+/// another one of its own, what a stage counts would not match the skin that is there.
+pub(super) const NOISE: i64 = 500;
+
 /// Strips of tops narrower than this go to what lies beside them, half as wide ones along walls, in line widths.
 /// A smaller value makes parts that are all turns; a larger one lets more of a gentle slope be printed as
 /// what lies under it.

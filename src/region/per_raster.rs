@@ -63,14 +63,6 @@ impl<T> PerRaster<T> {
         out
     }
 
-    /// Maps each value to another.
-    #[must_use]
-    pub fn map<U>(&self, make: impl Fn(&T) -> U) -> PerRaster<U> {
-        let others = self.others.iter().map(|(raster, value)| (*raster, make(value))).collect();
-        let skins = [make(&self.skins[0]), make(&self.skins[1])];
-        PerRaster { skins, others, rasters: self.rasters }
-    }
-
     /// Changes each value.
     #[must_use]
     pub fn map_on(self, mut make: impl FnMut(Raster, T) -> T) -> Self {

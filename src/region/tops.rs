@@ -13,16 +13,13 @@
 //! closed by the part that has this row. Other columns belong to one part.
 
 use super::first_skin::Both;
-use super::params::NARROW_TOP;
+use super::params::{NARROW_TOP, NOISE};
 use super::{Skin, SkinRows};
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::raster;
 use crate::geom::spans::{Rows, Span};
 use crate::units::Coord;
 use std::sync::Arc;
-
-/// Shorter stretches are noise of the contours (50 µm), as in [`classify`](super::classify).
-const LEAST: i64 = 500;
 
 /// The parts of `skin` on two rasters, and whether each is seen. `covers` are the layer above on the same
 /// rasters; `None` above the part. Lines are `width` wide, and reach `overlap` into walls.
@@ -93,7 +90,7 @@ fn is_seen(bead: &Polyline, cover: Option<&Rows>, pitch: Coord) -> bool {
 /// The part of `skin` that is seen.
 fn seen(skin: &Rows, cover: Option<&Rows>, width: Coord) -> Rows {
     let Some(cover) = cover else { return skin.clone() };
-    let long = |_, span: Span| span.len() >= LEAST;
+    let long = |_, span: Span| span.len() >= NOISE;
     let hidden = skin.and(cover).filter(long);
     if hidden.is_empty() {
         return skin.clone();

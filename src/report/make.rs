@@ -16,13 +16,13 @@ use super::{
 };
 use super::{doubtful, reshaped, unused};
 use crate::fill::Role;
+use crate::fill::adhesion::lift::Lift;
 use crate::gcode::Sums;
 use crate::gcode::flow::{Flows, speed};
 use crate::gcode::times::{LayerTime, Times};
 use crate::gcode::usage::Material;
 use crate::job::{self, Job};
 use crate::mesh::place::Placed;
-use crate::plan::lift::Lift;
 use crate::profile::{DualMode, DualPart, Settings, Sources};
 use crate::region::dual::audit::{Apart, Audit};
 use crate::slice::Heights;

@@ -3,7 +3,7 @@
 //! Words used here: a *tile* is a square of cells whose lowest and highest samples are known, so that beads
 //! far above or below are left out at once.
 //!
-//! The highest of all beads over a sample counts that is no higher than [`WINDOW`](super::WINDOW) layers
+//! The highest of all beads over a sample counts that is no higher than [`WINDOW`] layers
 //! above it. The order of beads does not matter, so they are drawn side by side.
 
 use super::bead::{Bead, is_of_part};

@@ -156,12 +156,6 @@ impl<W: Write> Encoder<W> {
         Ok(())
     }
 
-    /// Where the axes stand, in steps.
-    #[must_use]
-    pub fn totals(&self) -> Totals {
-        self.totals
-    }
-
     /// Writes the last block; `time` is that of all, µs. Gives the totals and the number of blocks.
     ///
     /// # Errors

@@ -52,13 +52,6 @@ impl Line {
         (0..AXES).filter(back).fold(0, |mask, axis| mask | 1 << axis)
     }
 
-    /// Which axes move at all.
-    #[must_use]
-    pub fn moving(&self) -> u8 {
-        let moves = |axis: &usize| self.to[*axis] != self.from[*axis];
-        (0..AXES).filter(moves).fold(0, |mask, axis| mask | 1 << axis)
-    }
-
     /// How far each axis goes, in units of a place.
     #[must_use]
     pub fn lengths(&self) -> [i64; AXES] {

@@ -41,8 +41,7 @@ impl Crate {
     /// Of files with their bare code; the names are from `src/`, and `root` is the crate's root.
     pub(crate) fn new<'a>(root: &str, files: impl Iterator<Item = (&'a str, String)>) -> Self {
         let module = |(file, code): (&'a str, String)| {
-            let code = code.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
-            let (imports, rest) = split(code);
+            let (imports, rest) = split(before_tests(&code));
             let paths = paths(&rest);
             (module_of(file, root), Module { file: file.to_owned(), imports, paths })
         };
@@ -100,6 +99,17 @@ impl Crate {
             }
         }
     }
+}
+
+/// The code without the tests at its end; a test module in a file of its own takes nothing off.
+fn before_tests(code: &str) -> &str {
+    let mark = "#[cfg(test)]\n";
+    let has_body = |(at, _): &(usize, &str)| {
+        let item = code[at + mark.len()..].split(['{', ';', '}']).next().unwrap_or_default();
+        let opens = code[at + mark.len() + item.len()..].starts_with('{');
+        opens && item.split_whitespace().any(|word| word == "mod")
+    };
+    code.match_indices(mark).find(has_body).map_or(code, |(at, _)| &code[..at])
 }
 
 /// The path of the module in `file` from the crate's root.

@@ -21,7 +21,7 @@ use slicer::mesh::{Bed, Placement, read};
 use slicer::motion::Limits;
 use slicer::pipeline;
 use slicer::plan::order::{self, Unordered};
-use slicer::plan::{Head, PlanParams, Seams, Toolpath, travel};
+use slicer::plan::{Nozzle, PlanParams, Seams, Toolpath, travel};
 use slicer::profile::{self, Override, Settings, ValueOrigin};
 use slicer::region::dual::groups::Grouping;
 use slicer::region::prepare::{LayerRows, prepare};
@@ -203,13 +203,13 @@ fn fill_and_plan(bench: &Bench, model: &Model) {
     let group = bench.group("plan", model.name);
     group.time("fill", paths);
     let order = |all: Vec<Vec<fill::Path>>| {
-        let (mut head, mut seams) = (Head::default(), Seams::default());
+        let (mut nozzle, mut seams) = (Nozzle::default(), Seams::default());
         for (region, paths) in regions.iter().zip(all) {
             let paths = Unordered::new(paths, &region.layer.contours, &plan);
-            let paths = order::order(paths, head.at.unwrap_or_default(), &mut seams, &plan);
-            head = head.after(&region.layer, &paths);
+            let paths = order::order(paths, nozzle.at.unwrap_or_default(), &mut seams, &plan);
+            nozzle = nozzle.after(&region.layer, &paths);
         }
-        head
+        nozzle
     };
     group.time_with("order", paths, order);
 }
@@ -217,12 +217,12 @@ fn fill_and_plan(bench: &Bench, model: &Model) {
 /// All toolpaths of a print to moves, to text and to times.
 fn gcode(bench: &Bench, model: &Model) {
     let (fill, plan) = (fill_params(model), PlanParams::new(&model.settings));
-    let (mut head, mut seams) = (Head::default(), Seams::default());
+    let (mut nozzle, mut seams) = (Nozzle::default(), Seams::default());
     let toolpath = |region: &Region| {
         let paths = Unordered::new(fill::paths(region, &fill), &region.layer.contours, &plan);
-        let paths = order::order(paths, head.at.unwrap_or_default(), &mut seams, &plan);
-        let next = head.after(&region.layer, &paths);
-        travel::toolpath(&region.layer, paths, std::mem::replace(&mut head, next), &plan)
+        let paths = order::order(paths, nozzle.at.unwrap_or_default(), &mut seams, &plan);
+        let next = nozzle.after(&region.layer, &paths);
+        travel::toolpath(&region.layer, paths, std::mem::replace(&mut nozzle, next), &plan)
     };
     let toolpaths: Vec<Toolpath> = model.regions().iter().map(toolpath).collect();
     let params = MoveParams::new(&model.settings, [150.0; 2]);

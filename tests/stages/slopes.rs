@@ -6,13 +6,14 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use slicer::estimate::{Options, estimate};
+use slicer::fill::adhesion::lift::Lift;
 use slicer::fill::{Path, PathPoint, Role, Shape};
 use slicer::gcode::reshaped::Bound;
 use slicer::gcode::{Sums, Writer};
 use slicer::geom::Point;
 use slicer::motion::Limits;
-use slicer::plan::lift::Lift;
-use slicer::plan::{Head, PlanParams, PrintMove, Toolpath, travel};
+use slicer::pipeline::raise::raise;
+use slicer::plan::{Nozzle, PlanParams, PrintMove, Toolpath, travel};
 use slicer::profile::template::PrintFacts;
 use slicer::profile::{JunctionRule, Override, Settings, ValueOrigin, load};
 use std::io::Cursor;
@@ -45,7 +46,7 @@ fn path(role: Role, places: &[([f64; 3], f64)]) -> Path {
         hang: 0,
     };
     let points = places.iter().map(point).collect();
-    Path { role, shape: Shape::Open, points, layers: 1, tool: 0 }
+    Path { role, shape: Shape::Open, points, layers: 1 }
 }
 
 /// A line of skin along x at this y, its height over the layer's top as `z` says.
@@ -66,16 +67,16 @@ fn layers(patch: &[Path], over: f64, settings: &Settings) -> Vec<Toolpath> {
     let corners = [[0.0, 0.0], [30.0, 0.0], [30.0, 30.0], [0.0, 30.0], [0.0, 0.0]];
     let square: Vec<_> = corners.map(|[x, y]| ([x, y, 0.0], 0.2)).to_vec();
     let wall = path(Role::OuterWall, &square);
-    let mut head = Head::default();
+    let mut nozzle = Nozzle::default();
     let mut all = Vec::new();
     for (layer, z) in [2_000, 4_000, 6_000, 8_000].into_iter().enumerate() {
         let moves = vec![PrintMove { retract: true, ..PrintMove::to(wall.clone()) }];
-        let mut toolpath = Toolpath { layer, z, height: 2_000, from: head, moves };
-        head = Head { at: Some(wall.end()), highest: head.highest.max(z) };
+        let mut toolpath = Toolpath { layer, z, height: 2_000, from: nozzle, moves };
+        nozzle = Nozzle { at: Some(wall.end()), highest: nozzle.highest.max(z) };
         if z == units(TOP) && !patch.is_empty() {
             let paths = patch.iter().map(|path| (path.clone(), units(over)));
             travel::add_patch(&mut toolpath, 7, paths, &plan);
-            head = head.after_patch(z, patch, units(settings.nonplanar.clearance));
+            nozzle = nozzle.after_patch(z, patch, units(settings.nonplanar.clearance));
         }
         all.push(toolpath);
     }
@@ -233,7 +234,7 @@ fn the_first_travel_of_a_print_rises_as_well() {
     let settings = settings("generic-marlin", &[]);
     let path = line(10.0, [1.0, 29.0], |_| 0.0);
     let moves = vec![PrintMove { over: 50_000, ..PrintMove::to(path) }];
-    let first = Toolpath { layer: 0, z: 2_000, height: 2_000, from: Head::default(), moves };
+    let first = Toolpath { layer: 0, z: 2_000, height: 2_000, from: Nozzle::default(), moves };
     let (text, _) = written(&[first], &settings);
     let travel = self::moves(&text).into_iter().find(Step::sideways).unwrap();
     assert_eq!((travel.from[2], travel.to[2], travel.prints), (5.0, 5.0, false));
@@ -437,7 +438,7 @@ fn a_raft_lifts_the_ways_to_a_patch_with_it() {
     let lift = Lift::new(&settings);
     assert!(lift.by() > 0);
     let mut toolpaths = layers(&[line(10.0, [1.0, 15.0, 29.0], ridge)], 4.5, &settings);
-    lift.raise(&mut toolpaths);
+    raise(&mut toolpaths, &lift);
     let overs: Vec<_> = toolpaths.iter().flat_map(|t| &t.moves).map(|next| next.over).collect();
     assert_eq!(overs, [0, 0, 0, 45_000 + lift.by(), 0]);
     let (text, _) = written(&toolpaths, &settings);

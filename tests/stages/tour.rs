@@ -37,7 +37,7 @@ fn place(x: Coord, y: Coord) -> PathPoint {
 }
 
 fn line(role: Role, points: Vec<PathPoint>) -> Path {
-    Path { role, shape: Shape::Open, points, layers: 1, tool: 0 }
+    Path { role, shape: Shape::Open, points, layers: 1 }
 }
 
 /// A path without its direction.

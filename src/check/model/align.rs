@@ -64,20 +64,31 @@ struct Off {
     size: Vector2<f64>,
 }
 
+/// What is known before the part is laid.
+#[derive(Clone, Copy)]
+pub(crate) struct Given<'a> {
+    pub(crate) facts: &'a Facts,
+    pub(crate) survey: &'a Survey,
+    pub(crate) model: Model<'a>,
+    pub(crate) terms: &'a Terms,
+    /// Whether the file tells what its lines are for.
+    pub(crate) has_roles: bool,
+}
+
 /// The model cut at the print's layers, moved to where the lines lie. `None` if the two cannot be
 /// compared; a finding or note gives the reason.
 pub(crate) fn place(
-    (facts, survey): (&Facts, &Survey),
-    (model, terms): (Model<'_>, &Terms),
-    has_roles: bool,
-    (found, notes): (&mut Findings, &mut Vec<String>),
+    given: Given<'_>,
+    found: &mut Findings,
+    notes: &mut Vec<String>,
 ) -> Option<Part> {
+    let Given { facts, survey, model, has_roles, .. } = given;
     if [raft::SUPPORT, raft::RAFT].iter().any(|key| raft::is_untold(facts, key)) {
         notes.push("the part: the file has support, and does not tell which lines it is".into());
         return None;
     }
     let heights = tops(facts, survey);
-    let (made, lift) = lifted((facts, survey), (model, terms), has_roles, &heights);
+    let (made, lift) = lifted(given, &heights);
     let mut part = match made {
         Ok(part) => part,
         Err(layer) => {
@@ -135,12 +146,8 @@ fn tops(facts: &Facts, survey: &Survey) -> Vec<(f64, f64)> {
 }
 
 /// The model cut at layers of these tops and heights, as high as a raft lifts it, and how far that is, mm.
-fn lifted(
-    (facts, survey): (&Facts, &Survey),
-    (model, terms): (Model<'_>, &Terms),
-    has_roles: bool,
-    heights: &[(f64, f64)],
-) -> (Result<Part, usize>, f64) {
+fn lifted(given: Given<'_>, heights: &[(f64, f64)]) -> (Result<Part, usize>, f64) {
+    let Given { facts, survey, model, terms, has_roles } = given;
     let seen = || if has_roles { raft::lift((facts, survey), model.mesh) } else { 0.0 };
     let lift = terms.lift.unwrap_or_else(seen);
     let made = Part::new(model.mesh, (model.offset, lift), heights);

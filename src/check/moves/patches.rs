@@ -1,6 +1,6 @@
 //! Lines of patches of non-planar skin + their marks -> findings of patches with wrong plastic or wrong marks.
 //!
-//! A line is judged by others of its role ([`beads`](super::beads)); if all are wrong, none is odd. A
+//! A line is judged by others of its role ([`beads`](crate::check::beads)); if all are wrong, none is odd. A
 //! patch is judged by its room alone, which is its lines' length from above times the width and height
 //! that the file tells: lines are spaced from above, and their heights are those of upright room.
 //!

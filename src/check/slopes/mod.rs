@@ -1,6 +1,6 @@
 //! Moves of a file with lines over slopes -> findings of the head, and of skins.
 //!
-//! Both need to know what stands at each moment ([`relief`](super::relief)), which costs time and memory:
+//! Both need to know what stands at each moment ([`relief`]), which costs time and memory:
 //! files without such lines have none of it. Skins are told by the file's marks, else they are all lines of a
 //! layer from the first to the last that strays from its height.
 

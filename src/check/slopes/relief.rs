@@ -7,7 +7,7 @@
 //! - A cell is as high as the highest line anywhere in it: an upper bound, to judge what the head touches.
 //! - A cell also keeps how high it stood before the first line of a skin covered it: what skins lie on.
 //!
-//! [`Standing`](super::standing) is coarser and knows only the middles of lines: it is for files of which
+//! [`Standing`](crate::check::standing) is coarser and knows only the middles of lines: it is for files of which
 //! nobody says what hangs around the nozzle, and judges what lies under its flat end alone.
 
 use super::joints::{Joints, before};

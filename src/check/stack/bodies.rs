@@ -11,7 +11,7 @@
 //! nowhere; a speck is a weak place.
 
 use crate::check::finding::{Code, Finding, Findings, Place, short};
-use crate::check::sets::Sets;
+use crate::geom::sets::Sets;
 use crate::profile::Floating;
 use crate::reader::Role;
 
@@ -54,7 +54,7 @@ pub(crate) struct Bodies {
 
 impl Bodies {
     fn join(&mut self, a: usize, b: usize) {
-        if let Some([old, young]) = self.sets.join(a, b) {
+        if let Some((old, young)) = self.sets.join(a, b) {
             let part = self.bodies[young];
             let whole = &mut self.bodies[old];
             whole.stands |= part.stands;

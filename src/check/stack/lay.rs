@@ -2,7 +2,7 @@
 //!
 //! Words used here: a *chain* is lines one after the other without a break; a *patch* is all lines of a
 //! layer that touch; a *way* is a part of a line, from 0 to 1; a *run* is a stretch of a chain that
-//! is carried all along, or nowhere. What is judged is told in [`stack`](super::stack).
+//! is carried all along, or nowhere. What is judged is told in [`stack`](super).
 //!
 //! Chains are laid in the file's order, each on the ground and beside those of its layer before it:
 //! 1. the ways of each of its lines that are carried, or lie on another line, are found among the
@@ -28,7 +28,7 @@ use crate::check::finding::{Code, Finding, Place, short};
 use crate::check::model::part::Part;
 use crate::check::moves::ROUNDING;
 use crate::check::samples::{Sample, Samples, length_of};
-use crate::check::sets::Sets;
+use crate::geom::sets::Sets;
 use crate::reader::Role;
 use crate::reader::print::{Layer, Step};
 use crate::units::Bounded as _;

@@ -4,11 +4,11 @@
 //! layer that touch; a place of a line is *carried* if plastic or the bed reaches up to its lower
 //! side there; a *run* is a stretch of a chain that is carried all along, or nowhere.
 //!
-//! Each layer is laid on those below it ([`lay`](super::lay)); layers are judged side by side:
+//! Each layer is laid on those below it ([`lay`]); layers are judged side by side:
 //! - a patch of which no line is carried anywhere is in the air. If the model itself has nothing
-//!   below there, or is not known, a body begins ([`bodies`](super::bodies)). Within other patches a
+//!   below there, or is not known, a body begins ([`bodies`]). Within other patches a
 //!   stretch that is not carried is a bridge if both its ends are, else an end that hangs; both are
-//!   measured, and judged ([`anchors`](super::anchors));
+//!   measured, and judged ([`anchors`]);
 //! - a line whose core runs along another core of its layer is printed twice;
 //! - a line that lies lower than a core of a layer before it falls: it runs into what is printed.
 //!   This is possible only for lines below the highest line so far, so flat files do not pay for it;

@@ -3,7 +3,7 @@
 //! A brim holds what is small, so it comes first: support stands on it from the next layer on. Each line
 //! of support is cut where the brim begins; what is left of it is too short or goes on beside the brim.
 
-use crate::fill::{Path, PathPoint, Place, Shape};
+use crate::fill::{Order, Path, PathPoint, Shape};
 use crate::geom::boxes::{Around, Boxes};
 use crate::geom::nest::extent;
 use crate::geom::segment::way;
@@ -20,7 +20,7 @@ pub fn clear(paths: &mut Vec<Path>, area: &[Contour]) {
         return;
     }
     let area = Area::new(area);
-    let is_helper = |path: &mut Path| path.role.facts().place == Place::Helper;
+    let is_helper = |path: &mut Path| path.role.facts().order == Order::Helper;
     let helpers: Vec<Path> = paths.extract_if(.., is_helper).collect();
     paths.extend(helpers.into_iter().flat_map(|path| area.without(path)));
 }
@@ -132,7 +132,6 @@ mod tests {
             shape: Shape::Open,
             points: ends.iter().copied().map(point).collect(),
             layers: 1,
-            tool: 0,
         };
         let ends = |path: &Path| path.points.iter().map(|p| p.at).collect::<Vec<_>>();
         let mut paths = vec![

@@ -11,11 +11,12 @@
 
 mod brim;
 pub mod clear;
+pub mod lift;
 pub mod loose;
 pub mod raft;
 mod skirt;
 
-use super::{Path, PathPoint, Place, Role, Shape};
+use super::{Order, Path, PathPoint, Role, Shape};
 use crate::geom::boxes::Boxes;
 use crate::geom::nest::{Nest, extent};
 use crate::geom::{Contour, Point, edges, encloses, polygon};
@@ -54,7 +55,6 @@ pub struct AdhesionParams {
     line_width: Coord,
     /// Gaps in support up to this belong to it.
     support_gap: Coord,
-    tool: u8,
 }
 
 /// The first layer, and what an Adhesion has to know besides.
@@ -87,7 +87,6 @@ impl AdhesionParams {
             skirt,
             line_width: to_units(settings.line_width),
             support_gap: to_units(settings.support.spacing),
-            tool: u8::try_from(settings.machine.tool).unwrap_or(u8::MAX),
         })
     }
 
@@ -186,7 +185,7 @@ impl AdhesionParams {
 
     /// What support covers of the bed.
     fn support(&self, paths: &[Path]) -> Vec<Contour> {
-        let lines = paths.iter().filter(|path| path.role.facts().place == Place::Helper);
+        let lines = paths.iter().filter(|path| path.role.facts().order == Order::Helper);
         let lines: Vec<Vec<Point>> =
             lines.map(|path| path.points.iter().map(|point| point.at).collect()).collect();
         if lines.is_empty() {
@@ -199,7 +198,7 @@ impl AdhesionParams {
 /// For each contour whether some line of the part begins inside it: what is too thin to be printed needs
 /// nothing to hold it.
 fn printed(base: &Base<'_>) -> Vec<bool> {
-    let of_part = base.paths.iter().filter(|path| path.role.facts().place.is_of_part());
+    let of_part = base.paths.iter().filter(|path| path.role.facts().order.is_of_part());
     let boxes = base.contours.iter().map(|contour| extent(contour).unwrap_or_default());
     let boxes = Boxes::new(boxes.collect());
     let mut printed = vec![false; base.contours.len()];
@@ -261,6 +260,6 @@ impl Bead {
         let point = |&at: &Point| PathPoint { at, z: 0, width, height, hang: 0 };
         let points = self.points.iter().chain(again).map(point).collect();
         let shape = self.ring.map_or(Shape::Open, |depth| Shape::Loop { depth });
-        Path { role, shape, points, layers: 1, tool: params.tool }
+        Path { role, shape, points, layers: 1 }
     }
 }

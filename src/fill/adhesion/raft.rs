@@ -30,7 +30,6 @@ pub struct RaftParams {
     gap: Coord,
     /// From the bed upwards.
     courses: Vec<Course>,
-    tool: u8,
 }
 
 /// A layer of a raft.
@@ -67,7 +66,6 @@ impl RaftParams {
             reach: to_units(settings.raft_reach()),
             gap: to_units(raft.gap),
             courses: (0..count).map(course).collect(),
-            tool: u8::try_from(settings.machine.tool).unwrap_or(u8::MAX),
         })
     }
 
@@ -110,7 +108,6 @@ impl RaftParams {
             shape: Shape::Open,
             points,
             layers: 1,
-            tool: self.tool,
         };
         let middle = polygon::inset(plate, half);
         let mut paths = Vec::new();

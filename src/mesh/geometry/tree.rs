@@ -1,4 +1,5 @@
-//! Triangles -> Tree: a tree of boxes that finds the triangles above a point, and pairs whose boxes touch.
+//! Triangles -> Tree: a tree of boxes that finds the triangles above a point, and pairs whose boxes touch
+//! (bounding volume hierarchy).
 //!
 //! The triangles are sorted by the Morton code of the middles of their boxes (Morton, 1966: the
 //! bits of x, y and z in turn), so that triangles close to each other in space are close in the order. Four

@@ -4,14 +4,11 @@ use crate::mesh::geometry::vector::minus;
 use crate::units::UNITS_PER_MM;
 use nalgebra::Vector3;
 
-/// A spike is thinner than this: the full angle of the cone around all its edges, degrees. The
-/// sharpest real tip of some 40 models has 44 degrees; a larger value reports sharp design.
-pub const WIDEST_DEGREES: f64 = 10.0;
-
-/// Cosine of [`WIDEST_DEGREES`].
+/// A spike is thinner than 10 degrees, the full angle of the cone around all its edges: its cosine. The
+/// sharpest real tip of some 40 models has 44 degrees; a larger angle reports sharp design.
 const COS_WIDEST: f64 = 0.984_807_753_012_208;
 
-/// Cosine of half of [`WIDEST_DEGREES`].
+/// Cosine of half of that angle.
 const COS_HALF: f64 = 0.996_194_698_091_745_5;
 
 /// A spike is at least this long, mm: shorter ones vanish in a line of plastic. A smaller value
@@ -32,7 +29,7 @@ pub struct Spike {
 ///
 /// A vertex is the tip of a spike if
 /// - its triangles form one or more closed fans, with at least three neighbours,
-/// - all its edges are within half of [`WIDEST_DEGREES`] of their mean direction,
+/// - all its edges are within 5 degrees of their mean direction,
 /// - along that direction all neighbours are at least [`SHORTEST_MM`] away.
 ///
 /// Such vertices are errors of a scan or a modeller. A real tip is wider, or is rounded or cut off
@@ -113,6 +110,12 @@ mod tests {
     fn lengths(half: i32, height: i32) -> Vec<(u32, f64)> {
         let (vertices, triangles) = pyramid(half, height);
         spikes(&vertices, &triangles).iter().map(|s| (s.vertex, s.length_mm)).collect()
+    }
+
+    #[test]
+    fn the_cosines_are_those_of_one_angle() {
+        assert!((COS_WIDEST.acos().to_degrees() - 10.0).abs() < 1e-9);
+        assert!((COS_HALF.acos().to_degrees() - 5.0).abs() < 1e-9);
     }
 
     #[test]

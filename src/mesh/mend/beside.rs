@@ -1,4 +1,4 @@
-//! Points -> Beside: a tree of points, to find those near a line.
+//! Points -> Beside: a k-d tree of points, to find those near a line.
 //!
 //! Half of the points of a node lie in each of its two children, divided along the longest side of
 //! the box around them (Bentley 1975). A line is followed only into boxes near which it passes, so

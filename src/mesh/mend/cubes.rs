@@ -1,4 +1,4 @@
-//! Points -> cubes: a hash of cubes, to find the points near a place.
+//! Points -> cubes: a spatial hash, to find the points near a place.
 
 use crate::mesh::geometry::vector::Corner;
 use hashbrown::HashMap;

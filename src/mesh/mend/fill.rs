@@ -1,4 +1,4 @@
-//! Rim -> triangles: fills a hole by cutting off ears.
+//! Rim -> triangles: fills a hole by cutting off ears (ear clipping).
 //!
 //! The rim is projected along the axis that is nearest to its normal (Newell's method). An ear is a
 //! corner with a convex angle whose triangle contains no other corner of the rim; a simple polygon

@@ -8,7 +8,7 @@
 //! 1. All gentle slopes of the mesh are found anew, up to the steepest that contouring can follow, whatever
 //!    the head: its cone touches nothing as long as a line stays within its layer.
 //! 2. A layer looks at those that cross it (`zones`); its lines are bent where they lie on its tread
-//!    ([`line`]). Where a patch has its skins, lines stay as they are.
+//!    (`line`). Where a patch has its skins, lines stay as they are.
 //! 3. Of what skins have refused the areas are told anew ([`Contours::tell`]).
 //!
 //! Nothing is hit:

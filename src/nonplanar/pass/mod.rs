@@ -55,13 +55,8 @@ const ROUNDS: [i32; 5] = [0, 1, 3, 6, 15];
 /// So often all is done again with lower homes.
 const AGAIN: usize = 2;
 
-/// Decides which places of gentle slopes are printed as skins, and lays these.
-#[must_use]
-pub fn patches(scene: &Scene<'_>) -> Patches {
-    patches_and_fields(scene).0
-}
-
-/// As [`patches`], with the heights of the surfaces, which are known then.
+/// Decides which places of gentle slopes are printed as skins, and lays these. Gives the heights of the
+/// surfaces too, which are known then.
 #[must_use]
 pub fn patches_and_fields(scene: &Scene<'_>) -> (Patches, Fields) {
     let surfaces = &scene.surfaces.surfaces;

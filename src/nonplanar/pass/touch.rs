@@ -1,9 +1,10 @@
 //! A touch of the head -> whether it is allowed, and what is touched.
 //!
-//! Allowed is *press*: near the middle of the nozzle, no deeper than the rule of [`Head::presses`], and
-//! into the same smooth surface: its base, its skins, or what of it is printed flat. Such a cell stands
-//! no more than half a layer over the surface, by which a tread of a staircase does. Beside the surface
-//! stands a plateau that continues it, if it is no higher than the slope under the nozzle would go on.
+//! Allowed is *press*: near the middle of the nozzle, no deeper than the rule of
+//! [`Head::presses`](crate::head::Head::presses), and into the same smooth surface: its base, its skins,
+//! or what of it is printed flat. Such a cell stands no more than half a layer over the surface, by which
+//! a tread of a staircase does. Beside the surface stands a plateau that continues it, if it is no higher
+//! than the slope under the nozzle would go on.
 
 use crate::geom::Point;
 use crate::head::pile::Hit;

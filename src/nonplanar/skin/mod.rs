@@ -89,7 +89,7 @@ pub fn paths(skin: &Skin<'_>, base: &dyn Base, params: &NonPlanarParams) -> Laid
     for (points, outside) in laid.into_iter().filter(|(points, _)| points.len() > 1) {
         let turn = u32::try_from(out.paths.len()).unwrap_or(u32::MAX);
         let shape = Shape::InTurn { turn };
-        out.paths.push(Path { role: Role::NonPlanar, shape, points, layers: 1, tool: 0 });
+        out.paths.push(Path { role: Role::NonPlanar, shape, points, layers: 1 });
         out.outside.extend(outside);
     }
     out

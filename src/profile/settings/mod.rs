@@ -11,7 +11,7 @@
 //!
 //! Everything else is derived from it: the table of keys that values are checked by
 //! ([`super::keys`]), `profile show`, the settings in a G-code file, the list in
-//! `profiles/README.md` and the JSON Schema for editors ([`super::schema`]).
+//! `profiles/README.md` and the JSON Schema for editors ([`mod@super::schema`]).
 //! To add a key, add a field, and use it. Words:
 //!
 //! - **range**: lowest and highest value, both allowed.

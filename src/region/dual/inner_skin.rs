@@ -19,13 +19,9 @@ use super::runs::Printed;
 use crate::geom::outline::Columns;
 use crate::geom::raster::Raster;
 use crate::geom::spans::{Rows, Span};
-use crate::region::params::SkinParams;
+use crate::region::params::{NOISE, SkinParams};
 use crate::region::prepare::LayerRows;
 use crate::units::Coord;
-
-/// Shorter exposed stretches are dropped as noise (50 µm). It equals `LEAST_SKIN` in
-/// `classify`: with another value, depth would not match the skin that is there.
-const LEAST_VISIBLE: Coord = 500;
 
 /// Minimum width of shared skin, in line widths. A narrower strip on a slope would be cut into
 /// even narrower ones on every second layer. These have more turns and take longer than what
@@ -210,7 +206,7 @@ where
         if let Some(cover) = ends {
             rows = rows.minus(cover);
         }
-        rows = rows.filter(|_, span| span.len() >= i64::from(LEAST_VISIBLE));
+        rows = rows.filter(|_, span| span.len() >= NOISE);
         for n in 1..depth {
             rows = and(rows, if from_top { up(n) } else { down(n) });
         }
@@ -250,7 +246,7 @@ where
         for cover in [self.cover(Some(k + 1)), self.cover(k.checked_sub(1))] {
             hidden = cover.map_or_else(Rows::default, |cover| hidden.and(cover));
         }
-        let visible = fill.minus(&hidden).filter(|_, span| span.len() >= i64::from(LEAST_VISIBLE));
+        let visible = fill.minus(&hidden).filter(|_, span| span.len() >= NOISE);
         let pitch = self.raster.pitch;
         if visible.is_empty() { visible } else { visible.dilate(self.params.reach, pitch) }
     }
