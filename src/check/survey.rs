@@ -17,7 +17,7 @@ use super::capsule::Capsule;
 use super::model::part::extent_of;
 use super::terms::Terms;
 use super::window::{Page, Pages};
-use crate::reader::print::Step;
+use crate::reader::print::{Note, Step, What};
 use crate::reader::{Facts, Role};
 use crate::units::Bounded as _;
 use std::collections::BTreeMap;
@@ -75,7 +75,8 @@ pub(super) struct Survey {
     pub(super) top: f64,
     /// Filament of the lines of the layers, mm.
     pub(super) filament: f64,
-    /// Filament up to the last line, of the whole file and from the first layer on, mm.
+    /// Filament up to the last line as the file asks for it, without M221's factor; of the whole file and from
+    /// the first layer on, mm.
     pub(super) used: [f64; 2],
     /// Usual width of outer walls, mm.
     pub(super) line_width: f64,
@@ -83,6 +84,14 @@ pub(super) struct Survey {
     pub(super) usual: [Option<Usual>; Role::ALL.len()],
     /// Some layers, spread over the print.
     pub(super) looked_at: Vec<(usize, Vec<Step>)>,
+}
+
+/// The factor that M221 sets, of whatever tool, if the note is one.
+fn flow_of(note: &Note) -> Option<f64> {
+    let What::Command(order) = &note.what else { return None };
+    let is_it = (order.letter, order.number) == (b'M', 221);
+    let percent = order.value(b'S').filter(|percent| is_it && *percent > 0.0)?;
+    Some(percent / 100.0)
 }
 
 /// Values counted in narrow classes.
@@ -100,10 +109,11 @@ impl Survey {
         let strays = vec![Vec::new(); facts.layers.len()];
         let mut survey = Self { strays, ..Self::default() };
         let mut plastic: [[Counted; 2]; Role::ALL.len()] = Default::default();
-        let mut widths = Counted::default();
+        let (mut widths, mut flow) = (Counted::default(), 1.0);
         let every = facts.layers.len().div_ceil(LAYERS_LOOKED_AT).max(1);
         for page in pages {
             let page = page?;
+            survey.count(facts, &page, &mut flow);
             survey.page(facts, &page);
             let Some(layer) = page.layer else { continue };
             for step in page.moves.iter().filter(|step| step.is_line()) {
@@ -176,6 +186,20 @@ impl Survey {
         self.walls[layer] > 0.0
     }
 
+    /// Counts the filament that a page asks for. `flow` is M221's factor, from page to page.
+    fn count(&mut self, facts: &Facts, page: &Page<'_>, flow: &mut f64) {
+        let mut notes = page.notes.iter().peekable();
+        for (index, step) in (page.first..facts.last_line).zip(page.moves.iter()) {
+            while let Some(note) = notes.next_if(|note| note.at <= index) {
+                *flow = flow_of(note).unwrap_or(*flow);
+            }
+            let asked = f64::from(step.filament) / *flow;
+            self.used[0] += asked;
+            self.used[1] += if page.layer.is_some() { asked } else { 0.0 };
+        }
+        *flow = notes.filter_map(flow_of).last().unwrap_or(*flow);
+    }
+
     fn page(&mut self, facts: &Facts, page: &Page<'_>) {
         let has_roles = facts.has(Role::OuterWall);
         let (mut walls, mut floor, mut bottom) = (0.0_f64, f64::INFINITY, f64::INFINITY);
@@ -183,10 +207,6 @@ impl Survey {
         let is_skin = page.layer.is_some_and(|layer| is_skin(facts, layer, &page.moves));
         let (mut of_walls, mut of_part) = (None, None);
         for (index, step) in (page.first..).zip(page.moves.iter()) {
-            if index < facts.last_line {
-                self.used[0] += f64::from(step.filament);
-                self.used[1] += if page.layer.is_some() { f64::from(step.filament) } else { 0.0 };
-            }
             if !step.is_line() {
                 continue;
             }

@@ -29,15 +29,62 @@ impl Entry {
 /// # Errors
 /// TOML syntax, as `FILE:LINE: …`.
 pub(super) fn document(file: &str, text: &str) -> Result<Vec<Entry>> {
-    let table = DeTable::parse(text).map_err(|error| {
-        let line = error.span().map_or(1, |span| Lines::new(text).of(span.start));
-        ProfileError::Syntax { file: file.to_owned(), line, source: Box::new(error) }
-    })?;
+    let (table, errors) = DeTable::parse_recoverable(text);
+    // What follows the first is mostly its echo.
+    let place = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
+    if let Some(source) = errors.into_iter().min_by_key(place) {
+        let line = Lines::new(text).of(place(&source));
+        let file = file.to_owned();
+        return Err(match unclosed(text).filter(|unclosed| *unclosed <= line) {
+            Some(line) => ProfileError::OneLine { file, line },
+            None => ProfileError::Syntax { file, line, source: Box::new(source) },
+        });
+    }
     let mut entries = Vec::new();
     flatten(table.get_ref(), "", &Lines::new(text), &mut entries);
     // The table is sorted by name; the first error to report is the first in the file.
     entries.sort_by(|a, b| a.line.cmp(&b.line).then_with(|| a.key.cmp(&b.key)));
     Ok(entries)
+}
+
+/// The line on which a text in single or double quotes begins that does not end on it, if there is one: a block
+/// of several lines that was put between them.
+fn unclosed(text: &str) -> Option<usize> {
+    let mut rest = text;
+    let mut line = 1;
+    while let Some(at) = rest.find(['"', '\'', '#', '\n']) {
+        let here = &rest[at..];
+        let quote = &here[..1];
+        let taken = match quote {
+            "\n" => 1,
+            "#" => here.find('\n').unwrap_or(here.len()),
+            _ => {
+                let open = if here.starts_with(&quote.repeat(3)) { 3 } else { 1 };
+                match end_of(&here[open..], &here[..open], quote == "\"") {
+                    Some(length) => 2 * open + length,
+                    None => return (open == 1).then_some(line),
+                }
+            }
+        };
+        line += here[..taken].matches('\n').count();
+        rest = &here[taken..];
+    }
+    None
+}
+
+/// Length of a text that ends with these quotes; one in single ones ends on its line, or not at all.
+fn end_of(text: &str, quotes: &str, escapes: bool) -> Option<usize> {
+    let mut escaped = false;
+    for (at, character) in text.char_indices() {
+        match character {
+            '\n' if quotes.len() == 1 => return None,
+            _ if escaped => escaped = false,
+            '\\' if escapes => escaped = true,
+            _ if text[at..].starts_with(quotes) => return Some(at),
+            _ => {}
+        }
+    }
+    None
 }
 
 /// One value as `--set` has it: TOML, or else the text itself.
@@ -117,6 +164,26 @@ mod tests {
         let error = document("a.toml", "walls = 2\nskin_layers = \n").unwrap_err().to_string();
         assert!(error.starts_with("a.toml:2: "), "{error}");
         assert!(!error.contains('\n'));
+    }
+
+    #[test]
+    fn blocks_in_wrong_quotes_are_answered_with_the_right_ones() {
+        let told = |text: &str| document("a.toml", text).unwrap_err().to_string();
+        for (line, text) in [
+            (2, "walls = 2\nmachine.start_gcode = \"G28\nM104 S200\""),
+            (2, "walls = 2\nmachine.start_gcode = 'G28\nG1 X1'\nwalls = 3"),
+            (3, "a = '''x\n'''\nb = \"G28 ; \\\" \nG29"),
+        ] {
+            let error = told(text);
+            assert!(error.starts_with(&format!("a.toml:{line}: ")), "{error}");
+            assert!(error.contains("between three quotes"), "{error}");
+        }
+        let error = told("# \"\nmachine.start_gcode = \"\"\"\nG28\nM117 \\o/\n\"\"\"\n");
+        assert!(error.starts_with("a.toml:4: ") && error.contains("backslash"), "{error}");
+        assert!(!error.contains('\n') && error.contains("'''"), "{error}");
+        // The first of several is told.
+        let error = told("inherits = ender-3\nwall: 30\n");
+        assert!(error.starts_with("a.toml:1: "), "{error}");
     }
 
     #[test]

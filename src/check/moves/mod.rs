@@ -14,12 +14,14 @@
 //!   and the skins there ([`slopes`](super::slopes)); lines on what the start block primed ([`primed`]).
 //!
 //! Between the moves are commands: those that change the machine ([`changes`]) and its limits
-//! ([`limits`]), and those for heaters ([`warmth`]) and the fan ([`air`]).
+//! ([`limits`]), those for heaters ([`warmth`]) and the fan ([`air`]), and those that a start or end block
+//! leaves out ([`blocks`]).
 //!
 //! Commands are judged once each, by a list of what the firmware knows. Klipper's macros cannot be
 //! judged, and are listed as such.
 
 pub(crate) mod air;
+pub(crate) mod blocks;
 pub(crate) mod changes;
 pub(crate) mod dialect;
 pub(crate) mod heat;
@@ -31,14 +33,16 @@ pub(crate) mod primed;
 pub(crate) mod through;
 pub(crate) mod warmth;
 
+use crate::check::beads;
 use crate::check::finding::{Code, Finding, Findings, Place, short};
 use crate::check::slopes::Slopes;
 use crate::check::terms::{Machine, Terms};
 use crate::check::window::Page;
-use crate::profile::DialectName;
+use crate::profile::{self, DialectName};
 use crate::reader::print::{Note, Order, Step, What};
 use crate::reader::{Facts, Role};
 use air::Air;
+use blocks::Blocks;
 use changes::Changes;
 use heat::Heat;
 use motors::{LEAST_LENGTH, SPEED_SLACK};
@@ -114,6 +118,7 @@ impl<'a> Moves<'a> {
         limits::judge((walk.facts, walk.terms), &printing, found);
         walk.changes.finish(found);
         walk.warmth.finish(found);
+        walk.blocks.finish(found);
         walk.primed.finish(found);
         walk.patches.finish((walk.facts, walk.terms), found);
         if let Some(slopes) = walk.slopes {
@@ -201,6 +206,26 @@ fn unknown(machine: &Machine, line: u64, what: &str) -> Finding {
     Finding::of(Code::UnknownCode, 1.0, "lines", text).at(place)
 }
 
+/// A word that has no number where it needs one, or a placeholder among a macro's words.
+fn numberless(note: &Note, place: Place, found: &mut Findings) {
+    let shown = |code: &str| code.chars().take(60).collect::<String>();
+    let text = match &note.what {
+        What::NoNumber { letter, code } => {
+            format!(
+                "`{}`: {} has no number, so that it sets nothing",
+                shown(code),
+                char::from(*letter)
+            )
+        }
+        What::Unknown(code) => match profile::left_in(code) {
+            Some(left) => format!("`{}`: no slicer has filled in {}", shown(code), shown(left)),
+            None => return,
+        },
+        _ => return,
+    };
+    found.add(Finding::of(Code::MissingNumber, 1.0, "lines", text).at(place));
+}
+
 /// Whether the word is a letter and a number of at most [`MOST_DIGITS`]: those are judged as commands.
 fn is_numbered(word: &str) -> bool {
     let Some(number) = word.strip_prefix(|c: char| c.is_ascii_alphabetic()) else { return false };
@@ -222,6 +247,7 @@ struct Walk<'a> {
     filament_area: f64,
     changes: Changes,
     warmth: Warmth,
+    blocks: Blocks,
     air: Air,
     through: Through,
     primed: Primed,
@@ -250,6 +276,7 @@ struct Walk<'a> {
 
 impl<'a> Walk<'a> {
     fn new(facts: &'a Facts, terms: &'a Terms, has_slopes: bool) -> Self {
+        let by_printer = heats_by_itself(facts);
         Self {
             facts,
             terms,
@@ -257,6 +284,7 @@ impl<'a> Walk<'a> {
             filament_area: terms.filament_area,
             changes: Changes::new(terms),
             warmth: Warmth::new(terms),
+            blocks: Blocks::new(facts, terms, by_printer),
             air: Air::new(terms),
             through: Through::new(terms, has_slopes),
             primed: Primed::default(),
@@ -266,7 +294,7 @@ impl<'a> Walk<'a> {
             layer: None,
             printing: facts.start.end..facts.last_line.max(facts.start.end),
             begun: None,
-            heat: if heats_by_itself(facts) { Heat::by_printer() } else { Heat::default() },
+            heat: if by_printer { Heat::by_printer() } else { Heat::default() },
             stranger: None,
             heated_by_macro: None,
             is_cold_reported: false,
@@ -279,16 +307,19 @@ impl<'a> Walk<'a> {
         let layer = self.layer.map(|layer| layer + 1);
         let place = Place { line: Some(note.line), layer, ..Place::default() };
         self.changes.note(note, (self.at, layer), found);
+        self.blocks.note(note, place);
+        numberless(note, place, found);
         match &note.what {
             What::Heating(heating) => {
                 self.warmth.set(heating, place, found);
                 self.heat.set(heating);
             }
             What::FirmwareRetraction { back } => self.pulled_by_firmware = *back,
-            What::Unknown(code) => {
+            What::Unknown(code) if blocks::may_be_macro(code) => {
                 let word = code.split_whitespace().next().map(str::to_owned);
                 self.stranger = self.stranger.take().or(word);
             }
+            What::Unknown(_) | What::NoNumber { .. } => {}
             What::Command(order) => {
                 self.air.set(order, place);
                 if matches!((order.letter, order.number), (b'G', 161 | 162) | (b'M', 132)) {
@@ -297,6 +328,7 @@ impl<'a> Walk<'a> {
                 }
                 if let Some(tool) = tool_of(order) {
                     self.warmth.tool(tool);
+                    self.blocks.tool(tool);
                 }
             }
         }
@@ -313,6 +345,7 @@ impl<'a> Walk<'a> {
             Some(layer) if is_of_layer => {
                 self.begun = self.begun.or(Some(index));
                 self.changes.line(found);
+                self.blocks.line(|| beads::place(layer, step), found);
                 self.warmth.line(found);
                 self.air.line(step, layer, found);
                 self.primed.line(step, layer);
