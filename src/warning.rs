@@ -111,6 +111,15 @@ pub enum Warning {
         /// Whose range it is.
         what: String,
     },
+    /// A material that comes loose from a bed that is not heated, as this printer's.
+    ColdBed {
+        /// The material.
+        material: String,
+        /// What it asks of the bed, °C.
+        asked_celsius: u32,
+        /// Name of the printer.
+        machine: String,
+    },
     /// Lines that are printed slower than asked for, since the hot end cannot melt as fast.
     FlowLimited {
         /// What they are for, as in the report's roles.
@@ -216,6 +225,12 @@ impl fmt::Display for Warning {
                     "{setting} = {value} {unit} lies outside {least} to {most}, {what}; change one"
                 )
             }
+            Self::ColdBed { material, asked_celsius, machine } => write!(
+                f,
+                "{material} asks for a bed of {asked_celsius} °C, which {machine} cannot heat \
+                 (machine.heated_bed = false): it warps and comes loose; print another material, or small \
+                 flat parts with a wide brim or a raft"
+            ),
             Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
                 let speeds = [*asked_mm_s, *lowest_mm_s].map(short);
                 f.write_str(&flow_limited(role, setting, speeds, *limit_mm3_s))

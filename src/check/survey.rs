@@ -206,7 +206,7 @@ impl Survey {
         let (mut lines, mut depth) = (0.0_f64, f64::INFINITY);
         let is_skin = page.layer.is_some_and(|layer| is_skin(facts, layer, &page.moves));
         let (mut of_walls, mut of_part) = (None, None);
-        for (index, step) in (page.first..).zip(page.moves.iter()) {
+        for step in page.moves.iter() {
             if !step.is_line() {
                 continue;
             }
