@@ -86,12 +86,30 @@ pub(super) struct Survey {
     pub(super) looked_at: Vec<(usize, Vec<Step>)>,
 }
 
-/// The factor that M221 sets, of whatever tool, if the note is one.
-fn flow_of(note: &Note) -> Option<f64> {
-    let What::Command(order) = &note.what else { return None };
-    let is_it = (order.letter, order.number) == (b'M', 221);
-    let percent = order.value(b'S').filter(|percent| is_it && *percent > 0.0)?;
-    Some(percent / 100.0)
+/// M221's factor of each tool, and the tool in use.
+#[derive(Debug)]
+struct Flow {
+    factors: [f64; 2],
+    tool: usize,
+}
+
+impl Flow {
+    const UNTOLD: Self = Self { factors: [1.0; 2], tool: 0 };
+
+    fn note(&mut self, note: &Note) {
+        let What::Command(order) = &note.what else { return };
+        let named = |letter: u8| order.value(letter).map(|tool| usize::from(tool >= 1.0));
+        match (order.letter, order.number) {
+            (b'T', tool) => self.tool = (tool as usize).min(1),
+            (b'M', 108 | 135) => self.tool = named(b'T').unwrap_or(self.tool),
+            (b'M', 221) => {
+                let tool = named(b'T').or(named(b'D')).unwrap_or(self.tool);
+                let percent = order.value(b'S').filter(|percent| *percent > 0.0);
+                self.factors[tool] = percent.map_or(self.factors[tool], |percent| percent / 100.0);
+            }
+            _ => {}
+        }
+    }
 }
 
 /// Values counted in narrow classes.
@@ -109,7 +127,7 @@ impl Survey {
         let strays = vec![Vec::new(); facts.layers.len()];
         let mut survey = Self { strays, ..Self::default() };
         let mut plastic: [[Counted; 2]; Role::ALL.len()] = Default::default();
-        let (mut widths, mut flow) = (Counted::default(), 1.0);
+        let (mut widths, mut flow) = (Counted::default(), Flow::UNTOLD);
         let every = facts.layers.len().div_ceil(LAYERS_LOOKED_AT).max(1);
         for page in pages {
             let page = page?;
@@ -186,18 +204,18 @@ impl Survey {
         self.walls[layer] > 0.0
     }
 
-    /// Counts the filament that a page asks for. `flow` is M221's factor, from page to page.
-    fn count(&mut self, facts: &Facts, page: &Page<'_>, flow: &mut f64) {
+    /// Counts the filament that a page asks for. `flow` goes on from page to page.
+    fn count(&mut self, facts: &Facts, page: &Page<'_>, flow: &mut Flow) {
         let mut notes = page.notes.iter().peekable();
         for (index, step) in (page.first..facts.last_line).zip(page.moves.iter()) {
             while let Some(note) = notes.next_if(|note| note.at <= index) {
-                *flow = flow_of(note).unwrap_or(*flow);
+                flow.note(note);
             }
-            let asked = f64::from(step.filament) / *flow;
+            let asked = f64::from(step.filament) / flow.factors[flow.tool];
             self.used[0] += asked;
             self.used[1] += if page.layer.is_some() { asked } else { 0.0 };
         }
-        *flow = notes.filter_map(flow_of).last().unwrap_or(*flow);
+        notes.for_each(|note| flow.note(note));
     }
 
     fn page(&mut self, facts: &Facts, page: &Page<'_>) {

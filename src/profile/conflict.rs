@@ -242,16 +242,14 @@ fn short(mm: f64) -> f64 {
 /// no line should be taller than the nozzle is wide.
 fn thinner(layers: u32, height: f64, most: f64, nozzle: f64) -> String {
     let layer = (most / f64::from(layers) * 1000.0 + 1e-6).floor() / 1000.0;
-    let mut ways = vec![format!("set layer_height to {layer} mm or less")];
+    let mut ways = vec![format!("use layer_height = {layer} mm or less")];
     if layers > 2 {
         ways.push("a lower dual.ratio".to_owned());
     }
     let tall = f64::from(layers) * height;
     if tall <= nozzle + 1e-9 {
         let percent = (tall / nozzle * 100.0 - 1e-6).ceil();
-        ways.push(format!("dual.max_bead_height to {percent} % of the nozzle"));
+        ways.push(format!("dual.max_bead_height = {percent} % of the nozzle"));
     }
-    ways.push("leave out --dual (dual.mode = \"off\")".to_owned());
-    let last = ways.pop().unwrap_or_default();
-    format!("{}, or {last}", ways.join(", "))
+    format!("{}, or dual.mode = \"off\", without --dual", ways.join(", "))
 }
