@@ -225,12 +225,9 @@ impl fmt::Display for Warning {
                     "{setting} = {value} {unit} lies outside {least} to {most}, {what}; change one"
                 )
             }
-            Self::ColdBed { material, asked_celsius, machine } => write!(
-                f,
-                "{material} asks for a bed of {asked_celsius} °C, which {machine} cannot heat \
-                 (machine.heated_bed = false): it warps and comes loose; print another material, or small \
-                 flat parts with a wide brim or a raft"
-            ),
+            Self::ColdBed { material, asked_celsius, machine } => {
+                f.write_str(&cold_bed(material, *asked_celsius, machine))
+            }
             Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
                 let speeds = [*asked_mm_s, *lowest_mm_s].map(short);
                 f.write_str(&flow_limited(role, setting, speeds, *limit_mm3_s))
@@ -277,6 +274,15 @@ fn flow_limited(role: &str, setting: &str, [asked, lowest]: [f64; 2], limit: f64
         "{role}: slowed down from {asked} to as little as {lowest} mm/s, since the hot end melts no \
          more than {limit} mm³/s; set {setting} to that, or machine.max_volumetric_speed if it \
          melts more"
+    )
+}
+
+/// That the bed stays cold.
+fn cold_bed(material: &str, asked_celsius: u32, machine: &str) -> String {
+    format!(
+        "{material} asks for a bed of {asked_celsius} °C, which {machine} cannot heat \
+         (machine.heated_bed = false): it warps and comes loose; print another material, or small flat \
+         parts with a wide brim or a raft"
     )
 }
 

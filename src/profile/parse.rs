@@ -52,16 +52,31 @@ pub(super) fn document(file: &str, text: &str) -> Result<Vec<Entry>> {
 fn unclosed(text: &str) -> Option<usize> {
     let mut rest = text;
     let mut line = 1;
+    // Whether a value or a key may begin: an apostrophe elsewhere begins no text.
+    let begins = |before: &str| {
+        let before = before.trim_end_matches([' ', '\t']);
+        before.is_empty() || before.ends_with(['=', ',', '[', '{', '.', '\n'])
+    };
     while let Some(at) = rest.find(['"', '\'', '#', '\n']) {
         let here = &rest[at..];
         let quote = &here[..1];
+        if (quote == "\"" || quote == "'") && !begins(&rest[..at]) {
+            return None;
+        }
         let taken = match quote {
             "\n" => 1,
             "#" => here.find('\n').unwrap_or(here.len()),
             _ => {
                 let open = if here.starts_with(&quote.repeat(3)) { 3 } else { 1 };
                 match end_of(&here[open..], &here[..open], quote == "\"") {
-                    Some(length) => 2 * open + length,
+                    Some(length) if open == 1 => length + 2,
+                    // Up to two quotes more are part of the text.
+                    Some(length) => {
+                        let end = length + 6;
+                        let more =
+                            here[end..].bytes().take_while(|byte| *byte == quote.as_bytes()[0]);
+                        end + more.count().min(2)
+                    }
                     None => return (open == 1).then_some(line),
                 }
             }
@@ -181,6 +196,10 @@ mod tests {
         let error = told("# \"\nmachine.start_gcode = \"\"\"\nG28\nM117 \\o/\n\"\"\"\n");
         assert!(error.starts_with("a.toml:4: ") && error.contains("backslash"), "{error}");
         assert!(!error.contains('\n') && error.contains("'''"), "{error}");
+        // An apostrophe is no quote, and quotes may be part of a text.
+        for text in ["description = Bob's printer\n", "a = '''b''''\nwall: 30\n"] {
+            assert!(!told(text).contains("three"), "{text}");
+        }
         // The first of several is told.
         let error = told("inherits = ender-3\nwall: 30\n");
         assert!(error.starts_with("a.toml:1: "), "{error}");

@@ -1,4 +1,13 @@
 //! A line -> command, words of a letter and a number, and comment.
+//!
+//! - The *code* of a line is what stands before its comment, without a line number and a checksum.
+//! - A *command* is a letter with a number, `G1`; it may have a fraction, `G92.1`.
+//! - A *word* is a letter with a number, or alone. Blanks may stand anywhere, or nowhere.
+//! - What stands in round brackets is a comment; in braces or square brackets a value that is no number: no
+//!   word is looked for in it.
+//! - Numbers are decimal, without an exponent, as firmwares read them.
+//!
+//! Nothing is copied: words are read from the line as they are asked for.
 
 /// A letter with a number, such as `G1`. Fractions of the number are left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -149,7 +149,7 @@ fn another_place_of_0_after_homing_is_told() {
 
 #[test]
 fn a_flow_that_the_start_block_sets_is_deliberate() {
-    for flow in ["M221 S95", "M221 S95 T0", "M221 T1 S150", "M221 S80"] {
+    for flow in ["M221 S95", "M221 S95 T0", "M221 T1 S110", "M221 S80"] {
         finds(&with("generic-marlin", &format!("{START}\n{flow}"), END), &[]);
     }
     // The sums are compared all the same.
