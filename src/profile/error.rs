@@ -228,12 +228,10 @@ pub struct BlockError {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PlaceholderError {
     /// One that there is not.
-    #[error("unknown placeholder {}; {}", text::line(written), placeholder_hint(name, known))]
+    #[error("unknown placeholder {}; {}", text::line(written), placeholder_hint(written, known))]
     Unknown {
         /// As it stands in the block, with its brackets.
         written: String,
-        /// Its name.
-        name: String,
         /// Those that there are.
         known: Vec<String>,
     },
@@ -339,7 +337,8 @@ fn here_it_is(ours: Option<&str>) -> String {
     ours.map_or_else(|| none.to_owned(), |ours| format!("here it is {ours}"))
 }
 
-fn placeholder_hint(name: &str, known: &[String]) -> String {
+fn placeholder_hint(written: &str, known: &[String]) -> String {
+    let name = written.trim_matches(['{', '}', '[', ']', ' ']);
     suggest::nearest(name, known.iter().map(String::as_str)).map_or_else(
         || format!("known are {}", known.join(", ")),
         |near| format!("did you mean {{{near}}}?"),

@@ -139,7 +139,7 @@ fn unknown(written: &str, values: &[(&str, String)]) -> PlaceholderError {
         None if placeholders::is_known(&name) => PlaceholderError::Foreign { written, ours: None },
         None => {
             let known = values.iter().map(|(known, _)| (*known).to_owned()).collect();
-            PlaceholderError::Unknown { written, name, known }
+            PlaceholderError::Unknown { written, known }
         }
     }
 }
