@@ -3,7 +3,7 @@
 //! - A *placeholder* is a name of ours in braces; its value is a text, mostly a number.
 //! - Two braces stand for one, so that RepRapFirmware's own `{expressions}` can be written.
 //! - What other slicers would fill in or compute is refused, with our name for it where there is one
-//!   ([`placeholders`]): it would reach the printer as it is.
+//!   (see `placeholders`): it would reach the printer as it is.
 //! - A block is filled in line by line, so that an error can name the line. The start block gets the first
 //!   layer's temperatures, the end block those of the rest.
 
