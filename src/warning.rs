@@ -219,12 +219,10 @@ impl fmt::Display for Warning {
             Self::SlowSpeed { setting, speed_mm_s } => {
                 write!(f, "{setting} = {speed_mm_s} is very slow; speeds are in mm/s")
             }
-            Self::OutsideRange { setting, value, unit, least, most, what } => {
-                write!(
-                    f,
-                    "{setting} = {value} {unit} lies outside {least} to {most}, {what}; change one"
-                )
-            }
+            Self::OutsideRange { setting, value, unit, least, most, what } => write!(
+                f,
+                "{setting} = {value} {unit} lies outside {least} to {most}, {what}; change one"
+            ),
             Self::ColdBed { material, asked_celsius, machine } => {
                 f.write_str(&cold_bed(material, *asked_celsius, machine))
             }

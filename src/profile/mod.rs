@@ -17,6 +17,7 @@ mod old;
 mod origin;
 mod parse;
 mod placeholders;
+mod quotes;
 mod recorded;
 mod schema;
 mod settings;

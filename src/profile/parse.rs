@@ -1,7 +1,7 @@
 //! TOML text -> entries: each value under its dotted key, with the line it stands on.
 
 use super::error::{ProfileError, Result};
-use super::keys;
+use super::{keys, quotes};
 use toml::Value;
 use toml::de::{DeTable, DeValue};
 
@@ -35,7 +35,7 @@ pub(super) fn document(file: &str, text: &str) -> Result<Vec<Entry>> {
     if let Some(source) = errors.into_iter().min_by_key(place) {
         let line = Lines::new(text).of(place(&source));
         let file = file.to_owned();
-        return Err(match unclosed(text).filter(|unclosed| *unclosed <= line) {
+        return Err(match quotes::unclosed(text).filter(|unclosed| *unclosed <= line) {
             Some(line) => ProfileError::OneLine { file, line },
             None => ProfileError::Syntax { file, line, source: Box::new(source) },
         });
@@ -45,61 +45,6 @@ pub(super) fn document(file: &str, text: &str) -> Result<Vec<Entry>> {
     // The table is sorted by name; the first error to report is the first in the file.
     entries.sort_by(|a, b| a.line.cmp(&b.line).then_with(|| a.key.cmp(&b.key)));
     Ok(entries)
-}
-
-/// The line on which a text in single or double quotes begins that does not end on it, if there is one: a block
-/// of several lines that was put between them.
-fn unclosed(text: &str) -> Option<usize> {
-    let mut rest = text;
-    let mut line = 1;
-    // Whether a value or a key may begin: an apostrophe elsewhere begins no text.
-    let begins = |before: &str| {
-        let before = before.trim_end_matches([' ', '\t']);
-        before.is_empty() || before.ends_with(['=', ',', '[', '{', '.', '\n'])
-    };
-    while let Some(at) = rest.find(['"', '\'', '#', '\n']) {
-        let here = &rest[at..];
-        let quote = &here[..1];
-        if (quote == "\"" || quote == "'") && !begins(&rest[..at]) {
-            return None;
-        }
-        let taken = match quote {
-            "\n" => 1,
-            "#" => here.find('\n').unwrap_or(here.len()),
-            _ => {
-                let open = if here.starts_with(&quote.repeat(3)) { 3 } else { 1 };
-                match end_of(&here[open..], &here[..open], quote == "\"") {
-                    Some(length) if open == 1 => length + 2,
-                    // Up to two quotes more are part of the text.
-                    Some(length) => {
-                        let end = length + 6;
-                        let more =
-                            here[end..].bytes().take_while(|byte| *byte == quote.as_bytes()[0]);
-                        end + more.count().min(2)
-                    }
-                    None => return (open == 1).then_some(line),
-                }
-            }
-        };
-        line += here[..taken].matches('\n').count();
-        rest = &here[taken..];
-    }
-    None
-}
-
-/// Length of a text that ends with these quotes; one in single ones ends on its line, or not at all.
-fn end_of(text: &str, quotes: &str, escapes: bool) -> Option<usize> {
-    let mut escaped = false;
-    for (at, character) in text.char_indices() {
-        match character {
-            '\n' if quotes.len() == 1 => return None,
-            _ if escaped => escaped = false,
-            '\\' if escapes => escaped = true,
-            _ if text[at..].starts_with(quotes) => return Some(at),
-            _ => {}
-        }
-    }
-    None
 }
 
 /// One value as `--set` has it: TOML, or else the text itself.
