@@ -227,8 +227,8 @@ impl Meter {
             | Event::Command { .. }
             | Event::Comment(_)
             | Event::Patch(_) => {}
-            // Both are in the reader's summary.
-            Event::FirmwareRetraction { .. } | Event::Unknown(_) => {}
+            // All three are in the reader's summary.
+            Event::FirmwareRetraction { .. } | Event::Unknown(_) | Event::NoNumber { .. } => {}
         }
         self.collect();
     }

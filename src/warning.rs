@@ -111,6 +111,15 @@ pub enum Warning {
         /// Whose range it is.
         what: String,
     },
+    /// A material that comes loose from a bed that is not heated, as this printer's.
+    ColdBed {
+        /// The material.
+        material: String,
+        /// What it asks of the bed, °C.
+        asked_celsius: u32,
+        /// Name of the printer.
+        machine: String,
+    },
     /// Lines that are printed slower than asked for, since the hot end cannot melt as fast.
     FlowLimited {
         /// What they are for, as in the report's roles.
@@ -210,11 +219,12 @@ impl fmt::Display for Warning {
             Self::SlowSpeed { setting, speed_mm_s } => {
                 write!(f, "{setting} = {speed_mm_s} is very slow; speeds are in mm/s")
             }
-            Self::OutsideRange { setting, value, unit, least, most, what } => {
-                write!(
-                    f,
-                    "{setting} = {value} {unit} lies outside {least} to {most}, {what}; change one"
-                )
+            Self::OutsideRange { setting, value, unit, least, most, what } => write!(
+                f,
+                "{setting} = {value} {unit} lies outside {least} to {most}, {what}; change one"
+            ),
+            Self::ColdBed { material, asked_celsius, machine } => {
+                f.write_str(&cold_bed(material, *asked_celsius, machine))
             }
             Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
                 let speeds = [*asked_mm_s, *lowest_mm_s].map(short);
@@ -262,6 +272,15 @@ fn flow_limited(role: &str, setting: &str, [asked, lowest]: [f64; 2], limit: f64
         "{role}: slowed down from {asked} to as little as {lowest} mm/s, since the hot end melts no \
          more than {limit} mm³/s; set {setting} to that, or machine.max_volumetric_speed if it \
          melts more"
+    )
+}
+
+/// That the bed stays cold.
+fn cold_bed(material: &str, asked_celsius: u32, machine: &str) -> String {
+    format!(
+        "{material} asks for a bed of {asked_celsius} °C, which {machine} cannot heat \
+         (machine.heated_bed = false): it warps and comes loose; print another material, or small flat \
+         parts with a wide brim or a raft"
     )
 }
 

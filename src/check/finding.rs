@@ -32,6 +32,10 @@ const MOST_KEPT: usize = 1000;
 pub enum Code {
     /// A command that the machine's firmware does not know.
     UnknownCode,
+    /// A word of a command has no number where it needs one, as where a placeholder was not filled in.
+    MissingNumber,
+    /// The print begins before the machine knows where its axes are.
+    NotHomed,
     /// A line or travel leaves the space that the machine has.
     OutsideVolume,
     /// A travel goes below what stands, and through it, by the nozzle's flat end.
@@ -45,6 +49,8 @@ pub enum Code {
     WrongTemperature,
     /// Plastic is pushed out before the nozzle is set to a temperature and waited for.
     ColdExtrusion,
+    /// A heater is still on when the file ends.
+    LeftOn,
     /// A move is faster than the machine's axes.
     TooFast,
     /// A move needs more steps a second than a motor makes.
@@ -100,14 +106,17 @@ pub enum Code {
 
 impl Code {
     /// All of them.
-    pub const ALL: [Self; 32] = [
+    pub const ALL: [Self; 35] = [
         Self::UnknownCode,
+        Self::MissingNumber,
+        Self::NotHomed,
         Self::OutsideVolume,
         Self::ThroughPrint,
         Self::HeadHits,
         Self::ChangesTheMachine,
         Self::WrongTemperature,
         Self::ColdExtrusion,
+        Self::LeftOn,
         Self::TooFast,
         Self::TooManySteps,
         Self::TooMuchFlow,
@@ -140,12 +149,15 @@ impl Code {
     pub fn name(self) -> &'static str {
         match self {
             Self::UnknownCode => "unknown-code",
+            Self::MissingNumber => "missing-number",
+            Self::NotHomed => "not-homed",
             Self::OutsideVolume => "outside-volume",
             Self::ThroughPrint => "through-print",
             Self::HeadHits => "head-hits",
             Self::ChangesTheMachine => "changes-the-machine",
             Self::WrongTemperature => "wrong-temperature",
             Self::ColdExtrusion => "cold-extrusion",
+            Self::LeftOn => "left-on",
             Self::TooFast => "too-fast",
             Self::TooManySteps => "too-many-steps",
             Self::TooMuchFlow => "too-much-flow",

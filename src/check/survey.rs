@@ -17,7 +17,7 @@ use super::capsule::Capsule;
 use super::model::part::extent_of;
 use super::terms::Terms;
 use super::window::{Page, Pages};
-use crate::reader::print::Step;
+use crate::reader::print::{Note, Step, What};
 use crate::reader::{Facts, Role};
 use crate::units::Bounded as _;
 use std::collections::BTreeMap;
@@ -75,7 +75,8 @@ pub(super) struct Survey {
     pub(super) top: f64,
     /// Filament of the lines of the layers, mm.
     pub(super) filament: f64,
-    /// Filament up to the last line, of the whole file and from the first layer on, mm.
+    /// Filament up to the last line as the file asks for it, without M221's factor; of the whole file and from
+    /// the first layer on, mm.
     pub(super) used: [f64; 2],
     /// Usual width of outer walls, mm.
     pub(super) line_width: f64,
@@ -83,6 +84,32 @@ pub(super) struct Survey {
     pub(super) usual: [Option<Usual>; Role::ALL.len()],
     /// Some layers, spread over the print.
     pub(super) looked_at: Vec<(usize, Vec<Step>)>,
+}
+
+/// M221's factor of each tool, and the tool in use.
+#[derive(Debug)]
+struct Flow {
+    factors: [f64; 2],
+    tool: usize,
+}
+
+impl Flow {
+    const UNTOLD: Self = Self { factors: [1.0; 2], tool: 0 };
+
+    fn note(&mut self, note: &Note) {
+        let What::Command(order) = &note.what else { return };
+        let named = |letter: u8| order.value(letter).map(|tool| usize::from(tool >= 1.0));
+        match (order.letter, order.number) {
+            (b'T', tool) => self.tool = (tool as usize).min(1),
+            (b'M', 108 | 135) => self.tool = named(b'T').unwrap_or(self.tool),
+            (b'M', 221) => {
+                let tool = named(b'T').or(named(b'D')).unwrap_or(self.tool);
+                let percent = order.value(b'S').filter(|percent| *percent > 0.0);
+                self.factors[tool] = percent.map_or(self.factors[tool], |percent| percent / 100.0);
+            }
+            _ => {}
+        }
+    }
 }
 
 /// Values counted in narrow classes.
@@ -100,10 +127,11 @@ impl Survey {
         let strays = vec![Vec::new(); facts.layers.len()];
         let mut survey = Self { strays, ..Self::default() };
         let mut plastic: [[Counted; 2]; Role::ALL.len()] = Default::default();
-        let mut widths = Counted::default();
+        let (mut widths, mut flow) = (Counted::default(), Flow::UNTOLD);
         let every = facts.layers.len().div_ceil(LAYERS_LOOKED_AT).max(1);
         for page in pages {
             let page = page?;
+            survey.count(facts, &page, &mut flow);
             survey.page(facts, &page);
             let Some(layer) = page.layer else { continue };
             for step in page.moves.iter().filter(|step| step.is_line()) {
@@ -176,17 +204,27 @@ impl Survey {
         self.walls[layer] > 0.0
     }
 
+    /// Counts the filament that a page asks for. `flow` goes on from page to page.
+    fn count(&mut self, facts: &Facts, page: &Page<'_>, flow: &mut Flow) {
+        let mut notes = page.notes.iter().peekable();
+        for (index, step) in (page.first..facts.last_line).zip(page.moves.iter()) {
+            while let Some(note) = notes.next_if(|note| note.at <= index) {
+                flow.note(note);
+            }
+            let asked = f64::from(step.filament) / flow.factors[flow.tool];
+            self.used[0] += asked;
+            self.used[1] += if page.layer.is_some() { asked } else { 0.0 };
+        }
+        notes.for_each(|note| flow.note(note));
+    }
+
     fn page(&mut self, facts: &Facts, page: &Page<'_>) {
         let has_roles = facts.has(Role::OuterWall);
         let (mut walls, mut floor, mut bottom) = (0.0_f64, f64::INFINITY, f64::INFINITY);
         let (mut lines, mut depth) = (0.0_f64, f64::INFINITY);
         let is_skin = page.layer.is_some_and(|layer| is_skin(facts, layer, &page.moves));
         let (mut of_walls, mut of_part) = (None, None);
-        for (index, step) in (page.first..).zip(page.moves.iter()) {
-            if index < facts.last_line {
-                self.used[0] += f64::from(step.filament);
-                self.used[1] += if page.layer.is_some() { f64::from(step.filament) } else { 0.0 };
-            }
+        for step in page.moves.iter() {
             if !step.is_line() {
                 continue;
             }

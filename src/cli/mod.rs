@@ -230,7 +230,10 @@ fn profile_command(command: &ProfileCommand) -> Result<String> {
             let names: Vec<OsString> = names.iter().map(|name| profiles.meant(name)).collect();
             let profile = profiles.load_after(&names)?;
             let doubtful = doubtful::warnings(&profile.settings);
-            for warning in doubtful.into_iter().chain(motion::warnings(&profile.settings)) {
+            let cold = doubtful::cold_bed(&profile.settings, &profile.sources);
+            for warning in
+                doubtful.into_iter().chain(cold).chain(motion::warnings(&profile.settings))
+            {
                 say_line("warning", warning);
             }
             let names: Vec<String> = names.iter().map(text::name).collect();

@@ -4,6 +4,10 @@
 pub(super) const FINDINGS: &str = "\
 Findings, each with a stable code, a place and a measure:
   unknown-code         a command that the machine's firmware does not know
+  missing-number       a word without the number that it needs, as in `M109 S`, or a placeholder that
+                       no slicer has filled in
+  not-homed            the print begins without G28 (or G92) of x, y and z, and without a macro that
+                       may home; a warning for RepRapFirmware, which refuses such moves
   outside-volume       a line or travel beyond the machine's x, y or z
   through-print        a travel, of start and end block too, through what stands by the nozzle's
                        flat end, 2.5 times as wide as its hole, over 0.16 mm deep
@@ -19,8 +23,10 @@ Findings, each with a stable code, a place and a measure:
                        M201 and M203 alone), pauses, waits (G4) of 20 s and more, changes of
                        filament, and what a start or end block need not do
   wrong-temperature    the nozzle or the bed is set to what the material does not take, or no
-                       machine
+                       machine; the bed is switched off before the print
   cold-extrusion       filament is pushed before the nozzle is told to be hot and waited for
+  left-on              the nozzle is still on when the file ends; a warning for the bed; not where a
+                       macro comes last, nor of printers that end a job by themselves
   too-fast             faster than [limits] allow in x or y; in z in files of this program, or over
                        500 mm/s
   too-many-steps     * more steps a second than steps.rate_x, _y, _z or _e

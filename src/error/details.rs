@@ -161,7 +161,7 @@ impl From<&ProfileError> for Details {
             E::Unreadable { file, .. } | E::TooLarge { file } => {
                 Self::in_file("unreadable-profile", file)
             }
-            E::Syntax { file, line, .. } => {
+            E::Syntax { file, line, .. } | E::OneLine { file, line } => {
                 let place = Place { line: Some(*line as u64), ..Place::default() };
                 Self::in_file("bad-profile", file).at(place)
             }

@@ -178,7 +178,9 @@ fn dual(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
         "dual.max_bead_height",
         "machine.nozzle_diameter",
     ];
-    Err(blame.error(&keys, Conflict::ThickLinesTooTall { layers: ratio.max(2), height, most }))
+    let nozzle = settings.machine.nozzle_diameter;
+    let layers = ratio.max(2);
+    Err(blame.error(&keys, Conflict::ThickLinesTooTall { layers, height, most, nozzle }))
 }
 
 fn arcs(settings: &Settings, blame: &Blame<'_>) -> Result<()> {

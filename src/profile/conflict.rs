@@ -155,9 +155,11 @@ pub enum Conflict {
     },
     /// Thick lines that are higher than allowed.
     #[error(
-        "{layers} layers of layer_height = {height} mm make thick lines taller than the {most} mm \
-         that dual.max_bead_height and machine.nozzle_diameter allow; use thinner layers, a lower \
-         dual.ratio, or dual.mode = \"off\""
+        "{layers} layers of layer_height = {height} mm make thick lines {} mm tall, above the {} mm that \
+         dual.max_bead_height allows; {}",
+        short(f64::from(*layers) * height),
+        short(*most),
+        thinner(*layers, *height, *most, *nozzle)
     )]
     ThickLinesTooTall {
         /// Layers printed at once.
@@ -166,6 +168,8 @@ pub enum Conflict {
         height: f64,
         /// Height of a thick line, at most.
         most: f64,
+        /// Diameter of the nozzle.
+        nozzle: f64,
     },
     /// A temperature that the printer does not bear, or does not print at.
     #[error(
@@ -227,4 +231,25 @@ pub enum Conflict {
         /// In what, and what it would do there.
         why: &'static str,
     },
+}
+
+/// Thousandths, without zeros at the end.
+fn short(mm: f64) -> f64 {
+    (mm * 1000.0).round() / 1000.0
+}
+
+/// What makes thick lines lower, or lets them be as tall; lengths in mm. The least is two layers at once, and
+/// no line should be taller than the nozzle is wide.
+fn thinner(layers: u32, height: f64, most: f64, nozzle: f64) -> String {
+    let layer = (most / f64::from(layers) * 1000.0 + 1e-6).floor() / 1000.0;
+    let mut ways = vec![format!("use layer_height = {layer} mm or less")];
+    if layers > 2 {
+        ways.push("a lower dual.ratio".to_owned());
+    }
+    let tall = f64::from(layers) * height;
+    if tall <= nozzle + 1e-9 {
+        let percent = (tall / nozzle * 100.0 - 1e-6).ceil();
+        ways.push(format!("dual.max_bead_height = {percent} % of the nozzle"));
+    }
+    format!("{}, or dual.mode = \"off\", without --dual", ways.join(", "))
 }

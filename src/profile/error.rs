@@ -54,7 +54,7 @@ pub enum ProfileError {
         file: String,
     },
     /// A file that is no TOML.
-    #[error("{file}:{line}: this is no valid TOML: {}; mend the line", one_line(source))]
+    #[error("{file}:{line}: this is no valid TOML: {}; {}", one_line(source), mend(source))]
     Syntax {
         /// The file as the user named it.
         file: String,
@@ -62,6 +62,17 @@ pub enum ProfileError {
         line: usize,
         /// The parser's reason.
         source: Box<toml::de::Error>,
+    },
+    /// A text of several lines in quotes for one line.
+    #[error(
+        "{file}:{line}: a text in single or double quotes ends on its line; put a block of several lines \
+         between three quotes, ''' or \"\"\""
+    )]
+    OneLine {
+        /// The file as the user named it.
+        file: String,
+        /// Line where it begins, from 1.
+        line: usize,
     },
     /// `inherits` or a default that is no text.
     #[error("{origin}: {key}: must be the name of a profile or a file, in quotes")]
@@ -217,12 +228,30 @@ pub struct BlockError {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum PlaceholderError {
     /// One that there is not.
-    #[error("unknown placeholder {{{}}}; {}", text::line(name), placeholder_hint(name, known))]
+    #[error("unknown placeholder {}; {}", text::line(written), placeholder_hint(written, known))]
     Unknown {
-        /// Its name.
-        name: String,
+        /// As it stands in the block, with its brackets.
+        written: String,
         /// Those that there are.
         known: Vec<String>,
+    },
+    /// One of another slicer.
+    #[error("unknown placeholder {}; {}", text::line(written), here_it_is(ours.as_deref()))]
+    Foreign {
+        /// As it stands in the block, with its brackets.
+        written: String,
+        /// Ours for it, with braces, if there is one.
+        ours: Option<String>,
+    },
+    /// A condition or a sum, which other slicers compute.
+    #[error(
+        "{} is a condition or a sum of another slicer, and nothing is computed here; write the line as \
+         it shall be; {{park_z}} is 10 mm above the print, or the highest that the machine goes",
+        text::line(written)
+    )]
+    Computed {
+        /// As it stands in the block, with its brackets.
+        written: String,
     },
     /// A closing brace without an opening one.
     #[error("a single `}}`; write `}}}}` for a brace")]
@@ -238,6 +267,15 @@ fn place(origin: Option<&ValueOrigin>) -> String {
 
 fn one_line(error: &toml::de::Error) -> String {
     error.message().replace('\n', ", ")
+}
+
+/// What to do about bad TOML.
+fn mend(error: &toml::de::Error) -> &'static str {
+    if error.message().contains("escape") {
+        "a backslash stays as it is between ''' and '''; between other quotes write two"
+    } else {
+        "mend the line"
+    }
 }
 
 fn known_profiles(name: &str, known: &[String]) -> String {
@@ -267,6 +305,13 @@ fn unknown_key(key: &str) -> String {
         }
         None => {}
     }
+    if let Some((_, inner)) = key.rsplit_once('.')
+        && keys::names().any(|name| name.starts_with(&format!("{inner}.")))
+    {
+        return format!(
+            "unknown key `{shown}`; [{inner}] is a table of its own, not part of another"
+        );
+    }
     let hint = suggest::did_you_mean(key, keys::names());
     let more = if hint.is_empty() { "; `slicer profile show` lists all keys" } else { "" };
     format!("unknown key `{shown}`{hint}{more}")
@@ -287,7 +332,13 @@ fn near(word: &str, words: &[String]) -> String {
     suggest::did_you_mean(word, words.iter().map(String::as_str))
 }
 
-fn placeholder_hint(name: &str, known: &[String]) -> String {
+fn here_it_is(ours: Option<&str>) -> String {
+    let none = "there is none for it here: write its value, or leave it out";
+    ours.map_or_else(|| none.to_owned(), |ours| format!("here it is {ours}"))
+}
+
+fn placeholder_hint(written: &str, known: &[String]) -> String {
+    let name = written.trim_matches(['{', '}', '[', ']', ' ']);
     suggest::nearest(name, known.iter().map(String::as_str)).map_or_else(
         || format!("known are {}", known.join(", ")),
         |near| format!("did you mean {{{near}}}?"),

@@ -7,6 +7,7 @@
 //! - A *meaning* is our key, whose unit may differ, or that there is no such thing here yet.
 //! - Each name has one meaning. A name that several of them use for different things has the most
 //!   usual one.
+//! - What people say without thinking of a slicer, such as `flow`, stands in a table of its own.
 //! - To take up a feature, move its names from the second table to a row of the first.
 
 /// What a name of another slicer means here.
@@ -25,7 +26,9 @@ pub fn meaning(name: &str) -> Option<Foreign> {
     let last = name.rsplit('.').next().unwrap_or_default();
     let key = |name: &str| {
         let has = |theirs: &Names| theirs.iter().any(|names| names.contains(&name));
-        KEYS.iter().find(|(_, theirs)| has(theirs)).map(|(ours, _)| Foreign::Key(ours))
+        let others = KEYS.iter().find(|(_, theirs)| has(theirs)).map(|(ours, _)| *ours);
+        let usual = || USUAL.iter().find(|(_, names)| names.contains(&name)).map(|(ours, _)| *ours);
+        others.or_else(usual).map(Foreign::Key)
     };
     let missing = |name: &str| {
         let row = NOT_SUPPORTED.iter().find(|(_, theirs)| theirs.contains(&name));
@@ -228,6 +231,26 @@ const KEYS: &[(&str, Names)] = &[
     ("support.interface_spacing", [&["support_material_interface_spacing"], &["support_interface_spacing"], &["support_interface_density"]]),
 ];
 
+/// Our keys, and what people call them, of whatever slicer.
+#[rustfmt::skip]
+const USUAL: &[(&str, &[&str])] = &[
+    ("layer_height", &["layer", "layer_thickness"]),
+    ("walls", &["perimeter", "shell"]),
+    ("infill", &["infill.density", "infill_percentage", "fill"]),
+    ("extrusion.multiplier", &["flow", "flow_rate", "flowrate", "flow_multiplier"]),
+    ("filament.temperature", &["temp", "nozzle_temp", "hotend_temp", "hotend_temperature", "extruder_temperature", "print_temperature"]),
+    ("filament.bed_temperature", &["bed", "bed_temp", "heatbed_temperature", "heated_bed_temperature"]),
+    ("retraction.length", &["retraction.distance", "retraction.amount", "retract"]),
+    ("machine.nozzle_diameter", &["nozzle"]),
+    ("machine.bed_width", &["bed_x", "bed_size_x", "machine.width"]),
+    ("machine.bed_depth", &["bed_y", "bed_size_y", "machine.depth"]),
+    ("machine.bed_height", &["bed_z", "bed_size_z", "machine.height"]),
+    ("machine.start_gcode", &["start.gcode", "gcode_start"]),
+    ("machine.end_gcode", &["end.gcode", "gcode_end"]),
+    ("machine.max_volumetric_speed", &["max_flow", "volumetric_speed", "max_volumetric_flow"]),
+    ("speed.wall", &["speed.print", "speed.perimeter"]),
+];
+
 /// What we cannot do, and what others call its settings.
 #[rustfmt::skip]
 const NOT_SUPPORTED: &[(&str, &[&str])] = &[
@@ -247,6 +270,10 @@ const NOT_SUPPORTED: &[(&str, &[&str])] = &[
     ("printing one model after the other", &["complete_objects", "print_sequence"]),
     ("labelling of models", &["label_objects", "gcode_label_objects", "exclude_object"]),
     ("post-processing", &["post_process"]),
+    ("a shift of z, for which firmwares have M851 and SET_GCODE_OFFSET,", &["z_offset", "layer_0_z_overlap"]),
+    ("G-code between layers", &["before_layer_gcode", "layer_gcode", "after_layer_gcode", "before_layer_change_gcode", "layer_change_gcode", "time_lapse_gcode"]),
+    ("G-code between models or tools", &["between_objects_gcode", "toolchange_gcode", "change_filament_gcode", "machine_extruder_start_code", "machine_extruder_end_code"]),
+    ("a pause at a layer", &["pause_print_gcode", "color_change_gcode", "template_custom_gcode", "machine_pause_gcode", "pause_at_height"]),
     ("leaving out small collisions", &["nonplanar_layers_ignore_collision_size"]),
 ];
 
@@ -259,10 +286,12 @@ mod tests {
     fn names_are_there_once_and_lead_to_keys_of_ours() {
         let ours = KEYS.iter().flat_map(|(_, theirs)| theirs.iter().copied().flatten());
         let missing = NOT_SUPPORTED.iter().flat_map(|(_, theirs)| theirs.iter());
-        let mut all: Vec<&str> = ours.chain(missing).copied().collect();
+        let usual = USUAL.iter().flat_map(|(_, names)| names.iter());
+        let mut all: Vec<&str> = ours.chain(missing).chain(usual).copied().collect();
         assert!(all.len() > 200, "{}", all.len());
         assert!(all.iter().all(|name| keys::find(name).is_none()));
         assert!(KEYS.iter().all(|(ours, _)| keys::find(ours).is_some()));
+        assert!(USUAL.iter().all(|(ours, _)| keys::find(ours).is_some()));
         all.sort_unstable();
         let count = all.len();
         all.dedup();
@@ -274,6 +303,12 @@ mod tests {
         for name in ["perimeters", "wall-loops", "Wall_Line_Count", "machine.perimeters"] {
             assert_eq!(meaning(name), Some(Foreign::Key("walls")), "{name}");
         }
+        for name in ["flow", "filament.flow", "flow-rate"] {
+            assert_eq!(meaning(name), Some(Foreign::Key("extrusion.multiplier")), "{name}");
+        }
+        assert_eq!(meaning("filament.bed"), Some(Foreign::Key("filament.bed_temperature")));
+        assert!(matches!(meaning("machine.z_offset"), Some(Foreign::NotSupported(_))));
+        assert!(matches!(meaning("before_layer_gcode"), Some(Foreign::NotSupported(_))));
         assert_eq!(meaning("brim-width"), Some(Foreign::Key("brim.width")));
         assert_eq!(meaning("wals"), None);
     }

@@ -59,7 +59,7 @@ pub(super) fn merge(
 ) -> Result<Profile> {
     let mut merged = defaults();
     let (layers, asked) = layers(wanted, shelf)?;
-    let sources = Sources { list: layers.iter().map(Layer::source).collect(), asked };
+    let list = layers.iter().map(Layer::source).collect();
     for layer in layers {
         named_head(layer.entries.iter().map(|entry| entry.key.as_str()), &mut merged);
         for (key, value, origin) in layer.settings() {
@@ -74,7 +74,8 @@ pub(super) fn merge(
     }
     counts_hold_alone(&mut merged);
     follow(&mut merged);
-    cold_bed(&mut merged);
+    let left_cold = cold_bed(&mut merged);
+    let sources = Sources { list, asked, left_cold };
     let last = sources.list.last();
     let last = last.map_or("", |source| source.file.as_ref().unwrap_or(&source.name));
     let settings = build(last, &merged)?;
@@ -123,15 +124,20 @@ fn follow(merged: &mut Merged) {
     }
 }
 
-/// Keeps the bed cold that cannot be heated, whatever the material asks for.
-fn cold_bed(merged: &mut Merged) {
+/// Keeps the bed cold that cannot be heated, whatever the material asks for. Returns what it asks for, °C, if it
+/// asks for more than 0.
+fn cold_bed(merged: &mut Merged) -> Option<u32> {
     const SWITCH: &str = "machine.heated_bed";
-    if merged.get(SWITCH).is_some_and(|(value, _)| value.as_bool() == Some(false)) {
-        for key in ["filament.bed_temperature", "filament.first_layer_bed_temperature"] {
-            let cold = (Value::Float(0.0), ValueOrigin::Follows(SWITCH.to_owned()));
-            merged.insert(key.to_owned(), cold);
-        }
+    if merged.get(SWITCH).is_none_or(|(value, _)| value.as_bool() != Some(false)) {
+        return None;
     }
+    let mut asked = 0.0_f64;
+    for key in ["filament.bed_temperature", "filament.first_layer_bed_temperature"] {
+        let cold = (Value::Float(0.0), ValueOrigin::Follows(SWITCH.to_owned()));
+        let before = merged.insert(key.to_owned(), cold);
+        asked = asked.max(before.and_then(|(value, _)| parse::number(&value)).unwrap_or(0.0));
+    }
+    (asked > 0.0).then_some(asked.round() as u32)
 }
 
 fn merge_override(given: &Override, merged: &mut Merged) -> Result<()> {

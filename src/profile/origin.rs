@@ -24,6 +24,8 @@ pub struct Sources {
     /// The names of those that were asked for, of a file without its folder, so that an output
     /// that quotes them does not depend on where it lay. If none was, all are defaults.
     pub asked: Vec<String>,
+    /// What the material asks of the bed, whole °C, where machine.heated_bed says that it cannot be heated.
+    pub left_cold: Option<u32>,
 }
 
 /// A profile that had a say.

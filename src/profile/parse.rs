@@ -1,7 +1,7 @@
 //! TOML text -> entries: each value under its dotted key, with the line it stands on.
 
 use super::error::{ProfileError, Result};
-use super::keys;
+use super::{keys, quotes};
 use toml::Value;
 use toml::de::{DeTable, DeValue};
 
@@ -29,10 +29,17 @@ impl Entry {
 /// # Errors
 /// TOML syntax, as `FILE:LINE: …`.
 pub(super) fn document(file: &str, text: &str) -> Result<Vec<Entry>> {
-    let table = DeTable::parse(text).map_err(|error| {
-        let line = error.span().map_or(1, |span| Lines::new(text).of(span.start));
-        ProfileError::Syntax { file: file.to_owned(), line, source: Box::new(error) }
-    })?;
+    let (table, errors) = DeTable::parse_recoverable(text);
+    // What follows the first is mostly its echo.
+    let place = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
+    if let Some(source) = errors.into_iter().min_by_key(place) {
+        let line = Lines::new(text).of(place(&source));
+        let file = file.to_owned();
+        return Err(match quotes::unclosed(text).filter(|unclosed| *unclosed <= line) {
+            Some(line) => ProfileError::OneLine { file, line },
+            None => ProfileError::Syntax { file, line, source: Box::new(source) },
+        });
+    }
     let mut entries = Vec::new();
     flatten(table.get_ref(), "", &Lines::new(text), &mut entries);
     // The table is sorted by name; the first error to report is the first in the file.
@@ -117,6 +124,30 @@ mod tests {
         let error = document("a.toml", "walls = 2\nskin_layers = \n").unwrap_err().to_string();
         assert!(error.starts_with("a.toml:2: "), "{error}");
         assert!(!error.contains('\n'));
+    }
+
+    #[test]
+    fn blocks_in_wrong_quotes_are_answered_with_the_right_ones() {
+        let told = |text: &str| document("a.toml", text).unwrap_err().to_string();
+        for (line, text) in [
+            (2, "walls = 2\nmachine.start_gcode = \"G28\nM104 S200\""),
+            (2, "walls = 2\nmachine.start_gcode = 'G28\nG1 X1'\nwalls = 3"),
+            (3, "a = '''x\n'''\nb = \"G28 ; \\\" \nG29"),
+        ] {
+            let error = told(text);
+            assert!(error.starts_with(&format!("a.toml:{line}: ")), "{error}");
+            assert!(error.contains("between three quotes"), "{error}");
+        }
+        let error = told("# \"\nmachine.start_gcode = \"\"\"\nG28\nM117 \\o/\n\"\"\"\n");
+        assert!(error.starts_with("a.toml:4: ") && error.contains("backslash"), "{error}");
+        assert!(!error.contains('\n') && error.contains("'''"), "{error}");
+        // An apostrophe is no quote, and quotes may be part of a text.
+        for text in ["description = Bob's printer\n", "a = '''b''''\nwall: 30\n"] {
+            assert!(!told(text).contains("three"), "{text}");
+        }
+        // The first of several is told.
+        let error = told("inherits = ender-3\nwall: 30\n");
+        assert!(error.starts_with("a.toml:1: "), "{error}");
     }
 
     #[test]

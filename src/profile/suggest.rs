@@ -1,7 +1,8 @@
 //! Misspelt word -> the known word nearest to it, for error messages.
 //!
 //! A wrong guess is worse than none: it sends people to a setting that they do not mean. So a
-//! word must be nearly the same, or begin only one known word.
+//! word must be nearly the same, or begin only one known word. Where its table is missing or wrong, all known
+//! words with such a last part are named: nobody can tell which is meant.
 
 /// Similarity from 0 to 1 that a known word must have: about one wrong letter in four, or two
 /// letters changed over in a word of four.
@@ -10,16 +11,22 @@ const ALIKE: f64 = 0.7;
 /// Letters of a word that may stand for the one known word which begins with it.
 const LEAST_BEGINNING: usize = 4;
 
+/// Known words that are named at once, at most.
+const MOST_NAMED: usize = 6;
+
 /// The known word nearest to `word`, if any is near. A known dotted name is
 /// also compared by its last part, because users leave the table out.
 #[must_use]
 pub fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let word = word.to_lowercase();
     let score = |name: &str| {
-        let last = name.rsplit('.').next().unwrap_or(name);
         let whole = strsim::normalized_damerau_levenshtein(&word, name);
-        let part = 0.95 * strsim::normalized_damerau_levenshtein(&word, last);
-        whole.max(part)
+        if !word.contains('.') {
+            return whole.max(0.95 * strsim::normalized_damerau_levenshtein(&word, last(name)));
+        }
+        // The same table makes other keys look alike.
+        let part = strsim::normalized_damerau_levenshtein(last(&word), last(name));
+        if part < ALIKE { 0.0 } else { whole }
     };
     let known: Vec<&str> = known.collect();
     let scored = known.iter().map(|name| (score(name), *name));
@@ -28,6 +35,25 @@ pub fn nearest<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Option<&
         // Names break ties, so that the message never depends on the order of the list.
         .max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(a.1)));
     best.map(|(_, name)| name).or_else(|| begun(&word, &known))
+}
+
+/// The last part of a dotted name.
+fn last(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
+}
+
+/// The known dotted names with the last part of `word`, after those without a table that are nearly the same, if
+/// they are few.
+fn same_part<'a>(word: &str, known: &[&'a str]) -> Vec<&'a str> {
+    let word = word.to_lowercase();
+    let is_same = |name: &&&str| name.contains('.') && last(name) == last(&word);
+    let same: Vec<&str> = known.iter().filter(is_same).copied().collect();
+    let near = |name: &str| strsim::normalized_damerau_levenshtein(&word, name) >= ALIKE;
+    let bare = known.iter().copied().filter(|name| !name.contains('.') && near(name));
+    match same.len() {
+        1..=MOST_NAMED => bare.chain(same.iter().copied()).collect(),
+        _ => Vec::new(),
+    }
 }
 
 /// The only known word that begins with `word`.
@@ -40,7 +66,17 @@ fn begun<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
 /// `; did you mean …?`, or nothing where no known word is near.
 #[must_use]
 pub fn did_you_mean<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> String {
-    nearest(word, known).map_or_else(String::new, |name| format!("; did you mean `{name}`?"))
+    let known: Vec<&str> = known.collect();
+    let mut named = same_part(word, &known);
+    if named.is_empty() {
+        named.extend(nearest(word, known.iter().copied()));
+    }
+    let quoted: Vec<String> = named.iter().map(|name| format!("`{name}`")).collect();
+    match quoted.split_last() {
+        None => String::new(),
+        Some((one, [])) => format!("; did you mean {one}?"),
+        Some((end, others)) => format!("; did you mean {} or {end}?", others.join(", ")),
+    }
 }
 
 #[cfg(test)]
@@ -61,6 +97,12 @@ mod tests {
         ] {
             assert_eq!(nearest(word, known.into_iter()), found, "{word}");
         }
+        let keys = ["filament.fan", "speed.wall", "walls", "jerk.wall", "retraction.length"];
+        let told = |word: &str| did_you_mean(word, keys.into_iter());
+        assert_eq!(told("wall"), "; did you mean `walls`, `speed.wall` or `jerk.wall`?");
+        assert_eq!(told("machine.length"), "; did you mean `retraction.length`?");
+        assert_eq!(told("retraction.lenght"), "; did you mean `retraction.length`?");
+        assert_eq!(told("filament.flow"), "");
         assert_eq!(nearest("skirt", ["strict", "quiet"].into_iter()), None);
         assert_eq!(nearest("same", ["same-a", "same-b"].into_iter()), None);
     }

@@ -1,7 +1,15 @@
 //! Start and end blocks + values -> text: fills in `{placeholders}`.
+//!
+//! - A *placeholder* is a name of ours in braces; its value is a text, mostly a number.
+//! - Two braces stand for one, so that RepRapFirmware's own `{expressions}` can be written.
+//! - What other slicers would fill in or compute is refused, with our name for it where there is one
+//!   (see `placeholders`): it would reach the printer as it is.
+//! - A block is filled in line by line, so that an error can name the line. The start block gets the first
+//!   layer's temperatures, the end block those of the rest.
 
 use super::Settings;
 use super::error::{BlockError, PlaceholderError};
+use super::placeholders;
 
 /// What a block may want to know of the print itself.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -72,7 +80,7 @@ pub fn start_values(settings: &Settings, print: &PrintFacts) -> Vec<(&'static st
 /// last one too.
 ///
 /// # Errors
-/// An unknown placeholder or a single brace.
+/// An unknown placeholder, of another slicer too, or a single brace.
 pub fn render(name: &str, block: &str, values: &[(&str, String)]) -> Result<String, BlockError> {
     let mut text = String::with_capacity(block.len());
     for (index, line) in block.lines().enumerate() {
@@ -91,6 +99,9 @@ fn render_line(
     values: &[(&str, String)],
     text: &mut String,
 ) -> Result<(), PlaceholderError> {
+    if let Some(written) = placeholders::bracketed(line) {
+        return Err(unknown(written, values));
+    }
     let mut rest = line;
     while let Some(at) = rest.find(['{', '}']) {
         text.push_str(&rest[..at]);
@@ -108,7 +119,7 @@ fn render_line(
             return Err(PlaceholderError::OpenBrace);
         };
         let found = values.iter().find(|(known, _)| *known == name);
-        let (_, value) = found.ok_or_else(|| unknown(name, values))?;
+        let (_, value) = found.ok_or_else(|| unknown(&format!("{{{name}}}"), values))?;
         text.push_str(value);
         rest = after;
     }
@@ -116,9 +127,28 @@ fn render_line(
     Ok(())
 }
 
-fn unknown(name: &str, values: &[(&str, String)]) -> PlaceholderError {
-    let known = values.iter().map(|(known, _)| (*known).to_owned()).collect();
-    PlaceholderError::Unknown { name: name.trim().to_owned(), known }
+/// The error for a placeholder that is `written` so, with its brackets.
+fn unknown(written: &str, values: &[(&str, String)]) -> PlaceholderError {
+    let written = written.to_owned();
+    let name = written.get(1..written.len() - 1).unwrap_or_default().trim().to_owned();
+    if is_computed(&name) {
+        return PlaceholderError::Computed { written };
+    }
+    match placeholders::ours(&name) {
+        Some(ours) => PlaceholderError::Foreign { written, ours: Some(ours) },
+        None if placeholders::is_known(&name) => PlaceholderError::Foreign { written, ours: None },
+        None => {
+            let known = values.iter().map(|(known, _)| (*known).to_owned()).collect();
+            PlaceholderError::Unknown { written, known }
+        }
+    }
+}
+
+/// Whether it is a condition or a sum of another slicer's: `if max_layer_z < 200`, `endif`, `x + 2`.
+fn is_computed(name: &str) -> bool {
+    let word = name.split_whitespace().next().unwrap_or_default();
+    ["if", "elsif", "else", "endif"].contains(&word)
+        || name.contains(['+', '*', '/', '<', '>', '('])
 }
 
 /// Shortest decimal text; Rust's `Display` for `f64` has no exponents.
@@ -162,6 +192,45 @@ mod tests {
         );
         let error = render("b", "{zzzzzz}", &sample()).unwrap_err().to_string();
         assert!(error.ends_with("known are temperature, tool"), "{error}");
+    }
+
+    #[test]
+    fn placeholders_of_other_slicers_are_answered_by_ours() {
+        let values = values(
+            &crate::profile::load([crate::profile::DEFAULT], &[]).unwrap().settings,
+            &PrintFacts::default(),
+        );
+        for (line, expected) in [
+            (
+                "M109 S[first_layer_temperature] ; wait",
+                "unknown placeholder [first_layer_temperature]; here it is {temperature}",
+            ),
+            (
+                "M190 S{material_bed_temperature_layer_0}",
+                "unknown placeholder {material_bed_temperature_layer_0}; here it is {bed_temperature}",
+            ),
+            (
+                "M104 S{first_layer_temperature[0]}",
+                "unknown placeholder {first_layer_temperature[0]}; here it is {temperature}",
+            ),
+            ("M104 S{nozzle_temperature_initial_layer}", "here it is {temperature}"),
+            ("G1 Y[print_bed_max]", "here it is {bed_width} for x, {bed_depth} for y"),
+            ("G1 Z[z_offset]", "unknown placeholder [z_offset]; there is none for it here"),
+            ("M104 S[temprature]", "unknown placeholder [temprature]; did you mean {temperature}?"),
+            (
+                "{if max_layer_z < max_print_height}G1 Z9{endif}",
+                "{if max_layer_z < max_print_height} is a condition or a sum",
+            ),
+            ("G1 Z{max_layer_z + 2}", "{park_z} is 10 mm above the print"),
+        ] {
+            let error = render("b", line, &values).unwrap_err().to_string();
+            assert!(error.starts_with("b, line 1 of it: ") && error.contains(expected), "{error}");
+        }
+        for fine in
+            ["G28 ; home [all] axes [temperature]", "M117 [1/2] heating [soon]", "START A=[x]"]
+        {
+            assert_eq!(render("b", fine, &values).unwrap(), format!("{fine}\n"));
+        }
     }
 
     #[test]

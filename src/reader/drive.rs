@@ -8,6 +8,7 @@
 //! - While the printer's own retraction has lifted the nozzle, all moves lie that much higher.
 
 use super::firmware::{Ab, Factors};
+use super::missing;
 use super::state::State;
 use super::words::Words;
 use super::{Event, Motion, Role};
@@ -83,10 +84,16 @@ impl State {
     }
 
     /// The words of a move; F takes effect at once.
-    fn target(&mut self, words: Words<'_>) -> Target {
+    fn target(&mut self, mut words: Words<'_>) -> Target {
         let mut target = Target::default();
-        for (letter, value) in words {
-            let Some(value) = value else { continue };
+        while let Some((letter, value)) = words.next() {
+            let Some(value) = value else {
+                let is_computed = words.bracket == Some(b'{') && self.computes();
+                if missing::OF_MOVES.contains(&letter) && !is_computed {
+                    self.numberless = self.numberless.or(Some(letter));
+                }
+                continue;
+            };
             let length = value * self.unit;
             match letter {
                 b'X' | b'Y' | b'Z' => target.axes[usize::from(letter - b'X')] = Some(length),

@@ -1,6 +1,10 @@
 //! Code -> Heating: which heater is set to what temperature, and which is waited for.
+//!
+//! M109 and M190 wait for the temperature that they name. Where its number is missing nothing is waited
+//! for; where they name none, Marlin from 1.1 on and Klipper wait for nothing, and older firmwares for what
+//! was set before.
 
-use super::words;
+use super::{Firmware, words};
 
 /// The least temperature that a P tells, °C.
 const LEAST_BY_P: f64 = 50.0;
@@ -27,8 +31,9 @@ pub struct Heating {
     pub waits: bool,
 }
 
-/// The command for a heater that `code` is in Marlin, Sailfish or Klipper, if it is one.
-pub(super) fn heating(code: &[u8]) -> Option<Heating> {
+/// The command for a heater that `code` is in Marlin, Sailfish or Klipper, if it is one, as this firmware
+/// takes it.
+pub(super) fn heating(code: &[u8], firmware: Firmware) -> Option<Heating> {
     // Nearly all lines are moves.
     if code[0].eq_ignore_ascii_case(&b'G') {
         return None;
@@ -37,10 +42,10 @@ pub(super) fn heating(code: &[u8]) -> Option<Heating> {
     if command.letter != b'M' || command.has_part {
         return None;
     }
-    let (mut celsius, mut tool) = (None, None);
+    let (mut celsius, mut tool, mut names_none) = (None, None, true);
     for (letter, value) in words {
         match letter {
-            b'S' | b'R' => celsius = value,
+            b'S' | b'R' => (celsius, names_none) = (value, false),
             // Machinekit's and Mach's; a smaller number is no temperature.
             b'P' if celsius.is_none() => celsius = value.filter(|value| *value >= LEAST_BY_P),
             b'T' => tool = value.filter(|value| *value >= 0.0).map(|value| value as u32),
@@ -48,13 +53,16 @@ pub(super) fn heating(code: &[u8]) -> Option<Heating> {
         }
     }
     let set = |heater, waits| Some(Heating { heater, celsius, waits });
+    let waits_bare = !matches!(firmware, Firmware::Marlin | Firmware::Klipper);
+    let is_computed = matches!(firmware, Firmware::RepRap);
+    let waits = celsius.is_some() || is_computed || names_none && waits_bare;
     // M6, M116, M133 and M134 only wait.
     let wait = |heater| Some(Heating { heater, celsius: None, waits: true });
     match command.number {
         104 => set(Heater::Nozzle(tool), false),
-        109 => set(Heater::Nozzle(tool), true),
+        109 => set(Heater::Nozzle(tool), waits),
         140 => set(Heater::Bed, false),
-        190 => set(Heater::Bed, true),
+        190 => set(Heater::Bed, waits),
         133 => wait(Heater::Nozzle(tool)),
         134 => wait(Heater::Bed),
         6 | 116 => wait(Heater::All),
@@ -106,7 +114,7 @@ mod tests {
 
     #[test]
     fn each_firmware_has_its_words() {
-        let of = |code: &str| heating(code.as_bytes());
+        let of = |code: &str| heating(code.as_bytes(), Firmware::Other);
         let nozzle =
             |tool, celsius, waits| Some(Heating { heater: Heater::Nozzle(tool), celsius, waits });
         assert_eq!(of("M104 S200 T1"), nozzle(Some(1), Some(200.0), false));
@@ -116,6 +124,14 @@ mod tests {
         let klipper = "SET_HEATER_TEMPERATURE HEATER=extruder TARGET=205";
         assert_eq!(of(klipper), nozzle(None, Some(205.0), false));
         assert_eq!(of("temperature_wait sensor=extruder minimum=200"), nozzle(None, None, true));
+        // What names no number waits for nothing, as some firmwares do where no number is asked for.
+        for code in ["M109 S", "M109 S[first_layer_temperature]", "M109 S{temperature}"] {
+            assert_eq!(of(code), nozzle(None, None, false), "{code}");
+        }
+        assert_eq!(of("M109"), nozzle(None, None, true));
+        assert_eq!(heating(b"M109", Firmware::Marlin), nozzle(None, None, false));
+        let computed = heating(b"M109 S{global.heat}", Firmware::RepRap);
+        assert_eq!(computed, nozzle(None, None, true));
         assert_eq!(of("M107"), None);
         assert_eq!(of("START_PRINT EXTRUDER=200"), None);
     }

@@ -16,6 +16,7 @@ mod layers;
 mod limit;
 mod lines;
 mod marks;
+mod missing;
 mod pieces;
 mod places;
 mod priming;
@@ -84,6 +85,13 @@ pub enum Event {
         /// The whole line of code.
         code: Vec<u8>,
     },
+    /// A word of a command has no number where it needs one, so that it does nothing.
+    NoNumber {
+        /// The word's letter.
+        letter: u8,
+        /// The whole line of code.
+        code: Vec<u8>,
+    },
     /// A comment without a mark, and without its `;`.
     Comment(Vec<u8>),
     /// A line of code that the reader does not know.
@@ -131,6 +139,8 @@ pub struct Summary {
     pub unknown: u64,
     /// The first of them, from 1; 0 if there is none.
     pub first_unknown: u64,
+    /// Lines with a word that has no number where it needs one.
+    pub numberless: u64,
     /// Retractions by the printer's own settings (G10, G11), whose length is not in the file.
     pub firmware_retractions: u64,
     /// Cross-section of the filament by which volumes of E were taken for lengths, mm²; 0 where E is

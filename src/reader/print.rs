@@ -19,8 +19,8 @@ use super::{Event, Facts, Firmware, Reading};
 use std::io::{self, BufRead};
 use std::ops::{Deref, DerefMut, Range};
 
-/// Lines of code that the reader does not know and that are kept, of a file: the first show what
-/// it is.
+/// Lines of code that the reader does not know, and of those without a number, that are kept of a file: the
+/// first show what it is.
 pub(super) const MOST_UNKNOWN: u64 = 1000;
 
 /// Commands that stand between the lines of nearly every print, or are for heaters: no note of them
@@ -139,6 +139,8 @@ pub(super) struct Kept {
     pub(super) notes: Vec<Note>,
     /// Lines of unknown code so far, those before these moves included.
     pub(super) unknown: u64,
+    /// Likewise lines with a word that has no number.
+    pub(super) numberless: u64,
 }
 
 impl Kept {
@@ -154,6 +156,13 @@ impl Kept {
                     return;
                 }
                 What::Unknown(String::from_utf8_lossy(&code).into_owned())
+            }
+            Event::NoNumber { letter, code } => {
+                self.numberless += 1;
+                if self.numberless > MOST_UNKNOWN {
+                    return;
+                }
+                What::NoNumber { letter, code: String::from_utf8_lossy(&code).into_owned() }
             }
             Event::Command { letter, number, code } if !is_everyday(letter, number, &code) => {
                 What::Command(Order::new(letter, number, &code))

@@ -20,6 +20,7 @@ use super::firmware::{Ab, Dwell, G10, Modes, Rules};
 use super::heat;
 use super::known::{is_harmless, klipper};
 use super::marks::{Mark, mark};
+use super::missing::missing;
 use super::pieces::Pieces;
 use super::places::Places;
 use super::retraction::Retraction;
@@ -71,6 +72,8 @@ pub(super) struct State {
     pub(super) is_in_patch: bool,
     pub(super) width: Option<f64>,
     pub(super) height: Option<f64>,
+    /// A word of this line that needs a number and has none.
+    pub(super) numberless: Option<u8>,
     pub(super) summary: Summary,
 }
 
@@ -101,6 +104,7 @@ impl State {
             is_in_patch: false,
             width: None,
             height: None,
+            numberless: None,
             summary: Summary { firmware: reading.firmware, ..Summary::default() },
         }
     }
@@ -112,6 +116,10 @@ impl State {
         let (code, comment) = words::split(line);
         if !code.is_empty() {
             self.code(code, sink);
+            if let Some(letter) = self.numberless.take() {
+                self.summary.numberless += 1;
+                sink(Event::NoNumber { letter, code: code.to_vec() });
+            }
         }
         let Some(comment) = comment else { return };
         match mark(comment) {
@@ -138,7 +146,10 @@ impl State {
         {
             sink(Event::Command { letter, number, code: code.to_vec() });
         }
-        if let Some(heating) = heat::heating(code) {
+        if let Some((command, words)) = command {
+            self.numberless = missing(command, words, self.computes());
+        }
+        if let Some(heating) = heat::heating(code, self.firmware) {
             sink(Event::Heating(heating));
             // Sailfish's M6 changes the tool before it waits.
             if let Some((Code { letter: b'M', number: 6, .. }, words)) = command {
@@ -167,6 +178,11 @@ impl State {
         if self.summary.first_unknown == 0 {
             self.summary.first_unknown = self.summary.lines;
         }
+    }
+
+    /// Whether what stands in braces is computed by the firmware.
+    pub(super) fn computes(&self) -> bool {
+        matches!(self.firmware, Firmware::RepRap)
     }
 
     /// Returns whether the command is known.

@@ -66,6 +66,13 @@ pub enum What {
     },
     /// Code that the reader does not know: the first thousand lines of it.
     Unknown(String),
+    /// A word of a command has no number where it needs one.
+    NoNumber {
+        /// The word's letter.
+        letter: u8,
+        /// The whole line of code.
+        code: String,
+    },
     /// A command other than a move, but for those that stand everywhere in a print.
     Command(Order),
 }

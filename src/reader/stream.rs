@@ -165,7 +165,8 @@ impl Stream {
         let [from, to] = [block, block + 1].map(|k| &self.places[k]);
         let bytes = self.source.bytes(from.place.offset, to.place.offset)?;
         let (mut state, mut line) = (from.state.clone(), from.line);
-        let mut kept = Kept { unknown: state.summary.unknown, ..Kept::default() };
+        let (unknown, numberless) = (state.summary.unknown, state.summary.numberless);
+        let mut kept = Kept { unknown, numberless, ..Kept::default() };
         kept.moves.reserve_exact(to.moves - from.moves);
         let end = lines::each(&mut &bytes[..], from.place, &mut |text, _| {
             line += 1;

@@ -1,4 +1,13 @@
 //! A line -> command, words of a letter and a number, and comment.
+//!
+//! - The *code* of a line is what stands before its comment, without a line number and a checksum.
+//! - A *command* is a letter with a number, `G1`; it may have a fraction, `G92.1`.
+//! - A *word* is a letter with a number, or alone. Blanks may stand anywhere, or nowhere.
+//! - What stands in round brackets is a comment; in braces or square brackets a value that is no number: no
+//!   word is looked for in it.
+//! - Numbers are decimal, without an exponent, as firmwares read them.
+//!
+//! Nothing is copied: words are read from the line as they are asked for.
 
 /// A letter with a number, such as `G1`. Fractions of the number are left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,6 +22,8 @@ pub(super) struct Code {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Words<'a> {
     rest: &'a [u8],
+    /// The bracket in which the value of the last word stands, `{` or `[`, if it does.
+    pub(super) bracket: Option<u8>,
 }
 
 /// A line's code and its comment, which begins after the `;`. A line number before and a
@@ -52,7 +63,10 @@ pub(super) fn command(code: &[u8]) -> Option<(Code, Words<'_>)> {
         let part = 1 + rest[1..].iter().take_while(|byte| byte.is_ascii_digit()).count();
         rest = &rest[part..];
     }
-    Some((Code { letter: letter.to_ascii_uppercase(), number, has_part }, Words { rest }))
+    Some((
+        Code { letter: letter.to_ascii_uppercase(), number, has_part },
+        Words { rest, bracket: None },
+    ))
 }
 
 impl Iterator for Words<'_> {
@@ -70,13 +84,28 @@ impl Iterator for Words<'_> {
             } else if byte.is_ascii_alphabetic() {
                 let blank = self.rest.iter().take_while(|&&byte| byte == b' ').count();
                 let (number, after) = number(&self.rest[blank..]);
+                self.bracket = None;
                 if number.is_some() {
                     self.rest = after;
+                } else if let Some(after) = past_brackets(self.rest) {
+                    (self.bracket, self.rest) = (self.rest.first().copied(), after);
                 }
                 return Some((byte.to_ascii_uppercase(), number));
             }
         }
     }
+}
+
+/// What follows a value in braces or square brackets, if one stands there: RepRapFirmware computes
+/// `{move.axes[0].max}`, and `[first_layer_temperature]` was left by a slicer. None of it is a word.
+fn past_brackets(text: &[u8]) -> Option<&[u8]> {
+    let close = match text.first()? {
+        b'{' => b'}',
+        b'[' => b']',
+        _ => return None,
+    };
+    let end = text.iter().position(|&byte| byte == close);
+    Some(&text[end.map_or(text.len(), |end| end + 1)..])
 }
 
 /// Powers of ten that a double holds exactly.
@@ -164,6 +193,9 @@ mod tests {
             let (code, words) = parsed(line);
             assert_eq!((code.letter, code.number), (b'G', 1));
             assert_eq!(words, expected, "{line}");
+        }
+        for line in ["M104 S[first_layer_temperature] T1", "M104 S{a.t[0]} T1"] {
+            assert_eq!(parsed(line).1, [(b'S', None), (b'T', Some(1.0))], "{line}");
         }
         assert!(parsed("G92.1 X0").0.has_part);
         assert!(command(b"").is_none() && command(b"G").is_none() && command(b"GX1").is_none());

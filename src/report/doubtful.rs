@@ -1,6 +1,6 @@
 //! Settings -> findings: values that are allowed and hardly meant, or more than printer and material bear.
 
-use crate::profile::Settings;
+use crate::profile::{Settings, Sources};
 use crate::warning::Warning;
 
 /// Multipliers of the flow that are used to calibrate an extruder; others are hardly meant.
@@ -8,6 +8,17 @@ const FLOWS: [f64; 2] = [0.7, 1.4];
 
 /// No nozzle is hotter, °C.
 const MOST_CELSIUS: f64 = 500.0;
+
+/// A material that asks for a bed at least so hot comes loose from a cold one, °C: ABS, ASA, nylon, PC. PLA, TPU
+/// and, with care, PETG hold on.
+const HOT_BED: u32 = 90;
+
+/// A material that the printer's bed is too cold for.
+pub fn cold_bed(settings: &Settings, sources: &Sources) -> Option<Warning> {
+    let asked_celsius = sources.left_cold.filter(|asked| *asked >= HOT_BED)?;
+    let (material, machine) = (settings.filament.name.clone(), settings.machine.name.clone());
+    Some(Warning::ColdBed { material, asked_celsius, machine })
+}
 
 /// Speeds, flow and temperatures to think about again.
 #[must_use]
@@ -99,8 +110,25 @@ mod tests {
     #[test]
     fn nothing_shipped_is_doubtful() {
         for name in builtin_names() {
-            let settings = load([name], &[]).unwrap().settings;
-            assert_eq!(warnings(&settings), [], "{name}");
+            let profile = load([name], &[]).unwrap();
+            assert_eq!(warnings(&profile.settings), [], "{name}");
+            assert_eq!(cold_bed(&profile.settings, &profile.sources), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn materials_that_need_a_hot_bed_are_told_where_none_is() {
+        let told = |printer: &str, material: &str| {
+            let profile = load([printer, material], &[]).unwrap();
+            cold_bed(&profile.settings, &profile.sources).map(|one| one.to_string())
+        };
+        for material in ["abs", "asa"] {
+            let text = told("replicator-2", material).unwrap();
+            assert!(text.contains("asks for a bed of 100 °C") && text.contains("warps"), "{text}");
+            assert_eq!(told("replicator-2x", material), None, "{material}");
+        }
+        for material in ["pla", "petg", "tpu", "abs-narino"] {
+            assert_eq!(told("narino", material), None, "{material}");
         }
     }
 

@@ -78,7 +78,7 @@ fn wrong_settings_name_the_flag() {
     run(&["--layer-height", "-1"], "--layer-height: layer_height = -1 is out of range");
     run(&["--layer-height", "x"], "--layer-height: layer_height is the text `x`");
     run(&["--layer-height", "0.5"], "--layer-height: layer_height = 0.5 mm is more than");
-    run(&["--dual", "--layer-height", "0.3"], "make thick lines taller than the 0.4 mm");
+    run(&["--dual", "--layer-height", "0.3"], "make thick lines 0.6 mm tall, above the 0.4 mm");
     run(&["--set", "wals=2"], "--set: unknown key `wals`; did you mean `walls`?");
     run(&["--set", "perimeters=2"], "--set: unknown key `perimeters`; here it is `walls`");
     run(

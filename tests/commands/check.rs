@@ -177,8 +177,8 @@ fn json_is_stable() {
     let json: serde_json::Value = serde_json::from_str(&out).unwrap();
     let findings = json["findings"].as_array().unwrap();
     assert!(code == 0 && findings.iter().all(|one| one["severity"] == "warning"), "{out}");
-    let names = "unknown-code outside-volume through-print head-hits changes-the-machine wrong-temperature \
-                 cold-extrusion too-fast too-many-steps too-much-flow unpaired-retraction odd-bead falling-z in-the-air floating unanchored \
+    let names = "unknown-code missing-number not-homed outside-volume through-print head-hits changes-the-machine wrong-temperature \
+                 cold-extrusion left-on too-fast too-many-steps too-much-flow unpaired-retraction odd-bead falling-z in-the-air floating unanchored \
                  printed-twice uncovered-skin double-skin overfilled underfilled narrow-bead slender-support loose-infill \
                  wrong-sums wrong-marks wrong-size open-outline open-surface outside-part wrong-infill wrong-volume";
     assert_eq!(Code::ALL.map(Code::name).join(" "), names);

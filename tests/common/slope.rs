@@ -79,7 +79,7 @@ pub(crate) fn lines() -> [usize; 2] {
 pub(crate) fn file(form: Form, joined: bool, change: impl Fn(usize) -> Change) -> String {
     let mut pen = Pen { text: String::new(), at: [0.0; 3], form, told: 0.0 };
     pen.say("; made by hand");
-    pen.code("M109 S210\nM83\nG1 Z5 F600");
+    pen.code("G28\nM109 S210\nM83\nG1 Z5 F600");
     let wedge = if form == Form::Contoured { LAYERS } else { base() };
     for k in 0..LAYERS {
         pen.layer(k);
@@ -96,6 +96,7 @@ pub(crate) fn file(form: Form, joined: bool, change: impl Fn(usize) -> Change) -
             }
         }
     }
+    pen.code("M104 S0");
     pen.text
 }
 

@@ -281,7 +281,9 @@ fn what_a_start_block_may_do_and_what_not() {
 
 #[test]
 fn what_an_end_block_may_do_and_what_not() {
-    for new in ["M84", "G28 X Y", "M18", "M81", "M104 S0", "M109 R150", "M107", "M106 S255", "M0"] {
+    for new in
+        ["M84", "G28 X Y", "M18", "M81", "M104 S0", "M109 R150\nM104 S0", "M107", "M106 S255", "M0"]
+    {
         clean(&with(&SOUND, End, new).0, new);
     }
     for (new, celsius) in
@@ -289,6 +291,7 @@ fn what_an_end_block_may_do_and_what_not() {
     {
         assert_eq!(wrong(End, new, Code::ChangesTheMachine), celsius);
     }
+    assert_eq!(wrong(End, "M109 R150", Code::LeftOn), 150.0);
     wrong(End, "M112", Code::ChangesTheMachine);
     for new in ["G28", "M302"] {
         found(End, new, Code::ChangesTheMachine, Severity::Warning);

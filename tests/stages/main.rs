@@ -4,6 +4,7 @@
 mod common;
 
 mod bent;
+mod blocks;
 mod check;
 mod dual;
 mod firmware;

@@ -74,7 +74,7 @@ fn square(at: [f64; 2], layers: std::ops::RangeInclusive<u32>) -> String {
 }
 
 fn judged(body: &str) -> Verdict {
-    let text = format!("M104 S200\nM109 S200\nG28\nG90\nM83\n{body}");
+    let text = format!("M104 S200\nM109 S200\nG28\nG90\nM83\n{body}M104 S0\n");
     let print = Print::read(&mut text.as_bytes(), 1.75).unwrap();
     check::check(&print, &Terms::new(None, None, &print), None)
 }

@@ -103,7 +103,7 @@ struct Hand {
 
 impl Hand {
     fn new() -> Self {
-        let head = "; nozzle_diameter = 0.4\nM83\nM104 S200\nM109 S200\n";
+        let head = "; nozzle_diameter = 0.4\nM83\nM104 S200\nM109 S200\nG28\n";
         Self { text: head.to_owned(), at: [0.0; 2] }
     }
 
@@ -238,6 +238,7 @@ fn beam(first: Option<usize>) -> Verdict {
             }
         }
     }
+    hand.text += "M104 S0\n";
     judged(&hand.text)
 }
 

@@ -42,6 +42,8 @@ pub(crate) struct Changes {
     /// How often all or some axes were sent to end stops, and before which moves each last was.
     homed: usize,
     homed_at: [Option<usize>; 3],
+    /// Whether an axis has been sent to an end stop whose place only the printer knows, the last time.
+    is_untold: [bool; 3],
 }
 
 impl Changes {
@@ -57,6 +59,7 @@ impl Changes {
             has_begun: false,
             homed: 0,
             homed_at: [None; 3],
+            is_untold: [false; 3],
         }
     }
 
@@ -93,9 +96,10 @@ impl Changes {
     fn home(&mut self, order: &Order, at: usize) {
         self.homed += 1;
         let all = !b"XYZ".iter().any(|&axis| order.has(axis));
-        for (axis, homed_at) in b"XYZ".iter().zip(&mut self.homed_at) {
-            if all || order.has(*axis) {
-                *homed_at = Some(at);
+        for (axis, letter) in b"XYZ".iter().enumerate() {
+            if all || order.has(*letter) {
+                self.homed_at[axis] = Some(at);
+                self.is_untold[axis] = order.number != 28;
             }
         }
     }
@@ -154,7 +158,8 @@ impl Changes {
     }
 
     /// G92 of x, y or z: what follows lies elsewhere than it says. After homing an axis whose end stop
-    /// only the printer knows, or before all moves, it says where that is.
+    /// only the printer knows (G161, G162), or before all moves and all homing, it says where that is. After
+    /// G28 the firmware knows: such as G92 Z0.2 then lowers the whole print.
     fn moved(
         &mut self,
         order: &Order,
@@ -166,7 +171,8 @@ impl Changes {
             let letter = b"XYZ"[axis];
             let says = order.has(letter).then(|| order.value(letter).unwrap_or(0.0));
             let says = says.or(all.then_some(0.0))?;
-            let is_free = index == 0 || self.homed_at[axis] == Some(index);
+            let is_told = self.homed_at[axis] == Some(index) && self.is_untold[axis];
+            let is_free = is_told || index == 0 && self.homed_at[axis].is_none();
             (!is_free).then_some(says - at[axis])
         };
         let largest = (0..3)

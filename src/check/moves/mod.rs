@@ -14,13 +14,15 @@
 //!   and the skins there ([`slopes`](super::slopes)); lines on what the start block primed ([`primed`]).
 //!
 //! Between the moves are commands: those that change the machine ([`changes`]) and its limits
-//! ([`limits`]), and those for heaters ([`warmth`]) and the fan ([`air`]).
+//! ([`limits`]), those for heaters ([`warmth`]) and the fan ([`air`]), and those that a start or end block
+//! leaves out ([`blocks`]).
 //!
-//! Commands are judged once each, by a list of what the firmware knows. Klipper's macros cannot be
-//! judged, and are listed as such.
+//! Commands are judged once each, by a list of what the firmware knows ([`codes`]).
 
 pub(crate) mod air;
+pub(crate) mod blocks;
 pub(crate) mod changes;
+pub(crate) mod codes;
 pub(crate) mod dialect;
 pub(crate) mod heat;
 pub(crate) mod limits;
@@ -31,15 +33,17 @@ pub(crate) mod primed;
 pub(crate) mod through;
 pub(crate) mod warmth;
 
+use crate::check::beads;
 use crate::check::finding::{Code, Finding, Findings, Place, short};
 use crate::check::slopes::Slopes;
 use crate::check::terms::{Machine, Terms};
 use crate::check::window::Page;
-use crate::profile::DialectName;
 use crate::reader::print::{Note, Order, Step, What};
 use crate::reader::{Facts, Role};
 use air::Air;
+use blocks::Blocks;
 use changes::Changes;
+use codes::Codes;
 use heat::Heat;
 use motors::{LEAST_LENGTH, SPEED_SLACK};
 use patches::Patches;
@@ -55,9 +59,6 @@ const FLOW_SLACK: f64 = 1.05;
 
 /// Lower lifts are not judged, mm.
 const LEAST_LIFT: f64 = 0.05;
-
-/// Digits of a command's number.
-const MOST_DIGITS: usize = 6;
 
 /// Filament that may be missing or too much at a restore, mm: room for what slicers add to prime.
 const FILAMENT_SLACK: f64 = 0.3;
@@ -114,6 +115,7 @@ impl<'a> Moves<'a> {
         limits::judge((walk.facts, walk.terms), &printing, found);
         walk.changes.finish(found);
         walk.warmth.finish(found);
+        walk.blocks.finish(found);
         walk.primed.finish(found);
         walk.patches.finish((walk.facts, walk.terms), found);
         if let Some(slopes) = walk.slopes {
@@ -145,69 +147,6 @@ fn multiplier(terms: &Terms, found: &mut Findings) {
     found.add(Finding::of(code, times, "times", text));
 }
 
-/// Commands that the machine does not know.
-struct Codes<'a> {
-    machine: Option<&'a Machine>,
-    unknown: Vec<Finding>,
-    /// Words that a module or a macro of Klipper's may know.
-    words: Vec<String>,
-}
-
-impl<'a> Codes<'a> {
-    fn new(machine: Option<&'a Machine>) -> Self {
-        Self { machine, unknown: Vec::new(), words: Vec::new() }
-    }
-
-    fn note(&mut self, note: &Note) {
-        let (What::Unknown(code), Some(machine)) = (&note.what, self.machine) else { return };
-        let first: String = code.split_whitespace().next().unwrap_or_default().to_owned();
-        let is_word = first.starts_with(|c: char| c.is_ascii_alphabetic())
-            && first.chars().nth(1).is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
-        if machine.dialect == DialectName::Klipper && is_word {
-            // A module's command or a macro of the machine's own.
-            if !self.words.contains(&first) {
-                self.words.push(first);
-            }
-        } else if !is_numbered(&first) {
-            let shown: String = code.chars().take(40).collect();
-            self.unknown.push(unknown(machine, note.line, &format!("`{shown}`")));
-        }
-    }
-
-    fn finish(self, facts: &Facts, found: &mut Findings, notes: &mut Vec<String>) {
-        let Some(machine) = self.machine else { return };
-        for (&(letter, number), &line) in &facts.commands {
-            if !dialect::knows(machine.dialect, letter, number) {
-                found.add(unknown(machine, line, &format!("{}{number}", char::from(letter))));
-            }
-        }
-        found.extend(self.unknown);
-        if !self.words.is_empty() {
-            notes.push(format!("what Klipper makes of {}", self.words.join(", ")));
-        }
-    }
-}
-
-fn unknown(machine: &Machine, line: u64, what: &str) -> Finding {
-    let firmware = match machine.dialect {
-        DialectName::Makerbot => "GPX",
-        DialectName::Marlin => "Marlin",
-        DialectName::Klipper => "Klipper",
-        DialectName::Reprapfirmware => "RepRapFirmware",
-        DialectName::Ultigcode => "the Ultimaker 2",
-    };
-    let place = Place { line: Some(line), ..Place::default() };
-    let text = format!("{firmware} does not know {what}");
-    Finding::of(Code::UnknownCode, 1.0, "lines", text).at(place)
-}
-
-/// Whether the word is a letter and a number of at most [`MOST_DIGITS`]: those are judged as commands.
-fn is_numbered(word: &str) -> bool {
-    let Some(number) = word.strip_prefix(|c: char| c.is_ascii_alphabetic()) else { return false };
-    let digits = number.chars().take_while(char::is_ascii_digit).count();
-    (1..=MOST_DIGITS).contains(&digits)
-}
-
 /// Whether the printer heats before it reads the file: an Ultimaker 2, which takes E for volumes, by its
 /// menu, an Ultimaker 3 by the file's head.
 fn heats_by_itself(facts: &Facts) -> bool {
@@ -222,6 +161,7 @@ struct Walk<'a> {
     filament_area: f64,
     changes: Changes,
     warmth: Warmth,
+    blocks: Blocks,
     air: Air,
     through: Through,
     primed: Primed,
@@ -250,6 +190,7 @@ struct Walk<'a> {
 
 impl<'a> Walk<'a> {
     fn new(facts: &'a Facts, terms: &'a Terms, has_slopes: bool) -> Self {
+        let by_printer = heats_by_itself(facts);
         Self {
             facts,
             terms,
@@ -257,6 +198,7 @@ impl<'a> Walk<'a> {
             filament_area: terms.filament_area,
             changes: Changes::new(terms),
             warmth: Warmth::new(terms),
+            blocks: Blocks::new(facts, terms, by_printer),
             air: Air::new(terms),
             through: Through::new(terms, has_slopes),
             primed: Primed::default(),
@@ -266,7 +208,7 @@ impl<'a> Walk<'a> {
             layer: None,
             printing: facts.start.end..facts.last_line.max(facts.start.end),
             begun: None,
-            heat: if heats_by_itself(facts) { Heat::by_printer() } else { Heat::default() },
+            heat: if by_printer { Heat::by_printer() } else { Heat::default() },
             stranger: None,
             heated_by_macro: None,
             is_cold_reported: false,
@@ -279,16 +221,19 @@ impl<'a> Walk<'a> {
         let layer = self.layer.map(|layer| layer + 1);
         let place = Place { line: Some(note.line), layer, ..Place::default() };
         self.changes.note(note, (self.at, layer), found);
+        self.blocks.note(note, place);
+        codes::numberless(note, place, found);
         match &note.what {
             What::Heating(heating) => {
                 self.warmth.set(heating, place, found);
                 self.heat.set(heating);
             }
             What::FirmwareRetraction { back } => self.pulled_by_firmware = *back,
-            What::Unknown(code) => {
+            What::Unknown(code) if blocks::may_be_macro(code) => {
                 let word = code.split_whitespace().next().map(str::to_owned);
                 self.stranger = self.stranger.take().or(word);
             }
+            What::Unknown(_) | What::NoNumber { .. } => {}
             What::Command(order) => {
                 self.air.set(order, place);
                 if matches!((order.letter, order.number), (b'G', 161 | 162) | (b'M', 132)) {
@@ -297,6 +242,7 @@ impl<'a> Walk<'a> {
                 }
                 if let Some(tool) = tool_of(order) {
                     self.warmth.tool(tool);
+                    self.blocks.tool(tool);
                 }
             }
         }
@@ -313,6 +259,7 @@ impl<'a> Walk<'a> {
             Some(layer) if is_of_layer => {
                 self.begun = self.begun.or(Some(index));
                 self.changes.line(found);
+                self.blocks.line(|| beads::place(layer, step), found);
                 self.warmth.line(found);
                 self.air.line(step, layer, found);
                 self.primed.line(step, layer);

@@ -5,7 +5,7 @@
 //! - at any time: above what the material, or any machine, takes;
 //! - when a line comes: the nozzle below what the material melts at (below [`MELTS`] nothing is pushed
 //!   out at all, which is another finding), or in the print far from all named ones; the bed much colder than
-//!   it was, so that the part comes loose;
+//!   it was, or switched off by the start block that has heated it, so that the part comes loose;
 //! - at the file's end: hotter than during the print.
 //!
 //! The ranges are what makers of filaments print on their spools, with room for hotter nozzles of fast
@@ -189,11 +189,22 @@ impl Warmth {
 
     fn bed(&self, found: &mut Findings) {
         let target = &self.targets[1];
-        let Some(celsius) = target.celsius.filter(|_| target.is_new && self.has_begun) else {
-            return;
-        };
+        let Some(celsius) = target.celsius.filter(|_| target.is_new) else { return };
         let is_named = self.named[1].iter().any(|named| (named - celsius).abs() < 1.0);
         let colder = target.most - celsius;
+        if !self.has_begun {
+            // A start block may heat a bed through, and then let it cool to what is asked for.
+            if celsius <= 0.0 && colder > COOLING && !is_named {
+                let most = short(target.most);
+                let text = format!(
+                    "the bed is switched off before the print, where it was set to {most} °C: the part \
+                     comes loose"
+                );
+                let one = if self.named[1].is_empty() { Finding::warning } else { Finding::of };
+                found.add(one(code(false), colder, "°C", text).at(target.place));
+            }
+            return;
+        }
         if colder > COOLING && !is_named {
             let text = format!(
                 "the bed is set to {} °C in the print, {} °C colder than before: the part comes loose",
