@@ -215,6 +215,23 @@ impl IroningParams {
     }
 }
 
+impl SkinParams {
+    /// Derives the numbers from `settings`, for a part that is `hollow` or has infill.
+    fn new(settings: &Settings, hollow: bool) -> Self {
+        let grouping = Grouping::new(&settings.dual, settings.dual_ratio());
+        Self {
+            top: settings.top_skins() as usize,
+            bottom: settings.bottom_skins() as usize,
+            reach: to_units(settings.skin_reach),
+            line_width: to_units(settings.line_width),
+            across_infill: settings.skin_across_infill,
+            // Without infill parts are meant to be hollow.
+            least_room: if hollow { 0 } else { to_units(settings.narrow_room) },
+            everywhere: settings.infill >= 100.0 && !grouping.shares(DualPart::Infill),
+        }
+    }
+}
+
 impl RegionParams {
     /// Derives the numbers from `settings`.
     #[must_use]
@@ -250,21 +267,10 @@ impl RegionParams {
         let skin =
             |turn| Raster { frame: Frame::new(settings.angle.degrees() + turn), pitch: line_width };
         let sparse = Turns::new(settings);
-        let shares_infill =
-            Grouping::new(&settings.dual, settings.dual_ratio()).shares(DualPart::Infill);
         Self {
             walls,
             insets,
-            skins: SkinParams {
-                top: settings.top_skins() as usize,
-                bottom: settings.bottom_skins() as usize,
-                reach: to_units(settings.skin_reach),
-                line_width,
-                across_infill: settings.skin_across_infill,
-                // Without infill parts are meant to be hollow.
-                least_room: if sparse.is_empty() { 0 } else { to_units(settings.narrow_room) },
-                everywhere: settings.infill >= 100.0 && !shares_infill,
-            },
+            skins: SkinParams::new(settings, sparse.is_empty()),
             beads: BeadParams {
                 line_width,
                 wall_to_fill: insets.fill - walls.inset_of(walls.count),
