@@ -45,6 +45,10 @@ const ROUNDING: Coord = 2;
 /// smaller one leaves notches at slanted walls.
 const STEEPEST: i64 = 8;
 
+/// Without walls, strips beside each other that differ by more than this part of a line lie along an edge that is
+/// too slanted to be followed by wide beads: 6°. A larger value lets beads reach out of the part.
+const EVEN: f64 = 0.1;
+
 /// Room for the strips added at the ends of a line: three at each end ([`add_end`]). Reserved at
 /// once to avoid reallocation; a wrong value costs time only.
 const AT_ENDS: usize = 6;
@@ -52,8 +56,6 @@ const AT_ENDS: usize = 6;
 /// Returns the lines of a skin and the beads along its slivers.
 #[must_use]
 pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Polyline>) {
-    // Without walls the skin ends at the outside of the part: nothing may be widened there.
-    let walled = params.walled;
     let mut strips = Strips::new(crossed.skin.range(), params);
     let mut thin = Vec::new();
     for extent in extents(crossed, params) {
@@ -66,9 +68,13 @@ pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Poly
     for (row, spans) in crossed.skin.iter() {
         for &span in spans {
             let mut line = Line { row, span, above: Vec::new(), below: Vec::new(), beside: 0.0 };
-            if walled {
+            (line.above, line.below) = strips.beside(row, span);
+            if !params.walled {
+                // The skin ends at the outside of the part, and no bead may reach out of it.
+                [&mut line.above, &mut line.below]
+                    .map(|strips| keep_even(strips, params.line_width));
+            } else {
                 line.beside = strips.room_beside(row, span);
-                (line.above, line.below) = strips.beside(row, span);
                 add_ends(&mut line.above, span, crossed, (row, row + 1), params);
                 add_ends(&mut line.below, span, crossed, (row, row - 1), params);
             }
@@ -207,6 +213,20 @@ impl Strips {
         }
         true
     }
+}
+
+/// Keeps the strips that are as wide as those beside them, one pitch away: along an edge that runs as the
+/// line does.
+fn keep_even(strips: &mut Vec<Strip>, pitch: Coord) {
+    let is_even = |a: &Strip, b: &Strip| {
+        (a.u - b.u).abs() <= pitch && (a.open - b.open).abs() <= EVEN * f64::from(pitch)
+    };
+    let all = std::mem::take(strips);
+    let even = |k: usize| {
+        let before = k.checked_sub(1).is_none_or(|before| is_even(&all[before], &all[k]));
+        before && all.get(k + 1).is_none_or(|after| is_even(&all[k], after)) && all.len() > 2
+    };
+    *strips = (0..all.len()).filter(|&k| even(k)).map(|k| all[k]).collect();
 }
 
 /// Adds the strips at the ends of a line of `row`, on the side of row `other`. Where the wall

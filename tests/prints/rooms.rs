@@ -46,6 +46,16 @@ fn a_plate_whose_edge_lies_along_a_row_is_closed() {
     }
 }
 
+/// Without walls the ends and the outermost lines of skin are the outside of the part.
+#[test]
+fn plates_without_walls_are_whole_up_to_their_edges() {
+    for (x, y) in [(17.3, 12.1), (12.0, 9.5), (20.25, 8.7)] {
+        let stl = Solid::cuboid([0.0; 3], [x, y, 0.8]).stl();
+        let run = slice(&stl, "generic-marlin", &[("walls", "0")]);
+        assert_eq!(kinds(&judge_made(&run.text, &stl)), [], "{x} by {y} mm");
+    }
+}
+
 /// A block with slots through it. Between the innermost of three walls there are rooms of a bead.
 #[test]
 fn rooms_that_cross_get_no_bead_twice() {
