@@ -7,6 +7,7 @@
 //! 2. The command's own module does the work, and gives an outcome or an error.
 //! 3. An error becomes one line and an exit code ([`failure`]).
 
+mod about;
 mod args;
 mod check;
 mod clock;

@@ -10,6 +10,7 @@
 //!
 //! From the second step on a failure is reported, where a report is asked for.
 
+use super::about::{self, About};
 use super::args::SliceArgs;
 use super::failure::Output;
 use super::output::{self, Sink};
@@ -21,6 +22,7 @@ use slicer::check::Verdict;
 use slicer::check::terms::Terms;
 use slicer::error::Error;
 use slicer::gcode;
+use slicer::mesh::MeshReport;
 use slicer::profile::{Profile, Settings};
 use slicer::progress::Progress;
 use slicer::reader::{Print, Reading};
@@ -75,10 +77,10 @@ fn make(
         say(&summary::notes(&report));
     }
     for warning in &report.warnings {
-        say_line("warning", warning);
+        say_line("warning", about::told(warning, &report));
     }
     if let Some(verdict) = &report.check {
-        say(&check::findings(verdict, "--report"));
+        say(&about::lines(&check::findings(verdict, "--report"), &report.models));
         if !args.quiet {
             say(&check::notes(verdict));
         }
@@ -95,7 +97,7 @@ fn make(
     if !is_good {
         let why =
             "--check has findings, so that no G-code is written; slice without it to see them";
-        say_line("error", why);
+        say_line("error", format!("{}: {why}", About::of_job(&report.models)));
         return Ok(FINDINGS);
     }
     if args.verbose {
@@ -105,7 +107,7 @@ fn make(
         say(&summary::summary(&report, started.elapsed()));
     }
     let of_check = report.check.as_ref().map_or(0, Verdict::warnings);
-    Ok(findings(args.strict, report.warnings.len() + of_check))
+    Ok(findings(args.strict, report.warnings.len() + of_check, &report))
 }
 
 /// Checks that no two arguments mean the same file.
@@ -149,12 +151,13 @@ fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
 
 /// The exit code of a run that is done. With `--strict` warnings make it a failure, although the
 /// output is written, to be looked at.
-fn findings(strict: bool, warnings: usize) -> u8 {
+fn findings(strict: bool, warnings: usize, report: &Report) -> u8 {
     if !strict || warnings == 0 {
         return 0;
     }
     let warnings = plural(warnings as u64, "warning");
-    say_line("error", format!("{warnings} with --strict; look at them before printing"));
+    let about = About::of_job(&report.models);
+    say_line("error", format!("{about}: {warnings} with --strict; look at them before printing"));
     FINDINGS
 }
 
@@ -207,9 +210,10 @@ fn slice_and_check(
     let settings = &job.settings;
     let bed = slicer::bed(&settings.machine);
     let placement = slicer::suited(&job.placement, settings);
-    let placed = slicer::place(&job.models, &placement, &bed, progress)?;
-    let mut report =
-        slicer::slice_placed(job, &placed, sink, progress).map_err(|e| named(e, out))?;
+    let placed = slicer::place(&job.models, &placement, &bed, progress)
+        .map_err(|error| about::unplaced(error, &job.models))?;
+    let mut report = slicer::slice_placed(job, &placed, sink, progress)
+        .map_err(|error| named(error, out, &placed.reports))?;
     if !check {
         return Ok(report);
     }
@@ -232,10 +236,12 @@ fn slice_and_check(
 }
 
 /// The library does not know what the output is called.
-fn named(error: Error, out: &Path) -> anyhow::Error {
+fn named(error: Error, out: &Path, models: &[MeshReport]) -> anyhow::Error {
     let is_of_output = matches!(error, Error::Gcode(gcode::Error::Write(_)) | Error::Thumbnails(_));
-    let error = anyhow::Error::from(error);
-    if is_of_output { error.context(Output { file: out.to_owned(), action: "" }) } else { error }
+    if !is_of_output {
+        return about::unsliced(error, models);
+    }
+    anyhow::Error::from(error).context(Output { file: out.to_owned(), action: "" })
 }
 
 fn write_report(path: &Path, mut sink: Sink, report: &Report) -> Result<Sink> {

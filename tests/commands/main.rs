@@ -10,6 +10,7 @@ mod estimate;
 mod failures;
 mod help;
 mod hosts;
+mod logs;
 mod mesh;
 mod names;
 mod preview;

@@ -20,8 +20,10 @@ pub(super) mod shelves;
 use crate::geom::Point;
 use crate::mesh::edges::{self, Adjacency, MAX_TRIANGLES};
 use crate::mesh::faults;
-use crate::mesh::{Bed, Error, Mesh, MeshReport, Placement, Policy, RawMesh, Result};
-use crate::units::{Coord, MAX_COORDINATE_MM, sum_mm, to_units};
+use crate::mesh::{
+    Bed, BodyReport, Error, Mesh, MeshReport, Placement, Policy, RawMesh, Result,
+};
+use crate::units::{Coord, MAX_COORDINATE_MM, sum_mm, to_mm, to_units};
 use crate::warning::Warning;
 use fit::{check_placement, offset};
 use part::{Part, part};
@@ -89,6 +91,7 @@ pub fn place(models: Vec<RawMesh>, placement: &Placement, bed: &Bed) -> Result<P
     placed.offset = offset(placement, bed, [placed.size_mm[0], placed.size_mm[1]])?;
     let copies = placement.copies as usize;
     placed.bodies = bodies(&parts, &layout, copies);
+    tell_places(&parts, copies, &mut placed);
     join(parts, &layout, copies, &mut placed);
     Ok(placed)
 }
@@ -143,6 +146,22 @@ fn bodies(parts: &[Part], layout: &Layout, copies: usize) -> Vec<[Point; 2]> {
     };
     let all = layout.middles.iter().enumerate();
     all.map(|(i, &at)| [-1, 1].map(|side| corner(at, parts[i / copies].size, side))).collect()
+}
+
+/// Tells in each model's report where its bodies lie.
+fn tell_places(parts: &[Part], copies: usize, placed: &mut Placed) {
+    let Placed { bodies, reports, offset, .. } = placed;
+    let copies = bodies.chunks(copies.max(1));
+    for ((report, part), copies) in reports.iter_mut().zip(parts).zip(copies) {
+        let corner = |at: Point, z: i64| {
+            [offset[0] + to_mm(at.x), offset[1] + to_mm(at.y), sum_mm(z)]
+        };
+        let body = |&[low, high]: &[Point; 2]| BodyReport {
+            min_mm: corner(low, 0),
+            max_mm: corner(high, part.size[2]),
+        };
+        report.bodies = copies.iter().map(body).collect();
+    }
 }
 
 /// Puts all copies into one mesh.
@@ -272,6 +291,12 @@ mod tests {
         let placed = place(models, &placement, &BED).unwrap();
         assert_eq!((placed.mesh.triangles.len(), placed.mesh.vertices.len()), (24, 24));
         assert_eq!((placed.reports.len(), placed.size_mm[2]), (2, 9.0));
+        for (k, [low, high]) in placed.bodies.iter().enumerate() {
+            let body = placed.reports[k / 3].bodies[k % 3];
+            let at = [low, high].map(|at| [to_mm(at.x), to_mm(at.y)]);
+            assert_eq!([body.min_mm, body.max_mm].map(|[x, y, _]| [x, y]), at);
+            assert_eq!((body.min_mm[2], body.max_mm[2]), (0.0, [5.0, 9.0][k / 3]));
+        }
         assert_eq!(
             placed.adjacency,
             edges::adjacency(&placed.mesh.vertices, &placed.mesh.triangles)
