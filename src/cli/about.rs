@@ -4,12 +4,12 @@
 //! - What is not is about all models of the job: the first are named, and how many more there are.
 //! - What names a file itself, or is about the command line, a profile or the output, is left as it is.
 
+use slicer::Model;
 use slicer::error::Error;
 use slicer::error::details::Details;
 use slicer::mesh::{self, MeshReport};
 use slicer::report::Report;
 use slicer::warning::Warning;
-use slicer::Model;
 use std::fmt;
 
 /// Models that are named where something is about all of them.

@@ -31,7 +31,7 @@ use slicer::report::steps::StepsReport;
 use slicer::steps;
 use slicer::warning::{Warning, plural};
 use slicer::{Job, Model, text};
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::io::Write as _;
 use std::path::Path;
 use std::sync::Arc;
@@ -39,6 +39,21 @@ use std::time::Instant;
 
 /// Exit code of a run that is done but has findings: warnings with `--strict`, or of `--check`.
 const FINDINGS: u8 = 1;
+
+/// Endings of formats that a file of text must not be taken for, and what to do.
+const OTHERS: &[(&str, &str)] = &[
+    ("3mf", "choose .gcode"),
+    ("amf", "choose .gcode"),
+    ("obj", "choose .gcode"),
+    ("step", "choose .gcode, or .steps for steps of motors"),
+    ("bgcode", "choose .gcode, which Prusa's `bgcode` turns into that"),
+    ("x3g", "choose .gcode, which `gpx` turns into that"),
+    ("s3g", "choose .gcode, which `gpx` turns into that"),
+    ("makerbot", "choose .gcode"),
+    ("ufp", "choose .gcode"),
+    ("gz", "choose .gcode, or pipe it: -o - | gzip"),
+    ("zip", "choose .gcode"),
+];
 
 /// Slices, and returns the exit code.
 ///
@@ -69,6 +84,9 @@ fn make(
     if args.verbose {
         say(&summary::settings(&profile));
     }
+    // Files that profiles inherit, and those that a name finds, are known by now.
+    let read = profile.sources.list.iter().filter_map(|source| source.file.as_deref());
+    read.map(OsStr::new).try_for_each(|file| usage::replaces(out, file))?;
     let mut target = Target::open(out, &profile.settings)?;
 
     let report = work(args, out, profile, target.gcode())?;
@@ -131,11 +149,19 @@ fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
         return usage::refuse("-o and --report name the same file; name two");
     }
     for product in std::iter::once(out).chain(report) {
-        let read = args.inputs.iter().map(OsString::as_os_str).chain(args.profiles.names());
+        let read = args.inputs.iter().map(OsString::as_os_str).chain(args.profiles.files());
         if let Some(name) = read.into_iter().find(|name| same(product, Path::new(name))) {
             let name = text::name(name);
             return usage::refuse(&format!(
                 "the output would replace {name}; choose another name for it"
+            ));
+        }
+        let ending = product.extension().map(|end| end.to_ascii_lowercase());
+        let other = OTHERS.iter().find(|(end, _)| ending.as_deref() == Some(OsStr::new(end)));
+        if let Some((_, remedy)) = other.filter(|_| product == out) {
+            let name = text::name(product.as_os_str());
+            return usage::refuse(&format!(
+                "{name}: this format is not written here, only G-code as text; {remedy}"
             ));
         }
         // A forgotten -o in a shell's list of files would cost a model.

@@ -28,11 +28,12 @@ use crate::profile::Settings;
 use crate::progress::Progress;
 use crate::region::dual::audit::Audit;
 use crate::region::dual::groups::Grouping;
+use crate::region::prepare::prepare;
 use crate::region::support::{SupportParams, supports};
 use crate::region::window::{Support, Window};
 use crate::region::{Region, RegionParams, foot};
 use crate::report::tally::Tally;
-use crate::slice::{Heights, Slicer};
+use crate::slice::{Heights, Layer, Slicer};
 use crate::units::to_units;
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -82,6 +83,21 @@ impl Setup {
             layers: supports(slicer, &s, bed),
         };
         self.support.map(of)
+    }
+
+    /// How many of the layers are printed, from the lowest on: those above have nothing that is thick enough for
+    /// a line. All, if nothing is: then the job is refused for that. Cuts the highest layers once more.
+    #[must_use]
+    pub fn printed(&self, slicer: &Slicer<'_>) -> usize {
+        let prints = |layer: &Layer| {
+            let (own, rows) = prepare(layer.clone(), &self.region);
+            !own.walls.is_empty() || [0, 1].iter().any(|&r| !rows.skin(r).fill.is_empty())
+        };
+        let last = |block: usize| {
+            let layers = slicer.block(block);
+            layers.iter().rev().find(|layer| prints(layer)).map(|layer| layer.index + 1)
+        };
+        (0..slicer.blocks()).rev().find_map(last).unwrap_or_else(|| slicer.heights().count())
     }
 
     /// Ready to plan the layers of `slicer`, with their support and under these curved tops.

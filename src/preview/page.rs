@@ -115,6 +115,14 @@ impl Page<'_> {
         let (low, high) = (self.frame.min[axis], self.frame.max[axis]);
         let apart = [text.advance() * (AXIS_LETTERS - 1.0), 2.2 * line][axis];
         let (step, decimals) = round_step(apart / places.view.scale);
+        // Numbers below the picture stand side by side: the longest decides, which may have decimals.
+        let letters = [low, high].map(|end| format!("{end:.decimals$}").len());
+        let room = [text.advance() * (1 + letters[0].max(letters[1])) as f64, apart][axis];
+        let (step, decimals) = if step * places.view.scale < room - 1e-6 {
+            round_step(room / places.view.scale)
+        } else {
+            (step, decimals)
+        };
         let first = (low / step).ceil();
         let count = ((high / step).floor() - first).max(-1.0) + 1.0;
         for k in 0..count as usize {

@@ -37,8 +37,16 @@ fn an_error_of_a_job_names_the_model() {
         (&["cube.stl", "odd.stl"], "error: odd.stl: a body begins in the air", Some("odd.stl")),
         (&["odd.stl", "cube.stl"], "error: odd.stl: a body begins in the air", Some("odd.stl")),
         // Without a place it is about all of them.
-        (&["cube.stl", "odd.stl", "--scale", "0.001"], "error: cube.stl, odd.stl: nothing to", None),
-        (&["cube.stl", "--copies", "999"], "error: cube.stl: 999 models with gaps", Some("cube.stl")),
+        (
+            &["cube.stl", "odd.stl", "--scale", "0.001"],
+            "error: cube.stl, odd.stl: nothing to",
+            None,
+        ),
+        (
+            &["cube.stl", "--copies", "999"],
+            "error: cube.stl: 999 models with gaps",
+            Some("cube.stl"),
+        ),
     ] {
         let (code, told, report) = run(&folder, words);
         assert_eq!((code, told.lines().count()), (3, 1), "{told}");
@@ -83,7 +91,9 @@ fn the_report_tells_where_each_model_lies() {
             (a, b)
         };
         // Both lie about the place that was asked for, and are as large as the cube.
-        let middle = |axis| (side(0, axis).0.min(side(1, axis).0) + side(0, axis).1.max(side(1, axis).1)) / 2.0;
+        let middle = |axis| {
+            (side(0, axis).0.min(side(1, axis).0) + side(0, axis).1.max(side(1, axis).1)) / 2.0
+        };
         assert!((middle(0) - 60.0).abs() < 1e-3 && (middle(1) - 70.0).abs() < 1e-3, "{bodies:?}");
         for (of, axis) in [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)] {
             let (a, b) = side(of, axis);
