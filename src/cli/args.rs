@@ -47,14 +47,17 @@ A run that fails changes no file but its report, which tells of the failure: `er
 for its kind, and `slicer report schema` lists them.";
 
 const CHECK_CODES: &str = "\
-Exit codes: 0 clean or warnings, 1 findings, with --strict also warnings, 2 wrong arguments or
-profile, 3 a file cannot be read or prints nothing, or a model does not fit the machine; of several
-files the highest. What could not be judged is listed and no finding.";
+Exit codes: 0 clean or warnings, 1 findings, with --strict also warnings,
+2 wrong arguments or profile, 3 a file cannot be read or prints nothing, or a
+model does not fit the machine; of several files the highest. What could not be
+judged is listed and no finding.";
 
 const PILES: &str = "\
-What -p, --material, --print and --set give is laid over each file; without a file it is checked as
-one pile: `slicer profile check -p ender.toml --material silk.toml`. A file that is wrong has a line
-for each unknown key and wrong value. Exit codes: 0 all are good, 2 some are not.";
+What -p, --material, --print and --set give is laid over each file; without a
+file it is checked as one pile, as it is laid for a print:
+`slicer profile check -p ender.toml --material ./silk.toml`. A file that is wrong
+has a line for each unknown key and each wrong value.
+Exit codes: 0 all are good, 2 some are not.";
 
 /// Slices STL models into G-code
 ///
@@ -227,10 +230,15 @@ pub(crate) struct CheckArgs {
     /// G-code files of any slicer; `-` reads standard input
     #[arg(value_name = "FILE", required = true)]
     pub(crate) files: Vec<OsString>,
-    /// STL file that they were made from (repeatable); placed as the flags below say, then moved to where the lines are
+    /// STL file that they were made from (repeatable)
+    ///
+    /// STL file that they were made from (repeatable); placed as the flags below say, then moved to where the
+    /// lines are.
     #[arg(long, value_name = "PART")]
     pub(crate) against: Vec<OsString>,
-    /// Print JSON: of one file an object, of several one on each line
+    /// Print JSON
+    ///
+    /// Print JSON: of one file an object, of several one on each line.
     #[arg(long)]
     pub(crate) json: bool,
     /// Exit with 1 if there are warnings, too

@@ -23,5 +23,6 @@ mod schema;
 mod send;
 mod skins;
 mod steps;
+mod verdicts;
 mod viewer;
 mod ways;
