@@ -130,7 +130,7 @@ pub fn slice_placed(
     );
     refuse::gaps(job, placed, &slicer, progress)?;
     // Tips that are too thin for a line have no layers.
-    let printed = Setup::new(&settings, &heights, &placed.bodies).printed(&slicer);
+    let (printed, left_out) = Setup::new(&settings, &heights, &placed.bodies).printed(&slicer);
     let (heights, slicer) = (heights.lowest(printed), slicer.lowest(printed));
     progress.set_total(heights.count() + lift.layers());
 
@@ -147,7 +147,7 @@ pub fn slice_placed(
     // they are drawn while the first batches are planned.
     let footing = Footing::new(&settings, placed.offset);
     let sticking = Sticking::new(&settings, placed, &heights, corners);
-    let mut planner = setup.planner(&slicer, support, curved.as_ref(), footing, sticking);
+    let mut planner = setup.planner(&slicer, support, curved.as_ref(), footing, sticking, left_out);
     let (pictures, planned) = rayon::join(|| thumbnails(&settings, placed), || planner.ahead());
 
     // Toolpaths -> text, one batch while the next is planned.

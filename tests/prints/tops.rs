@@ -445,3 +445,17 @@ fn layers_above_the_last_line_are_neither_written_nor_counted() {
         assert!((run.report.layers.top_mm - raised - 4.0).abs() < 1e-6, "{set:?}");
     }
 }
+
+#[test]
+fn what_is_left_out_with_its_layers_is_told() {
+    let fin = Solid::cuboid([1.0, 4.975, 4.0], [33.0, 5.025, 9.0]);
+    let stl = Solid::cuboid([0.0; 3], [34.0, 10.0, 4.0]).and(&fin).stl();
+    let run = slice(&stl, "generic-marlin", &[]);
+    assert_eq!(run.report.layers.count, 20);
+    let thin = run.report.warnings.iter().find_map(|warning| match warning {
+        slicer::warning::Warning::ThinPlaces { layers, area_mm2 } => Some((*layers, *area_mm2)),
+        _ => None,
+    });
+    let (layers, area_mm2) = thin.unwrap();
+    assert!(layers == 25 && (area_mm2 - 25.0 * 1.6).abs() < 1.0, "{layers} {area_mm2}");
+}
