@@ -43,6 +43,8 @@ pub struct Estimate {
     pub schema: u32,
     /// All moves and dwells, s; neither heating nor homing.
     pub seconds: f64,
+    /// Of these, printing: from the first layer to the last line, s; what files and reports tell.
+    pub print_seconds: f64,
     /// Of these, before the first layer, s.
     pub start_seconds: f64,
     /// Of these, after the last line: what is pulled back and the end block, s.
@@ -287,9 +289,11 @@ impl Meter {
         // Of equals the first.
         let longest = (0..layers.len()).rev().max_by(by_time).map_or(0, |index| index + 1);
         let shortest = (0..layers.len()).min_by(by_time).map_or(0, |index| index + 1);
+        let seconds = roles.iter().map(|role| role.seconds).sum::<f64>() + self.dwell;
         Estimate {
             schema: SCHEMA,
-            seconds: roles.iter().map(|role| role.seconds).sum::<f64>() + self.dwell,
+            seconds,
+            print_seconds: (seconds - start_seconds - self.end).max(0.0),
             start_seconds,
             end_seconds: self.end,
             dwell_seconds: self.dwell,

@@ -126,12 +126,15 @@ pub fn slice_placed(
     // Mesh -> layers; each block of them is cut when the stages after it ask for it.
     let heights = pipeline::heights(&job.settings, placed)?;
     let lift = Lift::new(&job.settings);
-    progress.set_total(heights.count() + lift.layers());
     let (settings, slicer) = rayon::join(
         || pipeline::settle(&job.settings, &placed.mesh),
         || pipeline::slicer(&job.settings, placed, heights.clone()),
     );
     refuse::gaps(job, placed, &slicer, progress)?;
+    // Tips that are too thin for a line have no layers.
+    let (printed, left_out) = Setup::new(&settings, &heights, &placed.bodies).printed(&slicer);
+    let (heights, slicer) = (heights.lowest(printed), slicer.lowest(printed));
+    progress.set_total(heights.count() + lift.layers());
 
     // Tops whose skins follow the surface: known before the first layer, since its base is lower.
     let setup = Setup::new(&settings, &heights, &placed.bodies);
@@ -146,7 +149,7 @@ pub fn slice_placed(
     // they are drawn while the first batches are planned.
     let footing = Footing::new(&settings, placed.offset);
     let sticking = Sticking::new(&settings, placed, &heights, corners);
-    let mut planner = setup.planner(&slicer, support, curved.as_ref(), footing, sticking);
+    let mut planner = setup.planner(&slicer, support, curved.as_ref(), footing, sticking, left_out);
     let (pictures, planned) = rayon::join(|| thumbnails(&settings, placed), || planner.ahead());
 
     // Toolpaths -> text, one batch while the next is planned.

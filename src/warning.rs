@@ -181,6 +181,27 @@ impl Warning {
         let settings = keys.into_iter().map(str::to_owned).collect();
         Self::NoEffect { settings, why: why.to_owned() }
     }
+
+    /// The model's file that its text names, if it names one.
+    #[must_use]
+    pub fn file(&self) -> Option<&str> {
+        match self {
+            Self::MeshMended { file, .. }
+            | Self::OpenMesh { file, .. }
+            | Self::TrailingBytes { file, .. }
+            | Self::TinyModel { file, .. } => Some(file),
+            _ => None,
+        }
+    }
+
+    /// Where it is on the bed, in the machine's coordinates, mm, if it is at one place.
+    #[must_use]
+    pub fn at_mm(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::BeginsInTheAir { at_mm, .. } => Some(*at_mm),
+            _ => None,
+        }
+    }
 }
 
 impl fmt::Display for Warning {

@@ -47,9 +47,17 @@ A run that fails changes no file but its report, which tells of the failure: `er
 for its kind, and `slicer report schema` lists them.";
 
 const CHECK_CODES: &str = "\
-Exit codes: 0 clean or warnings, 1 findings, 2 wrong arguments or profile, 3 a file cannot be read
-or prints nothing, or a model does not fit the machine. What could not be judged is listed and no
-finding.";
+Exit codes: 0 clean or warnings, 1 findings, with --strict also warnings,
+2 wrong arguments or profile, 3 a file cannot be read or prints nothing, or a
+model does not fit the machine; of several files the highest. What could not be
+judged is listed and no finding.";
+
+const PILES: &str = "\
+What -p, --material, --print and --set give is laid over each file; without a
+file it is checked as one pile, as it is laid for a print:
+`slicer profile check -p ender.toml --material ./silk.toml`. A file that is wrong
+has a line for each unknown key and each wrong value.
+Exit codes: 0 all are good, 2 some are not.";
 
 /// Slices STL models into G-code
 ///
@@ -148,6 +156,9 @@ impl Command {
 pub(crate) enum ProfileCommand {
     /// List all profiles: printers, materials and prints
     List {
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
         #[command(flatten)]
         shelf: ShelfArgs,
     },
@@ -172,10 +183,11 @@ pub(crate) enum ProfileCommand {
     },
     /// Print the JSON Schema of a profile, by which editors complete and check one
     Schema,
-    /// Check a profile file and say what is wrong
+    /// Check profile files, each by itself, and say what is wrong
+    #[command(after_help = PILES)]
     Check {
-        /// Name or file (repeatable: a later one is laid over the earlier)
-        #[arg(value_name = "FILE", required = true)]
+        /// Name or file (repeatable: each is checked by itself)
+        #[arg(value_name = "FILE", required_unless_present_any = ["profile", "material", "print"])]
         names: Vec<OsString>,
         #[command(flatten)]
         profiles: ProfileArgs,
@@ -215,15 +227,26 @@ pub(crate) struct EstimateArgs {
 #[derive(Debug, Args)]
 #[command(after_help = CHECK_CODES)]
 pub(crate) struct CheckArgs {
-    /// G-code file of any slicer; `-` reads standard input
-    #[arg(value_name = "FILE")]
-    pub(crate) file: OsString,
-    /// STL file that it was made from (repeatable); placed as the flags below say, then moved to where the lines are
+    /// G-code files of any slicer; `-` reads standard input
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<OsString>,
+    /// STL file that they were made from (repeatable)
+    ///
+    /// STL file that they were made from (repeatable); placed as the flags below say, then moved to where the
+    /// lines are.
     #[arg(long, value_name = "PART")]
     pub(crate) against: Vec<OsString>,
     /// Print JSON
+    ///
+    /// Print JSON: of one file an object, of several one on each line.
     #[arg(long)]
     pub(crate) json: bool,
+    /// Exit with 1 if there are warnings, too
+    #[arg(long)]
+    pub(crate) strict: bool,
+    /// Print findings only, each with its file
+    #[arg(short, long, conflicts_with = "json")]
+    pub(crate) quiet: bool,
     /// What hangs around the nozzle [default: what the file's settings or the profile say]
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(words("head.name")))]
     pub(crate) head: Option<String>,

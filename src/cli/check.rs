@@ -1,19 +1,29 @@
-//! `slicer check` -> what is wrong with a G-code file, as lines or as JSON.
+//! `slicer check` -> what is wrong with G-code files, as lines or as JSON.
+//!
+//! 1. Profiles, and what the command line says of the head, are the same for all files.
+//! 2. Each file is read and judged by itself: by `-p`, or else by the settings at its end.
+//! 3. One file has a headline, its findings, what was measured and what was not judged. Of several each has a
+//!    headline, and every finding names its file.
+//! 4. JSON is an object for one file, and for several one on each line, also for one that cannot be read.
+//! 5. Errors come before warnings, and of many of a kind the largest.
 
 use super::args::CheckArgs;
 use super::reading::Opened;
-use super::{Outcome, failure, output};
+use super::{Outcome, about, failure, output, say_line};
 use anyhow::Result;
-use slicer::check::finding::Count;
+use serde::Serialize;
+use slicer::check::finding::{Code, Count, Finding, Severity};
 use slicer::check::terms::Terms;
 use slicer::check::{self, Measures, Model, Verdict};
 use slicer::mesh::Bed;
+use slicer::mesh::place::Placed;
 use slicer::profile::{self, Override, Profile, ValueOrigin};
 use slicer::progress::Progress;
 use slicer::reader::{Cause, Firmware, Stream};
+use slicer::report::failure::Failure;
 use slicer::text;
 use slicer::warning::plural;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
 /// Diameter of the filament where neither file nor profile gives it, mm: the most usual one.
@@ -22,10 +32,36 @@ const DIAMETER: f64 = 1.75;
 /// Findings of a kind that people get to read.
 const MOST_SHOWN: usize = 5;
 
-/// What standard output gets, and 1 if there are findings that are more than warnings.
+/// What all files are judged with.
+struct Judge<'a> {
+    args: &'a CheckArgs,
+    /// The profiles that are asked for, laid together.
+    given: Option<Profile>,
+    /// What the command line says of the head.
+    of_head: Vec<Override>,
+}
+
+/// What was found in a file.
+struct Judged {
+    name: String,
+    verdict: Verdict,
+    /// By whose settings, against which models.
+    by: String,
+}
+
+/// What JSON holds of a file.
+#[derive(Serialize)]
+struct Row<'a> {
+    file: &'a str,
+    #[serde(flatten)]
+    verdict: &'a Verdict,
+}
+
+/// What standard output gets, and 1 if there are findings that are more than warnings. Of several files the
+/// highest exit code holds, and one that cannot be read keeps no other from being judged.
 ///
 /// # Errors
-/// A profile or setting that is wrong, a file or model that cannot be read, a file without a move.
+/// A profile or setting that is wrong; of a single file that it cannot be read or has no move.
 pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     let profiles = &args.profiles;
     let set = profiles.overrides()?;
@@ -33,55 +69,129 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     if set.iter().any(|given| !is_of_head(given)) && !profiles.any() {
         return Err(failure::usage("--set changes a profile; name one with -p, too"));
     }
+    if args.files.iter().filter(|file| *file == "-").count() > 1 {
+        return Err(failure::usage("`-` is given twice; standard input holds one file"));
+    }
     let named = named_head(args);
     let given = if profiles.any() { Some(profiles.load(named.clone())?) } else { None };
-    let machine = given.as_ref().map(|profile| &profile.settings);
-    let Opened { name, source, says, .. } = args.reading.open(&args.file)?;
-    let reading = args.reading.of(machine, says);
-    let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
-    let unreadable = |error| Cause::Unreadable(error).of(&name);
-    let stream = Stream::open(source, reading, diameter).map_err(unreadable)?;
-    let print = stream.facts();
-    if print.layers.is_empty() {
-        return Err(Cause::NoLine.of(&name).into());
+    let of_head = set.into_iter().filter(is_of_head).chain(named).collect();
+    let judge = Judge { args, given, of_head };
+    if let [file] = args.files.as_slice() {
+        return judge.outcome(&judge.judge(file)?, false);
     }
-    let of_head: Vec<Override> = set.into_iter().filter(is_of_head).chain(named).collect();
-    let own = profile::recorded_with(&print.values, &of_head)?;
-    let judge = given.as_ref().or(own.as_ref());
-    let machine = judge.map(|profile| &profile.settings);
-    let mut terms = Terms::new(machine, own.as_ref().map(|profile| &profile.settings), print);
-    if !of_head.is_empty() {
-        // Told here it holds for files of other slicers, too, and where it is the most cautious one.
-        let told = if judge.is_none() {
-            Some(profile::load([] as [&str; 0], &of_head)?.settings.head())
-        } else {
-            machine.map(slicer::profile::Settings::head)
+    let mut all = Outcome { text: String::new(), code: 0 };
+    for file in &args.files {
+        let one = judge.judge(file).and_then(|judged| judge.outcome(&judged, true));
+        let Outcome { text, code } = match one {
+            Ok(outcome) => outcome,
+            Err(error) => judge.failed(file, &error)?,
         };
-        terms.head = told;
+        all.text += &text;
+        all.code = all.code.max(code);
     }
-    let bed = judge.map_or(Bed::ANY, |profile| slicer::bed(&profile.settings.machine));
-    let placed = if args.against.is_empty() {
-        None
-    } else {
-        let models: Vec<slicer::Model> = args.against.iter().map(slicer::Model::path).collect();
-        // Models are as large, and copies lie as far apart, as when the file was made.
-        let placement = args.place.placement();
-        let made = own.as_ref().or(given.as_ref());
-        let placement = made.map_or(placement.clone(), |p| slicer::suited(&placement, &p.settings));
-        Some(slicer::place(&models, &placement, &bed, &Progress::default())?)
-    };
-    let model = placed.as_ref().map(|placed| Model { mesh: &placed.mesh, offset: placed.offset });
-    let verdict = check::check_stream(&stream, &terms, model).map_err(unreadable)?;
-    let code = u8::from(verdict.fails());
-    let text = if args.json {
-        output::json(&verdict, Path::new("-"))?
-    } else {
+    Ok(all)
+}
+
+impl Judge<'_> {
+    /// Judges a file.
+    fn judge(&self, file: &OsStr) -> Result<Judged> {
+        let Self { args, given, of_head } = self;
+        let machine = given.as_ref().map(|profile| &profile.settings);
+        let Opened { name, source, says, .. } = args.reading.open(file)?;
+        let reading = args.reading.of(machine, says);
+        let diameter = given.as_ref().map_or(DIAMETER, |p| p.settings.filament.diameter);
+        let unreadable = |error| Cause::Unreadable(error).of(&name);
+        let stream = Stream::open(source, reading, diameter).map_err(unreadable)?;
+        let print = stream.facts();
+        if print.layers.is_empty() {
+            return Err(Cause::NoLine.of(&name).into());
+        }
+        let own = profile::recorded_with(&print.values, of_head)?;
+        let judge = given.as_ref().or(own.as_ref());
+        let machine = judge.map(|profile| &profile.settings);
+        let mut terms = Terms::new(machine, own.as_ref().map(|profile| &profile.settings), print);
+        if !of_head.is_empty() {
+            // Told here it holds for files of other slicers, too, and where it is the most cautious one.
+            let told = if judge.is_none() {
+                Some(profile::load([] as [&str; 0], of_head)?.settings.head())
+            } else {
+                machine.map(slicer::profile::Settings::head)
+            };
+            terms.head = told;
+        }
+        let placed = self.placed(own.as_ref())?;
+        let model =
+            placed.as_ref().map(|placed| Model { mesh: &placed.mesh, offset: placed.offset });
+        let verdict = check::check_stream(&stream, &terms, model).map_err(unreadable)?;
         let firmware = print.summary.firmware;
         let by = judged_by(given.as_ref(), own.as_ref(), firmware, &args.against);
-        let (headline, findings) = (headline(&verdict), findings(&verdict, "--json"));
-        format!("{name}: {headline}, {by}\n{findings}{}", notes(&verdict))
-    };
-    Ok(Outcome { text, code })
+        Ok(Judged { name, verdict, by })
+    }
+
+    /// The models to hold it against, as large and as far apart as when the file was made.
+    fn placed(&self, own: Option<&Profile>) -> Result<Option<Placed>> {
+        let Self { args, given, .. } = self;
+        if args.against.is_empty() {
+            return Ok(None);
+        }
+        let judge = given.as_ref().or(own);
+        let bed = judge.map_or(Bed::ANY, |profile| slicer::bed(&profile.settings.machine));
+        let models: Vec<slicer::Model> = args.against.iter().map(slicer::Model::path).collect();
+        let placement = args.place.placement();
+        let made = own.or(given.as_ref());
+        let placement = made.map_or(placement.clone(), |p| slicer::suited(&placement, &p.settings));
+        let placed = slicer::place(&models, &placement, &bed, &Progress::default());
+        Ok(Some(placed.map_err(|error| about::unplaced(error, &models))?))
+    }
+
+    /// What is said of a file, which may be one of several, and its exit code.
+    fn outcome(&self, judged: &Judged, is_one_of_many: bool) -> Result<Outcome> {
+        let (args, Judged { name, verdict, by }) = (self.args, judged);
+        let fails = verdict.fails() || (args.strict && verdict.warnings() > 0);
+        let row = Row { file: name, verdict };
+        let found = || findings(verdict, "--json") + several(verdict);
+        let each = || found().lines().map(|line| format!("{name}: {line}\n")).collect::<String>();
+        let headline = || format!("{name}: {}, {by}\n", headline(verdict));
+        let text = match (args.json, args.quiet, is_one_of_many) {
+            (true, _, false) => output::json(&row, Path::new("-"))?,
+            (true, _, true) => output::json_line(&row, Path::new("-"))?,
+            (_, true, _) => each(),
+            (_, _, true) => headline() + &each(),
+            (_, _, false) => headline() + &found() + &notes(verdict),
+        };
+        Ok(Outcome { text, code: u8::from(fails) })
+    }
+
+    /// What is said of a file that cannot be judged, one of several.
+    fn failed(&self, file: &OsStr, error: &anyhow::Error) -> Result<Outcome> {
+        let (code, line) = (failure::exit_code(error), failure::line(error));
+        say_line("error", &line);
+        if !self.args.json {
+            let text = if self.args.quiet {
+                String::new()
+            } else {
+                format!("{}: not judged\n", text::name(file))
+            };
+            return Ok(Outcome { text, code });
+        }
+        let failed = Failure::new(code, line, failure::details(error));
+        let row = serde_json::json!({
+            "file": text::name(file), "exit_code": code, "error": failed.error,
+        });
+        Ok(Outcome { text: output::json_line(&row, Path::new("-"))?, code })
+    }
+}
+
+/// What to do where the print is larger than what it is held against: it may be of several parts.
+fn several(verdict: &Verdict) -> &'static str {
+    let is_larger =
+        |finding: &Finding| finding.code == Code::WrongSize && finding.text.contains(" larger in ");
+    if verdict.findings.iter().any(is_larger) {
+        "note: a file of several parts is held against all of them: name each with --against, and \
+         with --copies how often each was printed\n"
+    } else {
+        ""
+    }
 }
 
 fn is_of_head(given: &Override) -> bool {
@@ -128,9 +238,13 @@ fn headline(verdict: &Verdict) -> String {
     format!("{found} in {layers} and {}", plural(verdict.moves as u64, "move"))
 }
 
-/// Findings, a line each; where there are too many, `whole` is the option that lists all.
+/// Findings, a line each, errors before warnings; where there are too many, `whole` is the option that lists all.
 pub(super) fn findings(verdict: &Verdict, whole: &str) -> String {
-    verdict.counts.iter().map(|count| of_kind(verdict, count, whole)).collect()
+    let of = |severity: Severity| {
+        let kinds = verdict.counts.iter();
+        kinds.map(move |count| of_kind(verdict, count, severity, whole))
+    };
+    of(Severity::Error).chain(of(Severity::Warning)).collect()
 }
 
 /// What was measured, and what was not judged.
@@ -142,13 +256,21 @@ pub(super) fn notes(verdict: &Verdict) -> String {
     text
 }
 
-/// The largest findings of a kind, and how many more there are.
-fn of_kind(verdict: &Verdict, &Count { code, count, .. }: &Count, whole: &str) -> String {
-    let of_kind = verdict.findings.iter().filter(|finding| finding.code == code);
+/// The largest findings of a kind and severity, and how many more there are.
+fn of_kind(verdict: &Verdict, count: &Count, severity: Severity, whole: &str) -> String {
+    let (kind, all) = match severity {
+        Severity::Error => ("", count.errors),
+        Severity::Warning => ("warning: ", count.count - count.errors),
+    };
+    let is_it = |one: &&Finding| one.code == count.code && one.severity == severity;
+    let of_kind = verdict.findings.iter().filter(is_it);
     let mut text: String = of_kind.take(MOST_SHOWN).map(|finding| format!("{finding}\n")).collect();
-    if count > MOST_SHOWN {
-        let more = count - MOST_SHOWN;
-        text.push_str(&format!("{}: and {more} more ({whole} lists them)\n", code.name()));
+    if all > MOST_SHOWN {
+        let more = all - MOST_SHOWN;
+        text.push_str(&format!(
+            "{kind}{}: and {more} more ({whole} lists them)\n",
+            count.code.name()
+        ));
     }
     text
 }

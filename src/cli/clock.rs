@@ -44,6 +44,21 @@ pub(super) fn of(profiles: &ProfileArgs, files: &[Own<'_>]) -> Result<(Profile, 
     Ok((asked, by_profile))
 }
 
+/// By whose word limits hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum LimitsBy {
+    /// A profile is named.
+    Profile,
+    /// The file has settings of ours.
+    File,
+    /// Nobody says for which printer the file is.
+    Default,
+}
+
+/// What the file's own settings are called.
+const OWN: &str = "the file's own settings";
+
 /// A file that is timed.
 pub(super) struct Timed {
     pub(super) estimate: Estimate,
@@ -53,6 +68,8 @@ pub(super) struct Timed {
     pub(super) diameter: f64,
     /// Where the limits are from.
     pub(super) limits: String,
+    /// By whose word.
+    pub(super) by: LimitsBy,
     /// The settings themselves.
     pub(super) settings: Box<Settings>,
 }
@@ -68,7 +85,12 @@ pub(super) fn estimate(
     fixed_limits: bool,
 ) -> Result<Timed> {
     let own = file.values().map_err(|error| file.unreadable(error))?;
-    let (clock, limits) = of(profiles, &[(&own, "the file's own settings")])?;
+    let (clock, limits) = of(profiles, &[(&own, OWN)])?;
+    let by = match limits.as_str() {
+        _ if profiles.any() => LimitsBy::Profile,
+        OWN => LimitsBy::File,
+        _ => LimitsBy::Default,
+    };
     let settings = &clock.settings;
     let reading = args.of(profiles.any().then_some(settings), file.says);
     let diameter = settings.filament.diameter;
@@ -81,7 +103,7 @@ pub(super) fn estimate(
     let mut source = file.source.reader();
     let estimate =
         slicer::estimate::estimate(&mut source, &file.name, &Limits::new(settings), options)?;
-    Ok(Timed { estimate, reading, diameter, limits, settings: Box::new(clock.settings) })
+    Ok(Timed { estimate, reading, diameter, limits, by, settings: Box::new(clock.settings) })
 }
 
 /// A product in JSON, with where the limits are from, and the highest rates of motors, if they are known.
@@ -91,6 +113,7 @@ pub(super) fn estimate(
 pub(super) fn json(
     product: &impl Serialize,
     limits: &str,
+    limits_by: Option<LimitsBy>,
     highest_rate: Option<Axes<f64>>,
 ) -> Result<String> {
     #[derive(Serialize)]
@@ -99,9 +122,12 @@ pub(super) fn json(
         product: &'a T,
         /// Where the limits are from.
         limits: &'a str,
+        /// By whose word they hold.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        limits_by: Option<LimitsBy>,
         /// Steps a second.
         #[serde(skip_serializing_if = "Option::is_none")]
         highest_rate: Option<Axes<f64>>,
     }
-    output::json(&Timed { product, limits, highest_rate }, Path::new("-"))
+    output::json(&Timed { product, limits, limits_by, highest_rate }, Path::new("-"))
 }

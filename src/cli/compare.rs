@@ -19,7 +19,8 @@ pub(super) fn run(args: &CompareArgs) -> Result<String> {
     }
     let jobs: Vec<(String, Job)> =
         ways(args)?.into_iter().map(|(flags, profile)| (flags, job(args, profile))).collect();
-    let found = compare::compare(&jobs)?;
+    let models: Vec<Model> = args.inputs.iter().map(Model::path).collect();
+    let found = compare::compare(&jobs).map_err(|error| super::about::unplaced(error, &models))?;
     if args.json {
         return output::json(&found, Path::new("-"));
     }

@@ -1,7 +1,8 @@
 //! `slicer estimate` -> how long a G-code file takes, as a table or as JSON.
 
 use super::args::EstimateArgs;
-use super::clock;
+use super::clock::{self, LimitsBy};
+use super::say_line;
 use anyhow::Result;
 use slicer::estimate::{Estimate, LayerTime, NotCounted};
 use slicer::steps;
@@ -19,8 +20,18 @@ pub(super) fn run(args: &EstimateArgs) -> Result<String> {
         steps::highest_rates(&mut source, timed.reading, &timed.settings, args.fixed_limits);
     let rates = rates.map_err(|error| opened.unreadable(error))?;
     let (found, limits) = (timed.estimate, timed.limits);
+    // A printer that is one's own default is meant.
+    if timed.by == LimitsBy::Default && args.profiles.shelf.shelf().default_printer().path.is_none()
+    {
+        let file = &opened.name;
+        let told = format!(
+            "{file}: the file holds no settings of this program, since it is of another or cut off; timed by the \
+             limits of {limits}: name its printer with -p"
+        );
+        say_line("warning", told);
+    }
     if args.json {
-        return clock::json(&found, &limits, rates.map(Into::into));
+        return clock::json(&found, &limits, Some(timed.by), rates.map(Into::into));
     }
     let mut text = table(&found);
     if let Some([x, y, z, e]) = rates {
@@ -35,7 +46,8 @@ pub(super) fn run(args: &EstimateArgs) -> Result<String> {
 
 /// For people.
 fn table(found: &Estimate) -> String {
-    let mut text = row("print time", found.seconds, None, "") + &ends(found);
+    let told = "  from the first layer to the last line, as files and summaries tell it";
+    let mut text = row("print time", found.print_seconds, None, told) + &ends(found);
     for role in &found.roles {
         let count = plural(role.moves, "move");
         let moves = format!("{count:>15} {:>12.1} mm", role.length_mm);
@@ -66,11 +78,11 @@ fn table(found: &Estimate) -> String {
     text
 }
 
-/// What of the time is no printing: the summary and the file's own comments leave it out.
+/// All of the time. What of it is no printing, the summary and the file's own comments leave out.
 fn ends(found: &Estimate) -> String {
     let [start, end] = [found.start_seconds, found.end_seconds].map(clock);
-    let between = clock(found.seconds - found.start_seconds - found.end_seconds);
-    format!("{start} until the first layer, {between} printing, {end} after the last line\n")
+    let with = format!("  with {start} until the first layer and {end} after the last line");
+    row("whole file", found.seconds, None, &with)
 }
 
 fn row(name: &str, seconds: f64, of: Option<f64>, more: &str) -> String {

@@ -5,9 +5,12 @@
 //! - [`Usage`]: wrong arguments;
 //! - the system's error, with [`Output`] or [`Input`] as context.
 //!
+//! What is wrong with a job has its models ([`About`]) as context, too.
+//!
 //! The line is the context, from the outermost on, and then the error itself, with colons
 //! between them. It ends with the library's error: its line holds what its causes say.
 
+use super::about::About;
 use slicer::error::Error;
 use slicer::error::details::Details;
 use slicer::profile::ProfileError;
@@ -96,7 +99,9 @@ pub(super) fn details(error: &anyhow::Error) -> Details {
     if let Some(Input(file)) = error.downcast_ref() {
         return Details { file: Some(file.clone()), ..Details::of("unreadable") };
     }
-    error.chain().find_map(details_of).unwrap_or_else(|| Details::of("usage"))
+    let details = error.chain().find_map(details_of).unwrap_or_else(|| Details::of("usage"));
+    let about = || error.downcast_ref::<About>().and_then(|about| about.file.clone());
+    Details { file: details.file.clone().or_else(about), ..details }
 }
 
 fn details_of(error: &(dyn StdError + 'static)) -> Option<Details> {

@@ -21,8 +21,13 @@ const FOREIGN_FLAGS: &[(&str, &str)] = &[
 ];
 
 /// What to say of a flag that there is not: what it is called here, or which one it is nearest
-/// to. `command` is the one that it was given to, `takes_settings` whether that slices.
-pub(super) fn unknown_flag(flag: &str, takes_settings: bool, command: &clap::Command) -> String {
+/// to. The command is the one that it was given to, with its name as it is shown, and `takes_settings` whether
+/// that slices.
+pub(super) fn unknown_flag(
+    flag: &str,
+    takes_settings: bool,
+    (command, shown): (&clap::Command, &str),
+) -> String {
     let flag = flag.split('=').next().unwrap_or(flag);
     let name = flag.trim_start_matches('-');
     let foreign = || FOREIGN_FLAGS.iter().find(|(theirs, _)| *theirs == flag);
@@ -36,7 +41,7 @@ pub(super) fn unknown_flag(flag: &str, takes_settings: bool, command: &clap::Com
             .map_or_else(String::new, |near| format!("a similar argument exists: '--{near}'"))
     };
     let told = if told.is_empty() { told } else { format!("{told}; ") };
-    format!("unexpected argument '{flag}' found; {told}see `slicer --help`")
+    format!("unexpected argument '{flag}' found; {told}see `{shown} --help`")
 }
 
 /// How a setting is made that someone takes for a flag.
@@ -73,8 +78,8 @@ mod tests {
             let shown = flag.split('=').next().unwrap();
             let expected =
                 format!("unexpected argument '{shown}' found; {told}see `slicer --help`");
-            assert_eq!(unknown_flag(flag, true, &command), expected);
+            assert_eq!(unknown_flag(flag, true, (&command, "slicer")), expected);
         }
-        assert!(!unknown_flag("--perimeters", false, &command).contains("--walls"));
+        assert!(!unknown_flag("--perimeters", false, (&command, "slicer")).contains("--walls"));
     }
 }

@@ -7,6 +7,7 @@
 //! 2. The command's own module does the work, and gives an outcome or an error.
 //! 3. An error becomes one line and an exit code ([`failure`]).
 
+mod about;
 mod args;
 mod check;
 mod clock;
@@ -26,6 +27,7 @@ mod part;
 mod place;
 mod play;
 mod preview;
+mod profile;
 mod profiles;
 mod progress;
 mod publish;
@@ -43,11 +45,10 @@ mod viewer;
 mod words;
 
 use anyhow::Result;
-use args::{Arguments, Command, ProfileCommand, ReportCommand};
+use args::{Arguments, Command, ReportCommand};
 use clap::FromArgMatches as _;
 use clap::error::{ContextKind, ContextValue};
-use slicer::report::{doubtful, motion};
-use slicer::{profile, report, text};
+use slicer::{report, text};
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::Write as _;
@@ -83,7 +84,7 @@ impl From<String> for Outcome {
 /// returns the process's exit code.
 pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
     interrupt::watch_faults();
-    let words: Vec<OsString> = words.collect();
+    let words: Vec<OsString> = asked_for_help(words.collect());
     let matches = help::command().try_get_matches_from(&words);
     let arguments = match matches.and_then(|matches| Arguments::from_arg_matches(&matches)) {
         Ok(arguments) => arguments,
@@ -107,6 +108,15 @@ pub(crate) fn run(words: impl Iterator<Item = OsString>) -> u8 {
         say_line("error", failure::line(&error));
         failure::exit_code(&error)
     })
+}
+
+/// `slicer help check` is meant as `slicer check --help`; a model may be called so, too.
+fn asked_for_help(mut words: Vec<OsString>) -> Vec<OsString> {
+    if words.get(1).is_some_and(|word| word == "help") && !Path::new("help").exists() {
+        words.remove(1);
+        words.push("--help".into());
+    }
+    words
 }
 
 /// Prints the help or the version, which are products, or one line of error.
@@ -133,16 +143,33 @@ fn refused(error: &clap::Error, words: &[OsString]) -> u8 {
                 MissingRequiredArgument => {
                     first.and_then(|word| usage::meant(word, &help::command()))
                 }
-                UnknownArgument => unknown_flag(error, first),
+                UnknownArgument => unknown_flag(error, words),
                 TooManyValues => too_many(error),
                 InvalidValue if told(error, ContextKind::InvalidArg).starts_with("--head") => {
                     Some(format!("{}; {MEASURED}", usage::reason(&text.to_string())))
                 }
                 _ => None,
             };
-            wrong(words, line.unwrap_or_else(|| usage::one_line(&text.to_string())))
+            wrong(
+                words,
+                line.unwrap_or_else(|| usage::one_line(&text.to_string(), &command_of(words))),
+            )
         }
     }
+}
+
+/// The command that the first words name, such as `slicer profile show`, or the program alone.
+fn command_of(words: &[OsString]) -> String {
+    let (program, mut name) = (help::command(), "slicer".to_owned());
+    let mut command = &program;
+    for word in words.iter().skip(1) {
+        let Some(next) = word.to_str().and_then(|word| command.find_subcommand(word)) else {
+            break;
+        };
+        command = next;
+        name = format!("{name} {}", command.get_name());
+    }
+    name
 }
 
 /// What to do with a head that has no name here.
@@ -172,14 +199,16 @@ fn too_many(error: &clap::Error) -> Option<String> {
     stray::told(told(error, ContextKind::InvalidArg), told(error, ContextKind::InvalidValue))
 }
 
-/// What to say of a flag that the command, named by the first argument, does not have.
-fn unknown_flag(error: &clap::Error, first: Option<&str>) -> Option<String> {
+/// What to say of a flag that the command, named by the first words, does not have.
+fn unknown_flag(error: &clap::Error, words: &[OsString]) -> Option<String> {
     let flag = told(error, ContextKind::InvalidArg);
     let flag = flag.starts_with("--").then_some(flag)?;
     let program = help::command();
+    let first = words.get(1).and_then(|word| word.to_str());
     let command = first.and_then(|word| program.find_subcommand(word));
     let takes_settings = command.is_none_or(|command| command.get_name() == "compare");
-    Some(foreign::unknown_flag(flag, takes_settings, command.unwrap_or(&program)))
+    let command = (command.unwrap_or(&program), &*command_of(words));
+    Some(foreign::unknown_flag(flag, takes_settings, command))
 }
 
 /// Prints text for people on standard error. If that fails there is nowhere left to report it. Names
@@ -195,7 +224,7 @@ fn say_line(kind: &str, message: impl Display) {
 
 fn other(command: &Command) -> Result<Outcome> {
     let text = match command {
-        Command::Profile(command) => profile_command(command)?,
+        Command::Profile(command) => return profile::run(command),
         Command::Report(ReportCommand::Schema) => pretty(&report::schema())?,
         Command::Compare(args) => compare::run(args)?,
         Command::Check(args) => return check::run(args),
@@ -216,28 +245,4 @@ fn other(command: &Command) -> Result<Outcome> {
 
 fn pretty(schema: &impl serde::Serialize) -> Result<String> {
     output::json(schema, Path::new("-"))
-}
-
-fn profile_command(command: &ProfileCommand) -> Result<String> {
-    Ok(match command {
-        ProfileCommand::List { shelf } => profiles::list(&shelf.shelf())?,
-        ProfileCommand::New { name, shelf } => profiles::new(&shelf.shelf(), name)?,
-        ProfileCommand::Schema => pretty(&profile::schema())?,
-        ProfileCommand::Show { names, profiles, verbose } => {
-            profile::document(&profiles.load_after(names)?, *verbose)
-        }
-        ProfileCommand::Check { names, profiles } => {
-            let names: Vec<OsString> = names.iter().map(|name| profiles.meant(name)).collect();
-            let profile = profiles.load_after(&names)?;
-            let doubtful = doubtful::warnings(&profile.settings);
-            let cold = doubtful::cold_bed(&profile.settings, &profile.sources);
-            for warning in
-                doubtful.into_iter().chain(cold).chain(motion::warnings(&profile.settings))
-            {
-                say_line("warning", warning);
-            }
-            let names: Vec<String> = names.iter().map(text::name).collect();
-            format!("{}: good\n", names.join(" + "))
-        }
-    })
 }

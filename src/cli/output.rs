@@ -38,6 +38,15 @@ pub(super) fn json(value: &impl Serialize, to: &Path) -> Result<String> {
     written.map(|json| text::harmless(&json).into_owned() + "\n").with_context(|| writing(to))
 }
 
+/// As [`json`], on one line.
+///
+/// # Errors
+/// As [`json`].
+pub(super) fn json_line(value: &impl Serialize, to: &Path) -> Result<String> {
+    let written = serde_json::to_string(value);
+    written.map(|json| text::harmless(&json).into_owned() + "\n").with_context(|| writing(to))
+}
+
 /// Where a product goes. It is opened before the long work, so that a wrong path costs no time.
 #[derive(Debug)]
 pub(crate) struct Sink {

@@ -10,7 +10,9 @@
 use super::words;
 use anyhow::Result;
 use clap::Args;
-use slicer::profile::{self, Found, Override, Profile, ProfileKind, Shelf, Wanted, keys};
+use slicer::profile::{
+    self, Found, Override, Profile, ProfileError, ProfileKind, Shelf, Wanted, keys,
+};
 use slicer::text;
 use std::env;
 use std::ffi::{OsStr, OsString};
@@ -58,9 +60,15 @@ impl ProfileArgs {
         !self.wanted().is_empty()
     }
 
-    /// The files among them, and names that may be some.
-    pub(crate) fn names(&self) -> impl Iterator<Item = &OsStr> {
-        self.profile.iter().chain(&self.material).chain(&self.print).map(OsString::as_os_str)
+    /// The files among them, as they are named. A bare name is looked for on the shelf, and never here.
+    pub(crate) fn files(&self) -> impl Iterator<Item = &OsStr> {
+        let all = self.profile.iter().chain(&self.material).chain(&self.print);
+        let is_file = |name: &&OsString| {
+            name.to_str().is_none_or(|name| {
+                name.contains(['/', std::path::MAIN_SEPARATOR]) || name.ends_with(".toml")
+            })
+        };
+        all.filter(is_file).map(OsString::as_os_str)
     }
 
     /// The overrides that `--set` gives.
@@ -77,6 +85,16 @@ impl ProfileArgs {
     /// As [`Self::load`].
     pub(crate) fn load_after(&self, names: &[OsString]) -> Result<Profile> {
         self.lay(names.iter().map(|name| Wanted::word(None, name)).chain(self.wanted()), [])
+    }
+
+    /// All that is wrong with these profiles and those asked for after them.
+    ///
+    /// # Errors
+    /// As [`Self::overrides`].
+    pub(crate) fn faults_after(&self, names: &[OsString]) -> Result<Vec<ProfileError>> {
+        let names = names.iter().map(|name| Wanted::word(None, name));
+        let wanted: Vec<Wanted> = names.chain(self.wanted()).collect();
+        Ok(profile::faults(&self.shelf.shelf(), &wanted, &self.overrides()?))
     }
 
     /// The name as it is loaded by: a bare one that finds no profile but is a file is meant as that.
@@ -133,26 +151,6 @@ impl ShelfArgs {
         let own = dirs::config_dir().map(|folder| folder.join("slicer"));
         Shelf::new(given.chain(own).collect::<Vec<PathBuf>>())
     }
-}
-
-/// All profiles by kind, each with what it is for, and those of one's own with their file.
-///
-/// # Errors
-/// A file that cannot be read or is no TOML.
-pub(crate) fn list(shelf: &Shelf) -> Result<String> {
-    let all = shelf.all();
-    let mut text = String::new();
-    for kind in ProfileKind::ALL {
-        let _ = writeln!(text, "{kind}s");
-        for found in all.iter().filter(|found| found.kind == Some(kind)) {
-            let _ = write!(text, "  {:<23} {}", found.name, text::line(&found.description()?));
-            if found.path.is_some() {
-                let _ = write!(text, " ({})", found.shown);
-            }
-            text.push('\n');
-        }
-    }
-    Ok(text)
 }
 
 /// The keys that a profile of one's own is most likely to change.

@@ -10,6 +10,7 @@
 //!
 //! From the second step on a failure is reported, where a report is asked for.
 
+use super::about::{self, About};
 use super::args::SliceArgs;
 use super::failure::Output;
 use super::output::{self, Sink};
@@ -21,6 +22,7 @@ use slicer::check::Verdict;
 use slicer::check::terms::Terms;
 use slicer::error::Error;
 use slicer::gcode;
+use slicer::mesh::MeshReport;
 use slicer::profile::{Profile, Settings};
 use slicer::progress::Progress;
 use slicer::reader::{Print, Reading};
@@ -29,7 +31,7 @@ use slicer::report::steps::StepsReport;
 use slicer::steps;
 use slicer::warning::{Warning, plural};
 use slicer::{Job, Model, text};
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::io::Write as _;
 use std::path::Path;
 use std::sync::Arc;
@@ -37,6 +39,21 @@ use std::time::Instant;
 
 /// Exit code of a run that is done but has findings: warnings with `--strict`, or of `--check`.
 const FINDINGS: u8 = 1;
+
+/// Endings of formats that a file of text must not be taken for, and what to do.
+const OTHERS: &[(&str, &str)] = &[
+    ("3mf", "choose .gcode"),
+    ("amf", "choose .gcode"),
+    ("obj", "choose .gcode"),
+    ("step", "choose .gcode, or .steps for steps of motors"),
+    ("bgcode", "choose .gcode, which Prusa's `bgcode` turns into that"),
+    ("x3g", "choose .gcode, which `gpx` turns into that"),
+    ("s3g", "choose .gcode, which `gpx` turns into that"),
+    ("makerbot", "choose .gcode"),
+    ("ufp", "choose .gcode"),
+    ("gz", "choose .gcode, or pipe it: -o - | gzip"),
+    ("zip", "choose .gcode"),
+];
 
 /// Slices, and returns the exit code.
 ///
@@ -67,6 +84,9 @@ fn make(
     if args.verbose {
         say(&summary::settings(&profile));
     }
+    // Files that profiles inherit, and those that a name finds, are known by now.
+    let read = profile.sources.list.iter().filter_map(|source| source.file.as_deref());
+    read.map(OsStr::new).try_for_each(|file| usage::replaces(out, file))?;
     let mut target = Target::open(out, &profile.settings)?;
 
     let report = work(args, out, profile, target.gcode())?;
@@ -75,10 +95,10 @@ fn make(
         say(&summary::notes(&report));
     }
     for warning in &report.warnings {
-        say_line("warning", warning);
+        say_line("warning", about::told(warning, &report));
     }
     if let Some(verdict) = &report.check {
-        say(&check::findings(verdict, "--report"));
+        say(&about::lines(&check::findings(verdict, "--report"), &report.models));
         if !args.quiet {
             say(&check::notes(verdict));
         }
@@ -95,7 +115,7 @@ fn make(
     if !is_good {
         let why =
             "--check has findings, so that no G-code is written; slice without it to see them";
-        say_line("error", why);
+        say_line("error", format!("{}: {why}", About::of_job(&report.models)));
         return Ok(FINDINGS);
     }
     if args.verbose {
@@ -105,7 +125,7 @@ fn make(
         say(&summary::summary(&report, started.elapsed()));
     }
     let of_check = report.check.as_ref().map_or(0, Verdict::warnings);
-    Ok(findings(args.strict, report.warnings.len() + of_check))
+    Ok(findings(args.strict, report.warnings.len() + of_check, &report))
 }
 
 /// Checks that no two arguments mean the same file.
@@ -129,11 +149,19 @@ fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
         return usage::refuse("-o and --report name the same file; name two");
     }
     for product in std::iter::once(out).chain(report) {
-        let read = args.inputs.iter().map(OsString::as_os_str).chain(args.profiles.names());
+        let read = args.inputs.iter().map(OsString::as_os_str).chain(args.profiles.files());
         if let Some(name) = read.into_iter().find(|name| same(product, Path::new(name))) {
             let name = text::name(name);
             return usage::refuse(&format!(
                 "the output would replace {name}; choose another name for it"
+            ));
+        }
+        let ending = product.extension().map(|end| end.to_ascii_lowercase());
+        let other = OTHERS.iter().find(|(end, _)| ending.as_deref() == Some(OsStr::new(end)));
+        if let Some((_, remedy)) = other.filter(|_| product == out) {
+            let name = text::name(product.as_os_str());
+            return usage::refuse(&format!(
+                "{name}: this format is not written here, only G-code as text; {remedy}"
             ));
         }
         // A forgotten -o in a shell's list of files would cost a model.
@@ -149,12 +177,13 @@ fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
 
 /// The exit code of a run that is done. With `--strict` warnings make it a failure, although the
 /// output is written, to be looked at.
-fn findings(strict: bool, warnings: usize) -> u8 {
+fn findings(strict: bool, warnings: usize, report: &Report) -> u8 {
     if !strict || warnings == 0 {
         return 0;
     }
     let warnings = plural(warnings as u64, "warning");
-    say_line("error", format!("{warnings} with --strict; look at them before printing"));
+    let about = About::of_job(&report.models);
+    say_line("error", format!("{about}: {warnings} with --strict; look at them before printing"));
     FINDINGS
 }
 
@@ -207,9 +236,10 @@ fn slice_and_check(
     let settings = &job.settings;
     let bed = slicer::bed(&settings.machine);
     let placement = slicer::suited(&job.placement, settings);
-    let placed = slicer::place(&job.models, &placement, &bed, progress)?;
-    let mut report =
-        slicer::slice_placed(job, &placed, sink, progress).map_err(|e| named(e, out))?;
+    let placed = slicer::place(&job.models, &placement, &bed, progress)
+        .map_err(|error| about::unplaced(error, &job.models))?;
+    let mut report = slicer::slice_placed(job, &placed, sink, progress)
+        .map_err(|error| named(error, out, &placed.reports))?;
     if !check {
         return Ok(report);
     }
@@ -232,10 +262,12 @@ fn slice_and_check(
 }
 
 /// The library does not know what the output is called.
-fn named(error: Error, out: &Path) -> anyhow::Error {
+fn named(error: Error, out: &Path, models: &[MeshReport]) -> anyhow::Error {
     let is_of_output = matches!(error, Error::Gcode(gcode::Error::Write(_)) | Error::Thumbnails(_));
-    let error = anyhow::Error::from(error);
-    if is_of_output { error.context(Output { file: out.to_owned(), action: "" }) } else { error }
+    if !is_of_output {
+        return about::unsliced(error, models);
+    }
+    anyhow::Error::from(error).context(Output { file: out.to_owned(), action: "" })
 }
 
 fn write_report(path: &Path, mut sink: Sink, report: &Report) -> Result<Sink> {

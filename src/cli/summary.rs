@@ -15,6 +15,7 @@ use slicer::profile::{Profile, dump};
 use slicer::report::nonplanar::{FlatReport, NonPlanarReport};
 use slicer::report::steps::{MotorReport, StepsReport};
 use slicer::report::{BrimReport, CoolingReport, DriveReport, MotionReport, Report};
+use slicer::warning::plural;
 use std::time::Duration;
 
 /// Layers that end nearer to the models' height end there, mm.
@@ -52,11 +53,11 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
     let ends = ends(report);
     format!(
         "{}\n\
-         {} layers of {} mm, {x:.1} x {y:.1} x {z:.1} mm{ends}{raft}\n\
+         {} of {} mm, {x:.1} x {y:.1} x {z:.1} mm{ends}{raft}\n\
          filament {:.0} mm, {:.2} cm³, {:.1} g{}\n\
          prints in {}, sliced in {:.2} s{dual}\n{}",
         chosen(report),
-        layers.count,
+        plural(layers.count as u64, "layer"),
         layers.height_mm,
         filament.length_mm,
         filament.volume_cm3,
@@ -138,8 +139,8 @@ fn slower(cooling: &CoolingReport) -> String {
         return String::new();
     }
     let mut line = format!(
-        "{} layers printed slower, down to {:.0} % of their speed, to take {} s each",
-        cooling.slowed_layers,
+        "{} printed slower, down to {:.0} % of their speed, to take {} s each",
+        plural(cooling.slowed_layers as u64, "layer"),
         100.0 * cooling.lowest_factor,
         cooling.min_layer_time_s
     );

@@ -49,9 +49,9 @@ fn real_path(path: &Path) -> Option<PathBuf> {
     Some(folder.join(path.file_name()?))
 }
 
-/// clap's message without its usage block: what is wrong, its tip, and where to find more.
-pub(super) fn one_line(text: &str) -> String {
-    format!("{}; see `slicer --help`", reason(text))
+/// clap's message of a command without its usage block: what is wrong, its tip, and where to find more.
+pub(super) fn one_line(text: &str, command: &str) -> String {
+    format!("{}; see `{command} --help`", reason(text))
 }
 
 /// The same without the last.
@@ -85,20 +85,20 @@ mod tests {
         let text = "error: unexpected argument '--wals' found\n\n  tip: a similar argument exists: \
                     '--walls'\n\nUsage: slicer\n\nFor more information, try '--help'.\n";
         assert_eq!(
-            one_line(text),
+            one_line(text, "slicer"),
             "unexpected argument '--wals' found; a similar argument exists: '--walls'; \
              see `slicer --help`"
         );
         let text = "error: invalid value 'a' for '--b'\n  [possible values: c]\n\nFor more \
                     information, try '--help'.\n";
         assert_eq!(
-            one_line(text),
+            one_line(text, "slicer"),
             "invalid value 'a' for '--b'; [possible values: c]; see `slicer --help`"
         );
         let text = "error: the following required arguments were not provided:\n  --output <OUT>\n  \
                     <INPUT>...\n\nUsage: slicer\n";
         assert_eq!(
-            one_line(text),
+            one_line(text, "slicer"),
             "the following required arguments were not provided: --output <OUT>, <INPUT>...; \
              see `slicer --help`"
         );

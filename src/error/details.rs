@@ -203,7 +203,7 @@ impl From<&mesh::Error> for Details {
         use mesh::Error as E;
         match error {
             E::Read { file, source } => of_file(source, file),
-            E::Flat { file, .. } => Self::in_file("nothing-to-print", file),
+            E::Flat { file, .. } | E::Sunk { file, .. } => Self::in_file("nothing-to-print", file),
             E::Unmendable { file } | E::Faulty { file, .. } => Self::in_file("broken-mesh", file),
             E::TooLarge { file, .. } => Self::in_file("does-not-fit", file),
             E::OffBed { .. } | E::BedFull { .. } => Self::of("does-not-fit"),

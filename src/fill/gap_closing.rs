@@ -69,14 +69,14 @@ pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Poly
         for &span in spans {
             let mut line = Line { row, span, above: Vec::new(), below: Vec::new(), beside: 0.0 };
             (line.above, line.below) = strips.beside(row, span);
-            if !params.walled {
-                // The skin ends at the outside of the part, and no bead may reach out of it.
-                [&mut line.above, &mut line.below]
-                    .map(|strips| keep_even(strips, params.line_width));
-            } else {
+            if params.walled {
                 line.beside = strips.room_beside(row, span);
                 add_ends(&mut line.above, span, crossed, (row, row + 1), params);
                 add_ends(&mut line.below, span, crossed, (row, row - 1), params);
+            } else {
+                // The skin ends at the outside of the part, and no bead may reach out of it.
+                keep_even(&mut line.above, params.line_width);
+                keep_even(&mut line.below, params.line_width);
             }
             lines.push(line);
         }

@@ -7,7 +7,7 @@
 //! Four groups of variants:
 //! - `Read`: a file is no usable model. [`ReadError`] says in which way: not there, empty, of
 //!   another format, cut off, contradicting itself, with numbers that are none, too large.
-//! - `Flat`, `Unmendable`, `Faulty`: the file was read, but its mesh is not good enough.
+//! - `Flat`, `Sunk`, `Unmendable`, `Faulty`: the file was read, but its mesh is not good enough.
 //! - `TooLarge`, `OffBed`, `BedFull`, `TooManyTriangles`: the models do not fit.
 //! - `NoModel`, `Scale`, `NotFinite`, `NoCopies`: the request makes no sense, whatever the
 //!   models; [`Error::is_usage`] tells these from the others.
@@ -43,6 +43,20 @@ pub enum Error {
         what: Flat,
         /// Its size as placed.
         size_mm: [f64; 3],
+    },
+
+    /// A model of which nothing is left above what is cut off its bottom.
+    #[error(
+        "{file}: --sink {sink_mm} cuts off all of the model, which is {} mm high; use less",
+        number(*height_mm)
+    )]
+    Sunk {
+        /// The model's file.
+        file: String,
+        /// How much is cut off.
+        sink_mm: f64,
+        /// How high it is before.
+        height_mm: f64,
     },
 
     /// More of a mesh would have to be dropped than would be left.
@@ -116,8 +130,9 @@ pub enum Error {
 
     /// The models do not fit the bed side by side.
     #[error(
-        "{models} models with gaps of {gap_mm} mm do not fit the bed of {} mm; print fewer at once",
-        sides(bed_mm)
+        "{models} models with gaps of {gap_mm} mm do not fit the bed of {} mm; {}",
+        sides(bed_mm),
+        fewer(*copies_fit, *models_fit)
     )]
     BedFull {
         /// Models, with their copies.
@@ -126,6 +141,10 @@ pub enum Error {
         gap_mm: f64,
         /// Width and depth of the bed.
         bed_mm: [f64; 2],
+        /// How many copies of each fit; 0 if not all models do.
+        copies_fit: usize,
+        /// How many of the models fit, from the first on, each once.
+        models_fit: usize,
     },
 
     /// All models and copies together have more triangles than are allowed.
@@ -204,6 +223,15 @@ fn shrink(scale: Option<f64>) -> String {
         || "check the model and --scale".to_owned(),
         |scale| format!("use --scale {scale} or less, or turn it with --rotate"),
     )
+}
+
+/// What to do about models that do not fit side by side: how many do.
+fn fewer(copies: usize, models: usize) -> String {
+    match (copies, models) {
+        (0, models) => format!("the first {models} of them do; print fewer at once"),
+        (1, 2..) => "without --copies they fit; print fewer at once".to_owned(),
+        (copies, _) => format!("--copies {copies} fits; print fewer at once"),
+    }
 }
 
 /// By how much, and at which sides of the bed, models stick out.

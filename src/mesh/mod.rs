@@ -98,4 +98,38 @@ pub struct MeshReport {
     pub mended: Vec<Counted<Mending>>,
     /// Faults of the mesh that is sliced.
     pub left: Vec<Counted<Fault>>,
+    /// Where it and its copies lie, in the machine's coordinates; absent where it was not laid on a bed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<BodyReport>,
+}
+
+/// The box around a model or one of its copies, in the machine's coordinates.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, JsonSchema)]
+pub struct BodyReport {
+    /// Lowest x, y and z, mm.
+    pub min_mm: [f64; 3],
+    /// Highest x, y and z, mm.
+    pub max_mm: [f64; 3],
+}
+
+impl BodyReport {
+    /// How far a place on the bed lies beside it, mm; 0 within.
+    #[must_use]
+    pub fn distance(&self, at_mm: [f64; 2]) -> f64 {
+        let beside = |axis: usize| {
+            let at: f64 = at_mm[axis];
+            (self.min_mm[axis] - at).max(at - self.max_mm[axis]).max(0.0)
+        };
+        beside(0).hypot(beside(1))
+    }
+}
+
+/// The model whose box holds a place on the bed, or comes nearest to it: boxes do not overlap.
+#[must_use]
+pub fn model_at(reports: &[MeshReport], at_mm: [f64; 2]) -> Option<&MeshReport> {
+    let boxes = |model: &'_ MeshReport| {
+        model.bodies.iter().map(|body| body.distance(at_mm)).reduce(f64::min)
+    };
+    let models = reports.iter().filter_map(|model| Some((boxes(model)?, model)));
+    models.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, model)| model)
 }

@@ -29,6 +29,7 @@ use crate::profile::Settings;
 use crate::progress::Progress;
 use crate::region::dual::audit::Audit;
 use crate::region::dual::groups::Grouping;
+use crate::region::prepare::prepare;
 use crate::region::support::{SupportParams, supports};
 use crate::region::window::{Support, Window};
 use crate::region::{Region, RegionParams, foot};
@@ -85,7 +86,28 @@ impl Setup {
         self.support.map(of)
     }
 
-    /// Ready to plan the layers of `slicer`, with their support and under these curved tops.
+    /// How many of the layers are printed, from the lowest on, and what those above add up to, which have nothing
+    /// that is thick enough for a line. All, if nothing is: then the job is refused for that. Cuts the highest
+    /// layers once more.
+    #[must_use]
+    pub fn printed(&self, slicer: &Slicer<'_>) -> (usize, Tally) {
+        let mut left_out = Tally::default();
+        for block in (0..slicer.blocks()).rev() {
+            for layer in slicer.block(block).into_iter().rev() {
+                let count = layer.index + 1;
+                let (own, rows) = prepare(layer, &self.region);
+                let is_filled = [0, 1].iter().any(|&r| !rows.skin(r).fill.is_empty());
+                if is_filled || !own.walls.is_empty() {
+                    return (count, left_out);
+                }
+                left_out.add(&own.layer, own.thin_mm2);
+            }
+        }
+        (slicer.heights().count(), Tally::default())
+    }
+
+    /// Ready to plan the layers of `slicer`, with their support and under these curved tops. Layers that are
+    /// `left_out` above them count for what is told.
     #[must_use]
     pub fn planner<'a>(
         &'a self,
@@ -94,6 +116,7 @@ impl Setup {
         curved: Option<&'a Curved<'a>>,
         footing: Footing,
         sticking: Sticking<'a>,
+        left_out: Tally,
     ) -> Planner<'a> {
         let window = Window::new(slicer, &self.region, &self.grouping, support);
         let window = window.under(curved.map(Curved::tops));
@@ -106,7 +129,7 @@ impl Setup {
             lift: &self.lift,
             nozzle: Nozzle::default(),
             seams: Seams::default(),
-            tally: Tally::default(),
+            tally: left_out,
             footing,
             sticking,
             curved,

@@ -115,6 +115,14 @@ impl Page<'_> {
         let (low, high) = (self.frame.min[axis], self.frame.max[axis]);
         let apart = [text.advance() * (AXIS_LETTERS - 1.0), 2.2 * line][axis];
         let (step, decimals) = round_step(apart / places.view.scale);
+        // Numbers below the picture stand side by side: the longest decides, which may have decimals.
+        let letters = [low, high].map(|end| format!("{end:.decimals$}").len());
+        let room = [text.advance() * (1 + letters[0].max(letters[1])) as f64, apart][axis];
+        let (step, decimals) = if step * places.view.scale < room - 1e-6 {
+            round_step(room / places.view.scale)
+        } else {
+            (step, decimals)
+        };
         let first = (low / step).ceil();
         let count = ((high / step).floor() - first).max(-1.0) + 1.0;
         for k in 0..count as usize {
@@ -233,5 +241,29 @@ mod tests {
         near(2.0, 2.0, 0);
         near(6.0, 10.0, 0);
         near(1e9, 50_000.0, 0);
+    }
+
+    #[test]
+    fn numbers_below_the_picture_do_not_run_together() {
+        for (size, low, side) in
+            [(1000, 106.0, 7.0), (900, 108.4, 3.2), (400, -12.0, 1.5), (2000, 0.0, 0.4)]
+        {
+            let frame = Frame { min: [low, 10.0], max: [low + side, 10.0 + side] };
+            let (heading, keys) = (Vec::new(), Vec::new());
+            let page = Page { size, frame, axes: ["x", "y"], heading, keys };
+            let drawing = page.lay_out();
+            let letter = drawing.text.advance();
+            let below = drawing.page.iter().filter_map(|mark| match mark {
+                Mark::Text { at, anchor: Anchor::Middle, text } if !text.ends_with("mm") => {
+                    let half = text.len() as f64 * letter / 2.0;
+                    Some([at[0] - half, at[0] + half])
+                }
+                _ => None,
+            });
+            let below: Vec<[f64; 2]> = below.collect();
+            assert!(below.len() > 1, "{size}: {below:?}");
+            let apart = |pair: &[[f64; 2]]| pair[1][0] - pair[0][1] > 0.9 * letter;
+            assert!(below.windows(2).all(apart), "{size}: {below:?}");
+        }
     }
 }

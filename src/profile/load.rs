@@ -50,6 +50,25 @@ pub fn load_from(shelf: &Shelf, wanted: &[Wanted], overrides: &[Override]) -> Re
     Ok(profile)
 }
 
+/// All that is wrong with profiles, as far as one fault does not hide another: each unknown key and each wrong
+/// value in its place; where there is none, the first other fault, if there is any.
+#[must_use]
+pub fn faults(shelf: &Shelf, wanted: &[Wanted], overrides: &[Override]) -> Vec<ProfileError> {
+    let (mut merged, mut found) = (defaults(), Vec::new());
+    // Whatever keeps them from being read is told by loading them.
+    let layers = layers(wanted, shelf).map(|(layers, _)| layers).unwrap_or_default();
+    for (key, value, origin) in layers.into_iter().flat_map(Layer::settings) {
+        found.extend(insert(&key, value, origin, &mut merged).err());
+    }
+    for given in overrides {
+        found.extend(merge_override(given, &mut merged).err());
+    }
+    if found.is_empty() {
+        found.extend(load_from(shelf, wanted, overrides).err());
+    }
+    found
+}
+
 /// As [`load_from`], of several lists of overrides, each laid over those before it. Each value is checked, but
 /// not whether they can print together.
 pub(super) fn merge(

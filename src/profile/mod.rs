@@ -35,7 +35,7 @@ pub use choices::*;
 pub use error::{BlockError, ProfileError};
 pub use kind::ProfileKind;
 pub use layers::Wanted;
-pub use load::{load, load_from};
+pub use load::{faults, load, load_from};
 pub use old::{SETTINGS_FORMAT, renewed};
 pub use origin::{Override, Profile, Source, Sources, ValueOrigin};
 pub use placeholders::left_in;

@@ -28,7 +28,7 @@ pub struct Cause {
     pub code: &'static str,
     /// One line for people, as on standard error.
     pub message: String,
-    /// The file that it is about, such as a model or a profile; absent if it is about none.
+    /// The file that it is about, such as a model or a profile; absent if it is about none, or about several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// Where in the file or on the bed, or which setting; absent if it is nowhere.

@@ -22,6 +22,7 @@ use crate::gcode::flow::{Flows, speed};
 use crate::gcode::times::{LayerTime, Times};
 use crate::gcode::usage::Material;
 use crate::job::{self, Job};
+use crate::mesh::MeshReport;
 use crate::mesh::place::Placed;
 use crate::profile::{DualMode, DualPart, Settings, Sources};
 use crate::region::dual::audit::{Apart, Audit};
@@ -49,7 +50,7 @@ pub fn report(
         profile: job.sources.to_string(),
         is_profile_chosen: !job.sources.asked.is_empty(),
         profiles: profiles(&job.sources),
-        models: placed.reports.clone(),
+        models: models(placed, &lift),
         size_mm: placed.size_mm,
         solid_mm3: tally.solid_mm3(),
         layers: LayersReport {
@@ -88,6 +89,16 @@ pub fn report(
             .collect(),
         ..Report::default()
     }
+}
+
+/// The models. A raft lifts them.
+fn models(placed: &Placed, lift: &Lift) -> Vec<MeshReport> {
+    let mut models = placed.reports.clone();
+    for body in models.iter_mut().flat_map(|model| &mut model.bodies) {
+        body.min_mm[2] += to_mm(lift.by());
+        body.max_mm[2] += to_mm(lift.by());
+    }
+    models
 }
 
 fn profiles(sources: &Sources) -> Vec<ProfileReport> {

@@ -65,7 +65,7 @@ pub struct Report {
     pub is_profile_chosen: bool,
     /// The profiles that had a say, defaults included, the most general first.
     pub profiles: Vec<ProfileReport>,
-    /// Each model read, in the order given.
+    /// Each model read, in the order given, and where it and its copies lie.
     pub models: Vec<MeshReport>,
     /// Size of the whole layout x, y, z, mm.
     pub size_mm: [f64; 3],

@@ -1,6 +1,7 @@
 //! Regions -> Tally: what the layers of a print add up to, beside what is extruded.
 
 use crate::region::Region;
+use crate::slice::Layer;
 use crate::units::{Coord, to_mm};
 use crate::warning::Warning;
 
@@ -21,13 +22,18 @@ pub struct Tally {
 impl Tally {
     /// Adds one layer.
     pub fn layer(&mut self, region: &Region) {
-        if region.layer.closed_gap > 0 {
+        self.add(&region.layer, region.thin_mm2);
+    }
+
+    /// Adds a layer of which so much is too thin for a line, mm²; all of it where nothing is printed.
+    pub fn add(&mut self, layer: &Layer, thin_mm2: f64) {
+        if layer.closed_gap > 0 {
             self.open_layers += 1;
-            self.longest_gap = self.longest_gap.max(region.layer.closed_gap);
+            self.longest_gap = self.longest_gap.max(layer.closed_gap);
         }
-        self.solid_mm3 += region.layer.volume_mm3();
-        if region.thin_mm2 > LEAST_THIN_MM2 {
-            self.thin_mm2.push(region.thin_mm2);
+        self.solid_mm3 += layer.volume_mm3();
+        if thin_mm2 > LEAST_THIN_MM2 {
+            self.thin_mm2.push(thin_mm2);
         }
     }
 

@@ -187,6 +187,48 @@ fn no_two_arguments_may_mean_the_same_file() {
     // Nor may a product look like a model.
     fails(&folder, &["part.stl", "-o", "next.STL"], 2, "next.STL is a model's name");
     fails(&folder, &["part.stl", "-o", "a", "--report", "b.stl"], 2, "b.stl is a model's name");
+    // Nor replace a profile that is read, be it inherited.
+    fs::write(folder.path().join("base.toml"), "walls = 3\n").unwrap();
+    fs::write(folder.path().join("mine.toml"), "inherits = [\"ender-3\", \"base.toml\"]\n")
+        .unwrap();
+    for out in ["mine.toml", "base.toml"] {
+        let words = ["part.stl", "-p", "./mine.toml", "-o", out];
+        fails(&folder, &words, 2, "the output would replace");
+    }
+    // A name is no file.
+    write_block(&folder.path().join("block.stl"));
+    let words = ["block.stl", "-q", "--material", "pla", "-o", "pla"];
+    slicer(&folder).args(words).assert().success();
+    assert!(fs::read_to_string(folder.path().join("pla")).unwrap().contains(";LAYER_CHANGE"));
+}
+
+#[test]
+fn formats_that_are_not_written_are_refused() {
+    let folder = folder();
+    for (out, remedy) in [
+        ("a.3mf", "choose .gcode"),
+        ("a.bgcode", "`bgcode`"),
+        ("a.X3G", "`gpx`"),
+        ("a.gcode.gz", "-o - | gzip"),
+    ] {
+        fails(&folder, &["part.stl", "-o", out], 2, &format!("{out}: this format is not written"));
+        fails(&folder, &["part.stl", "-o", out], 2, remedy);
+    }
+}
+
+#[test]
+fn the_word_help_is_meant_as_the_flag() {
+    let folder = folder();
+    for words in [&["help"] as &[&str], &["help", "check"], &["help", "profile", "show"]] {
+        let by_flag = [&words[1..], &["--help"]].concat();
+        let by_flag = slicer(&folder).args(by_flag).assert().success();
+        let by_flag = by_flag.get_output().stdout.clone();
+        slicer(&folder).args(words).assert().success().stdout(by_flag);
+    }
+    fails(&folder, &["check"], 2, "see `slicer check --help`");
+    fails(&folder, &["profile", "show", "--frob"], 2, "see `slicer profile show --help`");
+    write_block(&folder.path().join("block.stl"));
+    fails(&folder, &["block.stl", "-o", "a", "--sink", "30"], 3, "--sink 30 cuts off all");
 }
 
 #[test]
@@ -363,7 +405,7 @@ fn strict_run_with_a_warning_is_done_but_exits_with_1() {
         let text = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(code), "{text}");
         assert!(text.starts_with("warning: cube.stl: ignored 1 byte after"), "{text}");
-        assert_eq!(text.contains("error: 1 warning with --strict"), strict, "{text}");
+        assert_eq!(text.contains("error: cube.stl: 1 warning with --strict"), strict, "{text}");
         assert!(folder.path().join("a.gcode").is_file());
         std::fs::remove_file(folder.path().join("a.gcode")).unwrap();
     }
@@ -379,8 +421,8 @@ fn a_product_that_the_check_finds_fault_with_is_not_put_in_place() {
     for out in ["a.gcode", "-"] {
         let run = slicer(&folder).args(words).args(["-o", out]).assert().code(1).stdout("");
         run.stderr(
-            predicate::str::starts_with("too-fast: line ")
-                .and(predicate::str::contains("error: --check has findings")),
+            predicate::str::starts_with("block.stl: too-fast: line ")
+                .and(predicate::str::contains("error: block.stl: --check has findings")),
         );
         assert_eq!(fs::read(folder.path().join("a.gcode")).unwrap(), b"old");
         let report = fs::read(folder.path().join("a.json")).unwrap();

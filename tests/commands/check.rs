@@ -28,7 +28,7 @@ fn faulty() -> String {
 }
 
 /// A folder with the cube, good and with faults.
-fn folder() -> TempDir {
+pub(super) fn folder() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     fs::write(path.join("good.gcode"), CUBE.as_str()).unwrap();
@@ -38,7 +38,7 @@ fn folder() -> TempDir {
 }
 
 /// Exit code, standard output and standard error.
-fn check(folder: &TempDir, words: &[&str], stdin: &[u8]) -> (i32, String, String) {
+pub(super) fn check(folder: &TempDir, words: &[&str], stdin: &[u8]) -> (i32, String, String) {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("slicer"));
     command.current_dir(folder.path()).arg("check").args(words).write_stdin(stdin);
     let output = command.output().unwrap();

@@ -303,7 +303,7 @@ fn errors_name_the_file_the_cause_and_what_to_do() {
         (&["diff", TILE, "no.gcode"][..], 3, "error: no.gcode: cannot read: "),
         (&["diff", "fixtures/cube_20.stl", TILE], 3, "cube_20.stl: there is no move in it"),
         (&["diff", "-", "-"], 2, "`-` is given twice"),
-        (&["diff", TILE], 2, "see `slicer --help`"),
+        (&["diff", TILE], 2, "see `slicer diff --help`"),
         (&["diff", TILE, TILE, "--tolerance", "-1"], 2, "it must be 0 or more"),
         (&["diff", TILE, TILE, "--set", "limits.jerk_y=-1"], 2, "out of range"),
     ] {

@@ -179,7 +179,7 @@ fn errors_name_the_file_the_cause_and_what_to_do() {
             2,
             "limits.jerk_x = -1 is out of range",
         ),
-        (&["estimate"], 2, "see `slicer --help`"),
+        (&["estimate"], 2, "see `slicer estimate --help`"),
     ] {
         let failed = slicer(words).assert().code(code);
         let text = String::from_utf8(failed.get_output().stderr.clone()).unwrap();
@@ -198,4 +198,53 @@ fn what_this_program_writes_is_read_to_the_last_line() {
         assert_eq!(json["not_counted"]["unknown_lines"], 0, "{file}");
         assert!(json["seconds"].as_f64().unwrap() > 1.0);
     }
+}
+
+#[test]
+fn the_print_time_is_that_of_the_file_and_the_whole_is_told_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    slicer(&["fixtures/cube_20.stl", "-q", "--scale", "0.3", "-p", "ender-3", "-o"])
+        .arg(at("a.gcode"))
+        .arg("--report")
+        .arg(at("a.json"))
+        .assert()
+        .success();
+    let read = |name: &str| std::fs::read_to_string(at(name)).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&read("a.json")).unwrap();
+    let told = slicer(&["estimate", "--json"]).arg(at("a.gcode")).assert().success().stderr("");
+    let json: serde_json::Value = serde_json::from_slice(&told.get_output().stdout).unwrap();
+    let of = |key: &str| json[key].as_f64().unwrap();
+    let total = report["time"]["total_s"].as_f64().unwrap();
+    // But for the way to the first line, which begins where the start block ends.
+    assert!((of("print_seconds") - total).abs() < 3.0, "{} {total}", of("print_seconds"));
+    near(of("print_seconds"), of("seconds") - of("start_seconds") - of("end_seconds"));
+    assert!(of("seconds") > of("print_seconds") + 5.0);
+    assert_eq!(json["limits_by"], "file");
+    let told = slicer(&["estimate"]).arg(at("a.gcode")).assert().success();
+    let text = String::from_utf8(told.get_output().stdout.clone()).unwrap();
+    let whole = of("seconds").round() as u64;
+    let whole = format!("\nwhole file     0:{:02}:{:02}   with ", whole / 60, whole % 60);
+    assert!(text.starts_with("print time") && text.contains(&whole), "{text}");
+
+    // Cut off before its settings.
+    let text = read("a.gcode");
+    std::fs::write(at("cut.gcode"), &text[..text.len() / 2]).unwrap();
+    let told =
+        slicer(&["estimate", "--json", "--no-user-config"]).arg(at("cut.gcode")).assert().success();
+    let json: serde_json::Value = serde_json::from_slice(&told.get_output().stdout).unwrap();
+    assert_eq!(json["limits_by"], "default");
+    let err = String::from_utf8(told.get_output().stderr.clone()).unwrap();
+    assert!(
+        err.starts_with("warning: ") && err.contains("cut.gcode: the file holds no settings"),
+        "{err}"
+    );
+    assert!(err.contains("zcube-dual") && err.lines().count() == 1, "{err}");
+    let named = slicer(&["estimate", "--json", "-p", "ender-3"])
+        .arg(at("cut.gcode"))
+        .assert()
+        .success()
+        .stderr("");
+    let json: serde_json::Value = serde_json::from_slice(&named.get_output().stdout).unwrap();
+    assert_eq!(json["limits_by"], "profile");
 }

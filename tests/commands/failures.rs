@@ -27,7 +27,7 @@ fn report(folder: &TempDir) -> Value {
 }
 
 /// A closed box between these heights, as facets of an ASCII STL.
-fn body(side: f64, low: f64, high: f64) -> String {
+pub(super) fn body(side: f64, low: f64, high: f64) -> String {
     let corner = |i: usize| {
         let [x, y] = [i & 1, i >> 1 & 1].map(|bit| if bit == 0 { 0.0 } else { side });
         format!("vertex {x} {y} {}\n", if i & 4 == 0 { low } else { high })
@@ -42,7 +42,7 @@ fn body(side: f64, low: f64, high: f64) -> String {
     triangles.map(facet).collect()
 }
 
-fn write_stl(path: &Path, bodies: &str) {
+pub(super) fn write_stl(path: &Path, bodies: &str) {
     fs::write(path, format!("solid a\n{bodies}endsolid a\n")).unwrap();
 }
 
@@ -71,8 +71,8 @@ fn a_failure_is_reported_by_code_file_and_place() {
         (&["word.stl"], 3, "damaged", Some("word.stl"), r#"{"line":3}"#),
         (&["cube.stl", "--max-triangles", "5"], 3, "too-large", Some("cube.stl"), "null"),
         (&["cube.stl", "--scale", "90"], 3, "does-not-fit", Some("cube.stl"), "null"),
-        (&["cube.stl", "--copies", "9999"], 3, "does-not-fit", None, "null"),
-        (&["cube.stl", "--scale", "0.001"], 3, "nothing-to-print", None, "null"),
+        (&["cube.stl", "--copies", "9999"], 3, "does-not-fit", Some("cube.stl"), "null"),
+        (&["cube.stl", "--scale", "0.001"], 3, "nothing-to-print", Some("cube.stl"), "null"),
         (
             &["cube.stl", "--set", "wals=1"],
             2,

@@ -178,9 +178,91 @@ fn a_part_where_the_nozzle_is_primed_is_refused() {
         .args(["part.stl", "-p", "generic-marlin", "--at", "35,13", "-o", "a"])
         .assert()
         .code(3)
-        .stderr(predicate::str::starts_with("error: the start block primes the nozzle at x "));
+        .stderr(predicate::str::starts_with(
+            "error: part.stl: the start block primes the nozzle at x ",
+        ));
     slicer(&folder)
         .args(["part.stl", "-q", "-p", "generic-marlin", "--at", "35,25", "-o", "a"])
         .assert()
         .success();
+}
+
+/// Exit code, standard output and standard error.
+fn ran(command: &mut Command, words: &[&str]) -> (i32, String, String) {
+    let run = command.args(words).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (run.status.code().unwrap(), text(run.stdout), text(run.stderr))
+}
+
+#[test]
+fn each_profile_is_checked_by_itself_and_a_pile_by_flags() {
+    let folder = folder();
+    let wrong = "inherits = \"ender-3\"\nwals = 3\nwalls = 1000\n[speed]\nwall = 5000\n";
+    write(&folder, "a.toml", "inherits = \"ender-3\"\nlayer_height = 0.3\n");
+    write(&folder, "b.toml", wrong);
+    write(&folder, "c.toml", "inherits = \"generic-marlin\"\n[speed]\nskin = 1\n");
+    let (code, out, err) =
+        ran(&mut slicer(&folder), &["profile", "check", "a.toml", "b.toml", "c.toml"]);
+    assert_eq!((code, out.as_str()), (2, "a.toml: good\nb.toml: 3 faults\nc.toml: good\n"));
+    let lines: Vec<&str> = err.lines().collect();
+    let starts = [
+        "error: b.toml:2: unknown key `wals`",
+        "error: b.toml:3: walls = 1000",
+        "error: b.toml:5: speed.wall = 5000",
+        "warning: c.toml: speed.skin = 1",
+    ];
+    assert_eq!(lines.len(), starts.len(), "{err}");
+    for (line, starts) in lines.iter().zip(starts) {
+        assert!(line.starts_with(starts), "{err}");
+    }
+    // Flags lie over each file: the two together cannot print.
+    let fine = ["profile", "check", "a.toml", "--set", "machine.nozzle_diameter=0.2"];
+    let (code, _, err) = ran(&mut slicer(&folder), &fine);
+    assert!(code == 2 && err.contains("layer_height"), "{err}");
+    // A pile.
+    let pile = ["profile", "check", "-p", "./a.toml", "--material", "petg"];
+    assert_eq!(
+        ran(&mut slicer(&folder), &pile),
+        (0, "a.toml + petg: good\n".into(), String::new())
+    );
+    let (code, _, err) = ran(&mut slicer(&folder), &["profile", "check"]);
+    assert!(code == 2 && err.contains("<FILE>"), "{err}");
+}
+
+#[test]
+fn the_list_marks_the_default_that_holds() {
+    let folder = folder();
+    let list = |command: &mut Command| ran(command, &["profile", "list"]).1;
+    let marked = |text: &str| {
+        let lines = text.lines().filter(|line| line.contains("the default"));
+        lines.map(|line| line.split_whitespace().next().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(marked(&list(&mut slicer(&folder))), ["zcube-dual"]);
+    write(
+        &folder,
+        "config/slicer/default.toml",
+        "inherits = \"ender-3\"\ndescription = \"Mine\"\n",
+    );
+    let text = list(&mut slicer(&folder));
+    assert_eq!(marked(&text), ["default.toml"]);
+    assert!(
+        text.contains("Mine; the default (") && text.contains("slicer/default.toml)\n"),
+        "{text}"
+    );
+    let (_, json, _) = ran(&mut slicer(&folder), &["profile", "list", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let all = json.as_array().unwrap();
+    let defaults = all.iter().filter(|one| one["is_default"] == true);
+    assert_eq!(
+        defaults.map(|one| one["name"].as_str().unwrap()).collect::<Vec<_>>(),
+        ["default.toml"]
+    );
+    assert!(all[0]["file"].as_str().unwrap().ends_with("default.toml"));
+    assert_eq!(
+        all.iter().filter(|one| one["kind"] == "printer").count(),
+        text.split("materials").next().unwrap().lines().count() - 1
+    );
+    assert!(all.iter().any(|one| one["name"] == "petg"
+        && one["kind"] == "material"
+        && one.get("file").is_none()));
 }

@@ -437,3 +437,46 @@ fn a_print_without_anything_to_iron_says_so() {
     assert!(said("0.2").is_empty());
     assert_eq!(said("20"), ["ironing.where has no effect: no top is wide enough for its lines"]);
 }
+
+#[test]
+fn layers_above_the_last_line_are_neither_written_nor_counted() {
+    // A post that ends in a needle: too thin for a line, and many layers high.
+    let needle = Solid::cuboid([4.9, 4.9, 4.0], [5.1, 5.1, 9.0]);
+    let stl = Solid::cuboid([0.0; 3], [10.0, 10.0, 4.0]).and(&needle).stl();
+    for (profile, set) in [
+        ("generic-marlin", &[] as &[(&str, &str)]),
+        ("generic-marlin", &[("dual.mode", "pair")]),
+        ("generic-marlin", &[("walls", "0")]),
+        ("ender-3", &[("raft.enabled", "true"), ("support.enabled", "true")]),
+    ] {
+        let set = [set, &[("machine.end_gcode", "; blocks say {layers}\n")]].concat();
+        let run = slice(&stl, profile, &set);
+        let count = run.report.layers.count;
+        let raft = run.report.raft.as_ref().map_or(0, |raft| raft.layers);
+        assert_eq!(count - raft, 20, "{set:?}");
+        let marks = run.text.lines().filter(|line| *line == ";LAYER_CHANGE").count();
+        assert_eq!((marks, run.report.time.layers.len()), (count, count), "{set:?}");
+        for told in ["; layers = ", "; total layers count = ", "; num_layers = ", "; blocks say "] {
+            let line = run.text.lines().find_map(|line| line.strip_prefix(told)).unwrap();
+            assert_eq!(line, count.to_string(), "{told}");
+        }
+        let last = &run.text[run.text.rfind(";LAYER_CHANGE").unwrap()..];
+        assert!(last.contains(";TYPE:Top solid infill") || set[0].1 == "0", "{set:?}: {last}");
+        let raised = run.report.raft.as_ref().map_or(0.0, |raft| raft.height_mm + raft.gap_mm);
+        assert!((run.report.layers.top_mm - raised - 4.0).abs() < 1e-6, "{set:?}");
+    }
+}
+
+#[test]
+fn what_is_left_out_with_its_layers_is_told() {
+    let fin = Solid::cuboid([1.0, 4.975, 4.0], [33.0, 5.025, 9.0]);
+    let stl = Solid::cuboid([0.0; 3], [34.0, 10.0, 4.0]).and(&fin).stl();
+    let run = slice(&stl, "generic-marlin", &[]);
+    assert_eq!(run.report.layers.count, 20);
+    let thin = run.report.warnings.iter().find_map(|warning| match warning {
+        slicer::warning::Warning::ThinPlaces { layers, area_mm2 } => Some((*layers, *area_mm2)),
+        _ => None,
+    });
+    let (layers, area_mm2) = thin.unwrap();
+    assert!(layers == 25 && (area_mm2 - 25.0 * 1.6).abs() < 1.0, "{layers} {area_mm2}");
+}

@@ -20,8 +20,8 @@ pub(super) mod shelves;
 use crate::geom::Point;
 use crate::mesh::edges::{self, Adjacency, MAX_TRIANGLES};
 use crate::mesh::faults;
-use crate::mesh::{Bed, Error, Mesh, MeshReport, Placement, Policy, RawMesh, Result};
-use crate::units::{Coord, MAX_COORDINATE_MM, sum_mm, to_units};
+use crate::mesh::{Bed, BodyReport, Error, Mesh, MeshReport, Placement, Policy, RawMesh, Result};
+use crate::units::{Coord, MAX_COORDINATE_MM, sum_mm, to_mm, to_units};
 use crate::warning::Warning;
 use fit::{check_placement, offset};
 use part::{Part, part};
@@ -89,6 +89,7 @@ pub fn place(models: Vec<RawMesh>, placement: &Placement, bed: &Bed) -> Result<P
     placed.offset = offset(placement, bed, [placed.size_mm[0], placed.size_mm[1]])?;
     let copies = placement.copies as usize;
     placed.bodies = bodies(&parts, &layout, copies);
+    tell_places(&parts, copies, &mut placed);
     join(parts, &layout, copies, &mut placed);
     Ok(placed)
 }
@@ -131,8 +132,22 @@ fn lay_out(parts: &[Part], placement: &Placement, bed: &Bed) -> Result<Layout> {
     // One unit more, since boxes were rounded up to even sizes.
     let bed = bed_mm.map(|side| i64::from(to_units(side.min(MAX_COORDINATE_MM))) + 1);
     let gap_mm = placement.gap.min(MAX_COORDINATE_MM);
-    let full = Error::BedFull { models, gap_mm, bed_mm };
-    shelves(&boxes, bed, i64::from(to_units(gap_mm))).ok_or(full)
+    let gap = i64::from(to_units(gap_mm));
+    shelves(&boxes, bed, gap).ok_or_else(|| {
+        let fits = |count: usize, copies: usize| {
+            let one = |part: &Part| std::iter::repeat_n([part.size[0], part.size[1]], copies);
+            let boxes: Vec<[i64; 2]> = parts[..count].iter().flat_map(one).collect();
+            shelves(&boxes, bed, gap).is_some()
+        };
+        // No more than their areas let.
+        let room = |[width, depth]: [i64; 2]| i128::from(width + gap) * i128::from(depth + gap);
+        let each: i128 = parts.iter().map(|part| room([part.size[0], part.size[1]])).sum();
+        let most = usize::try_from(room(bed) / each.max(1)).unwrap_or(usize::MAX);
+        let mut fewer = (1..=most.min(copies.saturating_sub(1))).rev();
+        let copies_fit = fewer.find(|&copies| fits(parts.len(), copies)).unwrap_or(0);
+        let models_fit = (1..=parts.len()).rev().find(|&count| fits(count, 1)).unwrap_or(0);
+        Error::BedFull { models, gap_mm, bed_mm, copies_fit, models_fit }
+    })
 }
 
 /// Where each body lies.
@@ -143,6 +158,21 @@ fn bodies(parts: &[Part], layout: &Layout, copies: usize) -> Vec<[Point; 2]> {
     };
     let all = layout.middles.iter().enumerate();
     all.map(|(i, &at)| [-1, 1].map(|side| corner(at, parts[i / copies].size, side))).collect()
+}
+
+/// Tells in each model's report where its bodies lie.
+fn tell_places(parts: &[Part], copies: usize, placed: &mut Placed) {
+    let Placed { bodies, reports, offset, .. } = placed;
+    let copies = bodies.chunks(copies.max(1));
+    for ((report, part), copies) in reports.iter_mut().zip(parts).zip(copies) {
+        let corner =
+            |at: Point, z: i64| [offset[0] + to_mm(at.x), offset[1] + to_mm(at.y), sum_mm(z)];
+        let body = |&[low, high]: &[Point; 2]| BodyReport {
+            min_mm: corner(low, 0),
+            max_mm: corner(high, part.size[2]),
+        };
+        report.bodies = copies.iter().map(body).collect();
+    }
 }
 
 /// Puts all copies into one mesh.
@@ -272,6 +302,12 @@ mod tests {
         let placed = place(models, &placement, &BED).unwrap();
         assert_eq!((placed.mesh.triangles.len(), placed.mesh.vertices.len()), (24, 24));
         assert_eq!((placed.reports.len(), placed.size_mm[2]), (2, 9.0));
+        for (k, [low, high]) in placed.bodies.iter().enumerate() {
+            let body = placed.reports[k / 3].bodies[k % 3];
+            let at = [low, high].map(|at| [to_mm(at.x), to_mm(at.y)]);
+            assert_eq!([body.min_mm, body.max_mm].map(|[x, y, _]| [x, y]), at);
+            assert_eq!((body.min_mm[2], body.max_mm[2]), (0.0, [5.0, 9.0][k / 3]));
+        }
         assert_eq!(
             placed.adjacency,
             edges::adjacency(&placed.mesh.vertices, &placed.mesh.triangles)
@@ -308,6 +344,19 @@ mod tests {
             refusal(corner([0.0; 3], [99.0, 9.0, 9.0]), &Placement { copies: 9, ..PLAIN })
                 .contains("9 models with gaps")
         );
+        let copies = |copies, side| {
+            refusal(corner([0.0; 3], [side, side, 9.0]), &Placement { copies, ..PLAIN })
+        };
+        // Four squares of 45 mm beside each other, in two rows.
+        assert!(copies(9, 45.0).contains("; --copies 8 fits"), "{}", copies(9, 45.0));
+        assert!(copies(5, 90.0).contains("; --copies 2 fits"), "{}", copies(5, 90.0));
+        assert!(copies(5, 100.0).contains("; --copies 1 fits"), "{}", copies(5, 100.0));
+        let plate = vec![corner([0.0; 3], [90.0, 90.0, 5.0]); 3];
+        let text = place(plate, &PLAIN, &BED).unwrap_err().to_string();
+        assert!(text.contains("the first 2 of them do"), "{text}");
+        let sunk = Placement { sink: 30.0, ..PLAIN };
+        let text = refusal(corner([0.0; 3], [20.0; 3]), &sunk);
+        assert!(text.contains("--sink 30 cuts off all") && text.contains("20 mm high"), "{text}");
         assert_eq!(one(corner([0.0; 3], [200.0, 100.0, 80.0]), &PLAIN).offset, [0.0, 0.0]);
     }
 

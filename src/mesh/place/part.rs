@@ -35,7 +35,7 @@ pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Par
     check_size((high - low).into(), &model.report.file, placement, bed)?;
     let (vertices, mut size) = on_grid(&points, placement.sink);
     let mut mesh = Mesh { vertices, triangles: std::mem::take(&mut model.triangles) };
-    refuse_flat(&mesh, size, &model.report.file)?;
+    refuse_flat(&mesh, size, &model.report.file, placement.sink)?;
     let mut mended = match placement.policy {
         Policy::Warn => mend::inspect(&mesh),
         Policy::Repair => mend::mend(&mut mesh),
@@ -57,7 +57,7 @@ pub fn part(model: &mut RawMesh, placement: &Placement, bed: &Bed) -> Result<Par
         // The outermost triangles may have been dropped: then the middle and size are others.
         keep_used(model, &mut points, &mut mesh);
         (mesh.vertices, size) = on_grid(&points, placement.sink);
-        refuse_flat(&mesh, size, &model.report.file)?;
+        refuse_flat(&mesh, size, &model.report.file, placement.sink)?;
     }
     model.report.triangles = mesh.triangles.len();
     model.report.size_mm = size.map(sum_mm);
@@ -103,7 +103,11 @@ fn on_grid(points: &[Vector3<f64>], sink: f64) -> (Vec<[i32; 3]>, [i64; 3]) {
 }
 
 /// Refuses a model that encloses nothing.
-fn refuse_flat(mesh: &Mesh, size: [i64; 3], file: &str) -> Result<()> {
+fn refuse_flat(mesh: &Mesh, size: [i64; 3], file: &str, sink_mm: f64) -> Result<()> {
+    let height_mm = sum_mm(size[2]) + sink_mm;
+    if sink_mm > 0.0 && height_mm > 0.0 && size[2] <= 0 {
+        return Err(Error::Sunk { file: file.to_owned(), sink_mm, height_mm });
+    }
     let what = if mesh.triangles.len() < 4 {
         Flat::FewTriangles
     } else if size[2] <= 0 {
