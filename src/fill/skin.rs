@@ -68,7 +68,7 @@ pub fn zigzags(lines: &[Line], monotonic: bool, params: &LineParams) -> Vec<Poly
                     points.reverse();
                 }
                 move_ends(&mut points, (back, next_back));
-                append_line(points, &mut polyline);
+                append_line(points, &mut polyline, params);
                 back = next_back;
             }
             let all = zigzag.iter().map(|link| line(link.row, link.index));
@@ -117,12 +117,17 @@ fn move_ends(points: &mut [LinePoint], (first_back, last_back): (Coord, Coord)) 
 }
 
 /// Appends a line to a polyline. The line has the widths at its points; those of the polyline
-/// hold for the segment before each point.
-fn append_line(points: Vec<LinePoint>, polyline: &mut Polyline) {
+/// hold for the segment before each point. A join is as wide as a line where it is the outside of the part.
+fn append_line(points: Vec<LinePoint>, polyline: &mut Polyline, params: &LineParams) {
     let mut before: Option<Coord> = polyline.last().map(|p: &LinePoint| p.width);
+    let is_outside = !params.walled && before.is_some();
+    let first = polyline.len();
     for point in points {
         let width = before.map_or(point.width, |b| (b + point.width) / 2);
         before = Some(point.width);
         polyline.push(LinePoint { width, ..point });
+    }
+    if let Some(join) = polyline.get_mut(first).filter(|_| is_outside) {
+        join.width = params.line_width;
     }
 }

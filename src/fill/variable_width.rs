@@ -140,6 +140,11 @@ pub fn points(line: &Line, joined: Joined, params: &LineParams) -> Vec<LinePoint
     if let [first, .., last] = points.as_mut_slice() {
         first.u -= if joined.above.left || joined.below.left { 0 } else { tip };
         last.u += if joined.above.right || joined.below.right { 0 } else { tip };
+        if !params.walled {
+            // The round end of a wider bead reaches further: here it would reach out of the part.
+            first.u += (first.width - w) / 2;
+            last.u -= (last.width - w) / 2;
+        }
     }
     points
 }

@@ -178,6 +178,13 @@ fn library_offset(contours: &[Contour], by: f64) -> Vec<Contour> {
     shapes.outline(&style).iter().flatten().map(contour).collect()
 }
 
+/// Whether a place in the frame of rows, `pitch` apart, lies on one of them or less than a line beside it.
+fn is_beside(at: Point, rows: &Rows, pitch: Coord) -> bool {
+    let row = at.y.div_euclid(pitch);
+    let near = |span: &Span| span.start - pitch <= at.x && at.x <= span.end + pitch;
+    (row - 1..row + 3).any(|j| rows.row(j).iter().any(near))
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 
@@ -201,7 +208,8 @@ proptest! {
                 &params,
             );
             prop_assert_eq!(areas.iter().count(), params.rasters.iter().count());
-            for (raster, areas) in areas.iter() {
+            let areas_of = &areas;
+            for (raster, areas) in areas_of.iter() {
                 let Areas { skin, infill, fill, dense } = areas;
                 let infill = &infill.or(dense);
                 // Beads along the walls take a part of the fill rows, or nothing.
@@ -210,8 +218,18 @@ proptest! {
                 prop_assert!(fill.minus(whole).is_empty());
                 prop_assert!(is_tidy(skin) && is_tidy(infill));
                 prop_assert!(skin.and(infill).is_empty(), "layer {} raster {:?}", k, raster);
-                prop_assert_eq!(skin.total() + infill.total(), fill.total());
-                prop_assert_eq!(spans(&skin.or(infill)), spans(fill));
+                let left = fill.minus(&skin.or(infill));
+                // On rasters of its own infill keeps off the skin that is printed, on another one.
+                let printed = params.rasters.skin(skin_turn(k).0);
+                let skin = areas_of.on(printed).map(|areas| &*areas.skin).unwrap();
+                if (0..2).any(|r| params.rasters.skin(r) == raster) {
+                    prop_assert!(left.is_empty(), "layer {} raster {:?}", k, raster);
+                }
+                let middles = left.iter().flat_map(|(j, row)| row.iter().map(move |s| (j, s.start.midpoint(s.end))));
+                for (j, u) in middles {
+                    let at = printed.frame.enter(raster.frame.leave(Point { x: u, y: j * raster.pitch }));
+                    prop_assert!(is_beside(at, skin, printed.pitch), "layer {} raster {:?} at {:?}", k, raster, at);
+                }
                 for n in 1..=params.skins.top {
                     // A neighbour that is not there covers nothing.
                     let above = rows.get(k + n);
