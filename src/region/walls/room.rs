@@ -175,25 +175,24 @@ fn touch(side: &Side, at: [f64; 2], normal: [f64; 2], most: f64) -> Option<Touch
     let mut least = most;
     let m = side.normal();
     let (height, facing) = (dot(way(side.from, at), m), -dot(normal, m));
-    if height > 0.0 && facing > BOUNDS {
+    if height > 0.0 && facing > BOUNDS && height < least * (1.0 + facing) {
         let radius = height / (1.0 + facing);
         let centre = along(at, radius, normal);
         let t = dot(way(side.from, centre), side.along);
-        if radius < least && (0.0..=side.length).contains(&t) {
+        if (0.0..=side.length).contains(&t) {
             least = radius;
             best = Some(Touch { radius, corner: false, opposite: facing >= OPPOSITE });
         }
     }
     let arm = way(at, side.from);
-    let ahead = dot(arm, normal);
-    if ahead > 0.0 {
-        let square = dot(arm, arm);
+    let (ahead, square) = (dot(arm, normal), dot(arm, arm));
+    if ahead > 0.0 && square < least * 2.0 * ahead {
         let radius = square / (2.0 * ahead);
         let facing = 2.0 * ahead * ahead / square.at_least(1.0) - 1.0;
-        let centre = || way(side.from, along(at, radius, normal));
+        let centre = way(side.from, along(at, radius, normal));
         let is_between =
-            || dot(centre(), side.along) <= ROUNDING && dot(centre(), side.before) >= -ROUNDING;
-        if radius < least && facing > BOUNDS && is_between() {
+            dot(centre, side.along) <= ROUNDING && dot(centre, side.before) >= -ROUNDING;
+        if facing > BOUNDS && is_between {
             best = Some(Touch { radius, corner: true, opposite: facing >= OPPOSITE_CORNER });
         }
     }
