@@ -2,7 +2,7 @@
 //!
 //! - What is at one place of the bed is about the model whose box holds it.
 //! - What is not is about all models of the job: the first are named, and how many more there are.
-//! - What names a file itself, or is about the command line, a profile or the output, is left as it is.
+//! - What names a file itself is left as it is, and so are errors of the command line, a profile or the output.
 
 use slicer::Model;
 use slicer::error::Error;

@@ -69,8 +69,13 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     if set.iter().any(|given| !is_of_head(given)) && !profiles.any() {
         return Err(failure::usage("--set changes a profile; name one with -p, too"));
     }
-    if args.files.iter().filter(|file| *file == "-").count() > 1 {
+    let against = args.against.iter().filter(|file| *file == "-").count();
+    if args.files.iter().filter(|file| *file == "-").count() + against > 1 {
         return Err(failure::usage("`-` is given twice; standard input holds one file"));
+    }
+    if against > 0 && args.files.len() > 1 {
+        let why = "--against - is read once, and several files are held against it; name a file";
+        return Err(failure::usage(why));
     }
     let named = named_head(args);
     let given = if profiles.any() { Some(profiles.load(named.clone())?) } else { None };
@@ -149,15 +154,19 @@ impl Judge<'_> {
         let (args, Judged { name, verdict, by }) = (self.args, judged);
         let fails = verdict.fails() || (args.strict && verdict.warnings() > 0);
         let row = Row { file: name, verdict };
-        let found = || findings(verdict, "--json") + several(verdict);
-        let each = || found().lines().map(|line| format!("{name}: {line}\n")).collect::<String>();
+        let found = || findings(verdict, "--json");
+        let more = if args.quiet { "" } else { several(verdict) };
+        let each = || {
+            let lines = found() + more;
+            lines.lines().map(|line| format!("{name}: {line}\n")).collect::<String>()
+        };
         let headline = || format!("{name}: {}, {by}\n", headline(verdict));
         let text = match (args.json, args.quiet, is_one_of_many) {
             (true, _, false) => output::json(&row, Path::new("-"))?,
             (true, _, true) => output::json_line(&row, Path::new("-"))?,
             (_, true, _) => each(),
             (_, _, true) => headline() + &each(),
-            (_, _, false) => headline() + &found() + &notes(verdict),
+            (_, _, false) => headline() + &found() + more + &notes(verdict),
         };
         Ok(Outcome { text, code: u8::from(fails) })
     }

@@ -116,7 +116,10 @@ pub(super) fn is_known(text: &str) -> bool {
 pub(super) fn bracketed(line: &str) -> Option<&str> {
     let code = code(line);
     let is_value = |at: usize| takes_numbers(code) && follows_letter(&code[..at]);
+    // What stands between doubled braces is the firmware's own.
+    let is_firmwares = |at: usize| code[..at].rfind("{{") > code[..at].rfind("}}");
     groups(code, ['[', ']'])
+        .filter(|&(at, _)| !is_firmwares(at))
         .find(|&(at, name)| is_name(name) && (is_known(name) || is_value(at)))
         .map(|(at, name)| &code[at..at + name.len() + 2])
 }
@@ -218,6 +221,8 @@ mod tests {
         for (line, expected) in [
             ("M109 S[first_layer_temperature] ; wait", Some("[first_layer_temperature]")),
             ("M104 S[heat]", Some("[heat]")),
+            ("M104 S{{var.t[i]}}", None),
+            ("M104 S{{heaters[tool]}} T[tool]", Some("[tool]")),
             ("G1 X-[away] Y2", Some("[away]")),
             ("T[initial_tool]", Some("[initial_tool]")),
             (

@@ -21,6 +21,10 @@ fn several_files_have_a_verdict_each_and_the_highest_exit_code() {
     assert!(out.starts_with("nix.gcode: not judged\ngood.gcode: clean"), "{out}");
     let (code, _, err) = check(&folder, &["-", "-"], b"");
     assert!(code == 2 && err.contains("given twice"), "{err}");
+    let (code, _, err) = check(&folder, &["-", "--against", "-"], b"");
+    assert!(code == 2 && err.contains("given twice"), "{err}");
+    let (code, _, err) = check(&folder, &["good.gcode", "bad.gcode", "--against", "-"], b"");
+    assert!(code == 2 && err.contains("is read once"), "{err}");
 }
 
 #[test]

@@ -100,6 +100,10 @@ fn heaters_that_stay_on_are_found() {
         &with("generic-marlin", START, "M140 S0\nM104 S180"),
         &[(Code::LeftOn, Error, "M104 S180")],
     );
+    // Filaments of several temperatures through one nozzle: no command says whose it heats.
+    let start = format!("{START}\nT0\nM104 S215\nT1\nM104 S240\n");
+    let found = judge(&with("generic-marlin", &start, "M140 S0\nM104 S0"));
+    assert!(found.iter().all(|one| one.code != Code::LeftOn), "{found:?}");
     // The same in a file of nobody's, whose machine is not known.
     let text = with("generic-marlin", START, "M84");
     let bare = &text[..text.find("\n; settings").unwrap_or(text.len())];
@@ -145,6 +149,11 @@ fn another_place_of_0_after_homing_is_told() {
         assert_eq!((told.severity, told.measure), (Warning, by), "{told}");
     }
     finds(&with("generic-marlin", &START.replace("G28\n", "G28\nG92 X0 Y0 Z0\n"), END), &[]);
+    // Homed after a move, the axis is at 0, not where it was; and an end stop may lie far from that.
+    for homed in ["G28 X Y\nG1 X100 Y100 Z10 F3000\nG28 Z\nG92 Z0\n", "G28\nG92 Z250\n"] {
+        let found = judge(&with("generic-marlin", &START.replace("G28\n", homed), END));
+        assert!(found.iter().all(|one| one.code != Code::ChangesTheMachine), "{found:?}");
+    }
 }
 
 #[test]

@@ -40,6 +40,8 @@ pub(crate) struct Blocks {
     has_begun: bool,
     /// The tool in use, if it is known.
     tool: Option<u32>,
+    /// Whether some command says whose nozzle it heats. Where none does, all tools share one.
+    names_tools: bool,
     /// What nozzles, by their tools, and the bed are set to, °C, and where.
     nozzles: Vec<(Option<u32>, f64, Place)>,
     bed: Option<(f64, Place)>,
@@ -75,6 +77,7 @@ impl Blocks {
         match heating.heater {
             Heater::Bed => self.bed = Some((celsius, place)),
             Heater::Nozzle(named) => {
+                self.names_tools |= named.is_some();
                 let tool = named.or(self.tool);
                 // Whose tool nobody tells is any.
                 let is_it = |other: Option<u32>| tool.is_none() || other.is_none() || tool == other;
@@ -134,8 +137,9 @@ impl Blocks {
                 "the {what} is still set to {celsius} °C when the file ends; {off} switches it off"
             )
         };
-        for (_, celsius, place) in self.nozzles.into_iter().filter(|(_, celsius, _)| *celsius > 0.0)
-        {
+        let count = if self.names_tools { self.nozzles.len() } else { 1 };
+        let last = self.nozzles.into_iter().rev().take(count);
+        for (_, celsius, place) in last.filter(|(_, celsius, _)| *celsius > 0.0) {
             let text = text("nozzle", celsius, "M104 S0");
             found.add(Finding::of(Code::LeftOn, celsius, "°C", text).at(place));
         }

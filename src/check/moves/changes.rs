@@ -16,6 +16,9 @@ use crate::reader::print::{Note, Order, What};
 /// Tools that a machine has, at most, where nobody says how many.
 const MOST_TOOLS: u32 = 16;
 
+/// G92 after homing that moves more than this, mm, tells where the end stop is: those of deltas are at the top.
+const MOST_TRIMMED: f64 = 5.0;
+
 /// Positions are rounded to this or less, mm.
 const ROUNDING: f64 = 0.01;
 
@@ -158,8 +161,8 @@ impl Changes {
     }
 
     /// G92 of x, y or z: what follows lies elsewhere than it says. After homing an axis whose end stop
-    /// only the printer knows (G161, G162), or before all moves and all homing, it says where that is. After
-    /// G28 the firmware knows: such as G92 Z0.2 then lowers the whole print.
+    /// only the printer knows (G161, G162), before all moves and all homing, or where an axis is homed far from 0,
+    /// it says where that is. Else the firmware knows after G28: such as G92 Z0.2 then lowers the whole print.
     fn moved(
         &mut self,
         order: &Order,
@@ -171,9 +174,12 @@ impl Changes {
             let letter = b"XYZ"[axis];
             let says = order.has(letter).then(|| order.value(letter).unwrap_or(0.0));
             let says = says.or(all.then_some(0.0))?;
-            let is_told = self.homed_at[axis] == Some(index) && self.is_untold[axis];
+            // Homing is no move of the file: `at` is the place before it, and G28 leaves the axis at 0.
+            let is_homed = self.homed_at[axis] == Some(index);
+            let by = if is_homed { says } else { says - at[axis] };
+            let is_told = is_homed && (self.is_untold[axis] || by.abs() > MOST_TRIMMED);
             let is_free = is_told || index == 0 && self.homed_at[axis].is_none();
-            (!is_free).then_some(says - at[axis])
+            (!is_free).then_some(by)
         };
         let largest = (0..3)
             .filter_map(|axis| Some((axis, by(axis)?)))

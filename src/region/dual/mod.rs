@@ -189,18 +189,21 @@ struct Sharing<'a> {
     line_width: Coord,
     sparse: Vec<Vec<Sparse>>,
     audit: Audit,
+    /// Lines of whole layers are left out on purpose.
+    has_dropped: bool,
 }
 
 impl<'a> Sharing<'a> {
     fn new(part: DualPart, block: &'a Block, grouping: &'a Grouping, line_width: Coord) -> Self {
         let sparse = vec![Vec::new(); block.layers.len()];
         let audit = Audit::new(part, block.layers.clone());
-        Self { block, grouping, line_width, sparse, audit }
+        Self { block, grouping, line_width, sparse, audit, has_dropped: false }
     }
 
     /// The rule of the thesis: the lines of the layer `kept` are printed for all, those of the others
     /// are dropped.
     fn keep(&mut self, patterns: &[Pattern], layers: &[&LayerAreas], kept: usize) {
+        self.has_dropped = true;
         for sparse in plain(patterns, layers[kept], self.line_width) {
             for areas in layers {
                 let rows = rows(&*sparse.pattern, areas);
@@ -282,7 +285,7 @@ impl<'a> Sharing<'a> {
         let material = |s: &Sparse| i64::from(s.layers) * s.length(w);
         let thick: i64 = all().filter(|s| widens(s)).map(material).sum();
         let lost = self.audit.plain - all().map(material).sum::<i64>();
-        if thick > 0 && lost > 0 && !self.grouping.drops {
+        if thick > 0 && lost > 0 && !self.has_dropped {
             let most = i64::from(w) * MOST_WIDENED / 100;
             let wider = ((i64::from(w) * lost + thick / 2) / thick).min(most) as Coord;
             let thick = self.sparse.iter_mut().flatten().filter(|s| widens(s));
