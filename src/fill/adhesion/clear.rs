@@ -27,7 +27,8 @@ pub fn clear(paths: &mut Vec<Path>, area: &[Contour]) {
 
 /// An area on the bed.
 struct Area<'a> {
-    contours: &'a [Contour],
+    /// For each contour 1 if it runs around the area, and -1 around a hole.
+    turns: Vec<i32>,
     around: Around<'a>,
     sides: Vec<(Point, Point)>,
     boxes: Boxes,
@@ -38,12 +39,13 @@ impl<'a> Area<'a> {
         let sides: Vec<(Point, Point)> = contours.iter().flat_map(|c| edges(c)).collect();
         let boxes = sides.iter().map(|&(a, b)| extent([&a, &b]).unwrap_or_default());
         let boxes = Boxes::new(boxes.collect());
-        Self { contours, around: Around::new(contours.iter().enumerate()), sides, boxes }
+        let turn = |contour: &Contour| if double_area(contour) > 0 { 1 } else { -1 };
+        let turns = contours.iter().map(turn).collect();
+        Self { turns, around: Around::new(contours.iter().enumerate()), sides, boxes }
     }
 
     fn holds(&self, p: Point) -> bool {
-        let turn = |k: usize| if double_area(&self.contours[k]) > 0 { 1 } else { -1 };
-        self.around.of(p).map(turn).sum::<i32>() > 0
+        self.around.of(p).map(|k| self.turns[k]).sum::<i32>() > 0
     }
 
     /// The parts of the way from `a` to `b` that lie outside, as parts of its length.

@@ -72,10 +72,12 @@ pub fn infill(
     let kept = shortest(block, layers, grouping, turns, line_width);
     let patterns = turns.of(if grouping.shorter { block.layers.start + kept } else { block.turn });
     let mut sharing = Sharing::new(DualPart::Infill, block, grouping, line_width);
-    let shared = if grouping.drops { &[] } else { patterns };
-    if grouping.drops {
+    let shared = if grouping.drops {
         sharing.keep(patterns, layers, kept);
-    }
+        &[]
+    } else {
+        patterns
+    };
     // Rooms that are solid are shared whatever becomes of sparse lines: dropped, they would be hollow.
     for pattern in shared.iter().chain(turns.dense(block.turn)) {
         let rows: Vec<Rows> = layers.iter().map(|areas| rows(&**pattern, areas)).collect();
@@ -209,8 +211,7 @@ impl<'a> Sharing<'a> {
                 let rows = rows(&*sparse.pattern, areas);
                 self.audit.plain(&*sparse.pattern, &rows, self.line_width);
             }
-            let sparse = Sparse { layers: layers.len() as u32, ..sparse };
-            self.sparse.last_mut().into_iter().for_each(|last| last.push(sparse.clone()));
+            self.sparse[layers.len() - 1].push(Sparse { layers: layers.len() as u32, ..sparse });
         }
     }
 
