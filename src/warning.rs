@@ -61,6 +61,21 @@ pub enum Warning {
         #[serde(skip_serializing_if = "Option::is_none")]
         kept_away: Option<String>,
     },
+    /// Outer walls that hang over nothing by their whole width, for long and not from hold to hold.
+    WallsHang {
+        /// Their length, mm.
+        length_mm: f64,
+        /// That of the longest one, mm.
+        longest_mm: f64,
+        /// Its layer, counted from 1.
+        layer: usize,
+        /// Top of that layer, mm.
+        z_mm: f64,
+        /// Its middle in the machine's coordinates, mm.
+        at_mm: [f64; 2],
+        /// Whether support is asked for.
+        supported: bool,
+    },
     /// Lines that are printed in the air, since the part has nothing below them.
     PartHangs {
         /// Their length, mm.
@@ -198,7 +213,7 @@ impl Warning {
     #[must_use]
     pub fn at_mm(&self) -> Option<[f64; 2]> {
         match self {
-            Self::BeginsInTheAir { at_mm, .. } => Some(*at_mm),
+            Self::BeginsInTheAir { at_mm, .. } | Self::WallsHang { at_mm, .. } => Some(*at_mm),
             _ => None,
         }
     }
@@ -225,6 +240,14 @@ impl fmt::Display for Warning {
                      {z_mm:.2} mm, x {x:.1} y {y:.1}; {}, or turn the part with --rotate",
                     plural(*places as u64, "place"),
                     carried(kept_away.as_deref())
+                )
+            }
+            Self::WallsHang { length_mm, longest_mm, layer, z_mm, at_mm: [x, y], supported } => {
+                write!(
+                    f,
+                    "{length_mm:.0} mm of outer walls hang over nothing, {longest_mm:.0} mm in one on layer {layer} at \
+                     {z_mm:.2} mm, x {x:.1} y {y:.1}; {}turn the part with --rotate",
+                    out_of_reach(*supported)
                 )
             }
             Self::PartHangs { length_mm, supported } => f.write_str(&hangs(*length_mm, *supported)),
@@ -322,6 +345,15 @@ fn short_lines(lines: usize, lost_s: f64, limit_per_s: f64) -> String {
          {limit_per_s} if it takes more moves a second",
         plural(lines as u64, "line")
     )
+}
+
+/// What carries walls that hang.
+fn out_of_reach(supported: bool) -> &'static str {
+    if supported {
+        "no support reaches them: see support.threshold_angle and support.xy_distance, or "
+    } else {
+        "use --support, or "
+    }
 }
 
 /// That the part has lines in the air.

@@ -14,6 +14,7 @@
 //! - The *planner* makes regions of a batch while the *orderer* fills and orders those of the one before.
 
 use super::curved::Curved;
+use super::droop::{self, Stretch};
 use super::footing::Footing;
 use super::footprint::{Footprint, Rules, footprint};
 use super::raise::raise;
@@ -232,26 +233,30 @@ struct Orderer<'a> {
     curved: Option<&'a Curved<'a>>,
 }
 
+/// What a layer stands by.
+type Ground = (Footprint, Vec<Stretch>);
+
 impl Orderer<'_> {
     fn toolpaths(&mut self, regions: &[Region]) -> Vec<Toolpath> {
         let (fill, plan, rules) = (self.fill, self.plan, self.rules);
         let first = self.first.unwrap_or(fill);
         let filled = |region: &Region| {
             let paths = fill::paths(region, if region.layer.index == 0 { first } else { fill });
-            (footprint(region, &paths, rules), self.bent(region, paths))
+            let ground = (footprint(region, &paths, rules), droop::stretches(&paths));
+            (ground, self.bent(region, paths))
         };
-        let mut filled: Vec<(Footprint, Vec<Path>)> = regions.par_iter().map(filled).collect();
+        let mut filled: Vec<(Ground, Vec<Path>)> = regions.par_iter().map(filled).collect();
         for (region, (_, paths)) in regions.iter().zip(&mut filled) {
             self.sticking.layer(&region.layer, paths);
         }
-        let unordered = |(region, (footprint, paths)): (&Region, (Footprint, Vec<Path>))| {
-            (footprint, Unordered::new(paths, &region.layer.contours, plan))
+        let unordered = |(region, (ground, paths)): (&Region, (Ground, Vec<Path>))| {
+            (ground, Unordered::new(paths, &region.layer.contours, plan))
         };
-        let unordered: Vec<(Footprint, Unordered)> =
+        let unordered: Vec<(Ground, Unordered)> =
             regions.par_iter().zip(filled).map(unordered).collect();
         // The end of a layer decides where the next begins, so that they are ordered in sequence.
         let mut ordered = Vec::with_capacity(regions.len());
-        for (region, (footprint, paths)) in regions.iter().zip(unordered) {
+        for (region, ((footprint, stretches), paths)) in regions.iter().zip(unordered) {
             let at = self.nozzle.at.unwrap_or_default();
             let paths = order::order(paths, at, &mut self.seams, plan);
             let skins = self.curved.map(|c| c.after(region.layer.index)).unwrap_or_default();
@@ -260,7 +265,7 @@ impl Orderer<'_> {
             let next = self.curved.map_or(next, |c| c.nozzle_after(next, k, &skins));
             ordered.push((region, std::mem::replace(&mut self.nozzle, next), paths, skins));
             self.tally.layer(region);
-            self.footing.layer(footprint, region);
+            self.footing.layer(footprint, &stretches, region);
         }
         let toolpaths = ordered.into_par_iter();
         let toolpaths = toolpaths.map(|(region, from, paths, skins)| {

@@ -15,16 +15,17 @@
 //! Bodies are only known at the end: two arms that begin in the air on their own may meet what
 //! stands further up. So a job is refused after its last layer, before its output is complete.
 
+use super::carried::Carried;
+use super::droop::{Droop, Stretch};
 use super::footprint::{Footprint, Island};
 use crate::error::Hanging;
 use crate::fill::adhesion::lift::Lift;
 use crate::geom::Point;
 use crate::geom::sets::Sets;
 use crate::profile::{Floating, Settings, SupportBase};
-use crate::region::{Region, Sparse, SupportLines};
+use crate::region::Region;
 use crate::units::{Coord, UNITS_PER_MM, sum_mm, to_mm};
 use crate::warning::Warning;
-use std::collections::VecDeque;
 
 /// Which setting keeps support away from what hangs, in the order in which support is made.
 #[derive(Debug, Clone, Copy)]
@@ -78,8 +79,6 @@ pub struct Footing {
     rule: Floating,
     /// Layers that stay open between support and the part.
     gap: usize,
-    /// Layers whose support may carry an island.
-    reach: usize,
     below: Footprint,
     /// The islands of each body.
     bodies: Sets,
@@ -89,7 +88,8 @@ pub struct Footing {
     lengths: Vec<f64>,
     /// Length of the lines of all bodies, grid units.
     islands_length: f64,
-    support: VecDeque<SupportLines>,
+    support: Carried,
+    droop: Droop,
     /// Whether each layer is printed.
     printed: Vec<bool>,
     /// The layers up to the last one in which some of the part is printed.
@@ -114,13 +114,13 @@ impl Footing {
         Self {
             rule: settings.floating,
             gap,
-            reach: gap + settings.dual_ratio().max(1) as usize + 1,
             below: Footprint::default(),
             bodies: Sets::default(),
             stands: Vec::new(),
             lengths: Vec::new(),
             islands_length: 0.0,
-            support: VecDeque::new(),
+            support: Carried::new(gap + settings.dual_ratio().max(1) as usize + 1),
+            droop: Droop::default(),
             printed: Vec::new(),
             part: 0,
             tops: Vec::new(),
@@ -131,8 +131,8 @@ impl Footing {
         }
     }
 
-    /// Links the next layer, that of `region`, with the one below.
-    pub fn layer(&mut self, mut print: Footprint, region: &Region) {
+    /// Links the next layer, that of `region`, with the one below. `stretches` are those of its walls.
+    pub fn layer(&mut self, mut print: Footprint, stretches: &[Stretch], region: &Region) {
         let k = self.printed.len();
         self.printed.push(false);
         self.tops.push(region.layer.z);
@@ -163,11 +163,9 @@ impl Footing {
         if !print.islands.is_empty() {
             self.part = k + 1;
         }
+        self.droop.layer(stretches, region, &below, &self.support);
         self.below = print;
-        self.support.push_back(region.support.clone());
-        if self.support.len() > self.reach {
-            self.support.pop_front();
-        }
+        self.support.push(region.support.clone());
     }
 
     /// Joins an island with all islands below that it touches. Returns whether there are any.
@@ -195,14 +193,7 @@ impl Footing {
 
     /// Whether support ends just below an island. Its body then stands.
     fn on_support(&mut self, island: &Island) -> bool {
-        let inside = |sparse: &Sparse, p: Point| {
-            let raster = sparse.pattern.raster();
-            let Point { x: u, y: v } = raster.frame.enter(p);
-            let row = sparse.rows.row((v + raster.pitch / 2).div_euclid(raster.pitch));
-            row.iter().any(|span| span.start <= u && u <= span.end)
-        };
-        let carries = |sparse: &Sparse| island.corners().any(|p| inside(sparse, p));
-        let stands = self.support.iter().any(|support| support.areas().any(carries));
+        let stands = self.support.carries_any(island.corners());
         if stands {
             let root = self.bodies.root(island.number);
             self.stands[root] = true;
@@ -217,17 +208,20 @@ impl Footing {
         }
     }
 
-    /// What the print begins in the air with: the reason to refuse it, or a warning.
+    /// What the print begins in the air with, the reason to refuse it or a warning; and a warning of what droops.
     ///
     /// # Errors
     /// [`Hanging`], if the settings do not ask for a warning instead.
-    pub fn finish(mut self) -> Result<Option<Warning>, Hanging> {
+    pub fn finish(mut self) -> Result<Vec<Warning>, Hanging> {
         let rule = self.rule;
         let found = self.empty_layers().or_else(|| self.hanging_body());
         if let Some(hanging) = found.filter(|_| rule != Floating::Warn) {
             return Err(hanging);
         }
-        let Some(first) = self.begins.first().copied() else { return Ok(None) };
+        let droop = self.droop.warning(self.offset, &self.lift, self.keepers.is_some());
+        let Some(first) = self.begins.first().copied() else {
+            return Ok(droop.into_iter().collect());
+        };
         let length: f64 = self.begins.iter().map(|b| b.length).sum();
         let (places, length_mm) = (self.begins.len(), sum_mm(length as i64));
         let (layer, z_mm, at_mm) = self.place(first);
@@ -236,7 +230,8 @@ impl Footing {
             return Err(Hanging::Places { places, length_mm, layer, z_mm, at_mm, kept_away });
         }
         let kept_away = kept_away.map(str::to_owned);
-        Ok(Some(Warning::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm, kept_away }))
+        let begins = Warning::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm, kept_away };
+        Ok(std::iter::once(begins).chain(droop).collect())
     }
 
     /// Layers without plastic below the first one with plastic, or between two. Where support carries

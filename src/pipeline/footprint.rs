@@ -10,6 +10,7 @@
 
 use crate::fill::Path;
 use crate::geom::boxes::Boxes;
+use crate::geom::segment::distance2;
 use crate::geom::{Contour, Point, double_area, edges, encloses, polygon};
 use crate::profile::{DualMode, Settings};
 use crate::region::Region;
@@ -67,6 +68,15 @@ impl Footprint {
     /// The islands whose boxes share a place with that of another one, in their order.
     pub fn around(&self, other: &Island) -> impl Iterator<Item = &Island> {
         self.boxes.meeting((other.low, other.high)).into_iter().map(|k| &self.islands[k])
+    }
+
+    /// Whether an island lies around a place, or as near to it as `reach`, grid units.
+    #[must_use]
+    pub fn is_near(&self, place: Point, reach: f64) -> bool {
+        let by = reach.ceil() as Coord;
+        let moved = |by: Coord| Point { x: place.x + by, y: place.y + by };
+        let near = |k: usize| self.islands[k].is_near(place, reach);
+        self.boxes.meeting((moved(-by), moved(by))).into_iter().any(near)
     }
 }
 
@@ -204,12 +214,20 @@ impl Island {
         self.has_in_box(p) && encloses(self.contours.iter().flat_map(|c| edges(c)), p)
     }
 
+    /// Whether a place lies on it, or as near to its edge as `reach`.
+    fn is_near(&self, place: Point, reach: f64) -> bool {
+        let real = |p: Point| [f64::from(p.x), f64::from(p.y)];
+        let mut edges = self.contours.iter().flat_map(|contour| edges(contour));
+        self.holds(place)
+            || edges.any(|(p, q)| distance2(real(place), [real(p), real(q)]) <= reach * reach)
+    }
+
     fn has_in_box(&self, p: Point) -> bool {
         (self.low.x..=self.high.x).contains(&p.x) && (self.low.y..=self.high.y).contains(&p.y)
     }
 
     /// Some of its corners, evenly spread.
-    pub fn corners(&self) -> impl Iterator<Item = Point> {
+    pub fn corners(&self) -> impl Iterator<Item = Point> + Clone {
         let outer = self.outer();
         outer.iter().step_by(self.step()).copied()
     }

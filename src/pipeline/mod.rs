@@ -1,13 +1,15 @@
 //! Job + placed models -> stages: what the flow in `lib.rs` is put together from.
 //!
 //! Here is all code that names several stages at once: reading and placing ([`place`]), planning
-//! in batches ([`batches`]), where raster lines lie ([`phase`]), what begins in the air ([`footing`]), skirt,
-//! brim and raft ([`sticking`]), what a raft lifts ([`mod@raise`]), skins that follow the surface
+//! in batches ([`batches`]), where raster lines lie ([`phase`]), what begins in the air ([`footing`])
+//! or hangs there ([`droop`]), skirt, brim and raft ([`sticking`]), what a raft lifts ([`mod@raise`]), skins that follow the surface
 //! ([`curved`]), the thumbnails ([`mod@thumbnails`]), what is refused ([`refuse`], [`prime`]), and outputs
 //! that cannot seek ([`spool`]).
 
 pub mod batches;
+mod carried;
 pub mod curved;
+pub mod droop;
 pub mod footing;
 pub mod footprint;
 pub mod phase;

@@ -44,6 +44,16 @@ fn arch(leg: f64) -> Solid {
         .and(&block([1.0, 1.0, 6.0], [19.0, 4.0, 9.5]))
 }
 
+/// How much of the outer walls droops: all, and the longest, with its layer.
+fn drooping(report: &Report) -> Option<(f64, f64, usize)> {
+    report.warnings.iter().find_map(|warning| match warning {
+        Warning::WallsHang { length_mm, longest_mm, layer, .. } => {
+            Some((*length_mm, *longest_mm, *layer))
+        }
+        _ => None,
+    })
+}
+
 const SUPPORT: [(&str, &str); 1] = [("support.enabled", "true")];
 
 #[test]
@@ -187,5 +197,27 @@ fn what_stands_is_not_warned_of() {
     let nested = block([0.0; 3], [20.0, 20.0, 4.0]).and(&block([5.0, 5.0, 3.0], [15.0, 15.0, 9.0]));
     for solid in [arch(0.0), ball, nested, Solid::cylinder(6.0, 5.0, 40)] {
         assert!(!begins_in_the_air(&sliced(&solid, &[], 0.0).unwrap()));
+    }
+}
+
+#[test]
+fn walls_that_hang_for_long_are_told_and_bridges_and_ledges_are_not() {
+    let plate = |reach: f64| block([-5.0 - reach, -8.0, 5.0], [5.0 + reach, 8.0, 8.0]);
+    let table = |reach: f64| block([-5.0, -5.0, 0.0], [5.0, 5.0, 6.0]).and(&plate(reach));
+    // All around it but for 1 mm beside the leg: the plate is nowhere nearer at its corners.
+    let (all, longest, layer) = drooping(&sliced(&table(15.0), &[], 0.0).unwrap()).unwrap();
+    let around = 2.0 * (40.0 + 16.0) - 4.0 * 0.2 * 2.0;
+    assert!((longest - around).abs() < 4.0 && (all - longest).abs() < 1e-9, "{all} {longest}");
+    assert_eq!(layer, 26);
+    assert_eq!(drooping(&sliced(&table(15.0), &SUPPORT, 0.0).unwrap()), None);
+    // Beams between two legs, on which they lie and beyond which they reach by little.
+    let legs = block([0.0; 3], [5.0, 5.0, 10.0]).and(&block([45.0, 0.0, 0.0], [50.0, 5.0, 10.0]));
+    let beam = legs.and(&block([-0.5, -0.5, 9.0], [50.5, 5.5, 12.0]));
+    assert_eq!(drooping(&sliced(&beam, &[], 0.0).unwrap()), None);
+    // A slope of 45° and a small chin.
+    let slope = Solid::tower(&[(circle(5.0, 64), 0.0), (circle(25.0, 64), 20.0)]);
+    let chin = block([0.0; 3], [10.0, 10.0, 20.0]).and(&block([5.0, 3.0, 12.0], [13.0, 7.0, 20.0]));
+    for clean in [slope, chin] {
+        assert_eq!(drooping(&sliced(&clean, &[], 0.0).unwrap()), None);
     }
 }
