@@ -1,26 +1,39 @@
 //! Point and segment -> how far along the segment the nearest place lies, and how far away it is.
 //!
-//! For the plane and for space, on floats; whole grid units below 2⁵³ are exact as floats.
+//! For the plane and for space, on floats; whole grid units below 2⁵³ are exact as floats. All stages
+//! call these most of all: plain loops are short code in any build, calls of closures only in some.
 
 /// The product of two vectors' lengths and the cosine between them.
 #[must_use]
 #[inline]
 pub fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
-    (1..N).fold(a[0] * b[0], |sum, axis| sum + a[axis] * b[axis])
+    let mut sum = a[0] * b[0];
+    for axis in 1..N {
+        sum += a[axis] * b[axis];
+    }
+    sum
 }
 
 /// From `a` to `b`.
 #[must_use]
 #[inline]
 pub fn way<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
-    std::array::from_fn(|axis| b[axis] - a[axis])
+    let mut way = b;
+    for axis in 0..N {
+        way[axis] -= a[axis];
+    }
+    way
 }
 
 /// `a` + `t` · `way`.
 #[must_use]
 #[inline]
 pub fn along<const N: usize>(a: [f64; N], t: f64, way: [f64; N]) -> [f64; N] {
-    std::array::from_fn(|axis| a[axis] + t * way[axis])
+    let mut place = a;
+    for axis in 0..N {
+        place[axis] += t * way[axis];
+    }
+    place
 }
 
 /// The part of the segment from the origin to `way` after which it is nearest to `point`: from 0

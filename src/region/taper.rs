@@ -49,7 +49,7 @@ fn bend(places: &[Place], a: usize, b: usize) -> Option<usize> {
     let chord = way(first.at, last.at);
     let square = dot(chord, chord).at_least(1.0);
     let worst = most_missed(a, b, LEAST_BEND, |k| {
-        let t = (dot(way(first.at, places[k].at), chord) / square).clamp(0.0, 1.0);
+        let t = (dot(way(first.at, places[k].at), chord) / square).at_least(0.0).at_most(1.0);
         let width = first.width + t * (last.width - first.width);
         let foot = along(first.at, t, chord);
         distance(foot, places[k].at).at_least((width - places[k].width).abs() / WIDTH_TO_PLACE)
