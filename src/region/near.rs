@@ -1,11 +1,12 @@
 //! Walls -> Near: their edges sorted into cells, to find the nearest one or whether a place is free.
 //!
 //! Words: a *cell* is a square of a *grid* over an area. An edge is *in* all cells that the box around it
-//! meets.
+//! meets, grown by the *reach* of the edges. It is 0 unless most questions look equally far.
 //!
 //! A question looks at the edges of the cells that the box around its own places meets, grown by how far
-//! it looks. Answers are exact, and the same for any size of cells; that affects speed alone. Where edges
-//! are equally near, their order by corners decides.
+//! it looks beyond the reach: one about a single place within the reach looks into one cell. Answers are
+//! exact, and the same for any size of cells and any reach; these affect speed alone. Where edges are
+//! equally near, their order by corners decides.
 
 use crate::geom::cells::Cells;
 use crate::geom::{Contour, Point, edges, segment};
@@ -30,13 +31,17 @@ pub(super) struct Area {
 impl Area {
     /// The box around `places`, with `margin` on all sides.
     pub(super) fn around(places: impl Iterator<Item = [f64; 2]>, margin: f64) -> Self {
-        let none = Self { low: [f64::MAX; 2], high: [f64::MIN; 2] };
-        let mut out = places.fold(none, |area, p| Self {
-            low: [0, 1].map(|k| area.low[k].at_most(p[k])),
-            high: [0, 1].map(|k| area.high[k].at_least(p[k])),
-        });
-        out.low = out.low.map(|x| x - margin);
-        out.high = out.high.map(|x| x + margin);
+        let mut out = Self { low: [f64::MAX; 2], high: [f64::MIN; 2] };
+        for p in places {
+            for k in 0..2 {
+                out.low[k] = out.low[k].at_most(p[k]);
+                out.high[k] = out.high[k].at_least(p[k]);
+            }
+        }
+        for k in 0..2 {
+            out.low[k] -= margin;
+            out.high[k] += margin;
+        }
         out
     }
 
@@ -55,8 +60,9 @@ impl Area {
 #[derive(Debug)]
 pub(super) struct Near {
     grid: Grid,
-    /// Edges whose boxes meet a cell, row by row of cells.
+    /// Edges whose boxes, grown by the reach, meet a cell, row by row of cells.
     cells: Cells<Edge>,
+    reach: f64,
 }
 
 /// How an area is divided into cells.
@@ -88,15 +94,27 @@ impl Grid {
         &self,
         [p, q]: [[f64; 2]; 2],
     ) -> impl Iterator<Item = Range<usize>> + use<> {
-        // A cast clamps negative numbers to 0. Places beyond the area count to its border cells.
-        // To u32 it takes half the instructions that it takes to usize.
-        let at = |x: f64, k: usize| {
-            (((x - self.low[k]) * self.scale) as u32 as usize).min(self.size[k] - 1)
+        let range = |k: usize| {
+            let (a, b) = (self.at(p[k], k), self.at(q[k], k));
+            (a.min(b), a.max(b) + 1)
         };
-        let [columns, rows] =
-            [0, 1].map(|k| (at(p[k].at_most(q[k]), k), at(p[k].at_least(q[k]), k)));
+        let (columns, rows) = (range(0), range(1));
         let width = self.size[0];
-        (rows.0..rows.1 + 1).map(move |row| row * width + columns.0..row * width + columns.1 + 1)
+        (rows.0..rows.1).map(move |row| row * width + columns.0..row * width + columns.1)
+    }
+
+    /// The cell that holds `p`.
+    fn cell(&self, p: [f64; 2]) -> usize {
+        self.at(p[1], 1) * self.size[0] + self.at(p[0], 0)
+    }
+
+    /// The column of cells at `x`, or for the axis 1 the row. Places beyond the area count to its
+    /// border cells.
+    fn at(&self, x: f64, axis: usize) -> usize {
+        // A cast clamps negative numbers to 0. To u32 it takes half the instructions that it takes
+        // to usize.
+        let cell = ((x - self.low[axis]) * self.scale) as u32 as usize;
+        cell.min(self.size[axis] - 1)
     }
 }
 
@@ -107,28 +125,30 @@ impl Near {
         let all = walls.iter().flat_map(|w| edges(w)).map(|(p, q)| [point(p), point(q)]);
         let mut edges = Vec::with_capacity(walls.iter().map(Vec::len).sum());
         edges.extend(all.filter(|edge| area.meets(edge)));
-        Self::sorted(edges, area, side)
+        Self::sorted(edges, area, side, 0.0)
     }
 
-    /// Sorts all edges into cells of side `side`, for places anywhere.
-    pub(super) fn of_all(walls: &[Contour], side: f64) -> Self {
+    /// Sorts all edges, with this `reach`, into cells of side `side`, for places anywhere.
+    pub(super) fn of_all(walls: &[Contour], side: f64, reach: f64) -> Self {
         let point = |p: Point| [f64::from(p.x), f64::from(p.y)];
         let mut all = Vec::with_capacity(walls.iter().map(Vec::len).sum());
         all.extend(walls.iter().flat_map(|w| edges(w)).map(|(p, q)| [point(p), point(q)]));
-        Self::of_edges(all, side)
+        let area = Area::around(all.iter().flatten().copied(), 0.0);
+        Self::sorted(all, area, side, reach)
     }
 
     /// Sorts `edges` into cells of side `side`, for places anywhere.
     pub(super) fn of_edges(edges: Vec<Edge>, side: f64) -> Self {
         let area = Area::around(edges.iter().flatten().copied(), 0.0);
-        Self::sorted(edges, area, side)
+        Self::sorted(edges, area, side, 0.0)
     }
 
-    fn sorted(edges: Vec<Edge>, area: Area, side: f64) -> Self {
+    fn sorted(edges: Vec<Edge>, area: Area, side: f64, reach: f64) -> Self {
         let grid = Grid::new(area, side);
-        let reach = |edge: Edge| grid.cells(edge).flatten();
-        let cells = Cells::new(grid.count(), || edges.iter().copied(), reach);
-        Self { grid, cells }
+        let grown = |edge: Edge| Area::around(edge.into_iter(), reach).corners();
+        let within = |edge: Edge| grid.cells(grown(edge)).flatten();
+        let cells = Cells::new(grid.count(), || edges.iter().copied(), within);
+        Self { grid, cells, reach }
     }
 
     /// The edge nearest to `p`, which lies within the area, among those nearer than `distance`. Of
@@ -149,6 +169,13 @@ impl Near {
         self.around(&places, distance).all(|edges| edges.iter().all(far))
     }
 
+    /// Whether an edge is nearer to `p` than the reach.
+    pub(super) fn is_beside(&self, p: [f64; 2]) -> bool {
+        let square = self.reach * self.reach;
+        let cell = self.grid.cell(p);
+        self.cells.of(cell..cell + 1).iter().any(|edge| is_nearer(p, edge, square))
+    }
+
     /// The first edge within `distance` that a ray from `p` along `way` meets, of length 1, and how far away.
     /// The ray lies within the area. Edges through `p` itself do not count.
     pub(super) fn hit(&self, p: [f64; 2], way: [f64; 2], distance: f64) -> Option<(f64, Edge)> {
@@ -166,14 +193,14 @@ impl Near {
         met.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The edges in all cells that meet the box around `places` grown by `distance`, by rows of
-    /// cells.
+    /// The edges in all cells that meet the box around `places` grown by `distance` beyond the
+    /// reach, by rows of cells.
     fn around(
         &self,
         places: &[[f64; 2]],
         distance: f64,
     ) -> impl Iterator<Item = &[Edge]> + use<'_> {
-        let area = Area::around(places.iter().copied(), distance);
+        let area = Area::around(places.iter().copied(), (distance - self.reach).at_least(0.0));
         // The edges of neighbouring cells in a row are contiguous.
         self.grid.cells([area.low, area.high]).map(|cells| self.cells.of(cells))
     }

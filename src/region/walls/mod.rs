@@ -198,7 +198,7 @@ const ROUNDING: f64 = 50.0;
 struct Layout<'a> {
     contours: &'a [Contour],
     outline: Outline,
-    /// The loops of each depth, then the core.
+    /// The loops of each depth, then the core, with a reach of [`BESIDE`].
     levels: Vec<Near>,
     params: &'a WallParams,
     line_width: f64,
@@ -225,9 +225,9 @@ impl<'a> Layout<'a> {
         params: &'a WallParams,
     ) -> Self {
         let line_width = f64::from(params.line_width);
-        let near = |level: &[Contour]| Near::of_all(level, 2.0 * line_width);
+        let near = |level: &[Contour]| Near::of_all(level, 2.0 * line_width, BESIDE * line_width);
         let mut near: Vec<Near> = levels.iter().map(|level| near(level)).collect();
-        near.push(Near::of_all(core, 2.0 * line_width));
+        near.push(Near::of_all(core, 2.0 * line_width, BESIDE * line_width));
         Self { contours, outline: Outline::new(contours, params), levels: near, params, line_width }
     }
 
@@ -275,7 +275,7 @@ impl<'a> Layout<'a> {
     /// Whether a loop of this depth, or the core, runs beside the place `at` of the contour.
     fn has(&self, depth: u32, at: [f64; 2], normal: [f64; 2]) -> bool {
         let place = along(at, self.inset(depth), normal);
-        !self.levels[depth as usize].is_free([place], BESIDE * self.line_width)
+        self.levels[depth as usize].is_beside(place)
     }
 }
 
