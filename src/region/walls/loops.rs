@@ -77,7 +77,8 @@ pub(super) fn share(wall: &mut Wall, beads: &Near, layout: &Layout<'_>) {
         let before = &sides[(k + sides.len() - 1) % sides.len()];
         *corner = inside(*corner, [before, &sides[k]], wall.depth, layout);
     }
-    let mut places = Vec::new();
+    let count: usize = sides.iter().map(|side| side.samples.len() + 1).sum();
+    let mut places = Vec::with_capacity(count + 1);
     for (k, side) in sides.iter().enumerate() {
         let count = side.samples.len() as f64;
         let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
@@ -102,7 +103,8 @@ pub(super) fn share(wall: &mut Wall, beads: &Near, layout: &Layout<'_>) {
 fn sampled(path: &Contour, depth: u32, beads: &Near, layout: &Layout<'_>) -> Vec<Sampled> {
     let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
     let mut guess = layout.line_width;
-    let sides = edges(path).filter(|(p, q)| p != q).map(|(p, q)| {
+    let mut sides = Vec::with_capacity(path.len());
+    sides.extend(edges(path).filter(|(p, q)| p != q).map(|(p, q)| {
         let (from, length) = (float(p), p.distance(q));
         let way = way(from, float(q));
         let normal = [-way[1] / length, way[0] / length];
@@ -113,8 +115,8 @@ fn sampled(path: &Contour, depth: u32, beads: &Near, layout: &Layout<'_>) -> Vec
         };
         let samples = (0..count as usize).map(sample).collect();
         Sampled { from, way, normal, step: length / count, samples }
-    });
-    sides.collect()
+    }));
+    sides
 }
 
 /// The bead of a loop of this `depth` at the place `at` of its nominal centre line.
@@ -143,18 +145,24 @@ fn sample(
 
 /// Takes from the shifts what lets the loop leave its nominal place faster than it leans.
 fn steady(sides: &mut [Sampled], line_width: f64) {
-    let samples =
-        || sides.iter().flat_map(|side| side.samples.iter().map(|s| (s.shift, side.step)));
-    let (mut shifts, steps): (Vec<f64>, Vec<f64>) = samples().unzip();
-    let n = shifts.len();
+    let n = sides.iter().map(|side| side.samples.len()).sum();
+    let (mut shifts, mut steps) = (Vec::with_capacity(n), Vec::with_capacity(n));
+    for side in &*sides {
+        shifts.extend(side.samples.iter().map(|s| s.shift));
+        steps.extend(side.samples.iter().map(|_| side.step));
+    }
+    // Only samples that have left their places may have to go back.
+    let left: Vec<usize> = (0..n).filter(|&k| shifts[k] != 0.0).collect();
     let mut limit = |from: usize, to: usize| {
         let most = LEAN * f64::midpoint(steps[from], steps[to]);
         let (inwards, outwards) = (shifts[from].max(0.0) + most, shifts[from].min(0.0) - most);
         shifts[to] = shifts[to].min(inwards).max(outwards);
     };
-    // Twice around: the loop is closed.
-    (0..2 * n).for_each(|k| limit(k % n, (k + 1) % n));
-    (0..2 * n).rev().for_each(|k| limit((k + 1) % n, k % n));
+    // Twice around: the loop is closed. Onwards the first sample comes last.
+    let (first, others) = left.split_at(left.partition_point(|&k| k == 0));
+    let onwards = || others.iter().chain(first);
+    onwards().chain(onwards()).for_each(|&k| limit((k + n - 1) % n, k));
+    left.iter().rev().chain(left.iter().rev()).for_each(|&k| limit((k + 1) % n, k));
     let all = sides.iter_mut().flat_map(|side| &mut side.samples);
     for (sample, shift) in all.zip(shifts).filter(|(sample, shift)| sample.shift != *shift) {
         let width = line_width + (sample.width - line_width) * shift / sample.shift;

@@ -171,7 +171,9 @@ fn lap(
     let float = |p: Point| [f64::from(p.x), f64::from(p.y)];
     let n = contour.len();
     let mut guess = layout.line_width;
-    let mut out = Vec::new();
+    let samples =
+        |(p, q): (Point, Point)| (p.distance(q) / (STEP * layout.line_width)).ceil() as usize;
+    let mut out = Vec::with_capacity(edges(contour).map(samples).sum());
     for (index, (k, (p, q))) in (first..).zip(edges(contour).enumerate()) {
         if p == q {
             continue;
