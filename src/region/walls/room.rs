@@ -60,6 +60,36 @@ impl Side {
     fn normal(&self) -> [f64; 2] {
         [-self.along[1], self.along[0]]
     }
+
+    /// The circle at `at` that touches the side between its ends, if it is smaller than `most`.
+    fn touch(&self, at: [f64; 2], normal: [f64; 2], most: f64) -> Option<Touch> {
+        let m = self.normal();
+        let (height, facing) = (dot(way(self.from, at), m), -dot(normal, m));
+        if height <= 0.0 || facing <= BOUNDS || height >= most * (1.0 + facing) {
+            return None;
+        }
+        let radius = height / (1.0 + facing);
+        let centre = along(at, radius, normal);
+        let t = dot(way(self.from, centre), self.along);
+        let touch = Touch { radius, corner: false, opposite: facing >= OPPOSITE };
+        (0.0..=self.length).contains(&t).then_some(touch)
+    }
+
+    /// The circle at `at` that touches the start of the side, if it is smaller than `most`.
+    fn touch_start(&self, at: [f64; 2], normal: [f64; 2], most: f64) -> Option<Touch> {
+        let arm = way(at, self.from);
+        let (ahead, square) = (dot(arm, normal), dot(arm, arm));
+        if ahead <= 0.0 || square >= most * 2.0 * ahead {
+            return None;
+        }
+        let radius = square / (2.0 * ahead);
+        let facing = 2.0 * ahead * ahead / square.at_least(1.0) - 1.0;
+        let centre = way(self.from, along(at, radius, normal));
+        let is_between =
+            dot(centre, self.along) <= ROUNDING && dot(centre, self.before) >= -ROUNDING;
+        let touch = Touch { radius, corner: true, opposite: facing >= OPPOSITE_CORNER };
+        (facing > BOUNDS && is_between).then_some(touch)
+    }
 }
 
 /// What lies opposite to a place of the contour.
@@ -147,10 +177,16 @@ impl Outline {
         let area = Area::around(std::iter::once(middle), most);
         let mut best = most;
         let mut found = None;
-        for side in self.grid.cells(area.corners()).flat_map(|cells| self.cells.of(cells)) {
-            if let Some(touch) = touch(side, at, normal, best) {
-                best = touch.radius;
-                found = Some((touch, side.index));
+        for cells in self.grid.cells(area.corners()) {
+            for side in self.cells.of(cells) {
+                if let Some(touch) = side.touch(at, normal, best) {
+                    best = touch.radius;
+                    found = Some((touch, side.index));
+                }
+                if let Some(touch) = side.touch_start(at, normal, best) {
+                    best = touch.radius;
+                    found = Some((touch, side.index));
+                }
             }
         }
         found
@@ -165,36 +201,6 @@ impl Outline {
             let off = along(arm, -t, side.along);
             dot(off, off) >= distance * distance
         };
-        self.grid.cells(area.corners()).flat_map(|cells| self.cells.of(cells)).all(far)
+        self.grid.cells(area.corners()).all(|cells| self.cells.of(cells).iter().all(far))
     }
-}
-
-/// The circle at `at` that touches `side` or its start, if it is smaller than `most`.
-fn touch(side: &Side, at: [f64; 2], normal: [f64; 2], most: f64) -> Option<Touch> {
-    let mut best = None;
-    let mut least = most;
-    let m = side.normal();
-    let (height, facing) = (dot(way(side.from, at), m), -dot(normal, m));
-    if height > 0.0 && facing > BOUNDS && height < least * (1.0 + facing) {
-        let radius = height / (1.0 + facing);
-        let centre = along(at, radius, normal);
-        let t = dot(way(side.from, centre), side.along);
-        if (0.0..=side.length).contains(&t) {
-            least = radius;
-            best = Some(Touch { radius, corner: false, opposite: facing >= OPPOSITE });
-        }
-    }
-    let arm = way(at, side.from);
-    let (ahead, square) = (dot(arm, normal), dot(arm, arm));
-    if ahead > 0.0 && square < least * 2.0 * ahead {
-        let radius = square / (2.0 * ahead);
-        let facing = 2.0 * ahead * ahead / square.at_least(1.0) - 1.0;
-        let centre = way(side.from, along(at, radius, normal));
-        let is_between =
-            dot(centre, side.along) <= ROUNDING && dot(centre, side.before) >= -ROUNDING;
-        if facing > BOUNDS && is_between {
-            best = Some(Touch { radius, corner: true, opposite: facing >= OPPOSITE_CORNER });
-        }
-    }
-    best
 }
