@@ -24,7 +24,7 @@ pub use role::{Both, Order, Role, RoleFacts, RoleTable, Slows};
 
 use crate::geom::frame::Frame;
 use crate::geom::outline::{Bounds, Columns};
-use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::polyline::{self, LinePoint, Polyline};
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
 use crate::pattern::Held;
@@ -218,7 +218,10 @@ impl Maker<'_> {
         // A thread beside a skin's edge would lie on the skin's last line.
         let least = self.params.line_width * LEAST_SLIVER / 10;
         slivers.retain(|sliver| sliver.iter().any(|point| point.width >= least));
-        slivers.extend(skin::zigzags(&lines, false, &self.params.lines));
+        // A lone line shorter than wide fills a notch beside a bead that turns, and lies on the wall there.
+        let least = i64::from(self.params.line_width);
+        let lines = skin::zigzags(&lines, false, &self.params.lines).into_iter();
+        slivers.extend(lines.filter(|line| polyline::length(line) >= least));
         slivers
     }
 

@@ -50,6 +50,12 @@ struct Place {
 }
 
 impl Place {
+    /// How much further than the wall itself the bead runs at a corner, on each side of it. `w` is a line's width.
+    fn overshoot(&self, w: f64) -> f64 {
+        let [x, y] = self.normal;
+        (self.clear + SLACK * w) * (x * x + y * y - 1.0).max(0.0).sqrt()
+    }
+
     /// Whether it leads on to `next` in the direction of its side. All do beside a corner.
     fn leads_to(&self, next: &Self, turn: f64) -> bool {
         let [x, y] = self.normal;
@@ -178,7 +184,8 @@ fn joins(a: &Place, b: &Place, near: &Around, params: &BeadParams) -> bool {
     let clear = a.clear.min(b.clear) - SLACK * w;
     let on_the_way = |t: f64| [0, 1].map(|k| a.at[k] + t * (b.at[k] - a.at[k]));
     let places = || [0.25, 0.5, 0.75].map(on_the_way);
-    far <= w / 2.0 || far <= SHORT * w && near.is_free(places(), clear, a.width.min(b.width))
+    let most = SHORT * w + a.overshoot(w).max(b.overshoot(w));
+    far <= w / 2.0 || far <= most && near.is_free(places(), clear, a.width.min(b.width))
 }
 
 /// The area on `raster` that `beads`, given in `frame`, keep free of lines. Lines overlap with

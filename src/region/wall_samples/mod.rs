@@ -26,8 +26,9 @@ use super::crossed::Crossed;
 use super::near::{Area, Edge, Near};
 use super::params::BeadParams;
 use crate::geom::segment::way;
-use crate::geom::{Contour, edges};
+use crate::geom::{Contour, Point, edges};
 use crate::units::Bounded as _;
+use hashbrown::HashMap;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Maximum number of beads beside each other along one wall. More would replace zigzags that are
@@ -64,6 +65,10 @@ const PAIR: f64 = 3.2;
 /// the others avoids a short extra bead. It is as wide as lines may get in gap closing. At
 /// [`WIDEST`] short extra beads would stay; a larger value makes bulges.
 const STRETCHED: f64 = 1.75;
+
+/// A strip gets a further bead when it is this much narrower than so many lines. At 0.5, walls of round sizes,
+/// such as 3.4 mm with lines of 0.4, would change their number from facet to facet of a circle.
+const UNEVEN: f64 = 0.42;
 
 /// Depth beyond what the beads cover that may stay open: the walls of the layer that ends there
 /// reach over it. At 0, a depth just above the limit gets one bead more, all of them thin; a
@@ -143,16 +148,40 @@ pub(super) fn samples(
     if laps.iter().flatten().all(|s| s.beads == 0) {
         return None;
     }
-    let with_beads = laps.iter().flatten().filter(|s| s.beads > 0).map(|s| s.at);
+    let with_beads = laps.iter().flatten().filter(|s| s.shared || s.beads > 0).map(|s| s.at);
     let w = f64::from(params.line_width);
     let near = Near::new(walls, Area::around(with_beads, MARGIN * w), CELL * w);
-    for (lap, wall) in laps.iter_mut().zip(walls) {
-        lap.iter_mut()
-            .filter(|s| s.shared)
-            .for_each(|s| s.confirm(&near, crossed.left_turn, params));
+    let owners = Owners::new(walls);
+    for (own, (lap, wall)) in laps.iter_mut().zip(walls).enumerate() {
+        let leads = |sample: &WallSample, other: Edge| match owners.of(other) {
+            Some(wall) if wall != own => own < wall,
+            _ => leads(sample.normal, other, crossed.left_turn),
+        };
+        lap.iter_mut().filter(|s| s.shared).for_each(|s| s.confirm(&near, leads, params));
         *lap = finished(wall, std::mem::take(lap), params);
     }
     Some((laps, near))
+}
+
+/// Which wall each edge is of.
+struct Owners(HashMap<[u64; 4], usize>);
+
+impl Owners {
+    fn new(walls: &[Contour]) -> Self {
+        let real = |p: Point| [f64::from(p.x), f64::from(p.y)];
+        let of = |(k, wall): (usize, &Contour)| -> Vec<_> {
+            edges(wall).map(|(p, q)| (Self::key([real(p), real(q)]), k)).collect()
+        };
+        Self(walls.iter().enumerate().flat_map(of).collect())
+    }
+
+    fn of(&self, edge: Edge) -> Option<usize> {
+        self.0.get(&Self::key(edge)).copied()
+    }
+
+    fn key([from, to]: Edge) -> [u64; 4] {
+        [from[0], from[1], to[0], to[1]].map(f64::to_bits)
+    }
 }
 
 /// Bridges and smooths the samples of a wall, and adds the wall's own corners.
@@ -188,19 +217,21 @@ impl WallSample {
         x * u + y * v < FRAC_1_SQRT_2
     }
 
-    /// Checks that a shared sample really has another wall opposite, and decides which of the two
-    /// leads. Past the middle of a strip the opposite wall is the nearer one. In a corner the wall
-    /// at the other end of the row is not: then the sample loses its beads.
-    fn confirm(&mut self, near: &Near, left_turn: bool, params: &BeadParams) {
+    /// Measures a shared sample at right angles to the wall, checks that it really has another wall
+    /// opposite, and decides which of the two leads. Past the middle of a strip the opposite wall is
+    /// the nearer one. In a corner the wall at the other end of the row is not: then the sample loses
+    /// its beads.
+    fn confirm(&mut self, near: &Near, leads: impl Fn(&Self, Edge) -> bool, params: &BeadParams) {
+        let faced = self.measure_across(near, params);
         let across = 2.0 * (self.depth + f64::from(params.line_width) / 2.0);
         let beyond = [0, 1].map(|k| self.at[k] + BEYOND * across * self.normal[k]);
         let nearest = near.nearest(beyond, (1.0 - BEYOND + SLOPE) * across);
         let opposite = match nearest {
-            Some(other) if self.stands_across(other) => self.measured_anew(near, params),
+            Some(other) if self.stands_across(other) => faced,
             other => other,
         };
-        if let Some(other) = opposite {
-            self.leads = leads(self.normal, other, left_turn);
+        if let Some(other) = opposite.filter(|_| self.beads > 0) {
+            self.leads = leads(self, other);
         } else {
             self.shared = false;
             self.beads = 0;
@@ -212,9 +243,10 @@ impl WallSample {
         facing(self.normal, other) < FRAC_1_SQRT_2 / 2.0
     }
 
-    /// Measures the strip at right angles to the wall, and gives the wall on the other side. Beside a square
-    /// corner, the row ends at the wall around it, and the strip seems narrower by up to a quarter.
-    fn measured_anew(&mut self, near: &Near, params: &BeadParams) -> Option<Edge> {
+    /// Measures the strip at right angles to the wall, and gives the wall on the other side if the two face
+    /// each other. A row measures a bent strip too wide or too narrow by up to a line, and ends
+    /// beside square corners at the wall around them.
+    fn measure_across(&mut self, near: &Near, params: &BeadParams) -> Option<Edge> {
         let w = f64::from(params.line_width);
         let far = (1.0 + least_of(MOST_ACROSS + 1)) * w;
         let (distance, other) = near.hit(self.at, self.normal, far)?;
@@ -233,7 +265,8 @@ fn facing(normal: [f64; 2], [from, to]: Edge) -> f64 {
     (normal[0] * y - normal[1] * x) / (x * x + y * y).sqrt().at_least(1.0)
 }
 
-/// Whether a wall with this normal leads the one with edge `other`. The sign of the difference of
+/// Whether a wall with this normal leads that with edge `other`, of the same wall: of two walls the first
+/// leads, so that the bead between them turns with it at corners. The sign of the difference of
 /// the two normals decides. The opposite wall sees the same difference with the other sign, so
 /// exactly one of the two leads, however they lean. It is the same one on layers whose lines run in the
 /// other direction, so that their beads lie on each other.
@@ -250,7 +283,7 @@ fn least_of(count: usize) -> f64 {
     match count {
         2 => SINGLE,
         3 => PAIR,
-        _ => count as f64 - 0.5,
+        _ => count as f64 - UNEVEN,
     }
 }
 
