@@ -4,7 +4,7 @@
 //! the beads that end there crosses it, and the others end beside that one.
 
 use super::Layout;
-use super::middle::{Arc, is_ring};
+use super::arcs::{Arc, is_ring};
 use crate::geom::segment::{along, dot, way};
 use crate::region::near::{Area, Edge, Near};
 use crate::region::taper::distance;

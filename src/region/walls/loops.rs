@@ -8,6 +8,7 @@
 //! moved sides meet. Around a small nose sides that move inwards get shorter, and vanish where they
 //! would turn back.
 
+use super::bridged::{Sample, bridge};
 use super::{Layout, Wall};
 use crate::geom::segment::{along, dot, way};
 use crate::geom::{Contour, Point, edges};
@@ -40,14 +41,6 @@ const MARCH: f64 = 0.125;
 /// What is taken of the distance that a corner should have from the outline, if no place on the way has more.
 const PARTS: [f64; 4] = [1.0, 0.75, 0.5, 0.25];
 
-/// The bead at one place of a side.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Sample {
-    /// How far the centre line moves inwards.
-    shift: f64,
-    width: f64,
-}
-
 /// A side of the loop with its samples, evenly spaced.
 struct Sampled {
     from: [f64; 2],
@@ -67,10 +60,11 @@ impl Sampled {
 /// Moves and widens `wall`, a loop, where it shares the room. `beads` are the middle beads.
 pub(super) fn share(wall: &mut Wall, beads: &Near, layout: &Layout<'_>) {
     let mut sides = sampled(&wall.path, wall.depth, beads, layout);
-    let plain = Sample { shift: 0.0, width: layout.line_width };
-    if sides.iter().flat_map(|s| &s.samples).all(|s| *s == plain) {
+    let is_plain = |s: &Sample| s.shift == 0.0 && s.width == layout.line_width;
+    if sides.iter().flat_map(|s| &s.samples).all(is_plain) {
         return;
     }
+    bridge_corners(&mut sides);
     steady(&mut sides, layout.line_width);
     let Some(mut corners) = corners(&mut sides) else { return };
     for (k, corner) in corners.iter_mut().enumerate() {
@@ -111,7 +105,8 @@ fn sampled(path: &Contour, depth: u32, beads: &Near, layout: &Layout<'_>) -> Vec
         let count = (length / layout.line_width).ceil();
         let sample = |i: usize| {
             let at = along(from, (i as f64 + 0.5) / count, way);
-            sample(at, normal, depth, (beads, layout), &mut guess)
+            let sample = sample(at, normal, depth, (beads, layout), &mut guess);
+            Sample { step: length / count, way: [normal[1], -normal[0]], ..sample }
         };
         let samples = (0..count as usize).map(sample).collect();
         Sampled { from, way, normal, step: length / count, samples }
@@ -129,6 +124,8 @@ fn sample(
 ) -> Sample {
     let inset = layout.inset(depth);
     let foot = along(at, -inset, normal);
+    let plain =
+        Sample { shift: 0.0, width: layout.line_width, room: 0.0, step: 0.0, way: [0.0; 2] };
     match layout.share(foot, normal, guess).filter(|(share, _)| share.loops > depth) {
         Some((share, opposite)) => {
             // What is laid decides, not what each place on its own would take.
@@ -137,10 +134,19 @@ fn sample(
             let count = f64::from(2 * share.loops + u32::from(has_bead));
             let width = share.room / count;
             let middle = (f64::from(depth) + 0.5) * width - layout.params.outside();
-            Sample { shift: middle - inset, width }
+            let room = if opposite.corner { 0.0 } else { share.room };
+            Sample { shift: middle - inset, width, room, ..plain }
         }
-        None => Sample { shift: 0.0, width: layout.line_width },
+        None => plain,
     }
+}
+
+/// Bridges the samples around corners.
+fn bridge_corners(sides: &mut [Sampled]) {
+    let mut all: Vec<Sample> = sides.iter().flat_map(|side| side.samples.iter().copied()).collect();
+    bridge(&mut all);
+    let samples = sides.iter_mut().flat_map(|side| &mut side.samples);
+    samples.zip(all).for_each(|(sample, bridged)| *sample = bridged);
 }
 
 /// Takes from the shifts what lets the loop leave its nominal place faster than it leans.
@@ -166,7 +172,7 @@ fn steady(sides: &mut [Sampled], line_width: f64) {
     let all = sides.iter_mut().flat_map(|side| &mut side.samples);
     for (sample, shift) in all.zip(shifts).filter(|(sample, shift)| sample.shift != *shift) {
         let width = line_width + (sample.width - line_width) * shift / sample.shift;
-        *sample = Sample { shift, width };
+        *sample = Sample { shift, width, ..*sample };
     }
 }
 

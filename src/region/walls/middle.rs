@@ -14,14 +14,14 @@
 //! 4. Join arcs whose ends meet, and drop short ones. Where walls cross, their ends run on
 //!    (`junctions`).
 
+use super::arcs::{Arc, NEIGHBOURS, Sample, arcs, is_ring, join_ends, length, meet};
 use super::patches::Doubt;
 use super::{Layout, Share, Wall};
-use crate::geom::nearest::Nearest;
 use crate::geom::segment::{along, dot, way};
 use crate::geom::{Contour, Point, edges, side};
 use crate::region::near::Near;
 use crate::region::taper::{Place, distance, tapered};
-use crate::units::{Bounded as _, Coord, nearest as nearest_unit};
+use crate::units::Bounded as _;
 
 /// Distance of samples along the contour, in line widths. A larger value cuts corners; a smaller
 /// one costs time.
@@ -32,10 +32,6 @@ const TURN: f64 = 0.26;
 
 /// Sharper corners that stick into the part keep loops away from what lies behind them, radians: 40°.
 const SHARP: f64 = 0.7;
-
-/// Two samples are neighbours if their middles are at most this far apart, in line widths. A
-/// smaller value breaks beads on the outside of bends, a larger one bridges gaps.
-const NEIGHBOURS: f64 = 1.5;
 
 /// How far a bead stays away from the end of its strip, as a part of half the strip's width. At 0.8
 /// its round end covers as much as its square end misses, but the corners of the strip stay open; at
@@ -57,37 +53,8 @@ const SHORT: [f64; 2] = [0.4, 2.0];
 /// Where two neighbouring samples are further apart, in line widths, a corner may lie between them.
 const CORNER: f64 = 0.6;
 
-/// Corners nearer to a sample are rounding errors: the sample is the corner (10 µm).
-const LEAST_CORNER: f64 = 100.0;
-
-/// How many samples behind a join a ring begins: its corner needs two samples on either side.
-const SEAM: usize = 3;
-
 /// Samples nearer than this part of their bead's width to an arc already have their bead.
 const SAME: f64 = 0.6;
-
-/// A place of a middle bead.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Sample {
-    pub(super) place: Place,
-    /// How many loops lie on either side.
-    pub(super) loops: u32,
-    /// Whether this side lays the bead.
-    leads: bool,
-    /// The place of the contour.
-    from: Doubt,
-}
-
-impl Sample {
-    /// The way along the contour that leads on as `way` does, of length 1.
-    fn ahead(&self, way: [f64; 2]) -> [f64; 2] {
-        let [x, y] = self.from.normal;
-        if dot([-y, x], way) < 0.0 { [y, -x] } else { [-y, x] }
-    }
-}
-
-/// A run of neighbouring samples.
-pub(super) type Arc = Vec<Sample>;
 
 /// The arcs along which middle beads run, and the places of the contour in doubt: there is no core, and
 /// none of these arcs runs.
@@ -109,8 +76,9 @@ pub(super) fn beads(layout: &Layout<'_>) -> (Vec<Arc>, Vec<Doubt>) {
     let left = laps.iter().flat_map(|lap| arcs(lap, w, is_left));
     let (left, mut short): (Vec<Arc>, Vec<Arc>) = left.partition(|arc| length(arc) >= w);
     all.extend(left);
-    join(&mut all, w);
+    join_ends(&mut all, layout);
     for arc in &mut all {
+        mitre(arc, layout);
         sharpen(arc, layout);
         if !is_ring(arc) {
             reach_end(arc, layout);
@@ -132,12 +100,6 @@ pub(super) fn near(beads: &[Wall], layout: &Layout<'_>) -> Near {
     let open = beads.iter().flat_map(|b| b.path.windows(2)).map(|p| [float(p[0]), float(p[1])]);
     let all = open.chain(beads.iter().filter_map(|b| closing(b).flatten()));
     Near::of_edges(all.collect(), 2.0 * layout.line_width)
-}
-
-/// Whether an arc ends where it begins.
-pub(super) fn is_ring(arc: &Arc) -> bool {
-    let ends = arc.first().zip(arc.last());
-    arc.len() > 3 && ends.is_some_and(|(a, b)| a.place.at == b.place.at)
 }
 
 fn is_long(arc: &Arc, w: f64) -> bool {
@@ -197,7 +159,7 @@ fn lap(
             }
             fan(from, turn, |normal| {
                 out.push(sample(
-                    Doubt { at: float(p), normal, sharp: false, deep: 0.0 },
+                    (Doubt { at: float(p), normal, sharp: false, deep: 0.0 }, true),
                     index,
                     layout,
                     (&mut guess, doubts),
@@ -208,7 +170,7 @@ fn lap(
         out.extend((0..count as usize).map(|i| {
             let at = along(float(p), (i as f64 + 0.5) / count * length, along_side);
             sample(
-                Doubt { at, normal, sharp: false, deep: 0.0 },
+                (Doubt { at, normal, sharp: false, deep: 0.0 }, false),
                 index,
                 layout,
                 (&mut guess, doubts),
@@ -237,7 +199,7 @@ fn turn((before, corner): (Point, Point), to: [f64; 2]) -> ([f64; 2], f64) {
 
 /// The middle bead opposite to a place of the contour, if there is one.
 fn sample(
-    from: Doubt,
+    (from, at_corner): (Doubt, bool),
     index: u32,
     layout: &Layout<'_>,
     (guess, doubts): (&mut f64, &mut Vec<Doubt>),
@@ -262,106 +224,8 @@ fn sample(
         return None;
     }
     let place = Place { at: middle, width };
-    Some(Sample { place, loops, leads: index < opposite.side, from })
-}
-
-/// The runs of neighbouring samples that are `wanted`. A run all around ends where it begins.
-fn arcs(lap: &[Option<Sample>], w: f64, wanted: impl Fn(&Sample) -> bool) -> Vec<Arc> {
-    let wanted = |s: &Option<Sample>| s.filter(|s| wanted(s));
-    let n = lap.len();
-    let start = lap.iter().position(|s| wanted(s).is_none());
-    let around = lap.iter().cycle().skip(start.unwrap_or(0)).take(n + usize::from(start.is_none()));
-    let mut out: Vec<Arc> = Vec::new();
-    let mut open = false;
-    for sample in around {
-        let Some(sample) = wanted(sample) else {
-            open = false;
-            continue;
-        };
-        let far =
-            |arc: &Arc| arc.last().map_or(f64::MAX, |s| distance(s.place.at, sample.place.at));
-        match out.last_mut().filter(|arc| open && far(arc) <= NEIGHBOURS * w) {
-            Some(arc) => arc.push(sample),
-            None => out.push(vec![sample]),
-        }
-        open = true;
-    }
-    out
-}
-
-/// Joins arcs whose ends are neighbours, the nearest first for each arc in turn.
-fn join(arcs: &mut Vec<Arc>, w: f64) {
-    let most = NEIGHBOURS * w;
-    let mut ends = Nearest::new(arcs.iter().flat_map(ends_of).map(rounded).collect());
-    let mut gone = vec![false; arcs.len()];
-    for k in 0..arcs.len() {
-        if gone[k] {
-            continue;
-        }
-        ends.take(2 * k);
-        ends.take(2 * k + 1);
-        // Of those before it none is near; those after it are as they were.
-        while let Some((other, turn)) = nearest(arcs, k, (&ends, most)) {
-            let mut more = std::mem::take(&mut arcs[other]);
-            gone[other] = true;
-            ends.take(2 * other);
-            ends.take(2 * other + 1);
-            if turn.1 {
-                more.reverse();
-            }
-            let arc = &mut arcs[k];
-            if turn.0 {
-                arc.reverse();
-            }
-            arc.append(&mut more);
-        }
-    }
-    arcs.retain(|arc| !arc.is_empty());
-    for arc in arcs.iter_mut() {
-        let ends = arc.first().zip(arc.last());
-        let gap = ends.map_or(f64::MAX, |(a, b)| distance(a.place.at, b.place.at));
-        if gap > 0.0 && gap <= NEIGHBOURS * w && length(arc) > 3.0 * NEIGHBOURS * w {
-            // A corner may lie between its ends: it begins a little further on.
-            let seam = SEAM.min(arc.len());
-            arc.rotate_left(seam);
-            arc.extend(arc.first().copied());
-        }
-    }
-}
-
-/// The ends of an arc, which has places.
-fn ends_of(arc: &Arc) -> [[f64; 2]; 2] {
-    let at = |sample: Option<&Sample>| sample.map_or([0.0; 2], |sample| sample.place.at);
-    [at(arc.first()), at(arc.last())]
-}
-
-/// The point of the grid at a place.
-fn rounded([x, y]: [f64; 2]) -> Point {
-    Point { x: nearest_unit(x) as Coord, y: nearest_unit(y) as Coord }
-}
-
-/// The arc after `k` with the end nearest to an end of arc `k`, and which of the two to reverse so
-/// that the second continues the first. `ends` are those of the arcs after `k`, two of each.
-fn nearest(arcs: &[Arc], k: usize, (ends, most): (&Nearest, f64)) -> Option<(usize, (bool, bool))> {
-    let here = ends_of(&arcs[k]);
-    // A grid unit more for rounding, on both sides.
-    let reach = most.ceil() as Coord + 2;
-    let by = |p: Point, by: Coord| Point { x: p.x + by, y: p.y + by };
-    let near = |at: [f64; 2]| ends.within((by(rounded(at), -reach), by(rounded(at), reach)));
-    let mut others: Vec<usize> = here.into_iter().flat_map(near).map(|end| end / 2).collect();
-    others.sort_unstable();
-    others.dedup();
-    let mut best: Option<(f64, usize, (bool, bool))> = None;
-    for j in others {
-        let there = ends_of(&arcs[j]);
-        for turn in [(false, false), (false, true), (true, false), (true, true)] {
-            let gap = distance(here[usize::from(!turn.0)], there[usize::from(turn.1)]);
-            if gap <= best.map_or(most, |(least, ..)| least) && best.is_none_or(|b| gap < b.0) {
-                best = Some((gap, j, turn));
-            }
-        }
-    }
-    best.map(|(_, j, turn)| (j, turn))
+    let turns = at_corner || opposite.corner;
+    Some(Sample { place, loops, leads: index < opposite.side, turns, from })
 }
 
 /// Moves the last place of an arc on to the end of its strip: samples lie up to a step before it.
@@ -389,6 +253,24 @@ fn reach_end(arc: &mut Arc, layout: &Layout<'_>) {
     last.place.at = at(far);
 }
 
+/// Where a strip turns, the middle of its room cuts the corner. The bead turns where its two sides meet instead,
+/// as the loops beside it do.
+fn mitre(arc: &mut Arc, layout: &Layout<'_>) {
+    let mut from = 1;
+    while let Some(first) = (from..arc.len()).find(|&k| arc[k].turns && !arc[k - 1].turns) {
+        let Some(end) = (first..arc.len()).find(|&k| !arc[k].turns) else { return };
+        from = end;
+        let (a, b) = (arc[first - 1], arc[end]);
+        let width = f64::midpoint(a.place.width, b.place.width);
+        if let Some(corner) = a.turning_to(&b, layout)
+            && layout.is_clear(corner, a.loops, width)
+        {
+            arc.splice(first..end, [Sample { place: Place { at: corner, width }, ..a }]);
+            from = first + 1;
+        }
+    }
+}
+
 /// Adds the corners that samples leave out: near the outside of a corner nothing is opposite. The room
 /// of a sharp corner may hold a loop.
 fn sharpen(arc: &mut Arc, layout: &Layout<'_>) {
@@ -402,7 +284,9 @@ fn sharpen(arc: &mut Arc, layout: &Layout<'_>) {
         let after =
             if k + 2 < arc.len() { way(b, at(arc, k + 2)) } else { arc[k + 1].ahead(way(a, b)) };
         if distance(a, b) > CORNER * w
-            && let Some(corner) = meet(a, before, b, after, NEIGHBOURS * w)
+            && let Some(corner) = arc[k]
+                .turning_to(&arc[k + 1], layout)
+                .or_else(|| meet(a, before, b, after, NEIGHBOURS * w))
             && let width = f64::midpoint(arc[k].place.width, arc[k + 1].place.width)
             && layout.is_clear(corner, arc[k].loops, width)
         {
@@ -411,31 +295,4 @@ fn sharpen(arc: &mut Arc, layout: &Layout<'_>) {
         }
         k += 1;
     }
-}
-
-/// Where the way from `a` on along `before` meets the way that leads to `b` along `after`, both at
-/// most `most` long.
-fn meet(
-    a: [f64; 2],
-    before: [f64; 2],
-    b: [f64; 2],
-    after: [f64; 2],
-    most: f64,
-) -> Option<[f64; 2]> {
-    let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
-    let between = way(a, b);
-    let turn = cross(before, after);
-    if turn.abs() < 0.2 * (dot(before, before) * dot(after, after)).sqrt() {
-        return None;
-    }
-    let (ahead, back) = (cross(between, after) / turn, cross(between, before) / turn);
-    let corner = along(a, ahead, before);
-    let (from, to) = (distance(a, corner), distance(b, corner));
-    // On a straight way the two meet where one of them begins.
-    let between = ahead > 0.0 && back < 0.0 && from.at_most(to) > LEAST_CORNER;
-    (between && from.at_least(to) <= most).then_some(corner)
-}
-
-fn length(arc: &Arc) -> f64 {
-    arc.windows(2).map(|s| distance(s[0].place.at, s[1].place.at)).sum()
 }

@@ -24,6 +24,8 @@
 //! exact offsets. Nothing depends on the direction of raster lines, so equal layers get equal
 //! beads.
 
+mod arcs;
+mod bridged;
 mod dots;
 mod junctions;
 mod loops;
