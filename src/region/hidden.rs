@@ -56,9 +56,11 @@ pub fn beads(
     exposed: &[Rows; 2],
     params: &RegionParams,
 ) -> (Vec<Polyline>, Vec<Polyline>) {
-    let Some(rooms) = rooms else { return (Vec::new(), beads) };
+    let Some(rooms) = rooms.filter(|_| !beads.is_empty()) else { return (Vec::new(), beads) };
     let pitch = params.rasters.skin(skin_turn(k).1).pitch;
-    let [rooms, exposed] = [rooms, exposed].map(|of| Place::new(k, of, pitch));
+    // Beads go on beside rooms by a line: short ones lie mostly there.
+    let rooms = [0, 1].map(|r| rooms[r].dilate(pitch, pitch));
+    let [rooms, exposed] = [&rooms, exposed].map(|of| Place::new(k, of, pitch));
     let w = f64::from(pitch);
     let smooth = Smooth { close: 0.0, margin: MARGIN * w, least: LEAST * w };
     let place = |p: &LinePoint| Point { x: p.u, y: p.v };
