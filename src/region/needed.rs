@@ -5,10 +5,11 @@
 //! a bead would run on along a wall behind which there is sparse infill.
 
 use super::hidden::Place;
-use super::stretches::{Smooth, parted, stretches};
+use super::stretches::{Smooth, stretches};
 use super::wall_samples::SHORT;
 use crate::geom::Point;
 use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::segment::way;
 use crate::geom::spans::Rows;
 use crate::units::Coord;
 
@@ -31,9 +32,36 @@ pub fn needed(
     let [close, least] = [SHORT, least].map(|lines| lines * f64::from(pitch));
     let smooth = Smooth { close, least, ..Smooth::default() };
     let is_needed = |p: &LinePoint| near.holds(Point { x: p.u, y: p.v });
-    let all = beads.iter().flat_map(|bead| stretches(bead, pitch, smooth, is_needed));
-    let [needed, _] = parted(all);
-    needed
+    beads.iter().flat_map(|bead| joined(stretches(bead, pitch, smooth, is_needed))).collect()
+}
+
+/// The stretches of a bead that pass, joined by those between them that go around a corner of a strip: there the
+/// strip is wider than a room, but for a short way.
+fn joined(stretches: Vec<(bool, Polyline)>) -> Vec<Polyline> {
+    let mut out: Vec<Polyline> = Vec::new();
+    let mut goes_on = false;
+    for (passes, stretch) in stretches {
+        let kept = passes || goes_on && turns_inwards(&stretch);
+        match out.last_mut().filter(|_| kept && goes_on) {
+            Some(last) => last.extend_from_slice(&stretch[1..]),
+            None if kept => out.push(stretch),
+            None => {}
+        }
+        goes_on = kept;
+    }
+    out
+}
+
+/// Whether a stretch turns by more than 45° to the left, where the solid lies: as inside a corner, and not as from
+/// the flank of one tooth to the foot of the next.
+fn turns_inwards(stretch: &[LinePoint]) -> bool {
+    let at = |p: &LinePoint| [f64::from(p.u), f64::from(p.v)];
+    let ways: Vec<[f64; 2]> = stretch.windows(2).map(|w| way(at(&w[0]), at(&w[1]))).collect();
+    let left = |w: &[[f64; 2]]| {
+        let ([x, y], [u, v]) = (w[0], w[1]);
+        (x * v - y * u).atan2(x * u + y * v).max(0.0)
+    };
+    ways.windows(2).map(left).sum::<f64>() > std::f64::consts::FRAC_PI_4
 }
 
 #[cfg(test)]
