@@ -13,6 +13,7 @@ use super::bridge::{self, Pair};
 use super::classify::{Areas, areas, areas_beside, exposed};
 use super::crossed::Crossed;
 use super::hidden::{self, between_walls};
+use super::needed::needed;
 use super::overhang::{Hanging, overhangs};
 use super::params::RegionParams;
 use super::per_raster::{PerRaster, skin_turn};
@@ -20,6 +21,7 @@ use super::prepare::{LayerRows, Own, Whole};
 use super::rooms;
 use super::scan::around;
 use super::wall_beads::{taken, wall_beads};
+use super::wall_samples::SHORT;
 use crate::geom::Contour;
 use crate::geom::frame::Frame;
 use crate::geom::polyline::Polyline;
@@ -87,7 +89,12 @@ pub fn examine<'a>(
     let exposed = [0, 1].map(exposed);
     let solid = solid(own.layer.index, layers, params);
     let beads = match &solid {
-        Some([a, b]) => beads(own, &[exposed[0].or(a), exposed[1].or(b)], layers, params),
+        Some([a, b]) => {
+            let areas = [exposed[0].or(a), exposed[1].or(b)];
+            let beads = beads(own, &areas, layers, params);
+            // Rooms are alike on many layers: what goes on from one to the next would make a wall.
+            needed(own.layer.index, beads, &areas, params.beads.line_width, SHORT)
+        }
         None => beads(own, &exposed, layers, params),
     };
     Examined { exposed, solid, beads }
@@ -115,7 +122,7 @@ pub fn divide<'a>(
         None => rooms::on_raster(narrow, both, raster, region),
     };
     let solid = &examined.solid;
-    let Beads { kept: beads, cut } = held(k, examined.beads.clone(), layers, below, params);
+    let Beads { kept: beads, cut } = held(k, examined, layers, below, params);
     let pair = below.map(|below| Pair { own, below: below.layer, beads: &beads });
     let bridges = pair.map(|pair| bridge::bridges(pair, layers, params)).unwrap_or_default();
     let along = params.rasters.skin(skin_turn(k).0);
@@ -140,7 +147,8 @@ pub fn divide<'a>(
     // Strips between skin or a bridge and a wall in which no sparse line has room.
     let infill = [0, 1].map(|r| &areas.skin(r).infill);
     let limit = least_strip(&areas, &bridges, params);
-    let areas = match rooms::narrow(infill, both, limit) {
+    let strips = limit.and_then(|limit| rooms::narrow(infill, both, limit));
+    let areas = match strips {
         Some(strips) => areas.map_on(|raster, its| {
             let strips = on(&strips, raster, &its.infill);
             its.with_skin(&strips)
@@ -194,10 +202,10 @@ fn with_bare<'a>(
     })
 }
 
-/// Narrower strips of infill become skin; 0 if there is nothing beside which they could be.
-fn least_strip(areas: &LayerAreas, bridges: &[Skin], params: &RegionParams) -> Coord {
+/// Narrower strips of infill become skin; `None` if there is nothing beside which they could be.
+fn least_strip(areas: &LayerAreas, bridges: &[Skin], params: &RegionParams) -> Option<Coord> {
     let skinned = !bridges.is_empty() || (0..2).any(|r| !areas.skin(r).skin.is_empty());
-    if skinned && !params.sparse.is_empty() { params.skins.reach } else { 0 }
+    (skinned && !params.sparse.is_empty()).then_some(params.skins.reach)
 }
 
 /// The rooms of layer `k` too narrow for sparse lines, on the rasters of skins.
@@ -211,14 +219,15 @@ fn solid<'a>(
     rooms::narrow(fill, [0, 1].map(|r| params.rasters.skin(r)), params.skins.least_room)
 }
 
-/// The `beads` of layer `k`; cut out is what would lie along the sparse lines below.
+/// The beads of layer `k`; cut out is what would lie along the sparse lines below.
 fn held<'a>(
     k: usize,
-    beads: Vec<Polyline>,
+    own: &Examined,
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
     below: Option<&Lower<'_>>,
     params: &RegionParams,
 ) -> Beads {
+    let beads = own.beads.clone();
     let lower = below.and_then(|below| Some((below, below.lines?, layers(k.checked_sub(1)?)?)));
     let Some((below, lines, rows)) = lower.filter(|_| !beads.is_empty()) else {
         return Beads { kept: beads, cut: Vec::new() };
@@ -232,7 +241,13 @@ fn held<'a>(
         exposed: skin.as_ref().unwrap_or(&exposed[along]),
         lines,
     };
-    loose::held(beads, &below)
+    let Beads { kept, cut } = loose::held(beads, &below);
+    // Beads of rooms go on beside these. What nothing exposes needs no cover.
+    let cut = match own.solid {
+        Some(_) => needed(k, cut, &own.exposed, params.beads.line_width, 0.0),
+        None => cut,
+    };
+    Beads { kept, cut }
 }
 
 /// The beads of a layer along its innermost walls, where the exposed `skins` are narrow.

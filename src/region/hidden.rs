@@ -26,13 +26,21 @@ const LEAST: f64 = 5.0;
 
 /// An area as its rows and its columns tell it. A strip between two rows is on no row.
 #[derive(Debug, Clone, Copy)]
-struct Place<'a> {
+pub(super) struct Place<'a> {
     rows: &'a Rows,
     columns: Columns<'a>,
 }
 
-impl Place<'_> {
-    fn holds(&self, p: Point) -> bool {
+impl<'a> Place<'a> {
+    /// Of an area given on the two rasters of skins, whose rows are `pitch` apart: in the frame of the one
+    /// that layer `k` prints.
+    pub(super) fn new(k: usize, of: &'a [Rows; 2], pitch: Coord) -> Self {
+        let (along, across) = skin_turn(k);
+        let columns = Columns { rows: &of[across], pitch, left_turn: along == 0 };
+        Self { rows: &of[along], columns }
+    }
+
+    pub(super) fn holds(&self, p: Point) -> bool {
         let pitch = self.columns.pitch;
         holds(self.rows, p, pitch) || self.columns.chord(nearest_row(p.x, pitch), p.y).is_some()
     }
@@ -48,13 +56,11 @@ pub fn beads(
     exposed: &[Rows; 2],
     params: &RegionParams,
 ) -> (Vec<Polyline>, Vec<Polyline>) {
-    let Some(rooms) = rooms else { return (Vec::new(), beads) };
-    let (along, across) = skin_turn(k);
-    let pitch = params.rasters.skin(across).pitch;
-    let [rooms, exposed] = [rooms, exposed].map(|of| {
-        let columns = Columns { rows: &of[across], pitch, left_turn: along == 0 };
-        Place { rows: &of[along], columns }
-    });
+    let Some(rooms) = rooms.filter(|_| !beads.is_empty()) else { return (Vec::new(), beads) };
+    let pitch = params.rasters.skin(skin_turn(k).1).pitch;
+    // Beads go on beside rooms by a line: short ones lie mostly there.
+    let rooms = [0, 1].map(|r| rooms[r].dilate(pitch, pitch));
+    let [rooms, exposed] = [&rooms, exposed].map(|of| Place::new(k, of, pitch));
     let w = f64::from(pitch);
     let smooth = Smooth { close: 0.0, margin: MARGIN * w, least: LEAST * w };
     let place = |p: &LinePoint| Point { x: p.u, y: p.v };

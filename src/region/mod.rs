@@ -28,6 +28,7 @@ pub mod ironing;
 mod joined;
 pub mod landing;
 mod near;
+pub mod needed;
 pub mod one_wall;
 pub mod overhang;
 pub mod params;

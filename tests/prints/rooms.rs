@@ -7,6 +7,8 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use crate::common::damage::{judge_made, kinds};
+use crate::common::solid::Outline;
+use crate::common::stack::stars;
 use crate::common::{Kind, Move, Run, Solid, slice};
 use proptest::prelude::*;
 
@@ -109,5 +111,70 @@ fn skin_has_no_blot_at_each_end_along_a_wall_that_is_not_quite_square() {
         let blots = run.print.of(Kind::Skin).filter(is_blot).count();
         assert!(blots < 20, "{askew}: {blots}");
         assert_eq!(kinds(&judge_made(&run.text, &stl)), [], "{askew}");
+    }
+}
+
+/// A gear of `teeth` that are `long`, each with so much of its pitch, around a body of this radius.
+fn gear(teeth: usize, radius: f64, long: f64, share: f64) -> Outline {
+    let pitch = std::f64::consts::TAU / teeth as f64;
+    let tooth = |k: usize| {
+        let at = |turn: f64, r: f64| {
+            let (sin, cos) = (pitch * (k as f64 + turn)).sin_cos();
+            [r * cos, r * sin]
+        };
+        let tip = share * 0.6 * radius / (radius + long);
+        [
+            at(-share / 2.0, radius),
+            at(-tip / 2.0, radius + long),
+            at(tip / 2.0, radius + long),
+            at(share / 2.0, radius),
+        ]
+    };
+    (0..teeth).flat_map(tooth).collect()
+}
+
+/// A comb of tines `wide` and `long`, so far apart, on a back of this depth.
+fn comb(tines: usize, wide: f64, apart: f64, long: f64, back: f64) -> Outline {
+    let tine = |k: usize| {
+        let x = (k as f64 + 0.5) * apart;
+        [
+            [x + wide / 2.0, 0.0],
+            [x + wide / 3.0, long],
+            [x - wide / 3.0, long],
+            [x - wide / 2.0, 0.0],
+        ]
+    };
+    let end = tines as f64 * apart;
+    let foot = [[0.0, 0.0], [0.0, -back], [end, -back], [end, 0.0]];
+    foot.into_iter().chain((0..tines).rev().flat_map(tine)).collect()
+}
+
+fn extruded() -> impl Strategy<Value = Outline> {
+    let gears = (8..30_usize, 5.0..12.0_f64, 1.0..4.0_f64, 0.3..0.7_f64);
+    let combs = (3..9_usize, 0.8..2.5_f64, 2.7..6.0_f64, 2.0..10.0_f64, 3.0..9.0_f64);
+    prop_oneof![
+        gears.prop_map(|(teeth, radius, long, share)| gear(teeth, radius, long, share)),
+        combs.prop_map(|(tines, wide, apart, long, back)| comb(tines, wide, apart, long, back)),
+        stars(),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// Every layer is like the next. Where a part is narrow it is filled, with infill as well.
+    #[test]
+    fn in_a_straight_extrusion_only_bottom_and_top_are_skin(
+        outline in extruded(), walls in 1..4_u32, infill in prop_oneof![Just("10"), Just("20"), Just("35")],
+        dual in prop_oneof![Just("off"), Just("pair")],
+    ) {
+        let stl = Solid::prism(&outline, 0.0, 4.0).stl();
+        let set = [("walls", &*walls.to_string()), ("infill", infill), ("dual.mode", dual)];
+        let run = slice(&stl, "generic-marlin", &set);
+        let last = run.print.layers.len() - run.settings.top_skins() as usize;
+        let middle = run.settings.bottom_skins() as usize..last;
+        let skin = run.print.of(Kind::Skin).filter(|m| m.is_bead() && m.layer.is_some_and(|k| middle.contains(&k)));
+        let places: Vec<_> = skin.map(|m| (m.layer, m.from, m.to)).collect();
+        prop_assert!(places.is_empty(), "{} {:?}", places.len(), places[0]);
     }
 }

@@ -1,0 +1,99 @@
+//! Wall beads and the areas that they are for -> the stretches of the beads that lie there.
+//!
+//! Beads are laid behind stretches of a wall ([`crate::region::wall_beads`]), and go on over short gaps between
+//! these and around corners. From one tooth of a gear to the next it is as far as around the corner of a strip: there
+//! a bead would run on along a wall behind which there is sparse infill.
+
+use super::hidden::Place;
+use super::stretches::{Smooth, stretches};
+use super::wall_samples::SHORT;
+use crate::geom::Point;
+use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::segment::way;
+use crate::geom::spans::Rows;
+use crate::units::Coord;
+
+/// The stretches of the `beads` of layer `k` that lie in `areas`, or beside them by a line at most. The
+/// areas are on the two rasters of skins, whose rows are `pitch` apart. Stretches shorter than `least`,
+/// in line widths, are left out.
+#[must_use]
+pub fn needed(
+    k: usize,
+    beads: Vec<Polyline>,
+    areas: &[Rows; 2],
+    pitch: Coord,
+    least: f64,
+) -> Vec<Polyline> {
+    if beads.is_empty() {
+        return beads;
+    }
+    let near = [0, 1].map(|r| areas[r].dilate(pitch, pitch));
+    let near = Place::new(k, &near, pitch);
+    let [close, least] = [SHORT, least].map(|lines| lines * f64::from(pitch));
+    let smooth = Smooth { close, least, ..Smooth::default() };
+    let is_needed = |p: &LinePoint| near.holds(Point { x: p.u, y: p.v });
+    beads.iter().flat_map(|bead| joined(stretches(bead, pitch, smooth, is_needed))).collect()
+}
+
+/// The stretches of a bead that pass, joined by those between them that go around a corner of a strip: there the
+/// strip is wider than a room, but for a short way.
+fn joined(stretches: Vec<(bool, Polyline)>) -> Vec<Polyline> {
+    let mut out: Vec<Polyline> = Vec::new();
+    let mut goes_on = false;
+    for (passes, stretch) in stretches {
+        let kept = passes || goes_on && turns_inwards(&stretch);
+        match out.last_mut().filter(|_| kept && goes_on) {
+            Some(last) => last.extend_from_slice(&stretch[1..]),
+            None if kept => out.push(stretch),
+            None => {}
+        }
+        goes_on = kept;
+    }
+    out
+}
+
+/// Whether a stretch turns by more than 45° to the left, where the solid lies: as inside a corner, and not as from
+/// the flank of one tooth to the foot of the next.
+fn turns_inwards(stretch: &[LinePoint]) -> bool {
+    let at = |p: &LinePoint| [f64::from(p.u), f64::from(p.v)];
+    let ways: Vec<[f64; 2]> = stretch.windows(2).map(|w| way(at(&w[0]), at(&w[1]))).collect();
+    let left = |w: &[[f64; 2]]| {
+        let ([x, y], [u, v]) = (w[0], w[1]);
+        (x * v - y * u).atan2(x * u + y * v).max(0.0)
+    };
+    ways.windows(2).map(left).sum::<f64>() > std::f64::consts::FRAC_PI_4
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geom::spans::Span;
+
+    const W: Coord = 4_000;
+
+    /// Rows from `first` to `last`, `from` to `to` long.
+    fn rows(first: i32, last: i32, (from, to): (Coord, Coord)) -> Rows {
+        let mut rows = Rows::starting_at(first);
+        let spans = |out: &mut Vec<Span>| out.push(Span { start: from, end: to });
+        (first..=last).for_each(|_| rows.push_row(spans));
+        rows
+    }
+
+    #[test]
+    fn a_bead_from_room_to_room_is_parted_but_one_over_a_short_gap_is_not() {
+        let bead = |to: Coord| -> Polyline {
+            [0, to].map(|u| LinePoint { u, v: 10 * W, width: W }).to_vec()
+        };
+        // Rooms up to 5 mm, and after a gap. Columns tell of none.
+        let room = |from: Coord, to: Coord| rows(5, 15, (from, to));
+        let lengths = |gap: Coord| -> Vec<Coord> {
+            let areas = [room(0, 50_000).or(&room(50_000 + gap, 150_000)), Rows::default()];
+            let needed = needed(0, vec![bead(150_000)], &areas, W, SHORT);
+            needed.iter().map(|bead| bead[bead.len() - 1].u - bead[0].u).collect()
+        };
+        assert_eq!(lengths(15_000), [150_000]);
+        let parted = lengths(25_000);
+        assert_eq!(parted.len(), 2, "{parted:?}");
+        assert!(parted[0] < 57_000 && parted[1] < 82_000, "{parted:?}");
+    }
+}
