@@ -17,6 +17,11 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "code", rename_all = "kebab-case")]
 pub enum Warning {
+    /// Nobody chose a printer: the file is for the default one.
+    NoPrinter {
+        /// Name of that printer.
+        machine: String,
+    },
     /// Holes were filled, or surfaces that enclose nothing dropped.
     MeshMended {
         /// The model's file.
@@ -207,6 +212,11 @@ impl Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::NoPrinter { machine } => write!(
+                f,
+                "no printer chosen: this file is for the {machine}; choose one with -p \
+                 (slicer profile list)"
+            ),
             Self::MeshMended { file, what } => f.write_str(&mended(file, what)),
             Self::OpenMesh { file, what } => f.write_str(&open(file, what)),
             Self::OpenContours { layers, longest_gap_mm } => {

@@ -25,13 +25,12 @@ const LEAST_REST: f64 = 0.05;
 fn chosen(report: &Report) -> String {
     let of = |kind: &str| {
         let last = report.profiles.iter().rev().find(|one| one.kind == Some(kind))?;
-        Some(format!("{kind} {}", last.name))
+        // A warning says what to do.
+        let open = kind == "printer" && !report.is_profile_chosen;
+        Some(format!("{kind} {}{}", last.name, if open { " (not chosen)" } else { "" }))
     };
     let parts: Vec<String> = ["printer", "material", "print"].into_iter().filter_map(of).collect();
     let mut text = parts.join(", ");
-    if !report.is_profile_chosen {
-        text += " (none chosen; -p chooses, `slicer profile list` names them)";
-    }
     let files: Vec<&str> = report.profiles.iter().filter_map(|one| one.file.as_deref()).collect();
     if !files.is_empty() {
         text += &format!("; with {}", files.join(", "));
@@ -307,8 +306,7 @@ mod tests {
         };
         assert_eq!(
             summary(&report, Duration::from_millis(1230)),
-            "printer ender-3, material petg, print standard (none chosen; -p chooses, \
-             `slicer profile list` names them); with a/mine.toml\n\
+            "printer ender-3 (not chosen), material petg, print standard; with a/mine.toml\n\
              100 layers of 0.2 mm, 40.0 x 30.0 x 20.0 mm; the last layer ends at 19.90 mm\n\
              filament 120 mm, 0.29 cm³, 0.4 g (outer wall 25 %, thick infill 75 %)\n\
              prints in 1 h 23 min, sliced in 1.23 s; 46 of 47 groups of layers with thick infill\n"

@@ -13,7 +13,6 @@ use super::foreign::{self, Foreign};
 use super::keys::{self, Key};
 use super::kind::ProfileKind;
 use super::origin::ValueOrigin;
-use super::shipped::DEFAULT;
 use super::{old, suggest};
 use crate::text;
 use std::io;
@@ -22,12 +21,14 @@ use std::io;
 #[derive(Debug, thiserror::Error)]
 pub enum ProfileError {
     /// No profile has this name.
-    #[error("unknown profile `{}`{}", text::line(name), known_profiles(name, known))]
+    #[error("unknown profile `{}`{}", text::line(name), unknown_profile(name, known, file.as_deref()))]
     UnknownProfile {
         /// The name asked for.
         name: String,
         /// Those that there are.
         known: Vec<String>,
+        /// The file that is meant, as it has to be written.
+        file: Option<String>,
     },
     /// A profile that describes another thing than asked for.
     #[error("{name} is a {is}, not a {wanted}; `slicer profile list` groups them")]
@@ -62,6 +63,15 @@ pub enum ProfileError {
         line: usize,
         /// The parser's reason.
         source: Box<toml::de::Error>,
+    },
+    /// A file of another slicer.
+    #[error(
+        "{file}: is no profile of this program, and settings of other slicers are not read; begin with \
+         `slicer profile new ender-3 > mine.toml`, or another printer of `slicer profile list`"
+    )]
+    OtherSlicers {
+        /// The file as the user named it.
+        file: String,
     },
     /// A text of several lines in quotes for one line.
     #[error(
@@ -123,8 +133,8 @@ pub enum ProfileError {
     },
     /// A key that neither has a default nor is set.
     #[error(
-        "{profile}: `{key}` has no value; set it, or begin the file with inherits = \"{}\"",
-        DEFAULT
+        "{profile}: `{key}` has no value; set it, or begin the file with inherits = \"YOUR PRINTER\", such \
+         as \"ender-3\" (slicer profile list)"
     )]
     Missing {
         /// The profile as the user named it.
@@ -278,14 +288,17 @@ fn mend(error: &toml::de::Error) -> &'static str {
     }
 }
 
-fn known_profiles(name: &str, known: &[String]) -> String {
-    let hint = near(name, known);
-    let hint = if hint.is_empty() { ".".to_owned() } else { hint };
-    format!(
-        "{hint} Known are {}; a file ends in .toml or is given as ./{}",
-        known.join(", "),
-        text::line(name)
-    )
+/// What to do about a name of no profile. The names are too many to be listed.
+fn unknown_profile(name: &str, known: &[String], file: Option<&str>) -> String {
+    let shown = text::line(name);
+    if let Some(file) = file {
+        return format!("; there is such a file: write {}", text::line(file));
+    }
+    let mut hint = near(name, known);
+    if hint.is_empty() {
+        hint = suggest::containing(name, known.iter().map(String::as_str));
+    }
+    format!("{hint}; `slicer profile list` names all, and a file ends in .toml or is given as ./{shown}")
 }
 
 fn unknown_key(key: &str) -> String {

@@ -13,7 +13,7 @@
 
 use super::error::{ProfileError, Result};
 use super::keys::{self, Kind};
-use super::layers::{Layer, Wanted, layers};
+use super::layers::{Laid, Layer, Wanted, layers};
 use super::origin::{Override, Profile, Sources, ValueOrigin};
 use super::shelf::Shelf;
 use super::{Settings, check, parse};
@@ -56,7 +56,7 @@ pub fn load_from(shelf: &Shelf, wanted: &[Wanted], overrides: &[Override]) -> Re
 pub fn faults(shelf: &Shelf, wanted: &[Wanted], overrides: &[Override]) -> Vec<ProfileError> {
     let (mut merged, mut found) = (defaults(), Vec::new());
     // Whatever keeps them from being read is told by loading them.
-    let layers = layers(wanted, shelf).map(|(layers, _)| layers).unwrap_or_default();
+    let layers = layers(wanted, shelf).unwrap_or_default().layers;
     for (key, value, origin) in layers.into_iter().flat_map(Layer::settings) {
         found.extend(insert(&key, value, origin, &mut merged).err());
     }
@@ -77,7 +77,7 @@ pub(super) fn merge(
     overrides: &[&[Override]],
 ) -> Result<Profile> {
     let mut merged = defaults();
-    let (layers, asked) = layers(wanted, shelf)?;
+    let Laid { layers, asked, printer, is_printer_chosen } = layers(wanted, shelf)?;
     let list = layers.iter().map(Layer::source).collect();
     for layer in layers {
         named_head(layer.entries.iter().map(|entry| entry.key.as_str()), &mut merged);
@@ -94,7 +94,7 @@ pub(super) fn merge(
     counts_hold_alone(&mut merged);
     follow(&mut merged);
     let left_cold = cold_bed(&mut merged);
-    let sources = Sources { list, asked, left_cold };
+    let sources = Sources { list, asked, printer, is_printer_chosen, left_cold };
     let last = sources.list.last();
     let last = last.map_or("", |source| source.file.as_ref().unwrap_or(&source.name));
     let settings = build(last, &merged)?;
@@ -456,7 +456,11 @@ mod tests {
     #[test]
     fn unknown_profiles_get_a_suggestion_and_the_list() {
         let message = load(["zcube"], &[]).unwrap_err().to_string();
-        assert!(message.contains("did you mean `zcube-dual`? Known are zcube-dual,"), "{message}");
+        assert_eq!(
+            message,
+            "unknown profile `zcube`; did you mean `zcube-dual`?; `slicer profile list` names all, and a \
+             file ends in .toml or is given as ./zcube"
+        );
         let message = load(["./no.toml"], &[]).unwrap_err().to_string();
         assert!(message.starts_with("./no.toml: cannot read this profile: "), "{message}");
     }

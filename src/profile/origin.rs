@@ -24,6 +24,10 @@ pub struct Sources {
     /// The names of those that were asked for, of a file without its folder, so that an output
     /// that quotes them does not depend on where it lay. If none was, all are defaults.
     pub asked: Vec<String>,
+    /// The printer: the last profile asked for that is one or inherits one, or else the default.
+    pub printer: String,
+    /// Whether somebody chose it, here or as a default of his own; otherwise it is the shipped default.
+    pub is_printer_chosen: bool,
     /// What the material asks of the bed, whole °C, where machine.heated_bed says that it cannot be heated.
     pub left_cold: Option<u32>,
 }

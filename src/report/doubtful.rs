@@ -20,6 +20,13 @@ pub fn cold_bed(settings: &Settings, sources: &Sources) -> Option<Warning> {
     Some(Warning::ColdBed { material, asked_celsius, machine })
 }
 
+/// A printer that nobody chose: the file may be for another than the one that gets it.
+pub fn no_printer(settings: &Settings, sources: &Sources) -> Option<Warning> {
+    // A program that embeds the library may have settings without profiles.
+    let is_open = !sources.is_printer_chosen && !sources.list.is_empty();
+    is_open.then(|| Warning::NoPrinter { machine: settings.machine.name.clone() })
+}
+
 /// Speeds, flow and temperatures to think about again.
 #[must_use]
 pub fn warnings(settings: &Settings) -> Vec<Warning> {

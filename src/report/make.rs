@@ -47,8 +47,8 @@ pub fn report(
     Report {
         schema: SCHEMA,
         slicer: job::NAME.to_owned(),
-        profile: job.sources.to_string(),
-        is_profile_chosen: !job.sources.asked.is_empty(),
+        profile: job.sources.printer.clone(),
+        is_profile_chosen: job.sources.is_printer_chosen,
         profiles: profiles(&job.sources),
         models: models(placed, &lift),
         size_mm: placed.size_mm,
@@ -78,7 +78,8 @@ pub fn report(
         arcs: reshaped::arcs(usage, settings),
         segments: reshaped::segments(usage, settings),
         dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits, lift.layers())),
-        warnings: (placed.warnings.iter().cloned())
+        warnings: (doubtful::no_printer(settings, &job.sources).into_iter())
+            .chain(placed.warnings.iter().cloned())
             .chain(tally.warnings(job.placement.copies))
             .chain(doubtful::warnings(settings))
             .chain(doubtful::cold_bed(settings, &job.sources))

@@ -32,7 +32,7 @@ use serde::Serialize;
 use steps::StepsReport;
 
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
-pub const SCHEMA: u32 = 4;
+pub const SCHEMA: u32 = 5;
 
 /// What is written as a report.
 #[derive(Serialize, JsonSchema)]
@@ -59,9 +59,9 @@ pub struct Report {
     pub schema: u32,
     /// Name and version of this program.
     pub slicer: String,
-    /// Profiles asked for, by name or file; that of the default printer if none was.
+    /// The printer's profile, by name or file: the last one asked for that is a printer or inherits one.
     pub profile: String,
-    /// Whether any profile was asked for; otherwise all are defaults.
+    /// Whether somebody chose the printer; otherwise it is the default one.
     pub is_profile_chosen: bool,
     /// The profiles that had a say, defaults included, the most general first.
     pub profiles: Vec<ProfileReport>,
