@@ -14,12 +14,12 @@ use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
-  slicer part.stl -o part.gcode
-  slicer part.stl --dual --infill 25 -o part.gcode
-  slicer part.stl -p generic-marlin --set filament.temperature=205 -o part.gcode
+  slicer part.stl -p ender-3 -o part.gcode
+  slicer part.stl -p ender-3 --dual --infill 25 -o part.gcode
+  slicer part.stl -p ender-3 --material petg --set filament.temperature=235 -o part.gcode
   slicer part.stl -p ./mine.toml --copies 4 --report part.json -o part.gcode
-  slicer - -o - < part.stl > part.gcode
-  slicer profile show generic-marlin > mine.toml
+  slicer - -p ender-3 -o - < part.stl > part.gcode
+  slicer profile new ender-3 > mine.toml
   slicer estimate part.gcode -p ./mine.toml
   slicer check part.gcode --against part.stl
   slicer roughness part.gcode --against part.stl
