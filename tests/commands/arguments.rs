@@ -299,10 +299,11 @@ fn write_block(path: &Path) {
 fn a_good_run_writes_its_products_and_a_summary_of_four_lines_and_one_on_quick_layers() {
     let folder = folder();
     write_block(&folder.path().join("block.stl"));
-    let args = ["block.stl", "-o", "a.gcode", "--report", "a.json", "--strict", "--dual"];
+    let args = ["block.stl", "-p", "zcube-dual", "-o", "a.gcode", "--report", "a.json"];
+    let args = [&args[..], &["--strict", "--dual"]].concat();
     for (seconds, lines) in [("0", 4), ("10", 5)] {
         let as_many = predicate::function(move |text: &str| text.lines().count() == lines);
-        let run = slicer(&folder).args(args).args(["--min-layer-time", seconds]).assert();
+        let run = slicer(&folder).args(&args).args(["--min-layer-time", seconds]).assert();
         run.success().stdout("").stderr(as_many);
     }
     assert_eq!(files(folder.path()), ["a.gcode", "a.json", "block.stl", "part.stl"]);
@@ -314,10 +315,11 @@ fn a_good_run_writes_its_products_and_a_summary_of_four_lines_and_one_on_quick_l
 fn the_product_is_the_same_on_stdout_and_on_any_number_of_threads() {
     let folder = folder();
     write_block(&folder.path().join("block.stl"));
-    slicer(&folder).args(["block.stl", "-o", "a.gcode", "-q"]).assert().success().stderr("");
+    let words = ["block.stl", "-p", "zcube-dual", "-o", "a.gcode", "-q"];
+    slicer(&folder).args(words).assert().success().stderr("");
     let file = fs::read(folder.path().join("a.gcode")).unwrap();
     for threads in ["1", "3"] {
-        let words = ["block.stl", "-q", "-o", "-", "--threads", threads];
+        let words = ["block.stl", "-p", "zcube-dual", "-q", "-o", "-", "--threads", threads];
         slicer(&folder).args(words).assert().success().stdout(file.clone()).stderr("");
     }
 }
@@ -406,6 +408,7 @@ fn strict_run_with_a_warning_is_done_but_exits_with_1() {
         assert_eq!(output.status.code(), Some(code), "{text}");
         assert!(text.starts_with("warning: cube.stl: ignored 1 byte after"), "{text}");
         assert_eq!(text.contains("error: cube.stl: 1 warning with --strict"), strict, "{text}");
+        command.args(["-p", "zcube-dual"]);
         assert!(folder.path().join("a.gcode").is_file());
         std::fs::remove_file(folder.path().join("a.gcode")).unwrap();
     }
@@ -417,9 +420,10 @@ fn a_product_that_the_check_finds_fault_with_is_not_put_in_place() {
     write_block(&folder.path().join("block.stl"));
     fs::write(folder.path().join("a.gcode"), "old").unwrap();
     // Axes that are slower than the feeds asked for.
-    let words = ["block.stl", "-q", "--check", "--set", "limits.speed_x=1", "--report", "a.json"];
+    let words = ["block.stl", "-p", "zcube-dual", "-q", "--check", "--set", "limits.speed_x=1"];
+    let words = [&words[..], &["--report", "a.json"]].concat();
     for out in ["a.gcode", "-"] {
-        let run = slicer(&folder).args(words).args(["-o", out]).assert().code(1).stdout("");
+        let run = slicer(&folder).args(&words).args(["-o", out]).assert().code(1).stdout("");
         run.stderr(
             predicate::str::starts_with("block.stl: too-fast: line ")
                 .and(predicate::str::contains("error: block.stl: --check has findings")),
@@ -436,7 +440,7 @@ fn a_product_that_the_check_finds_fault_with_is_not_put_in_place() {
 fn a_product_that_the_check_finds_clean_is_the_same_as_without_it() {
     let folder = folder();
     write_block(&folder.path().join("block.stl"));
-    let plain = ["block.stl", "-q", "--dual", "--copies", "2", "-o", "-"];
+    let plain = ["block.stl", "-p", "zcube-dual", "-q", "--dual", "--copies", "2", "-o", "-"];
     let product = slicer(&folder).args(plain).output().unwrap().stdout;
     let checked = slicer(&folder).args(plain).arg("--check").assert().success();
     checked.stdout(product).stderr("");
