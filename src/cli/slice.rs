@@ -89,7 +89,7 @@ fn make(
     read.map(OsStr::new).try_for_each(|file| usage::replaces(out, file))?;
     let mut target = Target::open(out, &profile.settings)?;
 
-    let report = work(args, out, profile, target.gcode())?;
+    let mut report = work(args, out, profile, target.gcode())?;
     let is_good = report.check.as_ref().is_none_or(|verdict| !verdict.fails());
     if !args.quiet {
         say(&summary::notes(&report));
@@ -97,6 +97,11 @@ fn make(
     for warning in &report.warnings {
         say_line("warning", about::told(warning, &report));
     }
+    let warnings = report.warnings.len() + report.check.as_ref().map_or(0, Verdict::warnings);
+    let is_clean = is_good && !(args.strict && warnings > 0);
+    report.exit_code = if is_clean { 0 } else { FINDINGS };
+    report.output = is_good.then(|| text::name(out));
+    let about = About::of_job(&report.models).to_string();
     if let Some(verdict) = &report.check {
         say(&about::lines(&check::findings(verdict, "--report"), &report.models));
         if !args.quiet {
@@ -115,7 +120,7 @@ fn make(
     if !is_good {
         let why =
             "--check has findings, so that no G-code is written; slice without it to see them";
-        say_line("error", format!("{}: {why}", About::of_job(&report.models)));
+        say_line("error", format!("{about}: {why}"));
         return Ok(FINDINGS);
     }
     if args.verbose {
@@ -124,8 +129,13 @@ fn make(
     if !args.quiet {
         say(&summary::summary(&report, started.elapsed()));
     }
-    let of_check = report.check.as_ref().map_or(0, Verdict::warnings);
-    Ok(findings(args.strict, report.warnings.len() + of_check, &report))
+    if !is_clean {
+        // The output is written all the same, to be looked at.
+        let warnings = plural(warnings as u64, "warning");
+        let why = "with --strict; look at them before printing";
+        say_line("error", format!("{about}: {warnings} {why}"));
+    }
+    Ok(report.exit_code)
 }
 
 /// Checks that no two arguments mean the same file.
@@ -173,18 +183,6 @@ fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// The exit code of a run that is done. With `--strict` warnings make it a failure, although the
-/// output is written, to be looked at.
-fn findings(strict: bool, warnings: usize, report: &Report) -> u8 {
-    if !strict || warnings == 0 {
-        return 0;
-    }
-    let warnings = plural(warnings as u64, "warning");
-    let about = About::of_job(&report.models);
-    say_line("error", format!("{about}: {warnings} with --strict; look at them before printing"));
-    FINDINGS
 }
 
 fn load(args: &SliceArgs) -> Result<Profile> {

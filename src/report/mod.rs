@@ -59,6 +59,11 @@ pub struct Report {
     pub schema: u32,
     /// Name and version of this program.
     pub slicer: String,
+    /// Exit code of the run: 0, or 1 where it is done with findings.
+    pub exit_code: u8,
+    /// The file with the G-code as it was named, `-` for standard output; null if none was written, as of a run
+    /// whose `--check` has findings.
+    pub output: Option<String>,
     /// The printer's profile, by name or file: the last one asked for that is a printer or inherits one.
     pub profile: String,
     /// Whether somebody chose the printer; otherwise it is the default one.
