@@ -53,6 +53,12 @@ const OTHERS: &[(&str, &str)] = &[
     ("ufp", "choose .gcode"),
     ("gz", "choose .gcode, or pipe it: -o - | gzip"),
     ("zip", "choose .gcode"),
+    ("toml", "it is a profile's ending, and -p reads one; choose .gcode"),
+    ("ini", "choose .gcode"),
+    ("json", "choose .gcode; --report writes a report"),
+    ("html", "choose .gcode; `slicer preview` draws it"),
+    ("svg", "choose .gcode; `slicer preview` draws it"),
+    ("png", "choose .gcode; `slicer preview` draws it"),
 ];
 
 /// Slices, and returns the exit code.

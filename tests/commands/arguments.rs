@@ -188,10 +188,9 @@ fn no_two_arguments_may_mean_the_same_file() {
     fails(&folder, &["part.stl", "-o", "next.STL"], 2, "next.STL is a model's name");
     fails(&folder, &["part.stl", "-o", "a", "--report", "b.stl"], 2, "b.stl is a model's name");
     // Nor replace a profile that is read, be it inherited.
-    fs::write(folder.path().join("base.toml"), "walls = 3\n").unwrap();
-    fs::write(folder.path().join("mine.toml"), "inherits = [\"ender-3\", \"base.toml\"]\n")
-        .unwrap();
-    for out in ["mine.toml", "base.toml"] {
+    fs::write(folder.path().join("base"), "walls = 3\n").unwrap();
+    fs::write(folder.path().join("mine.toml"), "inherits = [\"ender-3\", \"./base\"]\n").unwrap();
+    for out in ["mine.toml", "base"] {
         let words = ["part.stl", "-p", "./mine.toml", "-o", out];
         fails(&folder, &words, 2, "the output would replace");
     }
@@ -210,6 +209,12 @@ fn formats_that_are_not_written_are_refused() {
         ("a.bgcode", "`bgcode`"),
         ("a.X3G", "`gpx`"),
         ("a.gcode.gz", "-o - | gzip"),
+        ("a.toml", "-p reads one; choose .gcode"),
+        ("a.INI", "choose .gcode"),
+        ("a.json", "--report writes a report"),
+        ("a.html", "`slicer preview` draws it"),
+        ("a.svg", "`slicer preview` draws it"),
+        ("a.png", "`slicer preview` draws it"),
     ] {
         fails(&folder, &["part.stl", "-o", out], 2, &format!("{out}: this format is not written"));
         fails(&folder, &["part.stl", "-o", out], 2, remedy);
