@@ -295,6 +295,11 @@ mod tests {
             ("infill", "x", "--set: infill is the text `x`; it must be a number, 0 to 100 %"),
             ("seam", "reer", "--set: seam = `reer` is unknown; did you mean `rear`?"),
             (
+                "infill",
+                "0.2",
+                "--set: infill = 0.2 % is next to nothing: it counts in %, where 20 is a fifth; write 20 for",
+            ),
+            (
                 "layer_height",
                 "0.41",
                 "--set: layer_height = 0.41 mm is more than machine.nozzle_diameter",
