@@ -222,16 +222,30 @@ pub enum ValueError {
     },
 }
 
+/// Faults of a block that are told at once.
+const MOST_TOLD: usize = 5;
+
 /// A start or end block that cannot be filled in.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{block}, line {line} of it: {source}")]
+#[error("{block}, {}", told(faults))]
 pub struct BlockError {
     /// The block's key.
     pub block: String,
-    /// Line of the block, from 1.
-    pub line: usize,
-    /// What is wrong in this line.
-    pub source: PlaceholderError,
+    /// What is wrong, and in which lines of the block, from 1.
+    pub faults: Vec<(usize, PlaceholderError)>,
+}
+
+/// The first faults, and how many more there are.
+fn told(faults: &[(usize, PlaceholderError)]) -> String {
+    let one = |(k, (line, fault)): (usize, &(usize, PlaceholderError))| {
+        let of_it = if k == 0 { " of it" } else { "" };
+        format!("line {line}{of_it}: {fault}")
+    };
+    let mut parts: Vec<String> = faults.iter().take(MOST_TOLD).enumerate().map(one).collect();
+    if faults.len() > MOST_TOLD {
+        parts.push(format!("and {} more", faults.len() - MOST_TOLD));
+    }
+    parts.join("; ")
 }
 
 /// A placeholder that cannot be filled in.
@@ -253,15 +267,33 @@ pub enum PlaceholderError {
         /// Ours for it, with braces, if there is one.
         ours: Option<String>,
     },
-    /// A condition or a sum, which other slicers compute.
+    /// A condition, which other slicers decide.
     #[error(
-        "{} is a condition or a sum of another slicer, and nothing is computed here; write the line as \
-         it shall be; {{park_z}} is 10 mm above the print, or the highest that the machine goes",
-        text::line(written)
+        "{} is a condition of another slicer, and nothing is computed here; write {}",
+        text::line(written),
+        if *lifts { "G1 Z{park_z} F600 in its place" } else { "the line as it shall be" }
     )]
-    Computed {
+    Condition {
         /// As it stands in the block, with its brackets.
         written: String,
+        /// Whether its line moves z.
+        lifts: bool,
+    },
+    /// A sum, which other slicers compute.
+    #[error(
+        "{} is a sum of another slicer, and nothing is computed here; {}",
+        text::line(written),
+        if *of_height {
+            "{park_z} is 10 mm above the print, or the highest that the machine goes"
+        } else {
+            "write the number that it gives"
+        }
+    )]
+    Sum {
+        /// As it stands in the block, with its brackets.
+        written: String,
+        /// Whether it is one of the print's height.
+        of_height: bool,
     },
     /// A closing brace without an opening one.
     #[error("a single `}}`; write `}}}}` for a brace")]
@@ -298,7 +330,9 @@ fn unknown_profile(name: &str, known: &[String], file: Option<&str>) -> String {
     if hint.is_empty() {
         hint = suggest::containing(name, known.iter().map(String::as_str));
     }
-    format!("{hint}; `slicer profile list` names all, and a file ends in .toml or is given as ./{shown}")
+    format!(
+        "{hint}; `slicer profile list` names all, and a file ends in .toml or is given as ./{shown}"
+    )
 }
 
 fn unknown_key(key: &str) -> String {
