@@ -125,6 +125,13 @@ pub enum Warning {
         /// Name of the printer.
         machine: String,
     },
+    /// The end block moves the nozzle aside before anything lifts it.
+    EndDrags {
+        /// Line of the block, from 1.
+        line: usize,
+        /// What stands there.
+        command: String,
+    },
     /// Lines that are printed slower than asked for, since the hot end cannot melt as fast.
     FlowLimited {
         /// What they are for, as in the report's roles.
@@ -258,6 +265,11 @@ impl fmt::Display for Warning {
                 f.write_str(&cold_bed(material, *asked_celsius, machine))
             }
             Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
+            Self::EndDrags { line, command } => write!(
+                f,
+                "machine.end_gcode, line {line} of it: `{command}` drags the nozzle over the print, since nothing \
+                 lifts it before; write G1 Z{{park_z}} F600 above it"
+            ),
                 let speeds = [*asked_mm_s, *lowest_mm_s].map(short);
                 f.write_str(&flow_limited(role, setting, speeds, *limit_mm3_s))
             }

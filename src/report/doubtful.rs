@@ -38,12 +38,39 @@ pub fn warnings(settings: &Settings) -> Vec<Warning> {
     found
 }
 
+/// An end block that moves aside before it lifts the nozzle.
+fn drags(settings: &Settings) -> Option<Warning> {
+    let lines = settings.machine.end_gcode.lines().enumerate();
+    for (index, line) in lines {
+        let written = line.split(';').next().unwrap_or_default().trim();
+        let code = written.to_ascii_uppercase();
+        let mut words = code.split_whitespace();
+        match words.next() {
+            Some("G0" | "G1") => {}
+            // What is not numbered may be a macro, which lifts it.
+            Some(word) if word.chars().nth(1).is_none_or(|second| !second.is_ascii_digit()) => {
+                return None;
+            }
+            _ => continue,
+        }
+        let has = |axes: &[char]| code.split_whitespace().skip(1).any(|w| w.starts_with(axes));
+        if has(&['Z']) {
+            return None;
+        }
+        if has(&['X', 'Y']) {
+            return Some(Warning::EndDrags { line: index + 1, command: written.to_owned() });
+        }
+    }
+    None
+}
+
 /// Speeds that are hardly meant.
 fn slow(settings: &Settings) -> impl Iterator<Item = Warning> {
     settings
         .slow_speeds()
         .into_iter()
         .map(|(setting, speed_mm_s)| Warning::SlowSpeed { setting: setting.to_owned(), speed_mm_s })
+    found.extend(drags(settings));
 }
 
 /// Speeds that the printer goes below, whatever it is told.
@@ -150,6 +177,23 @@ mod tests {
             ),
             (
                 "filament.bed_temperature",
+    #[test]
+    fn an_end_block_that_moves_aside_before_it_lifts_is_told() {
+        for (block, line) in [
+            ("M104 S0\nG1 X0 Y200 F3600 ; park\nM84", Some(2)),
+            ("G91\nG1 E-2 F2700\ng1 x5 y5\nG1 Z10", Some(3)),
+            ("M104 S0\nG1 Z{park_z} F600\nG1 X0 Y200", None),
+            ("G91\nG1 E-2 Z0.2\nG1 X5 Y5", None),
+            ("PRINT_END\nG1 X0", None),
+            ("M104 S0", None),
+        ] {
+            let told = told(&[("machine.end_gcode", block)]);
+            assert_eq!(told.len(), usize::from(line.is_some()), "{block}: {told:?}");
+            let starts = format!("machine.end_gcode, line {}", line.unwrap_or_default());
+            assert!(told.iter().all(|one| one.starts_with(&starts)), "{told:?}");
+        }
+    }
+
                 "100",
                 "filament.bed_temperature = 100 °C lies outside 0 to 80",
             ),
