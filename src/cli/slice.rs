@@ -97,17 +97,17 @@ fn make(
 
     let mut report = work(args, out, profile, target.gcode())?;
     let is_good = report.check.as_ref().is_none_or(|verdict| !verdict.fails());
-    if !args.quiet {
-        say(&summary::notes(&report));
-    }
-    for warning in &report.warnings {
-        say_line("warning", about::told(warning, &report));
-    }
     let warnings = report.warnings.len() + report.check.as_ref().map_or(0, Verdict::warnings);
     let is_clean = is_good && !(args.strict && warnings > 0);
     report.exit_code = if is_clean { 0 } else { FINDINGS };
     report.output = is_good.then(|| text::name(out));
     let about = About::of_job(&report.models).to_string();
+    if !args.quiet {
+        say(&summary::notes(&about, &report));
+    }
+    for warning in &report.warnings {
+        say_line("warning", about::told(warning, &report));
+    }
     if let Some(verdict) = &report.check {
         say(&about::lines(&check::findings(verdict, "--report"), &report.models));
         if !args.quiet {
@@ -133,7 +133,7 @@ fn make(
         say(&summary::roles(&report));
     }
     if !args.quiet {
-        say(&summary::summary(&report, started.elapsed()));
+        say(&summary::summary(&about, &report, started.elapsed()));
     }
     if !is_clean {
         // The output is written all the same, to be looked at.

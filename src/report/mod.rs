@@ -250,6 +250,19 @@ pub struct FlowReport {
     pub largest_mm3_s: f64,
     /// The most that the hot end can melt, mm³/s.
     pub limit_mm3_s: f64,
+    /// Roles whose usual lines melt at the speed asked for, and some wider ones do not: those are slower.
+    pub slowed: Vec<SlowedFlowReport>,
+}
+
+/// Lines that are slower where they are wider than usual.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+pub struct SlowedFlowReport {
+    /// What they are for, as in `roles`.
+    pub role: String,
+    /// Highest speed asked for, mm/s.
+    pub asked_mm_s: f64,
+    /// Lowest speed given, mm/s.
+    pub lowest_mm_s: f64,
 }
 
 /// What `cooling.min_layer_time` changed.

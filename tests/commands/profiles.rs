@@ -81,7 +81,10 @@ fn the_summary_says_for_what_it_was_sliced_and_whether_that_was_chosen() {
         &mut slicer(&folder),
         &["-p", "generic-klipper", "--material", "petg", "--print", "fine"],
     );
-    assert!(text.starts_with("printer generic-klipper, material petg, print fine\n"), "{text}");
+    assert!(
+        text.starts_with("part.stl: printer generic-klipper, material petg, print fine\n"),
+        "{text}"
+    );
     let gcode = fs::read_to_string(folder.path().join("a.gcode")).unwrap();
     for line in ["layer_height = 0.12", "filament.temperature = 240", "filament.name = \"PETG\""] {
         assert!(gcode.contains(&format!("\n; {line}\n")), "{line}");
@@ -96,7 +99,7 @@ fn every_file_that_had_a_say_is_named_but_not_in_the_gcode() {
     let words = ["-p", "secret-printer", "-p", "./secret.toml", "--report", "r.json"];
     let text = said(&mut slicer(&folder), &words);
     assert!(
-        text.starts_with("printer secret-printer, material pla, print standard; with "),
+        text.starts_with("part.stl: printer secret-printer, material pla, print standard; with "),
         "{text}"
     );
     assert!(text.contains("secret-printer.toml, ./secret.toml\n"), "{text}");
@@ -119,7 +122,10 @@ fn ones_own_profiles_are_found_in_order_and_can_be_left_out() {
     write(&folder, "config/slicer/materials/mine.toml", "[filament]\ntemperature = 201\n");
     write(&folder, "farm/materials/mine.toml", "[filament]\ntemperature = 202\n");
     let text = said(&mut slicer(&folder), &[]);
-    assert!(text.starts_with("printer default.toml, material pla, print standard"), "{text}");
+    assert!(
+        text.starts_with("part.stl: printer default.toml, material pla, print standard"),
+        "{text}"
+    );
     let shown = |command: &mut Command, words: &[&str]| {
         let words = [&["profile", "show"], words].concat();
         let done = command.args(words).assert().success();
@@ -184,7 +190,7 @@ fn files_that_are_meant_and_settings_of_other_slicers_are_told() {
     );
     refuses(
         &["-p", "mine.toml"],
-        "mine.toml: `machine.start_gcode` has no value; set it, or begin the file with inherits = \
+        "mine.toml: `description` has no value; set it, or begin the file with inherits = \
          \"YOUR PRINTER\", such as \"ender-3\" (slicer profile list)",
     );
     let others = "is no profile of this program, and settings of other slicers are not read; begin with \
