@@ -17,7 +17,7 @@ pub struct Profile {
 }
 
 /// The profiles that had a say, the most general first.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sources {
     /// Each of them once for every time that it was laid.
     pub list: Vec<Source>,
@@ -30,6 +30,21 @@ pub struct Sources {
     pub is_printer_chosen: bool,
     /// What the material asks of the bed, whole °C, where machine.heated_bed says that it cannot be heated.
     pub left_cold: Option<u32>,
+    /// Numbers of skin layers that a thickness outdoes.
+    pub outdone: Vec<Outdone>,
+}
+
+/// A number of layers that is not what is printed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outdone {
+    /// Its key.
+    pub key: &'static str,
+    /// The thickness that asks for more.
+    pub by: &'static str,
+    /// That thickness, mm.
+    pub thickness_mm: f64,
+    /// The layers that it takes.
+    pub layers: u32,
 }
 
 /// A profile that had a say.

@@ -20,22 +20,22 @@ pub fn cold_bed(settings: &Settings, sources: &Sources) -> Option<Warning> {
     Some(Warning::ColdBed { material, asked_celsius, machine })
 }
 
+/// Numbers of skin layers in a profile of one's own that a thickness outdoes.
+pub fn outdone(sources: &Sources) -> impl Iterator<Item = Warning> {
+    sources.outdone.iter().map(|one| {
+        let why = format!(
+            "{} = {} mm asks for more, {} layers; set {} = 0 beside it",
+            one.by, one.thickness_mm, one.layers, one.by
+        );
+        Warning::void([one.key], &why)
+    })
+}
+
 /// A printer that nobody chose: the file may be for another than the one that gets it.
 pub fn no_printer(settings: &Settings, sources: &Sources) -> Option<Warning> {
     // A program that embeds the library may have settings without profiles.
     let is_open = !sources.is_printer_chosen && !sources.list.is_empty();
     is_open.then(|| Warning::NoPrinter { machine: settings.machine.name.clone() })
-}
-
-/// Speeds, flow and temperatures to think about again.
-#[must_use]
-pub fn warnings(settings: &Settings) -> Vec<Warning> {
-    let mut found: Vec<Warning> = slow(settings).collect();
-    found.extend(fast(settings));
-    found.extend(heat(settings));
-    let flow = ("extrusion.multiplier", settings.extrusion.multiplier, "times");
-    found.extend(outside(flow, FLOWS, "what makes up for a filament or an extruder"));
-    found
 }
 
 /// An end block that moves aside before it lifts the nozzle.
@@ -64,13 +64,24 @@ fn drags(settings: &Settings) -> Option<Warning> {
     None
 }
 
+/// Speeds, flow and temperatures to think about again.
+#[must_use]
+pub fn warnings(settings: &Settings) -> Vec<Warning> {
+    let mut found: Vec<Warning> = slow(settings).collect();
+    found.extend(fast(settings));
+    found.extend(heat(settings));
+    found.extend(drags(settings));
+    let flow = ("extrusion.multiplier", settings.extrusion.multiplier, "times");
+    found.extend(outside(flow, FLOWS, "what makes up for a filament or an extruder"));
+    found
+}
+
 /// Speeds that are hardly meant.
 fn slow(settings: &Settings) -> impl Iterator<Item = Warning> {
     settings
         .slow_speeds()
         .into_iter()
         .map(|(setting, speed_mm_s)| Warning::SlowSpeed { setting: setting.to_owned(), speed_mm_s })
-    found.extend(drags(settings));
 }
 
 /// Speeds that the printer goes below, whatever it is told.
@@ -167,17 +178,6 @@ mod tests {
     }
 
     #[test]
-    fn each_value_is_told_with_its_range() {
-        for (key, value, expected) in [
-            ("extrusion.multiplier", "5", "extrusion.multiplier = 5 times lies outside 0.7 to 1.4"),
-            (
-                "filament.temperature",
-                "290",
-                "filament.temperature = 290 °C lies outside 180 to 235",
-            ),
-            (
-                "filament.bed_temperature",
-    #[test]
     fn an_end_block_that_moves_aside_before_it_lifts_is_told() {
         for (block, line) in [
             ("M104 S0\nG1 X0 Y200 F3600 ; park\nM84", Some(2)),
@@ -194,6 +194,17 @@ mod tests {
         }
     }
 
+    #[test]
+    fn each_value_is_told_with_its_range() {
+        for (key, value, expected) in [
+            ("extrusion.multiplier", "5", "extrusion.multiplier = 5 times lies outside 0.7 to 1.4"),
+            (
+                "filament.temperature",
+                "290",
+                "filament.temperature = 290 °C lies outside 180 to 235",
+            ),
+            (
+                "filament.bed_temperature",
                 "100",
                 "filament.bed_temperature = 100 °C lies outside 0 to 80",
             ),

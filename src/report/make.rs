@@ -85,6 +85,7 @@ pub fn report(
             .chain(tally.warnings(job.placement.copies))
             .chain(doubtful::warnings(settings))
             .chain(doubtful::cold_bed(settings, &job.sources))
+            .chain(doubtful::outdone(&job.sources))
             .chain(motion::warnings(settings))
             .chain(unused::warnings(usage, settings))
             .chain(slowed_down(&usage.flows, settings))

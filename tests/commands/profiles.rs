@@ -324,3 +324,15 @@ fn the_list_marks_the_default_that_holds() {
         && one["kind"] == "material"
         && one.get("file").is_none()));
 }
+
+#[test]
+fn a_number_of_skin_layers_that_a_thickness_outdoes_is_told() {
+    let folder = folder();
+    write(&folder, "mine.toml", "inherits = \"ender-3\"\ntop_layers = 2\n");
+    let says = "top_layers has no effect: top_thickness = 0.8 mm asks for more, 4 layers; set top_thickness = 0 \
+                beside it\n";
+    let checks = slicer(&folder).args(["profile", "check", "mine.toml"]).assert().success();
+    checks.stderr(format!("warning: mine.toml: {says}"));
+    let text = said(&mut slicer(&folder), &["-q", "-p", "mine.toml"]);
+    assert_eq!(text, format!("warning: part.stl: {says}"));
+}
