@@ -5,9 +5,10 @@ use super::preview::PreviewArgs;
 use super::profiles::{ProfileArgs, ShelfArgs};
 use super::reading::ReadingArgs;
 use super::texts::CODES;
-use super::words::{brim, parts, words};
+use super::words::{brim, code, parts, words};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+use slicer::check::finding::Code;
 use slicer::profile::{Override, Settings, ValueOrigin};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -205,10 +206,12 @@ pub(crate) enum ReportCommand {
 #[derive(Debug, Args)]
 #[command(after_long_help = CODES)]
 pub(crate) struct EstimateArgs {
-    /// G-code file of any slicer; `-` reads standard input
-    #[arg(value_name = "FILE")]
-    pub(crate) file: OsString,
+    /// G-code files of any slicer; `-` reads standard input
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<OsString>,
     /// Print JSON
+    ///
+    /// Print JSON: of one file an object, of several one on each line.
     #[arg(long)]
     pub(crate) json: bool,
     /// List every layer with its time (JSON always does)
@@ -244,6 +247,12 @@ pub(crate) struct CheckArgs {
     /// Exit with 1 if there are warnings, too
     #[arg(long)]
     pub(crate) strict: bool,
+    /// Findings of these codes do not count (repeatable)
+    ///
+    /// Findings of these codes, errors and warnings, are known: they are listed after `allowed:`, and do not count
+    /// for the exit code (repeatable).
+    #[arg(long, value_name = "CODE,..", value_delimiter = ',', value_parser = code)]
+    pub(crate) allow: Vec<Code>,
     /// Print findings only, each with its file
     #[arg(short, long, conflicts_with = "json")]
     pub(crate) quiet: bool,

@@ -228,7 +228,7 @@ fn other(command: &Command) -> Result<Outcome> {
         Command::Report(ReportCommand::Schema) => pretty(&report::schema())?,
         Command::Compare(args) => compare::run(args)?,
         Command::Check(args) => return check::run(args),
-        Command::Estimate(args) => estimate::run(args)?,
+        Command::Estimate(args) => return estimate::run(args),
         Command::Steps(args) => steps::run(args)?,
         Command::Play(args) => return play::run(args),
         Command::Send(args) => return send::run(args),

@@ -109,7 +109,7 @@ fn make(
         say_line("warning", about::told(warning, &report));
     }
     if let Some(verdict) = &report.check {
-        say(&about::lines(&check::findings(verdict, "--report"), &report.models));
+        say(&about::lines(&check::findings(verdict, &[], "--report"), &report.models));
         if !args.quiet {
             say(&check::notes(verdict));
         }
