@@ -238,8 +238,9 @@ impl fmt::Display for Warning {
             Self::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm: [x, y], kept_away } => {
                 write!(
                     f,
-                    "{length_mm:.0} mm of lines begin in the air at {}, first on layer {layer} at \
+                    "{} mm of lines begin in the air at {}, first on layer {layer} at \
                      {z_mm:.2} mm, x {x:.1} y {y:.1}; {}, or turn the part with --rotate",
+                    rough(*length_mm),
                     plural(*places as u64, "place"),
                     carried(kept_away.as_deref())
                 )
@@ -264,12 +265,12 @@ impl fmt::Display for Warning {
             Self::ColdBed { material, asked_celsius, machine } => {
                 f.write_str(&cold_bed(material, *asked_celsius, machine))
             }
-            Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
             Self::EndDrags { line, command } => write!(
                 f,
                 "machine.end_gcode, line {line} of it: `{command}` drags the nozzle over the print, since nothing \
                  lifts it before; write G1 Z{{park_z}} F600 above it"
             ),
+            Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
                 let speeds = [*asked_mm_s, *lowest_mm_s].map(short);
                 f.write_str(&flow_limited(role, setting, speeds, *limit_mm3_s))
             }
@@ -349,8 +350,8 @@ fn short_lines(lines: usize, lost_s: f64, limit_per_s: f64) -> String {
 /// That the part has lines in the air.
 fn hangs(length_mm: f64, supported: bool) -> String {
     format!(
-        "{length_mm:.0} mm of lines begin in the air, where the part has nothing below; {}turn the part \
-         with --rotate",
+        "{} mm of lines begin in the air, where the part has nothing below; {}turn the part with --rotate",
+        rough(length_mm),
         if supported { "" } else { "use --support, or " }
     )
 }
@@ -390,6 +391,11 @@ fn left_out(islands: usize, of: usize) -> String {
 fn carried(kept_away: Option<&str>) -> String {
     let set = |key| format!("{key} keeps support away there; set another");
     kept_away.map_or_else(|| "use --support".to_owned(), set)
+}
+
+/// A length in whole mm, or in tenths where it is shorter than a few.
+fn rough(length_mm: f64) -> String {
+    if length_mm < 3.0 { format!("{:.1}", length_mm.max(0.1)) } else { format!("{length_mm:.0}") }
 }
 
 /// A speed in hundredths, rounded down: what a setting may be without being too much.

@@ -419,7 +419,10 @@ impl SettingArgs {
     /// The flag that sets a key, if there is one.
     pub(super) fn flag_of(key: &str) -> Option<&'static str> {
         let all = Self::default().all();
-        all.into_iter().find(|(_, name, _)| *name == key).map(|(flag, _, _)| flag)
+        // What sets other keys as well is another wish.
+        let is_its_own = |flag: &str| !(flag == "--skin-layers" && key != "skin_layers");
+        let found = all.into_iter().find(|(flag, name, _)| *name == key && is_its_own(flag));
+        found.map(|(flag, _, _)| flag)
     }
 
     /// Each flag, the key it sets, and the value given.

@@ -42,7 +42,10 @@ fn fails(folder: &TempDir, words: &[&str], code: i32, says: &str) {
 fn wrong_flags_are_one_line_with_a_tip() {
     let folder = folder();
     fails(&folder, &["part.stl", "-o", "a", "--wals", "2"], 2, "'--walls'");
-    fails(&folder, &["part.stl"], 2, "--output <OUT>");
+    fails(&folder, &["part.stl"], 2, "--output <OUT>, such as -o part.gcode; see `slicer --help`");
+    fs::write(folder.path().join("-dash.stl"), "").unwrap();
+    fails(&folder, &["-dash.stl", "-o", "a"], 2, "begins with a dash; write ./-dash.stl");
+    fs::remove_file(folder.path().join("-dash.stl")).unwrap();
     fails(&folder, &["-o", "a"], 2, "<INPUT>");
     fails(&folder, &["part.stl", "-o", "a", "--pattern", "gird"], 2, "grid");
     fails(&folder, &["part.stl", "-o", "a", "--scale", "0"], 2, "more than 0");
@@ -206,15 +209,15 @@ fn formats_that_are_not_written_are_refused() {
     let folder = folder();
     for (out, remedy) in [
         ("a.3mf", "choose .gcode"),
-        ("a.bgcode", "`bgcode`"),
-        ("a.X3G", "`gpx`"),
-        ("a.gcode.gz", "-o - | gzip"),
         ("a.toml", "-p reads one; choose .gcode"),
         ("a.INI", "choose .gcode"),
         ("a.json", "--report writes a report"),
         ("a.html", "`slicer preview` draws it"),
         ("a.svg", "`slicer preview` draws it"),
         ("a.png", "`slicer preview` draws it"),
+        ("a.bgcode", "`bgcode`"),
+        ("a.X3G", "`gpx`"),
+        ("a.gcode.gz", "-o - | gzip"),
     ] {
         fails(&folder, &["part.stl", "-o", out], 2, &format!("{out}: this format is not written"));
         fails(&folder, &["part.stl", "-o", out], 2, remedy);
@@ -405,6 +408,7 @@ fn strict_run_with_a_warning_is_done_but_exits_with_1() {
     for (strict, code) in [(false, 0), (true, 1)] {
         let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_slicer"));
         command.current_dir(folder.path()).args(["cube.stl", "-o", "a.gcode", "-q"]);
+        command.args(["-p", "zcube-dual"]);
         if strict {
             command.arg("--strict");
         }
@@ -413,7 +417,6 @@ fn strict_run_with_a_warning_is_done_but_exits_with_1() {
         assert_eq!(output.status.code(), Some(code), "{text}");
         assert!(text.starts_with("warning: cube.stl: ignored 1 byte after"), "{text}");
         assert_eq!(text.contains("error: cube.stl: 1 warning with --strict"), strict, "{text}");
-        command.args(["-p", "zcube-dual"]);
         assert!(folder.path().join("a.gcode").is_file());
         std::fs::remove_file(folder.path().join("a.gcode")).unwrap();
     }
