@@ -1,4 +1,11 @@
-//! `slicer estimate` -> how long a G-code file takes, as a table or as JSON.
+//! `slicer estimate` -> how long G-code files take, as a table or as JSON.
+//!
+//! 1. Each file is read and timed by itself: by the limits of `-p`, or else by those in its own settings. Where
+//!    there are none it is timed by the default printer's, with a warning.
+//! 2. The *print time* is that from the first layer to the last line, as files and summaries tell it; that of the
+//!    *whole file* has start and end block, too.
+//! 3. One file has a table, and of several each has a line.
+//! 4. JSON is an object for one file, and for several one on each line, also for one that cannot be read.
 
 use super::args::EstimateArgs;
 use super::clock::{self, LimitsBy};

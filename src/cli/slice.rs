@@ -102,18 +102,7 @@ fn make(
     report.exit_code = if is_clean { 0 } else { FINDINGS };
     report.output = is_good.then(|| text::name(out));
     let about = About::of_job(&report.models).to_string();
-    if !args.quiet {
-        say(&summary::notes(&about, &report));
-    }
-    for warning in &report.warnings {
-        say_line("warning", about::told(warning, &report));
-    }
-    if let Some(verdict) = &report.check {
-        say(&about::lines(&check::findings(verdict, &[], "--report"), &report.models));
-        if !args.quiet {
-            say(&check::notes(verdict));
-        }
-    }
+    tell(args, &about, &report);
     // The report lists the findings, so that it is written with them, too.
     let mut products = Vec::new();
     if is_good {
@@ -142,6 +131,22 @@ fn make(
         say_line("error", format!("{about}: {warnings} {why}"));
     }
     Ok(report.exit_code)
+}
+
+/// Tells what was found: notes, warnings, and what the check says.
+fn tell(args: &SliceArgs, about: &str, report: &Report) {
+    if !args.quiet {
+        say(&summary::notes(about, report));
+    }
+    for warning in &report.warnings {
+        say_line("warning", about::told(warning, report));
+    }
+    if let Some(verdict) = &report.check {
+        say(&about::lines(&check::findings(verdict, &[], "--report"), &report.models));
+        if !args.quiet {
+            say(&check::notes(verdict));
+        }
+    }
 }
 
 /// Checks that no two arguments mean the same file.

@@ -1,4 +1,11 @@
 //! Settings -> findings: values that are allowed and hardly meant, or more than printer and material bear.
+//!
+//! - *Doubtful* is a value that is allowed, and that prints something else than people mean, or nothing good: it
+//!   gives a warning and fails no run but one with `--strict`.
+//! - What the settings alone tell is in [`warnings`]: speeds, temperatures and flow beyond what printer or
+//!   material bear, and an end block that moves aside before it lifts the nozzle.
+//! - What only the profiles tell, by which the settings came about, each has a function of its own: a printer that
+//!   nobody chose, a bed that stays cold, a number of skin layers that a thickness outdoes.
 
 use crate::profile::{Settings, Sources};
 use crate::warning::Warning;

@@ -41,8 +41,7 @@ pub fn report(
     audits: &[Audit],
     tally: &Tally,
 ) -> Report {
-    let settings = &job.settings;
-    let lift = Lift::new(settings);
+    let (settings, lift) = (&job.settings, Lift::new(&job.settings));
     let Sums { usage, times, cooled } = sums;
     let Material { mm, cm3, grams, cost } = Material::new(usage.filament(), settings);
     Report {
