@@ -219,31 +219,16 @@ impl Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoPrinter { machine } => write!(
-                f,
-                "no printer chosen: this file is for the {machine}; choose one with -p \
-                 (slicer profile list)"
-            ),
+            Self::NoPrinter { machine } => f.write_str(&no_printer(machine)),
             Self::MeshMended { file, what } => f.write_str(&mended(file, what)),
             Self::OpenMesh { file, what } => f.write_str(&open(file, what)),
             Self::OpenContours { layers, longest_gap_mm } => {
                 f.write_str(&closed(*layers, *longest_gap_mm))
             }
-            Self::ThinPlaces { layers, area_mm2 } => write!(
-                f,
-                "left out {area_mm2:.1} mm² on {} that are too thin for a bead; use a smaller \
-                 min_feature or nozzle",
-                plural(*layers as u64, "layer")
-            ),
-            Self::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm: [x, y], kept_away } => {
-                write!(
-                    f,
-                    "{} mm of lines begin in the air at {}, first on layer {layer} at \
-                     {z_mm:.2} mm, x {x:.1} y {y:.1}; {}, or turn the part with --rotate",
-                    rough(*length_mm),
-                    plural(*places as u64, "place"),
-                    carried(kept_away.as_deref())
-                )
+            Self::ThinPlaces { layers, area_mm2 } => f.write_str(&too_thin(*layers, *area_mm2)),
+            Self::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm, kept_away } => {
+                let kept_away = kept_away.as_deref();
+                f.write_str(&in_the_air((*places, *length_mm), (*layer, *z_mm), *at_mm, kept_away))
             }
             Self::PartHangs { length_mm, supported } => f.write_str(&hangs(*length_mm, *supported)),
             Self::BrimLeftOut { islands, of } => f.write_str(&left_out(*islands, *of)),
@@ -265,11 +250,7 @@ impl fmt::Display for Warning {
             Self::ColdBed { material, asked_celsius, machine } => {
                 f.write_str(&cold_bed(material, *asked_celsius, machine))
             }
-            Self::EndDrags { line, command } => write!(
-                f,
-                "machine.end_gcode, line {line} of it: `{command}` drags the nozzle over the print, since nothing \
-                 lifts it before; write G1 Z{{park_z}} F600 above it"
-            ),
+            Self::EndDrags { line, command } => f.write_str(&end_drags(*line, command)),
             Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
                 let speeds = [*asked_mm_s, *lowest_mm_s].map(short);
                 f.write_str(&flow_limited(role, setting, speeds, *limit_mm3_s))
@@ -287,6 +268,45 @@ impl fmt::Display for Warning {
             }
         }
     }
+}
+
+/// That nobody chose a printer.
+fn no_printer(machine: &str) -> String {
+    format!(
+        "no printer chosen: this file is for the {machine}; choose one with -p (slicer profile list)"
+    )
+}
+
+/// That the end block moves aside too early.
+fn end_drags(line: usize, command: &str) -> String {
+    format!(
+        "machine.end_gcode, line {line} of it: `{command}` drags the nozzle over the print, since nothing lifts it \
+         before; write G1 Z{{park_z}} F600 above it"
+    )
+}
+
+/// That places are too thin.
+fn too_thin(layers: usize, area_mm2: f64) -> String {
+    format!(
+        "left out {area_mm2:.1} mm² on {} that are too thin for a bead; use a smaller min_feature or nozzle",
+        plural(layers as u64, "layer")
+    )
+}
+
+/// That islands begin in the air: how many of what length, on which layer at which height, where.
+fn in_the_air(
+    (places, length_mm): (usize, f64),
+    (layer, z_mm): (usize, f64),
+    [x, y]: [f64; 2],
+    kept_away: Option<&str>,
+) -> String {
+    format!(
+        "{} mm of lines begin in the air at {}, first on layer {layer} at {z_mm:.2} mm, x {x:.1} y {y:.1}; {}, \
+         or turn the part with --rotate",
+        rough(length_mm),
+        plural(places as u64, "place"),
+        carried(kept_away)
+    )
 }
 
 /// That a mesh was mended.
