@@ -158,7 +158,7 @@ pub enum Refusal {
     /// The first layer lies where the start block primes the nozzle.
     #[error(
         "the start block primes the nozzle at x {:.1} y {:.1}, where the first layer lies; move the \
-         models with --at X,Y, use a smaller --scale, or change machine.start_gcode",
+         models with --at X,Y, use fewer --copies or a smaller --scale, or change machine.start_gcode",
         .at_mm[0], .at_mm[1]
     )]
     Primed {

@@ -17,6 +17,11 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "code", rename_all = "kebab-case")]
 pub enum Warning {
+    /// Nobody chose a printer: the file is for the default one.
+    NoPrinter {
+        /// Name of that printer.
+        machine: String,
+    },
     /// Holes were filled, or surfaces that enclose nothing dropped.
     MeshMended {
         /// The model's file.
@@ -135,6 +140,13 @@ pub enum Warning {
         /// Name of the printer.
         machine: String,
     },
+    /// The end block moves the nozzle aside before anything lifts it.
+    EndDrags {
+        /// Line of the block, from 1.
+        line: usize,
+        /// What stands there.
+        command: String,
+    },
     /// Lines that are printed slower than asked for, since the hot end cannot melt as fast.
     FlowLimited {
         /// What they are for, as in the report's roles.
@@ -222,25 +234,16 @@ impl Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::NoPrinter { machine } => f.write_str(&no_printer(machine)),
             Self::MeshMended { file, what } => f.write_str(&mended(file, what)),
             Self::OpenMesh { file, what } => f.write_str(&open(file, what)),
             Self::OpenContours { layers, longest_gap_mm } => {
                 f.write_str(&closed(*layers, *longest_gap_mm))
             }
-            Self::ThinPlaces { layers, area_mm2 } => write!(
-                f,
-                "left out {area_mm2:.1} mm² on {} that are too thin for a bead; use a smaller \
-                 min_feature or nozzle",
-                plural(*layers as u64, "layer")
-            ),
-            Self::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm: [x, y], kept_away } => {
-                write!(
-                    f,
-                    "{length_mm:.0} mm of lines begin in the air at {}, first on layer {layer} at \
-                     {z_mm:.2} mm, x {x:.1} y {y:.1}; {}, or turn the part with --rotate",
-                    plural(*places as u64, "place"),
-                    carried(kept_away.as_deref())
-                )
+            Self::ThinPlaces { layers, area_mm2 } => f.write_str(&too_thin(*layers, *area_mm2)),
+            Self::BeginsInTheAir { places, length_mm, layer, z_mm, at_mm, kept_away } => {
+                let kept_away = kept_away.as_deref();
+                f.write_str(&in_the_air((*places, *length_mm), (*layer, *z_mm), *at_mm, kept_away))
             }
             Self::WallsHang { length_mm, longest_mm, layer, z_mm, at_mm: [x, y], supported } => {
                 write!(
@@ -270,6 +273,7 @@ impl fmt::Display for Warning {
             Self::ColdBed { material, asked_celsius, machine } => {
                 f.write_str(&cold_bed(material, *asked_celsius, machine))
             }
+            Self::EndDrags { line, command } => f.write_str(&end_drags(*line, command)),
             Self::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
                 let speeds = [*asked_mm_s, *lowest_mm_s].map(short);
                 f.write_str(&flow_limited(role, setting, speeds, *limit_mm3_s))
@@ -287,6 +291,45 @@ impl fmt::Display for Warning {
             }
         }
     }
+}
+
+/// That nobody chose a printer.
+fn no_printer(machine: &str) -> String {
+    format!(
+        "no printer chosen: this file is for the {machine}; choose one with -p (slicer profile list)"
+    )
+}
+
+/// That the end block moves aside too early.
+fn end_drags(line: usize, command: &str) -> String {
+    format!(
+        "machine.end_gcode, line {line} of it: `{command}` drags the nozzle over the print, since nothing lifts it \
+         before; write G1 Z{{park_z}} F600 above it"
+    )
+}
+
+/// That places are too thin.
+fn too_thin(layers: usize, area_mm2: f64) -> String {
+    format!(
+        "left out {area_mm2:.1} mm² on {} that are too thin for a bead; use a smaller min_feature or nozzle",
+        plural(layers as u64, "layer")
+    )
+}
+
+/// That islands begin in the air: how many of what length, on which layer at which height, where.
+fn in_the_air(
+    (places, length_mm): (usize, f64),
+    (layer, z_mm): (usize, f64),
+    [x, y]: [f64; 2],
+    kept_away: Option<&str>,
+) -> String {
+    format!(
+        "{} mm of lines begin in the air at {}, first on layer {layer} at {z_mm:.2} mm, x {x:.1} y {y:.1}; {}, \
+         or turn the part with --rotate",
+        rough(length_mm),
+        plural(places as u64, "place"),
+        carried(kept_away)
+    )
 }
 
 /// That a mesh was mended.
@@ -359,8 +402,8 @@ fn out_of_reach(supported: bool) -> &'static str {
 /// That the part has lines in the air.
 fn hangs(length_mm: f64, supported: bool) -> String {
     format!(
-        "{length_mm:.0} mm of lines begin in the air, where the part has nothing below; {}turn the part \
-         with --rotate",
+        "{} mm of lines begin in the air, where the part has nothing below; {}turn the part with --rotate",
+        rough(length_mm),
         if supported { "" } else { "use --support, or " }
     )
 }
@@ -400,6 +443,11 @@ fn left_out(islands: usize, of: usize) -> String {
 fn carried(kept_away: Option<&str>) -> String {
     let set = |key| format!("{key} keeps support away there; set another");
     kept_away.map_or_else(|| "use --support".to_owned(), set)
+}
+
+/// A length in whole mm, or in tenths where it is shorter than a few.
+fn rough(length_mm: f64) -> String {
+    if length_mm < 3.0 { format!("{:.1}", length_mm.max(0.1)) } else { format!("{length_mm:.0}") }
 }
 
 /// A speed in hundredths, rounded down: what a setting may be without being too much.

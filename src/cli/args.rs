@@ -5,21 +5,22 @@ use super::preview::PreviewArgs;
 use super::profiles::{ProfileArgs, ShelfArgs};
 use super::reading::ReadingArgs;
 use super::texts::CODES;
-use super::words::{brim, parts, words};
+use super::words::{brim, code, parts, words};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+use slicer::check::finding::Code;
 use slicer::profile::{Override, Settings, ValueOrigin};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
 const EXAMPLES: &str = "\
 Examples:
-  slicer part.stl -o part.gcode
-  slicer part.stl --dual --infill 25 -o part.gcode
-  slicer part.stl -p generic-marlin --set filament.temperature=205 -o part.gcode
+  slicer part.stl -p ender-3 -o part.gcode
+  slicer part.stl -p ender-3 --dual --infill 25 -o part.gcode
+  slicer part.stl -p ender-3 --material petg --set filament.temperature=235 -o part.gcode
   slicer part.stl -p ./mine.toml --copies 4 --report part.json -o part.gcode
-  slicer - -o - < part.stl > part.gcode
-  slicer profile show generic-marlin > mine.toml
+  slicer - -p ender-3 -o - < part.stl > part.gcode
+  slicer profile new ender-3 > mine.toml
   slicer estimate part.gcode -p ./mine.toml
   slicer check part.gcode --against part.stl
   slicer roughness part.gcode --against part.stl
@@ -205,10 +206,12 @@ pub(crate) enum ReportCommand {
 #[derive(Debug, Args)]
 #[command(after_long_help = CODES)]
 pub(crate) struct EstimateArgs {
-    /// G-code file of any slicer; `-` reads standard input
-    #[arg(value_name = "FILE")]
-    pub(crate) file: OsString,
+    /// G-code files of any slicer; `-` reads standard input
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<OsString>,
     /// Print JSON
+    ///
+    /// Print JSON: of one file an object, of several one on each line.
     #[arg(long)]
     pub(crate) json: bool,
     /// List every layer with its time (JSON always does)
@@ -244,6 +247,12 @@ pub(crate) struct CheckArgs {
     /// Exit with 1 if there are warnings, too
     #[arg(long)]
     pub(crate) strict: bool,
+    /// Findings of these codes do not count (repeatable)
+    ///
+    /// Findings of these codes, errors and warnings, are known: they are listed after `allowed:`, and do not count
+    /// for the exit code (repeatable).
+    #[arg(long, value_name = "CODE,..", value_delimiter = ',', value_parser = code)]
+    pub(crate) allow: Vec<Code>,
     /// Print findings only, each with its file
     #[arg(short, long, conflicts_with = "json")]
     pub(crate) quiet: bool,
@@ -410,7 +419,10 @@ impl SettingArgs {
     /// The flag that sets a key, if there is one.
     pub(super) fn flag_of(key: &str) -> Option<&'static str> {
         let all = Self::default().all();
-        all.into_iter().find(|(_, name, _)| *name == key).map(|(flag, _, _)| flag)
+        // What sets other keys as well is another wish.
+        let is_its_own = |flag: &str| !(flag == "--skin-layers" && key != "skin_layers");
+        let found = all.into_iter().find(|(flag, name, _)| *name == key && is_its_own(flag));
+        found.map(|(flag, _, _)| flag)
     }
 
     /// Each flag, the key it sets, and the value given.

@@ -9,7 +9,7 @@
 
 use super::args::CheckArgs;
 use super::reading::Opened;
-use super::{Outcome, about, failure, output, say_line};
+use super::{Outcome, about, failed, failure, output, say_line};
 use anyhow::Result;
 use serde::Serialize;
 use slicer::check::finding::{Code, Count, Finding, Severity};
@@ -20,7 +20,6 @@ use slicer::mesh::place::Placed;
 use slicer::profile::{self, Override, Profile, ValueOrigin};
 use slicer::progress::Progress;
 use slicer::reader::{Cause, Firmware, Stream};
-use slicer::report::failure::Failure;
 use slicer::text;
 use slicer::warning::plural;
 use std::ffi::{OsStr, OsString};
@@ -55,6 +54,9 @@ struct Row<'a> {
     file: &'a str,
     #[serde(flatten)]
     verdict: &'a Verdict,
+    /// Codes that do not count.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    allowed: &'a [Code],
 }
 
 /// What standard output gets, and 1 if there are findings that are more than warnings. Of several files the
@@ -69,6 +71,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
     if set.iter().any(|given| !is_of_head(given)) && !profiles.any() {
         return Err(failure::usage("--set changes a profile; name one with -p, too"));
     }
+    models_among(args)?;
     let against = args.against.iter().filter(|file| *file == "-").count();
     if args.files.iter().filter(|file| *file == "-").count() + against > 1 {
         return Err(failure::usage("`-` is given twice; standard input holds one file"));
@@ -95,6 +98,23 @@ pub(super) fn run(args: &CheckArgs) -> Result<Outcome> {
         all.code = all.code.max(code);
     }
     Ok(all)
+}
+
+/// A model among the files to be judged was meant to be held against one.
+///
+/// # Errors
+/// [`Usage`](failure::Usage).
+fn models_among(args: &CheckArgs) -> Result<()> {
+    let is_model = |file: &&OsString| {
+        Path::new(file).extension().is_some_and(|end| end.eq_ignore_ascii_case("stl"))
+    };
+    let Some(model) = args.files.iter().find(is_model) else { return Ok(()) };
+    let what = if args.against.is_empty() {
+        "what is judged is G-code; give the model after --against"
+    } else {
+        "repeat --against before each"
+    };
+    Err(failure::usage(format!("{}: an STL is a model: {what}", text::name(model))))
 }
 
 impl Judge<'_> {
@@ -152,15 +172,16 @@ impl Judge<'_> {
     /// What is said of a file, which may be one of several, and its exit code.
     fn outcome(&self, judged: &Judged, is_one_of_many: bool) -> Result<Outcome> {
         let (args, Judged { name, verdict, by }) = (self.args, judged);
-        let fails = verdict.fails() || (args.strict && verdict.warnings() > 0);
-        let row = Row { file: name, verdict };
-        let found = || findings(verdict, "--json");
+        let counting = verdict.counts.iter().filter(|count| !args.allow.contains(&count.code));
+        let fails = counting.clone().any(|count| args.strict || count.errors > 0);
+        let row = Row { file: name, verdict, allowed: &args.allow };
+        let found = || findings(verdict, &args.allow, "--json");
         let more = if args.quiet { "" } else { several(verdict) };
         let each = || {
             let lines = found() + more;
             lines.lines().map(|line| format!("{name}: {line}\n")).collect::<String>()
         };
-        let headline = || format!("{name}: {}, {by}\n", headline(verdict));
+        let headline = || format!("{name}: {}, {by}\n", headline(verdict, &args.allow));
         let text = match (args.json, args.quiet, is_one_of_many) {
             (true, _, false) => output::json(&row, Path::new("-"))?,
             (true, _, true) => output::json_line(&row, Path::new("-"))?,
@@ -183,11 +204,7 @@ impl Judge<'_> {
             };
             return Ok(Outcome { text, code });
         }
-        let failed = Failure::new(code, line, failure::details(error));
-        let row = serde_json::json!({
-            "file": text::name(file), "exit_code": code, "error": failed.error,
-        });
-        Ok(Outcome { text: output::json_line(&row, Path::new("-"))?, code })
+        Ok(Outcome { text: failed::row(file, code, line, error)?, code })
     }
 }
 
@@ -233,9 +250,12 @@ fn judged_by(
 }
 
 /// `clean` or how many findings and warnings, of how much.
-fn headline(verdict: &Verdict) -> String {
-    let sum = |of: fn(&Count) -> usize| verdict.counts.iter().map(of).sum::<usize>() as u64;
-    let (errors, all) = (sum(|one| one.errors), sum(|one| one.count));
+fn headline(verdict: &Verdict, allow: &[Code]) -> String {
+    let sum = |allowed: bool, of: fn(&Count) -> usize| {
+        let counts = verdict.counts.iter().filter(|one| allow.contains(&one.code) == allowed);
+        counts.map(of).sum::<usize>() as u64
+    };
+    let (errors, all) = (sum(false, |one| one.errors), sum(false, |one| one.count));
     let (findings, warnings) = (plural(errors, "finding"), plural(all - errors, "warning"));
     let found = match (errors, all - errors) {
         (0, 0) => "clean".to_owned(),
@@ -243,17 +263,24 @@ fn headline(verdict: &Verdict) -> String {
         (_, 0) => findings,
         _ => format!("{findings} and {warnings}"),
     };
+    let known = match sum(true, |one| one.count) {
+        0 => String::new(),
+        known => format!(" ({known} allowed)"),
+    };
     let layers = plural(verdict.layers as u64, "layer");
-    format!("{found} in {layers} and {}", plural(verdict.moves as u64, "move"))
+    format!("{found}{known} in {layers} and {}", plural(verdict.moves as u64, "move"))
 }
 
-/// Findings, a line each, errors before warnings; where there are too many, `whole` is the option that lists all.
-pub(super) fn findings(verdict: &Verdict, whole: &str) -> String {
-    let of = |severity: Severity| {
-        let kinds = verdict.counts.iter();
-        kinds.map(move |count| of_kind(verdict, count, severity, whole))
+/// Findings, a line each, errors before warnings, and last those of codes that are allowed; where there are too
+/// many, `whole` is the option that lists all.
+pub(super) fn findings(verdict: &Verdict, allow: &[Code], whole: &str) -> String {
+    let of = |severity: Severity, allowed: bool| {
+        let kinds = verdict.counts.iter().filter(move |one| allow.contains(&one.code) == allowed);
+        kinds.map(move |count| of_kind(verdict, count, (severity, allowed), whole))
     };
-    of(Severity::Error).chain(of(Severity::Warning)).collect()
+    let (errors, warnings) = (Severity::Error, Severity::Warning);
+    let counting = of(errors, false).chain(of(warnings, false));
+    counting.chain(of(errors, true)).chain(of(warnings, true)).collect()
 }
 
 /// What was measured, and what was not judged.
@@ -266,20 +293,28 @@ pub(super) fn notes(verdict: &Verdict) -> String {
 }
 
 /// The largest findings of a kind and severity, and how many more there are.
-fn of_kind(verdict: &Verdict, count: &Count, severity: Severity, whole: &str) -> String {
+fn of_kind(
+    verdict: &Verdict,
+    count: &Count,
+    (severity, allowed): (Severity, bool),
+    whole: &str,
+) -> String {
     let (kind, all) = match severity {
         Severity::Error => ("", count.errors),
         Severity::Warning => ("warning: ", count.count - count.errors),
     };
     let is_it = |one: &&Finding| one.code == count.code && one.severity == severity;
-    let of_kind = verdict.findings.iter().filter(is_it);
-    let mut text: String = of_kind.take(MOST_SHOWN).map(|finding| format!("{finding}\n")).collect();
+    let of_kind = verdict.findings.iter().filter(is_it).take(MOST_SHOWN);
+    let line = |finding: &Finding| {
+        let told = finding.to_string();
+        // It names its severity itself.
+        if allowed { format!("allowed: {}\n", told.trim_start_matches(kind)) } else { told + "\n" }
+    };
+    let mut text: String = of_kind.map(line).collect();
     if all > MOST_SHOWN {
-        let more = all - MOST_SHOWN;
-        text.push_str(&format!(
-            "{kind}{}: and {more} more ({whole} lists them)\n",
-            count.code.name()
-        ));
+        let (more, kind) = (all - MOST_SHOWN, if allowed { "allowed: " } else { kind });
+        let code = count.code.name();
+        text.push_str(&format!("{kind}{code}: and {more} more ({whole} lists them)\n"));
     }
     text
 }

@@ -106,11 +106,12 @@ pub(super) fn estimate(
     Ok(Timed { estimate, reading, diameter, limits, by, settings: Box::new(clock.settings) })
 }
 
-/// A product in JSON, with where the limits are from, and the highest rates of motors, if they are known.
+/// A product in JSON, of one of several files on a line with its name, with where the limits are from, and the highest rates of motors, if they are known.
 ///
 /// # Errors
 /// It cannot be written in JSON.
 pub(super) fn json(
+    file: Option<&str>,
     product: &impl Serialize,
     limits: &str,
     limits_by: Option<LimitsBy>,
@@ -118,6 +119,9 @@ pub(super) fn json(
 ) -> Result<String> {
     #[derive(Serialize)]
     struct Timed<'a, T> {
+        /// The file, where there are several.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        file: Option<&'a str>,
         #[serde(flatten)]
         product: &'a T,
         /// Where the limits are from.
@@ -129,5 +133,7 @@ pub(super) fn json(
         #[serde(skip_serializing_if = "Option::is_none")]
         highest_rate: Option<Axes<f64>>,
     }
-    output::json(&Timed { product, limits, limits_by, highest_rate }, Path::new("-"))
+    let timed = Timed { file, product, limits, limits_by, highest_rate };
+    let written = if file.is_some() { output::json_line } else { output::json };
+    written(&timed, Path::new("-"))
 }

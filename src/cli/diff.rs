@@ -164,7 +164,7 @@ pub(super) fn run(args: &DiffArgs) -> Result<Outcome> {
     }
     let text = match args {
         _ if args.quiet => String::new(),
-        _ if args.json => clock::json(&found, &limits, None, None)?,
+        _ if args.json => clock::json(None, &found, &limits, None, None)?,
         _ => text::text(&found, &limits, args.all),
     };
     Ok(Outcome { text, code })

@@ -1,37 +1,78 @@
-//! `slicer estimate` -> how long a G-code file takes, as a table or as JSON.
+//! `slicer estimate` -> how long G-code files take, as a table or as JSON.
+//!
+//! 1. Each file is read and timed by itself: by the limits of `-p`, or else by those in its own settings. Where
+//!    there are none it is timed by the default printer's, with a warning.
+//! 2. The *print time* is that from the first layer to the last line, as files and summaries tell it; that of the
+//!    *whole file* has start and end block, too.
+//! 3. One file has a table, and of several each has a line.
+//! 4. JSON is an object for one file, and for several one on each line, also for one that cannot be read.
 
 use super::args::EstimateArgs;
 use super::clock::{self, LimitsBy};
-use super::say_line;
+use super::{Outcome, failed, failure, say_line};
 use anyhow::Result;
 use slicer::estimate::{Estimate, LayerTime, NotCounted};
 use slicer::steps;
 use slicer::warning::plural;
+use std::ffi::OsStr;
 
-/// What standard output gets.
+/// What standard output gets: of one file a table or an object, of several a line each. One of several that
+/// cannot be read keeps no other from being timed, and the highest exit code holds.
 ///
 /// # Errors
-/// A profile or setting that is wrong, a file that cannot be read or holds no move.
-pub(super) fn run(args: &EstimateArgs) -> Result<String> {
-    let opened = args.reading.open(&args.file)?;
+/// A profile or setting that is wrong; of a single file that it cannot be read or holds no move.
+pub(super) fn run(args: &EstimateArgs) -> Result<Outcome> {
+    if let [file] = args.files.as_slice() {
+        return one(args, file, false).map(Outcome::from);
+    }
+    if args.files.iter().filter(|file| *file == "-").count() > 1 {
+        return Err(failure::usage("`-` is given twice; standard input holds one file"));
+    }
+    // What is wrong with a profile is wrong for all of them.
+    args.profiles.load([])?;
+    let mut all = Outcome { text: String::new(), code: 0 };
+    for file in &args.files {
+        match one(args, file, true) {
+            Ok(text) => all.text += &text,
+            Err(error) => {
+                let (code, line) = (failure::exit_code(&error), failure::line(&error));
+                say_line("error", &line);
+                all.code = all.code.max(code);
+                if args.json {
+                    all.text += &failed::row(file, code, line, &error)?;
+                }
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// What is said of a file, which may be one of several.
+fn one(args: &EstimateArgs, file: &OsStr, is_one_of_many: bool) -> Result<String> {
+    let opened = args.reading.open(file)?;
     let timed = clock::estimate(&opened, &args.profiles, &args.reading, args.fixed_limits)?;
     let mut source = opened.source.reader();
     let rates =
         steps::highest_rates(&mut source, timed.reading, &timed.settings, args.fixed_limits);
     let rates = rates.map_err(|error| opened.unreadable(error))?;
-    let (found, limits) = (timed.estimate, timed.limits);
+    let (found, limits, name) = (timed.estimate, timed.limits, &opened.name);
     // A printer that is one's own default is meant.
     if timed.by == LimitsBy::Default && args.profiles.shelf.shelf().default_printer().path.is_none()
     {
-        let file = &opened.name;
         let told = format!(
-            "{file}: the file holds no settings of this program, since it is of another or cut off; timed by the \
+            "{name}: the file holds no settings of this program, since it is of another or cut off; timed by the \
              limits of {limits}: name its printer with -p"
         );
         say_line("warning", told);
     }
     if args.json {
-        return clock::json(&found, &limits, Some(timed.by), rates.map(Into::into));
+        let line_of = is_one_of_many.then_some(name.as_str());
+        return clock::json(line_of, &found, &limits, Some(timed.by), rates.map(Into::into));
+    }
+    if is_one_of_many {
+        return Ok(
+            line(name, &found) + &if args.layers { layers(&found.layers) } else { String::new() }
+        );
     }
     let mut text = table(&found);
     if let Some([x, y, z, e]) = rates {
@@ -42,6 +83,16 @@ pub(super) fn run(args: &EstimateArgs) -> Result<String> {
         text.push_str(&layers(&found.layers));
     }
     Ok(text)
+}
+
+/// A line for people.
+fn line(name: &str, found: &Estimate) -> String {
+    format!(
+        "{name}: print time {}, whole file {}, filament {:.1} mm\n",
+        clock(found.print_seconds),
+        clock(found.seconds),
+        found.filament_mm
+    )
 }
 
 /// For people.

@@ -8,7 +8,8 @@ use super::{failure, interrupt, say, usage};
 use anyhow::{Context as _, Result};
 use slicer::error::details::Details;
 use slicer::report::failure::Failure;
-use std::ffi::OsString;
+use slicer::text;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -56,6 +57,18 @@ pub(super) fn refused(words: &[OsString], code: u8, line: &str) {
         // The program ends with another message already.
         let _ = write(&path, None, &Failure::new(code, line.to_owned(), details));
     }
+}
+
+/// JSON of one of several files that cannot be judged, on a line.
+///
+/// # Errors
+/// It cannot be written in JSON.
+pub(super) fn row(file: &OsStr, code: u8, line: String, error: &anyhow::Error) -> Result<String> {
+    let failed = Failure::new(code, line, failure::details(error));
+    let row = serde_json::json!({
+        "file": text::name(file), "exit_code": code, "error": failed.error,
+    });
+    output::json_line(&row, Path::new("-"))
 }
 
 /// The last file that the words name for the report.

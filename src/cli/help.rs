@@ -22,19 +22,20 @@ use slicer::text;
 use std::path::Path;
 
 /// The flags that `-h` shows, in this order, in words that fit on one line of 80.
-const EVERYDAY: [(&str, &str); 12] = [
+const EVERYDAY: [(&str, &str); 13] = [
     ("output", "G-code file to write, `-` for standard output"),
     ("profile", "Printer: a built-in profile, or your mine.toml"),
+    ("material", "Material [default: the printer's]"),
+    ("print", "Print, such as fine [default: the printer's]"),
     ("dual", "Infill of two layers at once, twice as thick"),
     ("layer_height", "Height of a layer, mm"),
     ("infill", "Density of the infill, %"),
     ("support", "Print support under overhangs"),
-    ("temperature", "Temperature of the nozzle, °C"),
+    ("brim", "Print a brim of this width, mm"),
     ("set", "Change any setting (see `slicer profile show -v`)"),
     ("rotate", "Turn about x, y, z, degrees"),
     ("copies", "Print each model N times"),
     ("check", "Write G-code only if it is found to be good"),
-    ("quiet", "Show only warnings and errors"),
 ];
 
 /// The program's flags and commands, everyday ones first.

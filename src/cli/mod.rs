@@ -143,19 +143,33 @@ fn refused(error: &clap::Error, words: &[OsString]) -> u8 {
                 MissingRequiredArgument => {
                     first.and_then(|word| usage::meant(word, &help::command()))
                 }
-                UnknownArgument => unknown_flag(error, words),
+                UnknownArgument => dashed_file(words).or_else(|| unknown_flag(error, words)),
                 TooManyValues => too_many(error),
                 InvalidValue if told(error, ContextKind::InvalidArg).starts_with("--head") => {
                     Some(format!("{}; {MEASURED}", usage::reason(&text.to_string())))
                 }
                 _ => None,
             };
+            let plain = || usage::one_line(&text.to_string(), &command_of(words));
+            // The first thing that a new user leaves out.
+            let line = line.unwrap_or_else(plain);
             wrong(
                 words,
-                line.unwrap_or_else(|| usage::one_line(&text.to_string(), &command_of(words))),
+                line.replacen(MISSING_OUT, &format!("{MISSING_OUT}, such as -o part.gcode"), 1),
             )
         }
     }
+}
+
+/// How clap names the output that a run lacks.
+const MISSING_OUT: &str = "not provided: --output <OUT>";
+
+/// What to say of a file that is taken for flags, since its name begins with a dash.
+fn dashed_file(words: &[OsString]) -> Option<String> {
+    let is_it =
+        |word: &&OsString| word.to_string_lossy().starts_with('-') && Path::new(word).is_file();
+    let name = text::name(words.iter().skip(1).find(is_it)?);
+    Some(format!("{name} is taken for flags, since it begins with a dash; write ./{name}"))
 }
 
 /// The command that the first words name, such as `slicer profile show`, or the program alone.
@@ -208,7 +222,7 @@ fn unknown_flag(error: &clap::Error, words: &[OsString]) -> Option<String> {
     let command = first.and_then(|word| program.find_subcommand(word));
     let takes_settings = command.is_none_or(|command| command.get_name() == "compare");
     let command = (command.unwrap_or(&program), &*command_of(words));
-    Some(foreign::unknown_flag(flag, takes_settings, command))
+    Some(foreign::unknown_flag(flag, takes_settings, words, command))
 }
 
 /// Prints text for people on standard error. If that fails there is nowhere left to report it. Names
@@ -228,7 +242,7 @@ fn other(command: &Command) -> Result<Outcome> {
         Command::Report(ReportCommand::Schema) => pretty(&report::schema())?,
         Command::Compare(args) => compare::run(args)?,
         Command::Check(args) => return check::run(args),
-        Command::Estimate(args) => estimate::run(args)?,
+        Command::Estimate(args) => return estimate::run(args),
         Command::Steps(args) => steps::run(args)?,
         Command::Play(args) => return play::run(args),
         Command::Send(args) => return send::run(args),

@@ -47,6 +47,7 @@ impl PlaceArgs {
             rotate: self.rotate,
             sink: self.sink,
             at: self.at,
+            taken: Vec::new(),
             copies: self.copies,
             max_triangles: self.max_triangles,
             policy: match self.mesh.as_str() {

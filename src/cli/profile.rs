@@ -137,7 +137,9 @@ fn one(
 fn warn(shown: &str, profile: &Profile) {
     let doubtful = doubtful::warnings(&profile.settings);
     let cold = doubtful::cold_bed(&profile.settings, &profile.sources);
-    for warning in doubtful.into_iter().chain(cold).chain(motion::warnings(&profile.settings)) {
+    let outdone = doubtful::outdone(&profile.sources);
+    let of_profile = doubtful.into_iter().chain(cold).chain(outdone);
+    for warning in of_profile.chain(motion::warnings(&profile.settings)) {
         say_line("warning", format!("{shown}: {warning}"));
     }
 }

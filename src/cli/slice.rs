@@ -53,6 +53,12 @@ const OTHERS: &[(&str, &str)] = &[
     ("ufp", "choose .gcode"),
     ("gz", "choose .gcode, or pipe it: -o - | gzip"),
     ("zip", "choose .gcode"),
+    ("toml", "it is a profile's ending, and -p reads one; choose .gcode"),
+    ("ini", "choose .gcode"),
+    ("json", "choose .gcode; --report writes a report"),
+    ("html", "choose .gcode; `slicer preview` draws it"),
+    ("svg", "choose .gcode; `slicer preview` draws it"),
+    ("png", "choose .gcode; `slicer preview` draws it"),
 ];
 
 /// Slices, and returns the exit code.
@@ -89,20 +95,14 @@ fn make(
     read.map(OsStr::new).try_for_each(|file| usage::replaces(out, file))?;
     let mut target = Target::open(out, &profile.settings)?;
 
-    let report = work(args, out, profile, target.gcode())?;
+    let mut report = work(args, out, profile, target.gcode())?;
     let is_good = report.check.as_ref().is_none_or(|verdict| !verdict.fails());
-    if !args.quiet {
-        say(&summary::notes(&report));
-    }
-    for warning in &report.warnings {
-        say_line("warning", about::told(warning, &report));
-    }
-    if let Some(verdict) = &report.check {
-        say(&about::lines(&check::findings(verdict, "--report"), &report.models));
-        if !args.quiet {
-            say(&check::notes(verdict));
-        }
-    }
+    let warnings = report.warnings.len() + report.check.as_ref().map_or(0, Verdict::warnings);
+    let is_clean = is_good && !(args.strict && warnings > 0);
+    report.exit_code = if is_clean { 0 } else { FINDINGS };
+    report.output = is_good.then(|| text::name(out));
+    let about = About::of_job(&report.models).to_string();
+    tell(args, &about, &report);
     // The report lists the findings, so that it is written with them, too.
     let mut products = Vec::new();
     if is_good {
@@ -115,17 +115,38 @@ fn make(
     if !is_good {
         let why =
             "--check has findings, so that no G-code is written; slice without it to see them";
-        say_line("error", format!("{}: {why}", About::of_job(&report.models)));
+        say_line("error", format!("{about}: {why}"));
         return Ok(FINDINGS);
     }
     if args.verbose {
         say(&summary::roles(&report));
     }
     if !args.quiet {
-        say(&summary::summary(&report, started.elapsed()));
+        say(&summary::summary(&about, &report, started.elapsed()));
     }
-    let of_check = report.check.as_ref().map_or(0, Verdict::warnings);
-    Ok(findings(args.strict, report.warnings.len() + of_check, &report))
+    if !is_clean {
+        // The output is written all the same, to be looked at.
+        let warnings = plural(warnings as u64, "warning");
+        let why = "with --strict; look at them before printing";
+        say_line("error", format!("{about}: {warnings} {why}"));
+    }
+    Ok(report.exit_code)
+}
+
+/// Tells what was found: notes, warnings, and what the check says.
+fn tell(args: &SliceArgs, about: &str, report: &Report) {
+    if !args.quiet {
+        say(&summary::notes(about, report));
+    }
+    for warning in &report.warnings {
+        say_line("warning", about::told(warning, report));
+    }
+    if let Some(verdict) = &report.check {
+        say(&about::lines(&check::findings(verdict, &[], "--report"), &report.models));
+        if !args.quiet {
+            say(&check::notes(verdict));
+        }
+    }
 }
 
 /// Checks that no two arguments mean the same file.
@@ -173,18 +194,6 @@ fn no_file_twice(args: &SliceArgs, out: &Path) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// The exit code of a run that is done. With `--strict` warnings make it a failure, although the
-/// output is written, to be looked at.
-fn findings(strict: bool, warnings: usize, report: &Report) -> u8 {
-    if !strict || warnings == 0 {
-        return 0;
-    }
-    let warnings = plural(warnings as u64, "warning");
-    let about = About::of_job(&report.models);
-    say_line("error", format!("{about}: {warnings} with --strict; look at them before printing"));
-    FINDINGS
 }
 
 fn load(args: &SliceArgs) -> Result<Profile> {

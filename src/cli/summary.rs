@@ -14,7 +14,9 @@ use slicer::mesh::{MeshReport, faults};
 use slicer::profile::{Profile, dump};
 use slicer::report::nonplanar::{FlatReport, NonPlanarReport};
 use slicer::report::steps::{MotorReport, StepsReport};
-use slicer::report::{BrimReport, CoolingReport, DriveReport, MotionReport, Report};
+use slicer::report::{
+    BrimReport, CoolingReport, DriveReport, FlowReport, MotionReport, Report, SlowedFlowReport,
+};
 use slicer::warning::plural;
 use std::time::Duration;
 
@@ -25,13 +27,12 @@ const LEAST_REST: f64 = 0.05;
 fn chosen(report: &Report) -> String {
     let of = |kind: &str| {
         let last = report.profiles.iter().rev().find(|one| one.kind == Some(kind))?;
-        Some(format!("{kind} {}", last.name))
+        // A warning says what to do.
+        let open = kind == "printer" && !report.is_profile_chosen;
+        Some(format!("{kind} {}{}", last.name, if open { " (not chosen)" } else { "" }))
     };
     let parts: Vec<String> = ["printer", "material", "print"].into_iter().filter_map(of).collect();
     let mut text = parts.join(", ");
-    if !report.is_profile_chosen {
-        text += " (none chosen; -p chooses, `slicer profile list` names them)";
-    }
     let files: Vec<&str> = report.profiles.iter().filter_map(|one| one.file.as_deref()).collect();
     if !files.is_empty() {
         text += &format!("; with {}", files.join(", "));
@@ -39,8 +40,8 @@ fn chosen(report: &Report) -> String {
     text
 }
 
-/// What was made, in four lines.
-pub(crate) fn summary(report: &Report, took: Duration) -> String {
+/// What was made, in four lines. The first names the models that it is `about`: a log has those of many runs.
+pub(crate) fn summary(about: &str, report: &Report, took: Duration) -> String {
     let [x, y, z] = report.size_mm;
     let layers = &report.layers;
     let filament = &report.filament;
@@ -52,7 +53,7 @@ pub(crate) fn summary(report: &Report, took: Duration) -> String {
     });
     let ends = ends(report);
     format!(
-        "{}\n\
+        "{about}: {}\n\
          {} of {} mm, {x:.1} x {y:.1} x {z:.1} mm{ends}{raft}\n\
          filament {:.0} mm, {:.2} cm³, {:.1} g{}\n\
          prints in {}, sliced in {:.2} s{dual}\n{}",
@@ -164,12 +165,29 @@ fn duration(seconds: f64) -> String {
 }
 
 /// Mendings that leave no doubt, one line a model; then a brim that nobody asked for.
-pub(crate) fn notes(report: &Report) -> String {
+pub(crate) fn notes(about: &str, report: &Report) -> String {
     let note = |model: &MeshReport| {
         let what = faults::tidied(&model.mended)?;
         Some(format!("note: {}: mended: {what}\n", model.file))
     };
-    report.models.iter().filter_map(note).chain(report.brim.as_ref().map(brim)).collect()
+    let mended: String = report.models.iter().filter_map(note).collect();
+    let of_all = report.brim.as_ref().map(brim).into_iter().chain(slowed(&report.flow));
+    let of_all: String = of_all.map(|what| format!("note: {about}: {what}\n")).collect();
+    mended + &of_all
+}
+
+/// That lines are slower where they are wider than usual, if any are.
+fn slowed(flow: &FlowReport) -> Option<String> {
+    let share = |one: &SlowedFlowReport| one.lowest_mm_s / one.asked_mm_s;
+    let least = flow.slowed.iter().map(share).reduce(f64::min)?;
+    let roles: Vec<&str> = flow.slowed.iter().map(|one| one.role.as_str()).collect();
+    Some(format!(
+        "wide places of {} are printed slower, down to {:.0} % of their speed: the hot end melts no more than \
+         {} mm³/s",
+        roles.join(", "),
+        100.0 * least,
+        flow.limit_mm3_s
+    ))
 }
 
 /// Where a brim was printed, and why.
@@ -177,10 +195,7 @@ fn brim(brim: &BrimReport) -> String {
     let BrimReport { width_mm, islands, of, why } = brim;
     let places =
         if of == islands { String::new() } else { format!(" around {islands} of {of} islands") };
-    format!(
-        "note: a brim of {width_mm} mm{places}, for {} (--brim 0 leaves it out)\n",
-        why.join(", ")
-    )
+    format!("a brim of {width_mm} mm{places}, for {} (--brim 0 leaves it out)", why.join(", "))
 }
 
 /// How the filament is shared out, such as ` (outer wall 30 %, skin 70 %)`.
@@ -306,9 +321,8 @@ mod tests {
             ..Report::default()
         };
         assert_eq!(
-            summary(&report, Duration::from_millis(1230)),
-            "printer ender-3, material petg, print standard (none chosen; -p chooses, \
-             `slicer profile list` names them); with a/mine.toml\n\
+            summary("a.stl", &report, Duration::from_millis(1230)),
+            "a.stl: printer ender-3 (not chosen), material petg, print standard; with a/mine.toml\n\
              100 layers of 0.2 mm, 40.0 x 30.0 x 20.0 mm; the last layer ends at 19.90 mm\n\
              filament 120 mm, 0.29 cm³, 0.4 g (outer wall 25 %, thick infill 75 %)\n\
              prints in 1 h 23 min, sliced in 1.23 s; 46 of 47 groups of layers with thick infill\n"

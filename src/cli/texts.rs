@@ -10,7 +10,8 @@ Findings, each with a stable code, a place and a measure:
                        may home; a warning for RepRapFirmware, which refuses such moves
   outside-volume       a line or travel beyond the machine's x, y or z
   through-print        a travel, of start and end block too, through what stands by the nozzle's
-                       flat end, 2.5 times as wide as its hole, over 0.16 mm deep
+                       flat end, 2.5 times as wide as its hole, over 0.16 mm deep; a warning for an
+                       end block that drags it over 3 mm of the print before it lifts it
   head-hits            part of [head] runs into plastic of the file, where lines go over slopes: a
                        travel by 0.02 mm; while printing the flat may press 1.5 layers deep within
                        its diameter; not judged where nobody tells the head (--head NAME)
@@ -68,7 +69,26 @@ Findings, each with a stable code, a place and a measure:
                        for
 
 A kind marked * is a warning: a weak place of a print that can be made. Warnings are listed after
-`warning:` and fail neither `check` nor --check.
+`warning:` and fail neither `check` nor --check; --strict lets them fail. What --allow names is
+known: it is listed after `allowed:`, and does not count, be it an error or a warning.
+
+What helps most often:
+  unknown-code, missing-number, not-homed, cold-extrusion, left-on, changes-the-machine
+                       mend machine.start_gcode or machine.end_gcode
+  outside-volume       the right printer (-p), another place (--at) or a smaller --scale
+  through-print        lift the nozzle before it goes aside: G1 Z{park_z} F600 in the end block
+  head-hits            a head that is measured (--head, [head]); models further apart
+  wrong-temperature    the right --material, or --temperature
+  too-fast, too-many-steps, too-much-flow
+                       lower speeds, or the printer's own limits in its profile
+  in-the-air, floating, unanchored
+                       --support, or turn the part (--rotate)
+  narrow-bead          a smaller nozzle, or a larger min_feature
+  slender-support      turn the part, or cut it
+  loose-infill         a denser --infill
+  wrong-size, open-outline, open-surface, outside-part, wrong-infill, wrong-volume
+                       hold it against the model as it was sliced: --scale, --rotate, --copies, -p
+  all others           slice anew; in a file of this program please report them
 
 The part is cut anew at the middle of every layer, and compared with what is printed along rows
 0.05 mm apart, wider apart in a print deeper than 300 mm. Places narrower than 1.2 lines need not

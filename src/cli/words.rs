@@ -3,9 +3,10 @@
 use super::failure::usage;
 use anyhow::Result;
 use clap::builder::RangedU64ValueParser;
+use slicer::check::finding::Code;
 use slicer::mesh::Unit;
 use slicer::profile::keys::{self, Kind};
-use slicer::profile::{Override, ValueOrigin};
+use slicer::profile::{Override, ValueOrigin, suggest};
 use slicer::text;
 
 /// The overrides that `--set` gives.
@@ -46,6 +47,19 @@ pub(super) fn words(key: &str) -> impl Iterator<Item = &'static str> {
         _ => &[],
     };
     words.iter().map(String::as_str)
+}
+
+/// A kind of findings of `check`.
+pub(super) fn code(name: &str) -> std::result::Result<Code, String> {
+    let name = name.trim();
+    let known = || Code::ALL.iter().map(|code| code.name());
+    Code::ALL.into_iter().find(|code| code.name() == name).ok_or_else(|| {
+        let mut hint = suggest::did_you_mean(name, known());
+        if hint.is_empty() {
+            hint = suggest::containing(name, known());
+        }
+        format!("check finds nothing of this code{hint}; `slicer man check` lists them")
+    })
 }
 
 /// A number above 0.

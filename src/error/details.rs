@@ -178,6 +178,7 @@ impl From<&ProfileError> for Details {
                 let place = Place { key: Some(key.clone()), ..Place::default() };
                 Self::in_file("bad-profile", profile).at(place)
             }
+            E::OtherSlicers { file } => Self::in_file("bad-profile", file),
             E::Mismatch { profile, .. } => Self::in_file("bad-profile", profile),
             E::Conflict { origin, source } => conflict(origin.as_ref(), source),
             E::Block { origin, source } => block(origin.as_ref(), source),

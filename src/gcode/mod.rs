@@ -24,6 +24,7 @@ mod error;
 pub mod fan;
 pub mod flow;
 pub mod hosts;
+mod modes;
 pub mod moves;
 pub mod number;
 mod output;
@@ -129,13 +130,15 @@ impl<'a> Writer<'a> {
         let values = template::start_values(settings, &facts);
         let block =
             template::render("machine.start_gcode", &settings.machine.start_gcode, &values)?;
-        let e_mode = if settings.machine.relative_e { "M83" } else { "M82" };
+        let (modes, e_mode) =
+            (modes::before(&block, &settings.machine), modes::of_filament(&settings.machine));
         // Its numbers are filled in at the end.
         let head = hosts::head(facts.layers, settings.output.stamp, thumbnails);
         let head = dialect_head(settings, 0.0, 0.0) + &head;
         let advance = dialect_advance(settings);
-        let units = if ends_in_inches(&block) { "G21\n" } else { "" };
-        let start = format!("{head};TYPE:Custom\n{block}{units}G90\n{e_mode}\nG92 E0\n{advance}");
+        let units = modes::units_after(&block);
+        let start =
+            format!("{head};TYPE:Custom\n{modes}{block}{units}G90\n{e_mode}\nG92 E0\n{advance}");
         writer.out.put(start.as_bytes())?;
         Ok(writer)
     }
@@ -249,20 +252,4 @@ fn dialect_advance(settings: &Settings) -> String {
 fn dialect_head(settings: &Settings, seconds: f64, plastic: f64) -> String {
     let machine = &settings.machine;
     Dialect::new(machine.dialect).head(seconds, plastic, machine.nozzle_diameter)
-}
-
-/// Whether the last word of a block on units is G20: all that follows is in mm.
-fn ends_in_inches(block: &str) -> bool {
-    let code = |line: &str| {
-        line.split(';')
-            .next()
-            .and_then(|code| code.split_whitespace().next())
-            .map(str::to_ascii_uppercase)
-    };
-    block
-        .lines()
-        .rev()
-        .filter_map(code)
-        .find(|code| code == "G20" || code == "G21")
-        .is_some_and(|code| code == "G20")
 }

@@ -121,6 +121,7 @@ fn spaced(models: Vec<RawMesh>, copies: u32, gap: f64) -> Placed {
         rotate: [0.0; 3],
         at: None,
         gap,
+        taken: Vec::new(),
         copies,
         max_triangles: MAX_TRIANGLES,
         policy: Policy::Repair,

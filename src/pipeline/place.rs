@@ -1,5 +1,6 @@
 //! Model files -> Placed: reads the models and lays them on the machine's bed.
 
+use super::prime;
 use crate::error::Result;
 use crate::fill::adhesion::lift::Lift;
 use crate::geom::Point;
@@ -36,8 +37,8 @@ pub fn place(
     Ok(mesh::place::place(models, placement, bed)?)
 }
 
-/// `placement` as these settings need it: models larger by what the material shrinks, with room for
-/// rafts or brims between them, where they are asked for. A brim that is only printed where it is needed
+/// `placement` as these settings need it: models larger by what the material shrinks, clear of what the start
+/// block primes, with room for rafts or brims between them, where they are asked for. A brim that is only printed where it is needed
 /// gets none: where two meet they grow together.
 #[must_use]
 pub fn suited(placement: &Placement, settings: &Settings) -> Placement {
@@ -50,7 +51,9 @@ pub fn suited(placement: &Placement, settings: &Settings) -> Placement {
         0.0
     };
     let gap = placement.gap.max(room);
-    Placement { gap, stretch: settings.stretch(), ..placement.clone() }
+    let around = settings.brim_reach().max(settings.raft_reach()) + settings.skirt_reach();
+    let taken = prime::areas(settings, around);
+    Placement { gap, taken, stretch: settings.stretch(), ..placement.clone() }
 }
 
 /// The machine's print volume.

@@ -105,6 +105,33 @@ impl Primed {
     }
 }
 
+/// Boxes of the bed that the start block primes, with what lies `around` models beside them, mm. A block that
+/// goes by the print's own box keeps clear of it by itself.
+pub(super) fn areas(settings: &Settings, around: f64) -> Vec<[[f64; 2]; 2]> {
+    let block = &settings.machine.start_gcode;
+    if OF_PRINT.iter().any(|name| block.contains(name)) {
+        return Vec::new();
+    }
+    // A block that cannot be filled in is refused elsewhere.
+    let primed = primed(settings, &PrintFacts::default()).unwrap_or_default();
+    let area = |one: &Primed| {
+        let reach = one.reach + around + CLEAR;
+        let side = |axis: usize| {
+            let [from, to] = [one.ends[0][axis], one.ends[1][axis]];
+            (from.min(to) - reach, from.max(to) + reach)
+        };
+        let [x, y] = [side(0), side(1)];
+        [[x.0, y.0], [x.1, y.1]]
+    };
+    primed.iter().map(area).collect()
+}
+
+/// Placeholders that tell where the print lies.
+const OF_PRINT: [&str; 4] = ["{min_x}", "{min_y}", "{max_x}", "{max_y}"];
+
+/// Distance of models from what is primed, mm: their lines may lie a little beside their contours.
+const CLEAR: f64 = 0.2;
+
 fn primed(settings: &Settings, facts: &PrintFacts) -> Result<Vec<Primed>> {
     let block = &settings.machine.start_gcode;
     let values = template::start_values(settings, facts);

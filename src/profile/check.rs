@@ -48,6 +48,7 @@ const ENDS_RRF: &[&str] = &["M0", "M1", "M2"];
 /// concerned.
 pub(super) fn together(settings: &Settings, origins: &BTreeMap<String, ValueOrigin>) -> Result<()> {
     let blame = Blame { origins };
+    infill(settings, &blame)?;
     heights(settings, &blame)?;
     reach(settings, &blame)?;
     arcs(settings, &blame)?;
@@ -55,6 +56,15 @@ pub(super) fn together(settings: &Settings, origins: &BTreeMap<String, ValueOrig
     heat(settings, &blame)?;
     skins::check(settings, &blame)?;
     blocks(settings, &blame)
+}
+
+/// A density that was meant as a part of 1.
+fn infill(settings: &Settings, blame: &Blame<'_>) -> Result<()> {
+    let infill = settings.infill;
+    if infill > 0.0 && infill < 1.0 {
+        return Err(blame.error(&["infill"], Conflict::NextToNothing { infill }));
+    }
+    Ok(())
 }
 
 fn heights(settings: &Settings, blame: &Blame<'_>) -> Result<()> {

@@ -11,6 +11,16 @@
 /// Values that are each in range but cannot print together. Lengths in mm.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Conflict {
+    /// Infill so thin that its density was meant as a part of 1.
+    #[error(
+        "infill = {infill} % is next to nothing: it counts in %, where 20 is a fifth; write {} for that part, 0 \
+         for none, or at least 1",
+        (100.0 * infill).round().max(1.0)
+    )]
+    NextToNothing {
+        /// The density, %.
+        infill: f64,
+    },
     /// Layers that are higher than the nozzle is wide.
     #[error(
         "{key} = {height} mm is more than machine.nozzle_diameter = {nozzle} mm; use thinner \

@@ -166,6 +166,13 @@ impl Settings {
         }
     }
 
+    /// How far a skirt reaches beyond what it goes around, mm; 0 without one.
+    #[must_use]
+    pub fn skirt_reach(&self) -> f64 {
+        let width = f64::from(self.skirt.loops) * self.line_width;
+        if self.skirt.loops > 0 { self.skirt.distance + width } else { 0.0 }
+    }
+
     /// The head: the named one, with what else is said of it.
     #[must_use]
     pub fn head(&self) -> Head {

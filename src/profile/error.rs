@@ -13,7 +13,6 @@ use super::foreign::{self, Foreign};
 use super::keys::{self, Key};
 use super::kind::ProfileKind;
 use super::origin::ValueOrigin;
-use super::shipped::DEFAULT;
 use super::{old, suggest};
 use crate::text;
 use std::io;
@@ -22,12 +21,14 @@ use std::io;
 #[derive(Debug, thiserror::Error)]
 pub enum ProfileError {
     /// No profile has this name.
-    #[error("unknown profile `{}`{}", text::line(name), known_profiles(name, known))]
+    #[error("unknown profile `{}`{}", text::line(name), unknown_profile(name, known, file.as_deref()))]
     UnknownProfile {
         /// The name asked for.
         name: String,
         /// Those that there are.
         known: Vec<String>,
+        /// The file that is meant, as it has to be written.
+        file: Option<String>,
     },
     /// A profile that describes another thing than asked for.
     #[error("{name} is a {is}, not a {wanted}; `slicer profile list` groups them")]
@@ -62,6 +63,15 @@ pub enum ProfileError {
         line: usize,
         /// The parser's reason.
         source: Box<toml::de::Error>,
+    },
+    /// A file of another slicer.
+    #[error(
+        "{file}: is no profile of this program, and settings of other slicers are not read; begin with \
+         `slicer profile new ender-3 > mine.toml`, or another printer of `slicer profile list`"
+    )]
+    OtherSlicers {
+        /// The file as the user named it.
+        file: String,
     },
     /// A text of several lines in quotes for one line.
     #[error(
@@ -123,8 +133,8 @@ pub enum ProfileError {
     },
     /// A key that neither has a default nor is set.
     #[error(
-        "{profile}: `{key}` has no value; set it, or begin the file with inherits = \"{}\"",
-        DEFAULT
+        "{profile}: `{key}` has no value; set it, or begin the file with inherits = \"YOUR PRINTER\", such \
+         as \"ender-3\" (slicer profile list)"
     )]
     Missing {
         /// The profile as the user named it.
@@ -212,16 +222,30 @@ pub enum ValueError {
     },
 }
 
+/// Faults of a block that are told at once.
+const MOST_TOLD: usize = 5;
+
 /// A start or end block that cannot be filled in.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{block}, line {line} of it: {source}")]
+#[error("{block}, {}", told(faults))]
 pub struct BlockError {
     /// The block's key.
     pub block: String,
-    /// Line of the block, from 1.
-    pub line: usize,
-    /// What is wrong in this line.
-    pub source: PlaceholderError,
+    /// What is wrong, and in which lines of the block, from 1.
+    pub faults: Vec<(usize, PlaceholderError)>,
+}
+
+/// The first faults, and how many more there are.
+fn told(faults: &[(usize, PlaceholderError)]) -> String {
+    let one = |(k, (line, fault)): (usize, &(usize, PlaceholderError))| {
+        let of_it = if k == 0 { " of it" } else { "" };
+        format!("line {line}{of_it}: {fault}")
+    };
+    let mut parts: Vec<String> = faults.iter().take(MOST_TOLD).enumerate().map(one).collect();
+    if faults.len() > MOST_TOLD {
+        parts.push(format!("and {} more", faults.len() - MOST_TOLD));
+    }
+    parts.join("; ")
 }
 
 /// A placeholder that cannot be filled in.
@@ -243,15 +267,33 @@ pub enum PlaceholderError {
         /// Ours for it, with braces, if there is one.
         ours: Option<String>,
     },
-    /// A condition or a sum, which other slicers compute.
+    /// A condition, which other slicers decide.
     #[error(
-        "{} is a condition or a sum of another slicer, and nothing is computed here; write the line as \
-         it shall be; {{park_z}} is 10 mm above the print, or the highest that the machine goes",
-        text::line(written)
+        "{} is a condition of another slicer, and nothing is computed here; write {}",
+        text::line(written),
+        if *lifts { "G1 Z{park_z} F600 in its place" } else { "the line as it shall be" }
     )]
-    Computed {
+    Condition {
         /// As it stands in the block, with its brackets.
         written: String,
+        /// Whether its line moves z.
+        lifts: bool,
+    },
+    /// A sum, which other slicers compute.
+    #[error(
+        "{} is a sum of another slicer, and nothing is computed here; {}",
+        text::line(written),
+        if *of_height {
+            "{park_z} is 10 mm above the print, or the highest that the machine goes"
+        } else {
+            "write the number that it gives"
+        }
+    )]
+    Sum {
+        /// As it stands in the block, with its brackets.
+        written: String,
+        /// Whether it is one of the print's height.
+        of_height: bool,
     },
     /// A closing brace without an opening one.
     #[error("a single `}}`; write `}}}}` for a brace")]
@@ -278,13 +320,18 @@ fn mend(error: &toml::de::Error) -> &'static str {
     }
 }
 
-fn known_profiles(name: &str, known: &[String]) -> String {
-    let hint = near(name, known);
-    let hint = if hint.is_empty() { ".".to_owned() } else { hint };
+/// What to do about a name of no profile. The names are too many to be listed.
+fn unknown_profile(name: &str, known: &[String], file: Option<&str>) -> String {
+    let shown = text::line(name);
+    if let Some(file) = file {
+        return format!("; there is such a file: write {}", text::line(file));
+    }
+    let mut hint = near(name, known);
+    if hint.is_empty() {
+        hint = suggest::containing(name, known.iter().map(String::as_str));
+    }
     format!(
-        "{hint} Known are {}; a file ends in .toml or is given as ./{}",
-        known.join(", "),
-        text::line(name)
+        "{hint}; `slicer profile list` names all, and a file ends in .toml or is given as ./{shown}"
     )
 }
 

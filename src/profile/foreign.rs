@@ -248,25 +248,26 @@ const USUAL: &[(&str, &[&str])] = &[
     ("machine.start_gcode", &["start.gcode", "gcode_start"]),
     ("machine.end_gcode", &["end.gcode", "gcode_end"]),
     ("machine.max_volumetric_speed", &["max_flow", "volumetric_speed", "max_volumetric_flow"]),
-    ("speed.wall", &["speed.print", "speed.perimeter"]),
+    ("speed.wall", &["speed.print", "speed.perimeter", "speed"]),
+    ("filament.fan", &["fan", "fan_power"]),
 ];
 
 /// What we cannot do, and what others call its settings.
 #[rustfmt::skip]
 const NOT_SUPPORTED: &[(&str, &[&str])] = &[
     ("brims at corners alone", &["brim_ears", "brim_ears_max_angle", "brim_smart_ordering"]),
-    ("a spiral vase", &["spiral_vase", "spiral_mode", "magic_spiralize"]),
+    ("a spiral vase", &["spiral_vase", "spiral_mode", "magic_spiralize", "vase", "vase_mode", "spiralize"]),
     ("fuzzy skin", &["fuzzy_skin", "magic_fuzzy_skin_enabled"]),
     ("switching gap fill off", &["gap_fill_enabled", "fill_gaps", "filter_out_gap_fill", "gap_fill_target"]),
     ("a direction of bridges", &["bridge_angle"]),
     ("thick bridges", &["thick_bridges"]),
-    ("a height of layers that varies", &["adaptive_layer_height", "adaptive_layer_height_enabled", "variable_layer_height"]),
+    ("a height of layers that varies", &["adaptive_layer_height", "adaptive_layer_height_enabled", "variable_layer_height", "adaptive_layers"]),
     ("adding walls where needed", &["extra_perimeters", "alternate_extra_perimeter", "alternate_extra_wall", "ensure_vertical_shell_thickness"]),
     ("a pattern for skins", &["top_fill_pattern", "bottom_fill_pattern", "top_surface_pattern", "bottom_surface_pattern", "top_bottom_pattern"]),
     ("solid infill between skins", &["solid_infill_every_layers", "solid_infill_below_area", "minimum_sparse_infill_area"]),
     ("a wipe tower", &["wipe_tower", "prime_tower_enable", "enable_prime_tower"]),
     ("printing with several tools", &["infill_extruder", "perimeter_extruder", "solid_infill_extruder", "support_material_extruder", "extruder_nr", "wall_extruder_nr"]),
-    ("tree support", &["support_structure", "support_material_style", "support_tree_angle"]),
+    ("tree support", &["support_structure", "support_material_style", "support_tree_angle", "tree_support"]),
     ("printing one model after the other", &["complete_objects", "print_sequence"]),
     ("labelling of models", &["label_objects", "gcode_label_objects", "exclude_object"]),
     ("post-processing", &["post_process"]),

@@ -82,6 +82,11 @@ impl Layer {
         })
     }
 
+    /// Whether it says which printer it is for.
+    fn names_printer(&self) -> bool {
+        self.found.kind == Some(ProfileKind::Printer) || self.says(MACHINE).is_some()
+    }
+
     pub(super) fn source(&self) -> Source {
         let Found { name, kind, path, shown, .. } = &self.found;
         let file = path.as_ref().map(|_| shown.clone());
@@ -91,26 +96,46 @@ impl Layer {
 
 const INHERITS: &str = "inherits";
 
+/// The key that every printer of one's own says.
+const MACHINE: &str = "machine.name";
+
 /// Whether this names a default, and so is no setting.
 fn is_default(key: &str) -> bool {
     let kind = key.strip_prefix("defaults.");
     kind.is_some_and(|kind| ProfileKind::ALL.iter().any(|one| one.name() == kind))
 }
 
-/// The layers of a job that asks for `wanted`, the most general first, and the names of `wanted`.
+/// The layers of a job.
+#[derive(Default)]
+pub(super) struct Laid {
+    /// The most general first.
+    pub(super) layers: Vec<Layer>,
+    /// The names of what was asked for.
+    pub(super) asked: Vec<String>,
+    /// The printer that somebody chose, by the name that was asked for; or else the default one.
+    pub(super) printer: String,
+    /// Whether somebody chose it.
+    pub(super) is_printer_chosen: bool,
+}
+
+/// The layers of a job that asks for `wanted`.
 ///
 /// # Errors
 /// What is wrong with a name, a file, `inherits` or `[defaults]`.
-pub(super) fn layers(wanted: &[Wanted], shelf: &Shelf) -> Result<(Vec<Layer>, Vec<String>)> {
-    let mut asked = Vec::new();
+pub(super) fn layers(wanted: &[Wanted], shelf: &Shelf) -> Result<Laid> {
+    let (mut asked, mut printer) = (Vec::new(), None);
     let mut reading = Reading { shelf, chain: Vec::new(), layers: Vec::new() };
     for one in wanted {
         let found = match &one.file {
             Some(file) => Found::file(file.clone(), None),
             None => shelf.find(&one.name, None, |_| false)?,
         };
-        asked.push(found.name.clone());
+        let (name, below) = (found.name.clone(), reading.layers.len());
+        asked.push(name.clone());
         reading.add(of_kind(found, one.kind)?)?;
+        if reading.layers[below..].iter().any(Layer::names_printer) {
+            printer = Some(name);
+        }
     }
     // Files of one's own may be a whole job, and are refused with a hint if they are not.
     let may_be_whole =
@@ -120,15 +145,30 @@ pub(super) fn layers(wanted: &[Wanted], shelf: &Shelf) -> Result<(Vec<Layer>, Ve
             continue;
         }
         let default = match reading.default_of(kind)? {
-            None if kind == ProfileKind::Printer && !may_be_whole => shelf.default_printer(),
+            None if kind == ProfileKind::Printer && !may_be_whole => {
+                let found = shelf.default_printer();
+                // A default of one's own was chosen once and for all.
+                printer = printer.or(found.path.is_some().then(|| found.name.clone()));
+                found
+            }
             None => continue,
-            Some(found) => of_kind(found, Some(kind))?,
+            Some(found) => {
+                if kind == ProfileKind::Printer {
+                    printer = Some(found.name.clone());
+                }
+                of_kind(found, Some(kind))?
+            }
         };
         let mut below = Reading { shelf, chain: Vec::new(), layers: Vec::new() };
         below.add(default)?;
         reading.layers.splice(0..0, below.layers);
     }
-    Ok((reading.layers, asked))
+    let layers = reading.layers;
+    let is_printer_chosen = printer.is_some() || may_be_whole;
+    let is_printer = |layer: &&Layer| layer.found.kind == Some(ProfileKind::Printer);
+    let last = || layers.iter().rev().find(is_printer).map(|layer| layer.found.name.clone());
+    let printer = printer.or_else(last).or_else(|| asked.last().cloned()).unwrap_or_default();
+    Ok(Laid { layers, asked, printer, is_printer_chosen })
 }
 
 /// The profile if it is of this kind; a file that may be anything then is.
@@ -250,6 +290,36 @@ mod tests {
         assert_eq!(profile.settings.filament.temperature, 240.0);
         // The default printer, where none is named.
         assert_eq!(names(&of(&[petg])), ["one-wall", "zcube-dual", "petg"]);
+    }
+
+    #[test]
+    fn who_chose_the_printer_is_known() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| {
+            fs::write(folder.path().join(name), text).unwrap();
+            folder.path().join(name).to_str().unwrap().to_owned()
+        };
+        let mine = write("mine.toml", "inherits = \"ender-3\"\n");
+        let infill = write("infill.toml", "infill = 30\n");
+        for (wanted, printer, is_chosen) in [
+            (vec![], "zcube-dual", false),
+            (vec!["petg"], "zcube-dual", false),
+            (vec!["petg", infill.as_str()], "zcube-dual", false),
+            (vec!["thesis"], "zcube-dual", true),
+            (vec!["ender-3", "petg"], "ender-3", true),
+            (vec![mine.as_str(), "petg"], "mine.toml", true),
+            (vec!["ender-3", infill.as_str()], "ender-3", true),
+            (vec!["generic-marlin", "voron-2.4"], "voron-2.4", true),
+        ] {
+            let all: Vec<Wanted> = wanted.iter().map(|name| Wanted::any(*name)).collect();
+            let sources = of(&all).sources;
+            let told = (sources.printer.as_str(), sources.is_printer_chosen);
+            assert_eq!(told, (printer, is_chosen), "{wanted:?}");
+        }
+        fs::write(folder.path().join("default.toml"), "inherits = \"ender-3\"\n").unwrap();
+        let shelf = Shelf::new(vec![folder.path().to_owned()]);
+        let sources = load_from(&shelf, &[Wanted::any("petg")], &[]).unwrap().sources;
+        assert_eq!((sources.printer.as_str(), sources.is_printer_chosen), ("default.toml", true));
     }
 
     #[test]

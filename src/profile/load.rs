@@ -13,10 +13,10 @@
 
 use super::error::{ProfileError, Result};
 use super::keys::{self, Kind};
-use super::layers::{Layer, Wanted, layers};
-use super::origin::{Override, Profile, Sources, ValueOrigin};
+use super::layers::{Laid, Layer, Wanted, layers};
+use super::origin::{Override, Profile, Source, Sources, ValueOrigin};
 use super::shelf::Shelf;
-use super::{Settings, check, parse};
+use super::{Settings, check, outdone, parse};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use toml::Value;
@@ -56,7 +56,7 @@ pub fn load_from(shelf: &Shelf, wanted: &[Wanted], overrides: &[Override]) -> Re
 pub fn faults(shelf: &Shelf, wanted: &[Wanted], overrides: &[Override]) -> Vec<ProfileError> {
     let (mut merged, mut found) = (defaults(), Vec::new());
     // Whatever keeps them from being read is told by loading them.
-    let layers = layers(wanted, shelf).map(|(layers, _)| layers).unwrap_or_default();
+    let layers = layers(wanted, shelf).unwrap_or_default().layers;
     for (key, value, origin) in layers.into_iter().flat_map(Layer::settings) {
         found.extend(insert(&key, value, origin, &mut merged).err());
     }
@@ -77,8 +77,8 @@ pub(super) fn merge(
     overrides: &[&[Override]],
 ) -> Result<Profile> {
     let mut merged = defaults();
-    let (layers, asked) = layers(wanted, shelf)?;
-    let list = layers.iter().map(Layer::source).collect();
+    let Laid { layers, asked, printer, is_printer_chosen } = layers(wanted, shelf)?;
+    let list: Vec<Source> = layers.iter().map(Layer::source).collect();
     for layer in layers {
         named_head(layer.entries.iter().map(|entry| entry.key.as_str()), &mut merged);
         for (key, value, origin) in layer.settings() {
@@ -94,11 +94,12 @@ pub(super) fn merge(
     counts_hold_alone(&mut merged);
     follow(&mut merged);
     let left_cold = cold_bed(&mut merged);
-    let sources = Sources { list, asked, left_cold };
-    let last = sources.list.last();
-    let last = last.map_or("", |source| source.file.as_ref().unwrap_or(&source.name));
+    let last = list.last();
+    let last = last.map_or("", |source: &Source| source.file.as_ref().unwrap_or(&source.name));
     let settings = build(last, &merged)?;
     let origins = merged.into_iter().map(|(key, (_, origin))| (key, origin)).collect();
+    let outdone = outdone::find(&settings, &origins, &list);
+    let sources = Sources { list, asked, printer, is_printer_chosen, left_cold, outdone };
     Ok(Profile { settings, origins, sources })
 }
 
@@ -293,6 +294,11 @@ mod tests {
             ("speed", "1", "--set: `speed` is a table, not a value; set one of speed.wall,"),
             ("walls", "101", "--set: walls = 101 is out of range; it must be 0 to 100 walls"),
             ("infill", "x", "--set: infill is the text `x`; it must be a number, 0 to 100 %"),
+            (
+                "infill",
+                "0.2",
+                "--set: infill = 0.2 % is next to nothing: it counts in %, where 20 is a fifth; write 20 for",
+            ),
             ("seam", "reer", "--set: seam = `reer` is unknown; did you mean `rear`?"),
             (
                 "layer_height",
@@ -456,7 +462,11 @@ mod tests {
     #[test]
     fn unknown_profiles_get_a_suggestion_and_the_list() {
         let message = load(["zcube"], &[]).unwrap_err().to_string();
-        assert!(message.contains("did you mean `zcube-dual`? Known are zcube-dual,"), "{message}");
+        assert_eq!(
+            message,
+            "unknown profile `zcube`; did you mean `zcube-dual`?; `slicer profile list` names all, and a \
+             file ends in .toml or is given as ./zcube"
+        );
         let message = load(["./no.toml"], &[]).unwrap_err().to_string();
         assert!(message.starts_with("./no.toml: cannot read this profile: "), "{message}");
     }

@@ -15,6 +15,7 @@ mod lists;
 mod load;
 mod old;
 mod origin;
+mod outdone;
 mod parse;
 mod placeholders;
 mod quotes;

@@ -17,15 +17,34 @@ pub struct Profile {
 }
 
 /// The profiles that had a say, the most general first.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sources {
     /// Each of them once for every time that it was laid.
     pub list: Vec<Source>,
     /// The names of those that were asked for, of a file without its folder, so that an output
     /// that quotes them does not depend on where it lay. If none was, all are defaults.
     pub asked: Vec<String>,
+    /// The printer: the last profile asked for that is one or inherits one, or else the default.
+    pub printer: String,
+    /// Whether somebody chose it, here or as a default of his own; otherwise it is the shipped default.
+    pub is_printer_chosen: bool,
     /// What the material asks of the bed, whole °C, where machine.heated_bed says that it cannot be heated.
     pub left_cold: Option<u32>,
+    /// Numbers of skin layers that a thickness outdoes.
+    pub outdone: Vec<Outdone>,
+}
+
+/// A number of layers that is not what is printed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outdone {
+    /// Its key.
+    pub key: &'static str,
+    /// The thickness that asks for more.
+    pub by: &'static str,
+    /// That thickness, mm.
+    pub thickness_mm: f64,
+    /// The layers that it takes.
+    pub layers: u32,
 }
 
 /// A profile that had a say.

@@ -44,6 +44,9 @@ const PAIRS: &[(&str, [&str; 2])] = &[
 /// Placeholders of others for which there is none here.
 const NO_OTHER: &[&str] = &[
     "bed_shape",
+    "build_volume_temperature",
+    "chamber_minimal_temperature",
+    "chamber_temperature",
     "day_name",
     "extruded_volume",
     "extruded_weight",
@@ -58,12 +61,14 @@ const NO_OTHER: &[&str] = &[
     "jobname",
     "layer_num",
     "layer_z",
+    "material_standby_temperature",
     "next_extruder",
     "num_extruders",
     "num_instances",
     "num_objects",
     "num_printing_extruders",
     "outer_wall_volumetric_speed",
+    "overall_chamber_temperature",
     "plate_name",
     "position",
     "previous_extruder",
@@ -116,10 +121,10 @@ pub(super) fn is_known(text: &str) -> bool {
 pub(super) fn bracketed(line: &str) -> Option<&str> {
     let code = code(line);
     let is_value = |at: usize| takes_numbers(code) && follows_letter(&code[..at]);
-    // What stands between doubled braces is the firmware's own.
-    let is_firmwares = |at: usize| code[..at].rfind("{{") > code[..at].rfind("}}");
+    // What stands between doubled braces is the firmware's own; in others it is the index of a name.
+    let is_in_braces = |at: usize| code[..at].rfind('{') > code[..at].rfind('}');
     groups(code, ['[', ']'])
-        .filter(|&(at, _)| !is_firmwares(at))
+        .filter(|&(at, _)| !is_in_braces(at))
         .find(|&(at, name)| is_name(name) && (is_known(name) || is_value(at)))
         .map(|(at, name)| &code[at..at + name.len() + 2])
 }

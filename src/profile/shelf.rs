@@ -114,7 +114,7 @@ impl Shelf {
     /// refuses are passed over: a profile may inherit the one that it stands in front of.
     ///
     /// # Errors
-    /// [`ProfileError::UnknownProfile`].
+    /// [`ProfileError::UnknownProfile`], [`ProfileError::OtherSlicers`].
     pub fn find(
         &self,
         wanted: &str,
@@ -131,10 +131,19 @@ impl Shelf {
         let own = self.folders.iter().flat_map(kinds).filter(|(path, _)| path.is_file());
         let own = own.map(|(path, kind)| Found::shelved(path, kind));
         let shipped = shipped::kind(wanted).map(|kind| Found::shipped(kind, wanted));
-        own.chain(shipped).find(|found| !skip(found)).ok_or_else(|| ProfileError::UnknownProfile {
-            name: wanted.to_owned(),
-            known: self.all().into_iter().map(|found| found.name).collect(),
-        })
+        own.chain(shipped).find(|found| !skip(found)).ok_or_else(|| self.unknown(wanted, folder))
+    }
+
+    /// That nothing is called so; a file that lies there is probably meant.
+    fn unknown(&self, wanted: &str, folder: Option<&Path>) -> ProfileError {
+        let there = |file: &str| folder.unwrap_or(Path::new("")).join(file).is_file();
+        if parse::has_others_ending(wanted) && there(wanted) {
+            return ProfileError::OtherSlicers { file: wanted.to_owned() };
+        }
+        let bare = there(wanted).then(|| format!("./{wanted}"));
+        let file = Some(format!("{wanted}.toml")).filter(|file| there(file)).or(bare);
+        let known = self.all().into_iter().map(|found| found.name).collect();
+        ProfileError::UnknownProfile { name: wanted.to_owned(), known, file }
     }
 
     /// The printer of a job that names none: `default.toml` in the first folder that has one, or

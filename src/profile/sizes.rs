@@ -43,7 +43,7 @@ impl FromStr for PictureSize {
         let side = |text: &str| text.parse().ok().filter(|side| SIDES.contains(side));
         let sides = text.split_once('x').map(|(width, height)| (side(width), side(height)));
         let Some((Some(width), Some(height))) = sides else {
-            return Err(format!("`{}` is no such size", crate::text::line(text)));
+            return Err(format!("`{}`", crate::text::line(text)));
         };
         Ok(Self { width, height })
     }

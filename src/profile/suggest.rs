@@ -11,6 +11,9 @@ const ALIKE: f64 = 0.7;
 /// Letters of a word that may stand for the one known word which begins with it.
 const LEAST_BEGINNING: usize = 4;
 
+/// Letters of a word that may stand for those which hold it.
+const LEAST_HELD: usize = 3;
+
 /// Known words that are named at once, at most.
 const MOST_NAMED: usize = 6;
 
@@ -71,6 +74,19 @@ pub fn did_you_mean<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> Str
     if named.is_empty() {
         named.extend(nearest(word, known.iter().copied()));
     }
+    asked(&named)
+}
+
+/// As [`did_you_mean`], by the known words that hold `word`, if they are few.
+#[must_use]
+pub fn containing<'a>(word: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let word = word.to_lowercase();
+    let holding: Vec<&str> = known.filter(|name| name.contains(&word)).collect();
+    let is_one = word.len() >= LEAST_HELD && holding.len() <= MOST_NAMED;
+    if is_one { asked(&holding) } else { String::new() }
+}
+
+fn asked(named: &[&str]) -> String {
     let quoted: Vec<String> = named.iter().map(|name| format!("`{name}`")).collect();
     match quoted.split_last() {
         None => String::new(),
@@ -103,6 +119,11 @@ mod tests {
         assert_eq!(told("machine.length"), "; did you mean `retraction.length`?");
         assert_eq!(told("retraction.lenght"), "; did you mean `retraction.length`?");
         assert_eq!(told("filament.flow"), "");
+        let printers = ["prusa-mk3s", "prusa-mk4", "ender-3"];
+        let told = |word: &str| containing(word, printers.into_iter());
+        assert_eq!(told("MK3S"), "; did you mean `prusa-mk3s`?");
+        assert_eq!(told("prusa"), "; did you mean `prusa-mk3s` or `prusa-mk4`?");
+        assert_eq!((told("mk"), told("bambu")), (String::new(), String::new()));
         assert_eq!(nearest("skirt", ["strict", "quiet"].into_iter()), None);
         assert_eq!(nearest("same", ["same-a", "same-b"].into_iter()), None);
     }

@@ -80,27 +80,33 @@ pub fn start_values(settings: &Settings, print: &PrintFacts) -> Vec<(&'static st
 /// last one too.
 ///
 /// # Errors
-/// An unknown placeholder, of another slicer too, or a single brace.
+/// Unknown placeholders, of another slicer too, or single braces: all of them, each once.
 pub fn render(name: &str, block: &str, values: &[(&str, String)]) -> Result<String, BlockError> {
     let mut text = String::with_capacity(block.len());
+    let mut faults: Vec<(usize, PlaceholderError)> = Vec::new();
     for (index, line) in block.lines().enumerate() {
-        render_line(line, values, &mut text).map_err(|source| BlockError {
-            block: name.to_owned(),
-            line: index + 1,
-            source,
-        })?;
+        let mut of_line = Vec::new();
+        // What is wrong with its braces hides the rest of the line.
+        let broken = render_line(line, values, &mut text, &mut of_line).err();
+        for fault in of_line.into_iter().chain(broken) {
+            if faults.iter().all(|(_, other)| *other != fault) {
+                faults.push((index + 1, fault));
+            }
+        }
         text.push('\n');
     }
-    Ok(text)
+    if faults.is_empty() { Ok(text) } else { Err(BlockError { block: name.to_owned(), faults }) }
 }
 
+/// Fills a line in. Unknown placeholders go to `faults`.
 fn render_line(
     line: &str,
     values: &[(&str, String)],
     text: &mut String,
+    faults: &mut Vec<PlaceholderError>,
 ) -> Result<(), PlaceholderError> {
     if let Some(written) = placeholders::bracketed(line) {
-        return Err(unknown(written, values));
+        return Err(unknown(written, line, values));
     }
     let mut rest = line;
     while let Some(at) = rest.find(['{', '}']) {
@@ -118,21 +124,32 @@ fn render_line(
         let Some((name, after)) = rest.split_once('}') else {
             return Err(PlaceholderError::OpenBrace);
         };
-        let found = values.iter().find(|(known, _)| *known == name);
-        let (_, value) = found.ok_or_else(|| unknown(&format!("{{{name}}}"), values))?;
-        text.push_str(value);
         rest = after;
+        if let Some((_, value)) = values.iter().find(|(known, _)| *known == name) {
+            text.push_str(value);
+            continue;
+        }
+        let fault = unknown(&format!("{{{name}}}"), line, values);
+        // What stands between a condition and its end goes with it.
+        if matches!(fault, PlaceholderError::Condition { .. }) {
+            return Err(fault);
+        }
+        faults.push(fault);
     }
     text.push_str(rest);
     Ok(())
 }
 
-/// The error for a placeholder that is `written` so, with its brackets.
-fn unknown(written: &str, values: &[(&str, String)]) -> PlaceholderError {
+/// The error for a placeholder that is `written` so in a line, with its brackets.
+fn unknown(written: &str, line: &str, values: &[(&str, String)]) -> PlaceholderError {
     let written = written.to_owned();
     let name = written.get(1..written.len() - 1).unwrap_or_default().trim().to_owned();
-    if is_computed(&name) {
-        return PlaceholderError::Computed { written };
+    if is_condition(&name) {
+        return PlaceholderError::Condition { written, lifts: moves_z(line) };
+    }
+    if name.contains(['+', '*', '/', '<', '>', '(']) {
+        let of_height = ["layer_z", "print_z", "print_height"].iter().any(|z| name.contains(z));
+        return PlaceholderError::Sum { written, of_height };
     }
     match placeholders::ours(&name) {
         Some(ours) => PlaceholderError::Foreign { written, ours: Some(ours) },
@@ -144,11 +161,16 @@ fn unknown(written: &str, values: &[(&str, String)]) -> PlaceholderError {
     }
 }
 
-/// Whether it is a condition or a sum of another slicer's: `if max_layer_z < 200`, `endif`, `x + 2`.
-fn is_computed(name: &str) -> bool {
+/// Whether it is a condition of another slicer's: `if max_layer_z < 200`, `endif`.
+fn is_condition(name: &str) -> bool {
     let word = name.split_whitespace().next().unwrap_or_default();
     ["if", "elsif", "else", "endif"].contains(&word)
-        || name.contains(['+', '*', '/', '<', '>', '('])
+}
+
+/// Whether a line holds a move of z, whatever stands around it.
+fn moves_z(line: &str) -> bool {
+    let code = line.split(';').next().unwrap_or_default();
+    ["G0 Z", "G1 Z"].iter().any(|lift| code.contains(lift))
 }
 
 /// Shortest decimal text; Rust's `Display` for `f64` has no exponents.
@@ -219,9 +241,21 @@ mod tests {
             ("M104 S[temprature]", "unknown placeholder [temprature]; did you mean {temperature}?"),
             (
                 "{if max_layer_z < max_print_height}G1 Z9{endif}",
-                "{if max_layer_z < max_print_height} is a condition or a sum",
+                "{if max_layer_z < max_print_height} is a condition",
             ),
+            (
+                "{if max_layer_z < max_print_height}G1 Z{z_offset+min(max_layer_z+1, 9)} F600{endif}",
+                "write G1 Z{park_z} F600 in its place",
+            ),
+            ("{if layer_z < 9}M300{endif}", "write the line as it shall be"),
             ("G1 Z{max_layer_z + 2}", "{park_z} is 10 mm above the print"),
+            ("G1 F{travel_speed*60}", "nothing is computed here; write the number that it gives"),
+            ("M141 S{chamber_temperature}", "there is none for it here: write its value"),
+            ("M104 S{material_standby_temperature}", "there is none for it here: write its value"),
+            (
+                "M104 S{first_layer_temperature[initial_extruder]}",
+                "unknown placeholder {first_layer_temperature[initial_extruder]}; here it is {temperature}",
+            ),
         ] {
             let error = render("b", line, &values).unwrap_err().to_string();
             assert!(error.starts_with("b, line 1 of it: ") && error.contains(expected), "{error}");
@@ -231,6 +265,21 @@ mod tests {
         {
             assert_eq!(render("b", fine, &values).unwrap(), format!("{fine}\n"));
         }
+    }
+
+    #[test]
+    fn all_faults_of_a_block_are_told_at_once_each_once_and_not_too_many() {
+        let block = "M104 S{heat} T{tol}\nG28\nM109 S{heat}\n}\nM190 S[bed_temperature]\n";
+        let text = render("b", block, &sample()).unwrap_err().to_string();
+        assert_eq!(
+            text,
+            "b, line 1 of it: unknown placeholder {heat}; known are temperature, tool; line 1: unknown \
+             placeholder {tol}; did you mean {tool}?; line 4: a single `}`; write `}}` for a brace; line 5: \
+             unknown placeholder [bed_temperature]; here it is {bed_temperature}"
+        );
+        let many: String = (0..9).map(|k| format!("M104 S{{tool{k}}}\n")).collect();
+        let text = render("b", &many, &sample()).unwrap_err().to_string();
+        assert!(text.contains("{tool4}") && text.ends_with("; and 4 more"), "{text}");
     }
 
     #[test]

@@ -1,4 +1,11 @@
 //! Settings -> findings: values that are allowed and hardly meant, or more than printer and material bear.
+//!
+//! - *Doubtful* is a value that is allowed, and that prints something else than people mean, or nothing good: it
+//!   gives a warning and fails no run but one with `--strict`.
+//! - What the settings alone tell is in [`warnings`]: speeds, temperatures and flow beyond what printer or
+//!   material bear, and an end block that moves aside before it lifts the nozzle.
+//! - What only the profiles tell, by which the settings came about, each has a function of its own: a printer that
+//!   nobody chose, a bed that stays cold, a number of skin layers that a thickness outdoes.
 
 use crate::profile::{Settings, Sources};
 use crate::warning::Warning;
@@ -20,12 +27,57 @@ pub fn cold_bed(settings: &Settings, sources: &Sources) -> Option<Warning> {
     Some(Warning::ColdBed { material, asked_celsius, machine })
 }
 
+/// Numbers of skin layers in a profile of one's own that a thickness outdoes.
+pub fn outdone(sources: &Sources) -> impl Iterator<Item = Warning> {
+    sources.outdone.iter().map(|one| {
+        let why = format!(
+            "{} = {} mm asks for more, {} layers; set {} = 0 beside it",
+            one.by, one.thickness_mm, one.layers, one.by
+        );
+        Warning::void([one.key], &why)
+    })
+}
+
+/// A printer that nobody chose: the file may be for another than the one that gets it.
+pub fn no_printer(settings: &Settings, sources: &Sources) -> Option<Warning> {
+    // A program that embeds the library may have settings without profiles.
+    let is_open = !sources.is_printer_chosen && !sources.list.is_empty();
+    is_open.then(|| Warning::NoPrinter { machine: settings.machine.name.clone() })
+}
+
+/// An end block that moves aside before it lifts the nozzle.
+fn drags(settings: &Settings) -> Option<Warning> {
+    let lines = settings.machine.end_gcode.lines().enumerate();
+    for (index, line) in lines {
+        let written = line.split(';').next().unwrap_or_default().trim();
+        let code = written.to_ascii_uppercase();
+        let mut words = code.split_whitespace();
+        match words.next() {
+            Some("G0" | "G1") => {}
+            // What is not numbered may be a macro, which lifts it.
+            Some(word) if word.chars().nth(1).is_none_or(|second| !second.is_ascii_digit()) => {
+                return None;
+            }
+            _ => continue,
+        }
+        let has = |axes: &[char]| code.split_whitespace().skip(1).any(|w| w.starts_with(axes));
+        if has(&['Z']) {
+            return None;
+        }
+        if has(&['X', 'Y']) {
+            return Some(Warning::EndDrags { line: index + 1, command: written.to_owned() });
+        }
+    }
+    None
+}
+
 /// Speeds, flow and temperatures to think about again.
 #[must_use]
 pub fn warnings(settings: &Settings) -> Vec<Warning> {
     let mut found: Vec<Warning> = slow(settings).collect();
     found.extend(fast(settings));
     found.extend(heat(settings));
+    found.extend(drags(settings));
     let flow = ("extrusion.multiplier", settings.extrusion.multiplier, "times");
     found.extend(outside(flow, FLOWS, "what makes up for a filament or an extruder"));
     found
@@ -129,6 +181,23 @@ mod tests {
         }
         for material in ["pla", "petg", "tpu", "abs-narino"] {
             assert_eq!(told("narino", material), None, "{material}");
+        }
+    }
+
+    #[test]
+    fn an_end_block_that_moves_aside_before_it_lifts_is_told() {
+        for (block, line) in [
+            ("M104 S0\nG1 X0 Y200 F3600 ; park\nM84", Some(2)),
+            ("G91\nG1 E-2 F2700\ng1 x5 y5\nG1 Z10", Some(3)),
+            ("M104 S0\nG1 Z{park_z} F600\nG1 X0 Y200", None),
+            ("G91\nG1 E-2 Z0.2\nG1 X5 Y5", None),
+            ("PRINT_END\nG1 X0", None),
+            ("M104 S0", None),
+        ] {
+            let told = told(&[("machine.end_gcode", block)]);
+            assert_eq!(told.len(), usize::from(line.is_some()), "{block}: {told:?}");
+            let starts = format!("machine.end_gcode, line {}", line.unwrap_or_default());
+            assert!(told.iter().all(|one| one.starts_with(&starts)), "{told:?}");
         }
     }
 

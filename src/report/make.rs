@@ -12,13 +12,14 @@ use super::motion::{self, motion};
 use super::tally::Tally;
 use super::{
     ApartReport, BlockReport, DualReport, FilamentReport, FlowReport, LayerTimeReport,
-    LayersReport, ProfileReport, Report, RoleReport, SCHEMA, TimeReport, TravelReport,
+    LayersReport, ProfileReport, Report, RoleReport, SCHEMA, SlowedFlowReport, TimeReport,
+    TravelReport,
 };
 use super::{doubtful, reshaped, unused};
-use crate::fill::Role;
 use crate::fill::adhesion::lift::Lift;
+use crate::fill::{Both, Role};
 use crate::gcode::Sums;
-use crate::gcode::flow::{Flows, speed};
+use crate::gcode::flow::{Flows, Lowered, speed};
 use crate::gcode::times::{LayerTime, Times};
 use crate::gcode::usage::Material;
 use crate::job::{self, Job};
@@ -40,15 +41,14 @@ pub fn report(
     audits: &[Audit],
     tally: &Tally,
 ) -> Report {
-    let settings = &job.settings;
-    let lift = Lift::new(settings);
+    let (settings, lift) = (&job.settings, Lift::new(&job.settings));
     let Sums { usage, times, cooled } = sums;
     let Material { mm, cm3, grams, cost } = Material::new(usage.filament(), settings);
     Report {
         schema: SCHEMA,
         slicer: job::NAME.to_owned(),
-        profile: job.sources.to_string(),
-        is_profile_chosen: !job.sources.asked.is_empty(),
+        profile: job.sources.printer.clone(),
+        is_profile_chosen: job.sources.is_printer_chosen,
         profiles: profiles(&job.sources),
         models: models(placed, &lift),
         size_mm: placed.size_mm,
@@ -72,16 +72,19 @@ pub fn report(
         flow: FlowReport {
             largest_mm3_s: usage.flows.largest,
             limit_mm3_s: settings.max_volumetric_speed(),
+            slowed: slowed_where_wide(&usage.flows, settings),
         },
         cooling: cooled.as_ref().and_then(|cooled| cooling(cooled, times, settings)),
         motion: motion(usage, settings),
         arcs: reshaped::arcs(usage, settings),
         segments: reshaped::segments(usage, settings),
         dual: (settings.dual.mode != DualMode::Off).then(|| dual(settings, audits, lift.layers())),
-        warnings: (placed.warnings.iter().cloned())
+        warnings: (doubtful::no_printer(settings, &job.sources).into_iter())
+            .chain(placed.warnings.iter().cloned())
             .chain(tally.warnings(job.placement.copies))
             .chain(doubtful::warnings(settings))
             .chain(doubtful::cold_bed(settings, &job.sources))
+            .chain(doubtful::outdone(&job.sources))
             .chain(motion::warnings(settings))
             .chain(unused::warnings(usage, settings))
             .chain(slowed_down(&usage.flows, settings))
@@ -150,25 +153,58 @@ fn time(times: &Times) -> TimeReport {
     }
 }
 
-/// Lines that are slowed down since the hot end cannot melt as fast. Where a material asks for less
-/// than that, it is what it says that it needs.
-fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
-    let mut warnings = Vec::new();
+/// What was slowed down since the hot end cannot melt as fast: role, thick or not, and speeds. Where a material
+/// asks for less than that, it is what it says that it needs.
+fn lowered(flows: &Flows, settings: &Settings) -> Vec<(Role, bool, Lowered)> {
     if settings.max_volumetric_speed() < settings.machine.max_volumetric_speed {
-        return warnings;
+        return Vec::new();
     }
-    for (role, lowered) in flows.lowered.iter() {
-        for (thick, lowered) in lowered.iter() {
-            warnings.extend(lowered.map(|lowered| Warning::FlowLimited {
-                role: role_name(role, thick),
-                setting: (*(role.facts().speed_keys)(&settings.speed).of(thick)).to_owned(),
-                asked_mm_s: speed(lowered.asked),
-                lowest_mm_s: speed(lowered.given),
-                limit_mm3_s: settings.max_volumetric_speed(),
-            }));
-        }
+    let of = |(role, lowered): (Role, &Both<Option<Lowered>>)| {
+        let both: Vec<_> = lowered.iter().map(|(thick, one)| (role, thick, *one)).collect();
+        both
+    };
+    let all = flows.lowered.iter().flat_map(of);
+    all.filter_map(|(role, thick, one)| Some((role, thick, one?))).collect()
+}
+
+/// Whether a usual line of this role melts at this speed, mm/s: then only wider ones are slowed down, which
+/// nobody asked to be wide. What is no line of the usual size has none.
+fn usual_melts(role: Role, thick: bool, asked: f64, settings: &Settings) -> bool {
+    if matches!(role, Role::Bridge | Role::RaftBase | Role::RaftInterface) {
+        return false;
     }
-    warnings
+    let layers = if thick { f64::from(settings.dual_ratio().max(2)) } else { 1.0 };
+    let section = settings.line_width * layers * settings.layer_height;
+    let flow = asked * section * settings.extrusion.multiplier;
+    flow <= settings.max_volumetric_speed()
+}
+
+/// Lines that are slower although they are of the usual size.
+fn slowed_down(flows: &Flows, settings: &Settings) -> Vec<Warning> {
+    let all = lowered(flows, settings).into_iter();
+    let of_usual =
+        all.filter(|(role, thick, one)| !usual_melts(*role, *thick, speed(one.asked), settings));
+    let warning = |(role, thick, one): (Role, bool, Lowered)| Warning::FlowLimited {
+        role: role_name(role, thick),
+        setting: (*(role.facts().speed_keys)(&settings.speed).of(thick)).to_owned(),
+        asked_mm_s: speed(one.asked),
+        lowest_mm_s: speed(one.given),
+        limit_mm3_s: settings.max_volumetric_speed(),
+    };
+    of_usual.map(warning).collect()
+}
+
+/// Lines that are slower since they are wider than usual.
+fn slowed_where_wide(flows: &Flows, settings: &Settings) -> Vec<SlowedFlowReport> {
+    let all = lowered(flows, settings).into_iter();
+    let wide =
+        all.filter(|(role, thick, one)| usual_melts(*role, *thick, speed(one.asked), settings));
+    let row = |(role, thick, one): (Role, bool, Lowered)| SlowedFlowReport {
+        role: role_name(role, thick),
+        asked_mm_s: speed(one.asked),
+        lowest_mm_s: speed(one.given),
+    };
+    wide.map(row).collect()
 }
 
 /// `below` layers of a raft come before those of the audits.

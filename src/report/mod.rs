@@ -32,7 +32,7 @@ use serde::Serialize;
 use steps::StepsReport;
 
 /// Version of the JSON schema; raised when a field changes its meaning or goes away.
-pub const SCHEMA: u32 = 4;
+pub const SCHEMA: u32 = 5;
 
 /// What is written as a report.
 #[derive(Serialize, JsonSchema)]
@@ -59,9 +59,14 @@ pub struct Report {
     pub schema: u32,
     /// Name and version of this program.
     pub slicer: String,
-    /// Profiles asked for, by name or file; that of the default printer if none was.
+    /// Exit code of the run: 0, or 1 where it is done with findings.
+    pub exit_code: u8,
+    /// The file with the G-code as it was named, `-` for standard output; null if none was written, as of a run
+    /// whose `--check` has findings.
+    pub output: Option<String>,
+    /// The printer's profile, by name or file: the last one asked for that is a printer or inherits one.
     pub profile: String,
-    /// Whether any profile was asked for; otherwise all are defaults.
+    /// Whether somebody chose the printer; otherwise it is the default one.
     pub is_profile_chosen: bool,
     /// The profiles that had a say, defaults included, the most general first.
     pub profiles: Vec<ProfileReport>,
@@ -245,6 +250,19 @@ pub struct FlowReport {
     pub largest_mm3_s: f64,
     /// The most that the hot end can melt, mm³/s.
     pub limit_mm3_s: f64,
+    /// Roles whose usual lines melt at the speed asked for, and some wider ones do not: those are slower.
+    pub slowed: Vec<SlowedFlowReport>,
+}
+
+/// Lines that are slower where they are wider than usual.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
+pub struct SlowedFlowReport {
+    /// What they are for, as in `roles`.
+    pub role: String,
+    /// Highest speed asked for, mm/s.
+    pub asked_mm_s: f64,
+    /// Lowest speed given, mm/s.
+    pub lowest_mm_s: f64,
 }
 
 /// What `cooling.min_layer_time` changed.

@@ -42,7 +42,10 @@ fn fails(folder: &TempDir, words: &[&str], code: i32, says: &str) {
 fn wrong_flags_are_one_line_with_a_tip() {
     let folder = folder();
     fails(&folder, &["part.stl", "-o", "a", "--wals", "2"], 2, "'--walls'");
-    fails(&folder, &["part.stl"], 2, "--output <OUT>");
+    fails(&folder, &["part.stl"], 2, "--output <OUT>, such as -o part.gcode; see `slicer --help`");
+    fs::write(folder.path().join("-dash.stl"), "").unwrap();
+    fails(&folder, &["-dash.stl", "-o", "a"], 2, "begins with a dash; write ./-dash.stl");
+    fs::remove_file(folder.path().join("-dash.stl")).unwrap();
     fails(&folder, &["-o", "a"], 2, "<INPUT>");
     fails(&folder, &["part.stl", "-o", "a", "--pattern", "gird"], 2, "grid");
     fails(&folder, &["part.stl", "-o", "a", "--scale", "0"], 2, "more than 0");
@@ -188,10 +191,9 @@ fn no_two_arguments_may_mean_the_same_file() {
     fails(&folder, &["part.stl", "-o", "next.STL"], 2, "next.STL is a model's name");
     fails(&folder, &["part.stl", "-o", "a", "--report", "b.stl"], 2, "b.stl is a model's name");
     // Nor replace a profile that is read, be it inherited.
-    fs::write(folder.path().join("base.toml"), "walls = 3\n").unwrap();
-    fs::write(folder.path().join("mine.toml"), "inherits = [\"ender-3\", \"base.toml\"]\n")
-        .unwrap();
-    for out in ["mine.toml", "base.toml"] {
+    fs::write(folder.path().join("base"), "walls = 3\n").unwrap();
+    fs::write(folder.path().join("mine.toml"), "inherits = [\"ender-3\", \"./base\"]\n").unwrap();
+    for out in ["mine.toml", "base"] {
         let words = ["part.stl", "-p", "./mine.toml", "-o", out];
         fails(&folder, &words, 2, "the output would replace");
     }
@@ -207,6 +209,12 @@ fn formats_that_are_not_written_are_refused() {
     let folder = folder();
     for (out, remedy) in [
         ("a.3mf", "choose .gcode"),
+        ("a.toml", "-p reads one; choose .gcode"),
+        ("a.INI", "choose .gcode"),
+        ("a.json", "--report writes a report"),
+        ("a.html", "`slicer preview` draws it"),
+        ("a.svg", "`slicer preview` draws it"),
+        ("a.png", "`slicer preview` draws it"),
         ("a.bgcode", "`bgcode`"),
         ("a.X3G", "`gpx`"),
         ("a.gcode.gz", "-o - | gzip"),
@@ -299,10 +307,11 @@ fn write_block(path: &Path) {
 fn a_good_run_writes_its_products_and_a_summary_of_four_lines_and_one_on_quick_layers() {
     let folder = folder();
     write_block(&folder.path().join("block.stl"));
-    let args = ["block.stl", "-o", "a.gcode", "--report", "a.json", "--strict", "--dual"];
+    let args = ["block.stl", "-p", "zcube-dual", "-o", "a.gcode", "--report", "a.json"];
+    let args = [&args[..], &["--strict", "--dual"]].concat();
     for (seconds, lines) in [("0", 4), ("10", 5)] {
         let as_many = predicate::function(move |text: &str| text.lines().count() == lines);
-        let run = slicer(&folder).args(args).args(["--min-layer-time", seconds]).assert();
+        let run = slicer(&folder).args(&args).args(["--min-layer-time", seconds]).assert();
         run.success().stdout("").stderr(as_many);
     }
     assert_eq!(files(folder.path()), ["a.gcode", "a.json", "block.stl", "part.stl"]);
@@ -314,10 +323,11 @@ fn a_good_run_writes_its_products_and_a_summary_of_four_lines_and_one_on_quick_l
 fn the_product_is_the_same_on_stdout_and_on_any_number_of_threads() {
     let folder = folder();
     write_block(&folder.path().join("block.stl"));
-    slicer(&folder).args(["block.stl", "-o", "a.gcode", "-q"]).assert().success().stderr("");
+    let words = ["block.stl", "-p", "zcube-dual", "-o", "a.gcode", "-q"];
+    slicer(&folder).args(words).assert().success().stderr("");
     let file = fs::read(folder.path().join("a.gcode")).unwrap();
     for threads in ["1", "3"] {
-        let words = ["block.stl", "-q", "-o", "-", "--threads", threads];
+        let words = ["block.stl", "-p", "zcube-dual", "-q", "-o", "-", "--threads", threads];
         slicer(&folder).args(words).assert().success().stdout(file.clone()).stderr("");
     }
 }
@@ -398,6 +408,7 @@ fn strict_run_with_a_warning_is_done_but_exits_with_1() {
     for (strict, code) in [(false, 0), (true, 1)] {
         let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_slicer"));
         command.current_dir(folder.path()).args(["cube.stl", "-o", "a.gcode", "-q"]);
+        command.args(["-p", "zcube-dual"]);
         if strict {
             command.arg("--strict");
         }
@@ -417,9 +428,10 @@ fn a_product_that_the_check_finds_fault_with_is_not_put_in_place() {
     write_block(&folder.path().join("block.stl"));
     fs::write(folder.path().join("a.gcode"), "old").unwrap();
     // Axes that are slower than the feeds asked for.
-    let words = ["block.stl", "-q", "--check", "--set", "limits.speed_x=1", "--report", "a.json"];
+    let words = ["block.stl", "-p", "zcube-dual", "-q", "--check", "--set", "limits.speed_x=1"];
+    let words = [&words[..], &["--report", "a.json"]].concat();
     for out in ["a.gcode", "-"] {
-        let run = slicer(&folder).args(words).args(["-o", out]).assert().code(1).stdout("");
+        let run = slicer(&folder).args(&words).args(["-o", out]).assert().code(1).stdout("");
         run.stderr(
             predicate::str::starts_with("block.stl: too-fast: line ")
                 .and(predicate::str::contains("error: block.stl: --check has findings")),
@@ -436,7 +448,7 @@ fn a_product_that_the_check_finds_fault_with_is_not_put_in_place() {
 fn a_product_that_the_check_finds_clean_is_the_same_as_without_it() {
     let folder = folder();
     write_block(&folder.path().join("block.stl"));
-    let plain = ["block.stl", "-q", "--dual", "--copies", "2", "-o", "-"];
+    let plain = ["block.stl", "-p", "zcube-dual", "-q", "--dual", "--copies", "2", "-o", "-"];
     let product = slicer(&folder).args(plain).output().unwrap().stdout;
     let checked = slicer(&folder).args(plain).arg("--check").assert().success();
     checked.stdout(product).stderr("");

@@ -76,7 +76,7 @@ fn wrong_arguments_and_files_are_one_line() {
         (&["empty.gcode"][..], 3, "empty.gcode: no move in it prints a line"),
         (&["travels.gcode"], 3, "travels.gcode: no move in it prints a line"),
         (&["noise.gcode"], 3, "noise.gcode: no move in it prints a line"),
-        (&["cube.stl"], 3, "cube.stl: no move in it prints a line"),
+        (&["cube.stl"], 2, "cube.stl: an STL is a model"),
         (&["none.gcode"], 3, "none.gcode: "),
         (&["good.gcode", "--against", "none.stl"], 3, "none.stl: "),
         (&["good.gcode", "--against", "good.gcode"], 3, "good.gcode: "),

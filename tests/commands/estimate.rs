@@ -248,3 +248,28 @@ fn the_print_time_is_that_of_the_file_and_the_whole_is_told_beside_it() {
     let json: serde_json::Value = serde_json::from_slice(&named.get_output().stdout).unwrap();
     assert_eq!(json["limits_by"], "profile");
 }
+
+#[test]
+fn several_files_have_a_line_each() {
+    let run = |words: &[&str]| {
+        let run = slicer(words).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (run.status.code().unwrap(), text(run.stdout), text(run.stderr))
+    };
+    let (code, out, _) = run(&["estimate", CLOCK, CLOCK, "-p", "generic-marlin"]);
+    let lines: Vec<&str> = out.lines().collect();
+    assert_eq!((code, lines.len()), (0, 2), "{out}");
+    assert!(lines.iter().all(|line| line.starts_with("fixtures/clock.gcode: print time 0:00:")));
+    let words = ["estimate", CLOCK, "nix.gcode", CLOCK, "--json", "-p", "generic-marlin"];
+    let (code, out, err) = run(&words);
+    let rows: Vec<serde_json::Value> =
+        out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!((code, rows.len()), (3, 3), "{err}");
+    assert_eq!((&rows[0], rows[1]["exit_code"].as_u64()), (&rows[2], Some(3)));
+    assert_eq!(rows[0]["file"], CLOCK);
+    let (_, alone, _) = run(&["estimate", CLOCK, "--json", "-p", "generic-marlin"]);
+    let alone: serde_json::Value = serde_json::from_str(&alone).unwrap();
+    assert!(alone.get("file").is_none() && alone["seconds"] == rows[0]["seconds"]);
+    let (code, _, err) = run(&["estimate", CLOCK, CLOCK, "-p", "nix"]);
+    assert!(code == 2 && err.lines().count() == 1, "{err}");
+}

@@ -118,11 +118,39 @@ fn a_failure_is_reported_by_code_file_and_place() {
 }
 
 #[test]
+fn a_report_says_what_was_written_and_with_which_exit_code() {
+    let folder = folder();
+    let schema = slicer(&folder).args(["report", "schema"]).output().unwrap().stdout;
+    let (mut schemas, mut compiler) = (Schemas::new(), Compiler::new());
+    compiler.add_resource("schema.json", serde_json::from_slice(&schema).unwrap()).unwrap();
+    let index = compiler.compile("schema.json", &mut schemas).unwrap();
+    // Cold all along: a finding of --check, which keeps the file back.
+    let cold = "machine.start_gcode=G28\nM190 S{bed_temperature}\n";
+    let slow = ["--strict", "--set", "speed.skin=1"];
+    for (words, exit, output) in [
+        (&["-o", "./a.gcode"] as &[&str], 0, Some("./a.gcode")),
+        (&["-o", "-"], 0, Some("-")),
+        (&[&slow[..], &["-o", "a.gcode"]].concat(), 1, Some("a.gcode")),
+        (&["--check", "--set", cold, "-o", "b.gcode"], 1, None),
+    ] {
+        let words = [&CUBE, words, &["--report", "a.json"]].concat();
+        slicer(&folder).args(&words).assert().code(exit);
+        let found = report(&folder);
+        schemas.validate(&found, index).unwrap();
+        assert_eq!(found["exit_code"], exit, "{words:?}");
+        assert!(found["error"].is_null());
+        assert_eq!(found["output"].as_str(), output, "{words:?}");
+        assert!(found.as_object().unwrap().contains_key("output"));
+    }
+    assert!(!folder.path().join("b.gcode").exists());
+}
+
+#[test]
 fn a_command_line_that_is_not_understood_is_reported_where_it_names_a_report() {
     let folder = folder();
     let path = folder.path().join("a.json");
     let wrong = ["cube.stl", "-o", "a.gcode", "--report", "a.json", "--foo"];
-    for there in [None, Some("{\n  \"schema\": 4,\n  \"exit_code\": 0\n}\n")] {
+    for there in [None, Some("{\n  \"schema\": 5,\n  \"exit_code\": 0\n}\n")] {
         there.into_iter().for_each(|text| fs::write(&path, text).unwrap());
         slicer(&folder).args(wrong).assert().code(2);
         let told = report(&folder);

@@ -102,3 +102,42 @@ fn the_report_tells_where_each_model_lies() {
         assert!(side(0, 2).0 >= low, "{bodies:?}");
     }
 }
+
+#[test]
+fn summary_and_notes_name_the_model() {
+    let folder = plate();
+    let job = ["cube.stl", "-p", "ender-3", "--material", "abs", "-o", "a.gcode"];
+    let run = slicer(&folder).args(job).output().unwrap();
+    let told = String::from_utf8(run.stderr).unwrap();
+    assert!(told.contains("cube.stl: printer ender-3, material abs, print standard\n"), "{told}");
+    let mut notes = told.lines().filter(|line| line.starts_with("note: "));
+    assert!(notes.all(|line| line.starts_with("note: cube.stl: ")), "{told}");
+}
+
+#[test]
+fn wide_places_that_are_slower_are_a_note_and_no_warning() {
+    let folder = plate();
+    for (printer, print) in [
+        ("voron-2.4", "standard"),
+        ("voron-2.4", "strong"),
+        ("prusa-mk3s", "draft"),
+        ("prusa-mk4", "draft"),
+    ] {
+        let job = ["cube.stl", "-p", printer, "--print", print, "--strict", "-o", "a.gcode"];
+        let run = slicer(&folder).args(job).args(["--report", "a.json"]).output().unwrap();
+        let told = String::from_utf8(run.stderr).unwrap();
+        assert!(run.status.success() && !told.contains("warning"), "{printer} {print}: {told}");
+        let report: Value =
+            serde_json::from_slice(&fs::read(folder.path().join("a.json")).unwrap()).unwrap();
+        let slowed = report["flow"]["slowed"].as_array().unwrap();
+        let has_note = told.contains("note: cube.stl: wide places of ");
+        assert_eq!(has_note, !slowed.is_empty(), "{printer} {print}: {told}");
+    }
+    // Lines of the usual size are too fast.
+    let fast =
+        ["--set", "speed.infill=300", "--set", "limits.speed_x=500", "--set", "limits.speed_y=500"];
+    let job = ["cube.stl", "-q", "-p", "ender-3", "-o", "a.gcode"];
+    let run = slicer(&folder).args(job).args(fast).output().unwrap();
+    let told = String::from_utf8(run.stderr).unwrap();
+    assert!(told.contains("warning: cube.stl: infill: slowed down from 300 "), "{told}");
+}

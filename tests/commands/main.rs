@@ -13,6 +13,7 @@ mod hosts;
 mod logs;
 mod mesh;
 mod names;
+mod plates;
 mod preview;
 mod profiles;
 mod reading;

@@ -115,7 +115,8 @@ fn the_policy_decides_what_becomes_of_a_hole() {
     let folder = folder();
     let sliced = |policy: &str, file: &str| {
         let _ = fs::remove_file(folder.path().join("o.gcode"));
-        let (code, _, err) = run(&folder, &[file, "-q", "--mesh", policy, "-o", "o.gcode"]);
+        let (code, _, err) =
+            run(&folder, &[file, "-q", "-p", "zcube-dual", "--mesh", policy, "-o", "o.gcode"]);
         (code, err, fs::read_to_string(folder.path().join("o.gcode")).ok())
     };
     let sound = sliced("strict", "sound.stl");
@@ -142,10 +143,11 @@ fn the_policy_decides_what_becomes_of_a_hole() {
 fn metres_and_centimetres_are_units() {
     let folder = folder();
     for (unit, scale) in [("cm", "0.1"), ("m", "0.001")] {
-        let words = ["sound.stl", "-q", "--unit", unit, "--scale", scale, "-o", "-"];
+        let plain = ["sound.stl", "-q", "-p", "zcube-dual", "-o", "-"];
+        let words = [&plain[..], &["--unit", unit, "--scale", scale]].concat();
         let (code, out, err) = run(&folder, &words);
         assert_eq!((code, err.as_str()), (0, ""));
-        let (_, plain, _) = run(&folder, &["sound.stl", "-q", "-o", "-"]);
+        let (_, plain, _) = run(&folder, &plain);
         assert!(out == plain, "{unit}");
     }
 }

@@ -74,14 +74,17 @@ fn the_summary_says_for_what_it_was_sliced_and_whether_that_was_chosen() {
     let folder = folder();
     let text = said(&mut slicer(&folder), &[]);
     assert!(
-        text.starts_with("printer zcube-dual, material pla-thesis, print one-wall (none chosen"),
+        text.contains("printer zcube-dual (not chosen), material pla-thesis, print one-wall\n"),
         "{text}"
     );
     let text = said(
         &mut slicer(&folder),
         &["-p", "generic-klipper", "--material", "petg", "--print", "fine"],
     );
-    assert!(text.starts_with("printer generic-klipper, material petg, print fine\n"), "{text}");
+    assert!(
+        text.starts_with("part.stl: printer generic-klipper, material petg, print fine\n"),
+        "{text}"
+    );
     let gcode = fs::read_to_string(folder.path().join("a.gcode")).unwrap();
     for line in ["layer_height = 0.12", "filament.temperature = 240", "filament.name = \"PETG\""] {
         assert!(gcode.contains(&format!("\n; {line}\n")), "{line}");
@@ -96,13 +99,14 @@ fn every_file_that_had_a_say_is_named_but_not_in_the_gcode() {
     let words = ["-p", "secret-printer", "-p", "./secret.toml", "--report", "r.json"];
     let text = said(&mut slicer(&folder), &words);
     assert!(
-        text.starts_with("printer secret-printer, material pla, print standard; with "),
+        text.starts_with("part.stl: printer secret-printer, material pla, print standard; with "),
         "{text}"
     );
     assert!(text.contains("secret-printer.toml, ./secret.toml\n"), "{text}");
     let report: serde_json::Value =
         serde_json::from_slice(&fs::read(folder.path().join("r.json")).unwrap()).unwrap();
-    assert_eq!(report["profile"], "secret-printer + secret.toml");
+    assert_eq!(report["profile"], "secret-printer");
+    assert_eq!(report["is_profile_chosen"], true);
     let names: Vec<_> = report["profiles"].as_array().unwrap().iter().collect();
     assert_eq!(names.len(), 5);
     assert_eq!(names[4]["file"], "./secret.toml");
@@ -118,7 +122,10 @@ fn ones_own_profiles_are_found_in_order_and_can_be_left_out() {
     write(&folder, "config/slicer/materials/mine.toml", "[filament]\ntemperature = 201\n");
     write(&folder, "farm/materials/mine.toml", "[filament]\ntemperature = 202\n");
     let text = said(&mut slicer(&folder), &[]);
-    assert!(text.starts_with("printer default.toml, material pla, print standard"), "{text}");
+    assert!(
+        text.starts_with("part.stl: printer default.toml, material pla, print standard"),
+        "{text}"
+    );
     let shown = |command: &mut Command, words: &[&str]| {
         let words = [&["profile", "show"], words].concat();
         let done = command.args(words).assert().success();
@@ -141,7 +148,58 @@ fn ones_own_profiles_are_found_in_order_and_can_be_left_out() {
         command.assert().code(2).stderr(predicate::str::contains("unknown profile `mine`"));
     }
     let text = said(slicer(&folder).env("SLICER_NO_USER_CONFIG", "1"), &[]);
-    assert!(text.starts_with("printer zcube-dual,"), "{text}");
+    assert!(text.contains("printer zcube-dual (not chosen),"), "{text}");
+}
+
+#[test]
+fn a_printer_that_nobody_chose_is_a_warning_whatever_else_was_chosen() {
+    let folder = folder();
+    let warns = "warning: part.stl: no printer chosen: this file is for the ZCube Dual; choose one with -p \
+                 (slicer profile list)\n";
+    for words in [&[][..], &["--material", "petg"], &["-p", "petg"], &["--print", "fine"]] {
+        let mut command = slicer(&folder);
+        command.args(["part.stl", "-q", "-o", "a.gcode", "--report", "r.json", "--strict"]);
+        command.args(words);
+        command.assert().code(1).stderr(predicate::str::starts_with(warns));
+        let report: serde_json::Value =
+            serde_json::from_slice(&fs::read(folder.path().join("r.json")).unwrap()).unwrap();
+        assert_eq!(report["profile"], "zcube-dual", "{words:?}");
+        assert_eq!(report["is_profile_chosen"], false, "{words:?}");
+        assert_eq!(report["warnings"][0]["code"], "no-printer", "{words:?}");
+    }
+    let words = ["part.stl", "-q", "-o", "a.gcode", "--strict", "-p", "ender-3"];
+    slicer(&folder).args(words).args(["--material", "petg"]).assert().success().stderr("");
+}
+
+#[test]
+fn files_that_are_meant_and_settings_of_other_slicers_are_told() {
+    let folder = folder();
+    let refuses = |words: &[&str], says: &str| {
+        let mut command = slicer(&folder);
+        command.args(["part.stl", "-o", "a.gcode"]).args(words);
+        let told = command.assert().code(2);
+        let text = String::from_utf8(told.get_output().stderr.clone()).unwrap();
+        assert_eq!(text, format!("error: {says}\n"));
+    };
+    write(&folder, "mine.toml", "infill = 30\n");
+    refuses(&["-p", "mine"], "unknown profile `mine`; there is such a file: write mine.toml");
+    refuses(
+        &["-p", "mk3s"],
+        "unknown profile `mk3s`; did you mean `prusa-mk3s`?; `slicer profile list` names all, and a file \
+         ends in .toml or is given as ./mk3s",
+    );
+    refuses(
+        &["-p", "mine.toml"],
+        "mine.toml: `description` has no value; set it, or begin the file with inherits = \
+         \"YOUR PRINTER\", such as \"ender-3\" (slicer profile list)",
+    );
+    let others = "is no profile of this program, and settings of other slicers are not read; begin with \
+                  `slicer profile new ender-3 > mine.toml`, or another printer of `slicer profile list`";
+    write(&folder, "config.ini", "# generated by PrusaSlicer 2.7.1\n\narc_fitting = disabled\n");
+    refuses(&["-p", "./config.ini"], &format!("./config.ini: {others}"));
+    refuses(&["-p", "config.ini"], &format!("config.ini: {others}"));
+    write(&folder, "theirs.toml", "# generated by PrusaSlicer 2.7.1\n\narc_fitting = disabled\n");
+    refuses(&["-p", "theirs.toml"], &format!("theirs.toml: {others}"));
 }
 
 #[test]
@@ -265,4 +323,16 @@ fn the_list_marks_the_default_that_holds() {
     assert!(all.iter().any(|one| one["name"] == "petg"
         && one["kind"] == "material"
         && one.get("file").is_none()));
+}
+
+#[test]
+fn a_number_of_skin_layers_that_a_thickness_outdoes_is_told() {
+    let folder = folder();
+    write(&folder, "mine.toml", "inherits = \"ender-3\"\ntop_layers = 2\n");
+    let says = "top_layers has no effect: top_thickness = 0.8 mm asks for more, 4 layers; set top_thickness = 0 \
+                beside it\n";
+    let checks = slicer(&folder).args(["profile", "check", "mine.toml"]).assert().success();
+    checks.stderr(format!("warning: mine.toml: {says}"));
+    let text = said(&mut slicer(&folder), &["-q", "-p", "mine.toml"]);
+    assert_eq!(text, format!("warning: part.stl: {says}"));
 }

@@ -96,3 +96,66 @@ fn a_plate_held_against_one_part_is_answered() {
     let (code, out, _) = check(&folder, &both, b"");
     assert!(code == 0 && !out.contains("note: "), "{out}");
 }
+
+#[test]
+fn known_codes_are_listed_and_do_not_count() {
+    let folder = folder();
+    let (code, out, _) = check(&folder, &["bad.gcode", "--allow", "unknown-code,left-on"], b"");
+    assert!(code == 0 && out.starts_with("bad.gcode: clean (1 allowed) in "), "{out}");
+    assert!(out.contains("\nallowed: unknown-code: line 1: Marlin does not know G161\n"), "{out}");
+    let words = ["bad.gcode", "--json", "--strict", "--allow", "unknown-code"];
+    let (code, out, _) = check(&folder, &words, b"");
+    let row: Value = serde_json::from_str(&out).unwrap();
+    assert_eq!((code, &row["allowed"]), (0, &serde_json::json!(["unknown-code"])));
+    assert_eq!(row["counts"][0]["code"], "unknown-code");
+    let (code, _, _) = check(&folder, &["bad.gcode", "--allow", "left-on"], b"");
+    assert_eq!(code, 1);
+    // Warnings with --strict.
+    let part = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/overhang.stl");
+    let job = [part, "-q", "-p", "ender-3", "-o", "weak.gcode"];
+    super::run::slicer(&folder).args(job).assert().success();
+    let (code, out, _) = check(&folder, &["weak.gcode", "--strict", "--json"], b"");
+    let row: Value = serde_json::from_str(&out).unwrap();
+    let counts = row["counts"].as_array().unwrap();
+    let codes: Vec<&str> = counts.iter().map(|one| one["code"].as_str().unwrap()).collect();
+    assert!(code == 1 && !codes.is_empty());
+    let words = ["weak.gcode", "--strict", "--allow", &codes.join(",")];
+    let (code, out, _) = check(&folder, &words, b"");
+    assert!(code == 0 && out.contains("\nallowed: "), "{out}");
+    let (code, _, err) = check(&folder, &["good.gcode", "--allow", "unkown-code"], b"");
+    assert!(code == 2 && err.contains("did you mean `unknown-code`?"), "{err}");
+    let (code, _, err) = check(&folder, &["good.gcode", "--allow", "anchor"], b"");
+    assert!(code == 2 && err.contains("did you mean `unanchored`?"), "{err}");
+}
+
+#[test]
+fn a_model_among_the_files_is_told_where_it_goes() {
+    let folder = folder();
+    let words = ["good.gcode", "--against", "cube.stl", "cube.stl"];
+    let (code, _, err) = check(&folder, &words, b"");
+    let says = "error: cube.stl: an STL is a model: repeat --against before each\n";
+    assert_eq!((code, err.as_str()), (2, says));
+    let (code, _, err) = check(&folder, &["cube.stl"], b"");
+    assert!(code == 2 && err.contains("give the model after --against"), "{err}");
+}
+
+#[test]
+fn an_end_block_that_drags_the_nozzle_over_the_print_is_seen() {
+    let folder = folder();
+    let aside = "G1 X{min_x} Y{min_y} F6000\nG1 X{max_x} Y{max_y}\nM104 S0\nM140 S0\n";
+    let run = |block: &str| {
+        let block = format!("machine.end_gcode={block}");
+        let job = ["cube.stl", "-q", "-p", "ender-3", "--set", &block, "-o", "end.gcode"];
+        let told = super::run::slicer(&folder).args(job).output().unwrap();
+        let told = String::from_utf8(told.stderr).unwrap();
+        (told, check(&folder, &["end.gcode"], b""))
+    };
+    let (told, (code, out, _)) = run(aside);
+    let says =
+        "warning: cube.stl: machine.end_gcode, line 1 of it: `G1 X{min_x} Y{min_y} F6000` drags";
+    assert!(told.starts_with(says), "{told}");
+    assert!(code == 0 && out.contains("\nwarning: through-print: line "), "{out}");
+    assert!(out.contains("mm of the finished print: nothing lifts it before"), "{out}");
+    let (told, (code, out, _)) = run(&format!("G1 Z{{park_z}} F600\n{aside}"));
+    assert!(told.is_empty() && code == 0 && out.starts_with("end.gcode: clean in"), "{told}{out}");
+}

@@ -279,6 +279,9 @@ impl<'a> Walk<'a> {
             self.speed(step, printing, found);
         }
         motors::too_many_steps(step, self.machine).into_iter().for_each(|one| found.add(one));
+        if self.layer.is_some() && index >= self.printing.end {
+            self.through.after(step, found);
+        }
         self.through.step(step, is_of_layer, found);
         if let Some(slopes) = &mut self.slopes {
             slopes.step(step, (self.layer, is_of_layer), found);

@@ -24,6 +24,12 @@ const UPHILL: f64 = 0.6;
 const FLAT: f64 = 2.5;
 const USUAL_FLAT: f64 = 1.0;
 
+/// A nozzle no higher than this above plastic drags over it, mm: what end blocks lift at least.
+const TOUCH: f64 = 0.05;
+
+/// So much of a way over the finished print is told, mm: less is where the nozzle leaves it.
+const LEAST_DRAG: f64 = 3.0;
+
 /// Distance of the places that are looked at, mm.
 const STEP: f64 = 0.25;
 
@@ -39,6 +45,8 @@ pub(crate) struct Through {
     most_sunk: f64,
     /// Whether nobody knows how high the nozzle is: it was sent to an end stop.
     is_lost: bool,
+    /// Whether a drag over the finished print was found: one is enough.
+    has_dragged: bool,
 }
 
 impl Through {
@@ -46,7 +54,8 @@ impl Through {
     pub(crate) fn new(terms: &Terms, has_slopes: bool) -> Self {
         let radius = terms.nozzle.map_or(USUAL_FLAT, |nozzle| FLAT * nozzle) / 2.0;
         let most_sunk = if has_slopes { DEEP + UPHILL * radius } else { DEEP };
-        Self { standing: Standing::default(), radius, most_sunk, is_lost: false }
+        let standing = Standing::default();
+        Self { standing, radius, most_sunk, is_lost: false, has_dragged: false }
     }
 
     /// The nozzle is sent to where only the printer knows; the reader takes that for 0.
@@ -67,6 +76,33 @@ impl Through {
         }
         if is_line {
             self.standing.lay(step);
+        }
+    }
+
+    /// A move after the last line of the print, which may go over it at its own height.
+    pub(crate) fn after(&mut self, step: &Step, found: &mut Findings) {
+        let z = step.heights()[0];
+        let is_travel = !step.is_line() && step.filament >= 0.0;
+        // What is lower is looked at by itself.
+        let level = self.standing.highest() - DEEP..self.standing.highest() + TOUCH;
+        if self.has_dragged || self.is_lost || !is_travel || !level.contains(&z) || rises(step) {
+            return;
+        }
+        let pitch = STEP.max(step.length() / MOST_PLACES);
+        let mut touches = |at| self.standing.around(at, self.radius) > z - TOUCH;
+        let over: f64 = Samples::of(step, pitch)
+            .map(|sample| (sample.at, sample.length))
+            .filter(|(at, _)| touches(*at))
+            .map(|(_, length)| length)
+            .sum();
+        if over >= LEAST_DRAG {
+            self.has_dragged = true;
+            let text = format!(
+                "the nozzle drags over {} mm of the finished print: nothing lifts it before; write G1 \
+                 Z{{park_z}} F600 before this line of the end block",
+                short(over)
+            );
+            found.add(Finding::warning(Code::ThroughPrint, over, "mm", text));
         }
     }
 

@@ -6,7 +6,7 @@
 //!
 //! 1. `fit` refuses numbers that make no sense.
 //! 2. `part` makes a part of each model, and refuses one that does not fit the bed alone.
-//! 3. `shelves` lays the bodies' bounding boxes out in rows.
+//! 3. `room` lays the bodies' bounding boxes out in rows (`shelves`), clear of what the start block primes.
 //! 4. `fit` refuses a layout that sticks out of the bed where the user wants it.
 //! 5. `join` copies the parts to their places in one mesh. Half-edges are not paired again: those
 //!    of a copy are its part's with other numbers.
@@ -15,6 +15,7 @@ pub mod part;
 pub mod placement;
 
 mod fit;
+mod room;
 pub(super) mod shelves;
 
 use crate::geom::Point;
@@ -25,7 +26,8 @@ use crate::units::{Coord, MAX_COORDINATE_MM, sum_mm, to_mm, to_units};
 use crate::warning::Warning;
 use fit::{check_placement, offset};
 use part::{Part, part};
-use shelves::{Layout, shelves};
+use room::{Laid, Room};
+use shelves::Layout;
 
 pub use shelves::GAP_MM;
 
@@ -83,10 +85,10 @@ pub fn place(models: Vec<RawMesh>, placement: &Placement, bed: &Bed) -> Result<P
     }
     let left = placed.reports.iter().flat_map(|report| &report.left).count();
     placed.is_sound = placement.policy != Policy::Warn && left == 0;
-    let layout = lay_out(&parts, placement, bed)?;
+    let Laid { layout, within, .. } = lay_out(&parts, placement, bed)?;
     let height = parts.iter().map(|part| part.size[2]).max().unwrap_or(0);
     placed.size_mm = [layout.size[0], layout.size[1], height].map(sum_mm);
-    placed.offset = offset(placement, bed, [placed.size_mm[0], placed.size_mm[1]])?;
+    placed.offset = offset(placement, &within, [placed.size_mm[0], placed.size_mm[1]])?;
     let copies = placement.copies as usize;
     placed.bodies = bodies(&parts, &layout, copies);
     tell_places(&parts, copies, &mut placed);
@@ -113,7 +115,7 @@ fn warn(report: &MeshReport, warnings: &mut Vec<Warning>) {
 }
 
 /// Positions of all copies, model by model.
-fn lay_out(parts: &[Part], placement: &Placement, bed: &Bed) -> Result<Layout> {
+fn lay_out(parts: &[Part], placement: &Placement, bed: &Bed) -> Result<Laid> {
     let copies = placement.copies as usize;
     let models = parts.len().saturating_mul(copies);
     let bed_mm = bed.size();
@@ -129,23 +131,13 @@ fn lay_out(parts: &[Part], placement: &Placement, bed: &Bed) -> Result<Layout> {
     if boxes.is_empty() {
         return Err(Error::NoModel);
     }
-    // One unit more, since boxes were rounded up to even sizes.
-    let bed = bed_mm.map(|side| i64::from(to_units(side.min(MAX_COORDINATE_MM))) + 1);
     let gap_mm = placement.gap.min(MAX_COORDINATE_MM);
-    let gap = i64::from(to_units(gap_mm));
-    shelves(&boxes, bed, gap).ok_or_else(|| {
-        let fits = |count: usize, copies: usize| {
-            let one = |part: &Part| std::iter::repeat_n([part.size[0], part.size[1]], copies);
-            let boxes: Vec<[i64; 2]> = parts[..count].iter().flat_map(one).collect();
-            shelves(&boxes, bed, gap).is_some()
-        };
-        // No more than their areas let.
-        let room = |[width, depth]: [i64; 2]| i128::from(width + gap) * i128::from(depth + gap);
-        let each: i128 = parts.iter().map(|part| room([part.size[0], part.size[1]])).sum();
-        let most = usize::try_from(room(bed) / each.max(1)).unwrap_or(usize::MAX);
-        let mut fewer = (1..=most.min(copies.saturating_sub(1))).rev();
-        let copies_fit = fewer.find(|&copies| fits(parts.len(), copies)).unwrap_or(0);
-        let models_fit = (1..=parts.len()).rev().find(|&count| fits(count, 1)).unwrap_or(0);
+    // Who says where they lie has them there.
+    let taken = if placement.at.is_some() { &[][..] } else { &placement.taken };
+    let room = Room { bed, taken, gap: i64::from(to_units(gap_mm)) };
+    room.lay(&boxes).ok_or_else(|| {
+        let each: Vec<[i64; 2]> = parts.iter().map(|part| [part.size[0], part.size[1]]).collect();
+        let (copies_fit, models_fit) = (room.copies(&each, copies), room.first(&each));
         Error::BedFull { models, gap_mm, bed_mm, copies_fit, models_fit }
     })
 }
@@ -218,6 +210,7 @@ mod tests {
         rotate: [0.0; 3],
         at: None,
         gap: GAP_MM,
+        taken: Vec::new(),
         copies: 1,
         max_triangles: MAX_TRIANGLES,
         policy: Policy::Repair,

@@ -21,6 +21,9 @@ pub struct Placement {
     pub at: Option<[f64; 2]>,
     /// Distance between the bounding boxes of neighbouring models, mm.
     pub gap: f64,
+    /// Where several models must not lie, as far as there is room elsewhere: boxes, lowest and highest corner, in
+    /// the machine's coordinates, mm.
+    pub taken: Vec<[[f64; 2]; 2]>,
     /// How many times each model is printed.
     pub copies: u32,
     /// Most triangles of a file, and of all models and copies together.
@@ -40,6 +43,7 @@ impl Default for Placement {
             sink: 0.0,
             at: None,
             gap: GAP_MM,
+            taken: Vec::new(),
             copies: 1,
             max_triangles: DEFAULT_MAX_TRIANGLES,
             policy: Policy::Repair,
