@@ -20,6 +20,9 @@ pub(super) const NEIGHBOURS: f64 = 1.5;
 /// right angle lie half a room and a step from it. A larger value draws a bead out into what is no strip.
 const TURNING: f64 = 1.2;
 
+/// Cosine of the sharpest turn that a bead takes on its mitre: 104°. In a sharper corner it would lie on itself.
+const SHARPEST: f64 = -0.25;
+
 /// Corners nearer to a sample are rounding errors: the sample is the corner (10 µm).
 const LEAST_CORNER: f64 = 100.0;
 
@@ -51,7 +54,7 @@ impl Sample {
     pub(super) fn turning_to(&self, other: &Self, layout: &Layout<'_>) -> Option<[f64; 2]> {
         let between = way(self.place.at, other.place.at);
         let (before, after) = (self.ahead(between), other.ahead(between));
-        if self.loops != other.loops || dot(before, after) > TURNED {
+        if self.loops != other.loops || !(SHARPEST..TURNED).contains(&dot(before, after)) {
             return None;
         }
         let most = TURNING * self.room().at_least(other.room());
