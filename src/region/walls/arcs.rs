@@ -49,12 +49,13 @@ impl Sample {
         self.place.width * f64::from(2 * self.loops + 1)
     }
 
-    /// Where a bead that runs beside the contour here turns to run beside it at another sample, around one corner
-    /// of a strip alike on both sides.
+    /// Where a bead between loops that runs beside the contour here turns to run beside it at another sample,
+    /// around one corner of a strip alike on both sides.
     pub(super) fn turning_to(&self, other: &Self, layout: &Layout<'_>) -> Option<[f64; 2]> {
         let between = way(self.place.at, other.place.at);
         let (before, after) = (self.ahead(between), other.ahead(between));
-        if self.loops != other.loops || !(SHARPEST..TURNED).contains(&dot(before, after)) {
+        let alike = self.loops > 0 && self.loops == other.loops;
+        if !alike || !(SHARPEST..TURNED).contains(&dot(before, after)) {
             return None;
         }
         let most = TURNING * self.room().at_least(other.room());
