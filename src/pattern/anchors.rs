@@ -12,8 +12,8 @@
 //! Algorithm:
 //! 1. Find the border ([`outlines`]) and the ends on it, in its order.
 //! 2. Along each outline, join the first two ends, the next two, and so on, where the arc between
-//!    them is short enough. Lines that are linked already are not joined again: strands stay open.
-//!    Then the next pair begins one end later.
+//!    them is short enough, and does not run back beside a line. Lines that are linked already are
+//!    not joined again: strands stay open. Then the next pair begins one end later.
 //! 3. Give each end that is left an anchor on the longer of the two arcs beside it, as far as it
 //!    is free and at a wall.
 //! 4. Follow the joins from line to line.
@@ -47,7 +47,7 @@ const LEAST_ANCHOR: f64 = 1.0;
 /// the line holds there itself. A larger value drops anchors along walls beside the lines.
 const CLEAR: f64 = 0.7;
 
-/// The first part of an anchor, in line widths, may be nearer: it leaves its own line.
+/// The first part of an anchor or a join, in line widths, may be nearer: it leaves its own line.
 const LEAVING: f64 = 2.0;
 
 /// Which rows are printed, and how they hold on.
@@ -211,7 +211,8 @@ impl<'a> Arcs<'a> {
             let length = self.lengths[k];
             let line = |k: usize| all[self.ends[k % n].line].span.len();
             let shorter = line(k).min(line(k + 1));
-            length <= longest && length <= (LONGEST_BY_LINE * shorter) as f64
+            let is_short = length <= longest && length <= (LONGEST_BY_LINE * shorter) as f64;
+            is_short && !self.turns_back(k)
         };
         let short: Vec<bool> = (0..n).map(short).collect();
         let first = short.iter().position(|short| !short).map_or(0, |k| k + 1);
@@ -230,6 +231,17 @@ impl<'a> Arcs<'a> {
             all[a.line].joined[a.side as usize] = Some((b.line, b.side));
             all[b.line].joined[b.side as usize] = Some((a.line, a.side));
         }
+    }
+
+    /// Whether arc `k` runs beside a line, but for where it leaves its own lines.
+    fn turns_back(&self, k: usize) -> bool {
+        let leaving = LEAVING * f64::from(self.width);
+        let (mut length, mut last) = (0.0, None);
+        self.places(k).map(|place| self.outline[place].at).any(|at| {
+            length += last.replace(at).map_or(0.0, |last: Point| last.distance(at));
+            let middle = leaving < length && length < self.lengths[k] - leaving;
+            middle && !self.is_clear(at)
+        })
     }
 
     /// Gives anchors to the ends that are not joined, each at most `longest`.
@@ -265,24 +277,27 @@ impl<'a> Arcs<'a> {
         }
     }
 
-    /// The points along `places` as far as an anchor may run, and its length.
+    /// The points along `places` as far as an anchor may run, and its length. One that does not get
+    /// away from its line is none.
     fn run(&self, places: &[usize], longest: f64) -> (Vec<Point>, f64) {
         let Some(&first) = places.first() else { return (Vec::new(), 0.0) };
         let mut points = vec![self.outline[first].at];
-        let mut length = 0.0;
+        let (mut length, mut is_away) = (0.0, false);
         for w in places.windows(2) {
             let (from, to) = (self.outline[w[0]], self.outline[w[1]]);
             let far = from.at.distance(to.at);
-            let leaving = length + far < LEAVING * f64::from(self.width);
-            if length >= longest || !to.wall || !(leaving || self.is_clear(to.at)) {
+            let leaving = !is_away && length + far < LEAVING * f64::from(self.width);
+            let is_clear = self.is_clear(to.at);
+            if length >= longest || !to.wall || !(leaving || is_clear) {
                 break;
             }
+            is_away |= is_clear;
             let share = if far > 0.0 { ((longest - length) / far).min(1.0) } else { 1.0 };
             let on = |a: Coord, b: Coord| a + nearest(share * f64::from(b - a)) as Coord;
             points.push(Point { x: on(from.at.x, to.at.x), y: on(from.at.y, to.at.y) });
             length += share * far;
         }
-        (points, length)
+        if is_away { (points, length) } else { (Vec::new(), 0.0) }
     }
 
     /// Whether no printed line is near `p`.
@@ -389,6 +404,32 @@ mod tests {
             let length: f64 = crate::geom::polyline::length(&strands[0]) as f64;
             assert!(length <= 200_000.0 + 2.0 * f64::from(anchor), "{length}");
             assert!(length >= 198_000.0 + f64::from(anchor), "{length}");
+        }
+    }
+
+    /// A step in the wall begins just above the end of a line.
+    #[test]
+    fn no_strand_runs_back_beside_its_line() {
+        let (wide, high, step, line) = (50 * W, 15 * W, 4 * W, 5 * W);
+        for above in [400, 1_200, 2_400] {
+            let mut rows = Rows::starting_at(0);
+            for j in 0..=high / W {
+                let start = if j * W <= line { 0 } else { step };
+                rows.push_row(|out| out.push(Span { start, end: wide }));
+            }
+            let mut across = Rows::starting_at(-(wide / W));
+            for c in (0..=wide / W).rev() {
+                let end = if c * W < step { line + above } else { high };
+                across.push_row(|out| out.push(Span { start: 0, end }));
+            }
+            let columns = Columns { rows: &across, pitch: W, left_turn: true };
+            let walls = [Bounds { rows: &rows, columns }];
+            let lines = Places { pitch: W, offset: 0, stride: 5, anchor: 20_000, inwards: 0 };
+            let strands = strands(lines, &Held { rows: &rows, columns, walls: &walls }, W, W);
+            let beside = |p: &LinePoint| p.v != line && (p.v - line).abs() < 2_800;
+            let back = |w: &[LinePoint]| w.iter().any(beside) && (w[0].u - w[1].u).abs() > 2 * W;
+            let all = || strands.iter().flat_map(|strand| strand.windows(2));
+            assert!(!all().any(back), "{above}: {strands:?}");
         }
     }
 }

@@ -184,3 +184,109 @@ fn a_long_bridge_lies_on_piers() {
         assert!(dense < 0.45 * 4.0 * 4.0 * x * y / 0.6, "{x} {y} {low}: {dense}");
     }
 }
+
+/// A block 14 mm deep with a round hole along y, whose middle is at z 10.
+fn bored(radius: f64) -> Solid {
+    let n = 48;
+    let hole = circle(radius, n);
+    let square = |[x, z]: [f64; 2]| {
+        let far = 10.0 / x.abs().max(z.abs());
+        [x * far, z * far]
+    };
+    let at = |[x, z]: [f64; 2], y: f64| [x, y, z + 10.0];
+    let mut triangles = Vec::new();
+    for i in 0..n {
+        let [a, b] = [hole[i], hole[(i + 1) % n]];
+        let [c, d] = [square(a), square(b)];
+        let mut quad = |corners: [[f64; 3]; 4]| {
+            let [p, q, r, s] = corners;
+            triangles.extend([[p, q, r], [p, r, s]]);
+        };
+        quad([at(a, -7.0), at(c, -7.0), at(d, -7.0), at(b, -7.0)]);
+        quad([at(a, 7.0), at(b, 7.0), at(d, 7.0), at(c, 7.0)]);
+        quad([at(c, -7.0), at(c, 7.0), at(d, 7.0), at(d, -7.0)]);
+        quad([at(a, -7.0), at(b, -7.0), at(b, 7.0), at(a, 7.0)]);
+    }
+    Solid { triangles }
+}
+
+/// Support of the roof of a hole stands on its floor, and gets no towers of its own outside.
+#[test]
+fn support_in_a_hole_stays_on_its_floor() {
+    for radius in [1.5, 2.0, 3.0, 4.0] {
+        let part = bored(radius);
+        assert!(part.volume() > 0.0);
+        let run = slice(&part.stl(), "generic-marlin", &[("support.enabled", "true")]);
+        let [_, middle] = run.middle();
+        let support = run.print.beads().filter(|line| line.kind.is_support());
+        for p in support.flat_map(|line| [line.from, line.to]) {
+            assert!(p[2] > 10.0 - radius && p[2] < 10.0 + radius, "{radius}: {p:?}");
+            assert!((p[1] - middle).abs() < 7.0 + 0.8 + 0.2, "{radius}: {p:?}");
+        }
+    }
+}
+
+/// The ends of lines and points between them, at most 0.4 mm apart, by layer.
+fn points<'a>(lines: impl Iterator<Item = &'a Move>, layers: usize) -> Vec<Vec<[f64; 2]>> {
+    let mut out = vec![Vec::new(); layers];
+    for line in lines {
+        let steps = (line.length() / 0.4).ceil().max(1.0);
+        let all = (0..=steps as usize).map(|i| line.at(i as f64 / steps));
+        if let Some(k) = line.layer {
+            out[k].extend(all);
+        }
+    }
+    out
+}
+
+/// Support that ends below nothing: its points with neither support nor an overhang near them on the
+/// layers above.
+fn idle(run: &Run) -> Vec<(usize, [f64; 2])> {
+    let layers = run.print.layers.len();
+    let support = points(run.print.beads().filter(|line| line.kind.is_support()), layers);
+    let others = |line: &&Move| !line.kind.is_support() && line.kind != Kind::Brim;
+    let part = points(run.print.beads().filter(others), layers);
+    let near = |points: &[[f64; 2]], at: [f64; 2], far: f64| {
+        points.iter().any(|p| (p[0] - at[0]).hypot(p[1] - at[1]) < far)
+    };
+    let hangs: Vec<Vec<[f64; 2]>> = (0..layers)
+        .map(|k| {
+            let below = k.checked_sub(1).map_or(&[][..], |k| &part[k]);
+            part[k].iter().copied().filter(|&p| !near(below, p, 0.35)).collect()
+        })
+        .collect();
+    // Lines lie up to 3 mm apart, and stand beside what they carry by the outset.
+    let carries = |k: usize, at: [f64; 2]| {
+        (k + 1..(k + 4).min(layers)).any(|above| near(&support[above], at, 1.7))
+            || (k + 1..(k + 6).min(layers)).any(|above| near(&hangs[above], at, 1.7))
+    };
+    let all = (1..layers).flat_map(|k| support[k].iter().map(move |&at| (k, at)));
+    all.filter(|&(k, at)| !carries(k, at)).collect()
+}
+
+#[test]
+fn support_ends_right_below_what_it_carries() {
+    let hat = Solid::cylinder(3.0, 12.0, 48)
+        .and(&Solid::cylinder(9.0, 2.0, 48).shifted([0.0, 0.0, 10.0]));
+    let far = 6.0 / 30.0_f64.to_radians().tan();
+    let cone = Solid::tower(&[(circle(4.0, 48), 0.0), (circle(4.0 + far, 48), 6.0)]);
+    // Hardly more than a line hangs out of a wall that leans over.
+    let lip = Solid::tower(&[(circle(5.0, 48), 0.0), (circle(8.0, 48), 9.0)])
+        .and(&Solid::cylinder(8.6, 2.0, 48).shifted([0.0, 0.0, 9.0]));
+    let stepped = Solid::cuboid([-6.0, -6.0, 0.0], [6.0, 6.0, 4.0])
+        .and(&Solid::cuboid([-2.0, -2.0, 0.0], [2.0, 2.0, 12.0]))
+        .and(&Solid::cuboid([-7.0, -4.0, 10.0], [7.0, 4.0, 12.0]));
+    let drilled = bored(2.0).and(&Solid::cuboid([-10.0, 5.0, 18.0], [10.0, 14.0, 20.0]));
+    let tree = tree(&[[7.0, 5.0, 9.0, 2.0, 2.0]], &[[-5.0, 2.0, 12.0, 4.0]]);
+    let parts = [hat, cone, lip, stepped, bored(1.5), bored(2.0), bored(3.0), drilled, tree];
+    for (k, part) in parts.iter().enumerate() {
+        for more in ["0", "0.8", "2"] {
+            let set = [("support.enabled", "true"), ("support.expansion", more)];
+            let run = slice(&part.stl(), "generic-marlin", &set);
+            let idle = idle(&run);
+            assert!(idle.is_empty(), "part {k}, {more}: {} points, {:?}", idle.len(), idle.last());
+            let found = faults(&run.text);
+            assert!(found.is_empty(), "part {k}, {more}: {found:?}");
+        }
+    }
+}
