@@ -9,16 +9,11 @@
 //! Two versions go down side by side: the *reach*, which is just that, and the support itself, in
 //! which thin posts grow ([`mod@super::posts`]). Where the reach ends on a layer it carries an
 //! overhang; where a grown post ends it carries nothing.
-//!
-//! What lies *under* an overhang goes down with them, without the outset. Where it has landed on the
-//! part, the outset and the grown part of a post would go on beside it, down to the bed, and carry
-//! nothing there: pieces that have nothing of it in them are *lost* ([`mod@super::idle`]).
 
 use super::held::to_lines;
 use super::overhangs::{LayerView, Overhang, overhang};
 use super::params::SupportParams;
-use super::pieces::Pieces;
-use super::posts::{Posts, STEP};
+use super::posts::Posts;
 use crate::geom::spans::{Rows, Span, subtract};
 use crate::slice::Heights;
 use crate::units::Coord;
@@ -33,10 +28,6 @@ pub(super) struct Column {
     pub(super) reach: Rows,
     /// Where it stands on the part.
     pub(super) foot: Rows,
-    /// What hangs where support begins.
-    pub(super) hangs: Rows,
-    /// Where support would stand beside what has landed on the part.
-    pub(super) lost: Rows,
     /// What may be added to the body of support, so that lines hold all of it.
     pub(super) beside: Rows,
 }
@@ -51,8 +42,6 @@ pub(super) struct Window<'a> {
     overhangs: VecDeque<Overhang>,
     /// The reach of the layer above.
     reach: Rows,
-    /// What lies under overhangs, on the layer above.
-    under: Rows,
     /// The support of the layer above.
     posts: Posts,
     /// Number of layers in the window that are done.
@@ -68,7 +57,6 @@ impl<'a> Window<'a> {
             layers: VecDeque::new(),
             overhangs: VecDeque::new(),
             reach: Rows::default(),
-            under: Rows::default(),
             posts: Posts::default(),
             done: 0,
         }
@@ -106,7 +94,7 @@ impl<'a> Window<'a> {
         // Support of the overhang of layer k + 1 + gap begins at layer k.
         let begins = self.overhangs.front().is_some_and(|o| o.layer > k + gap);
         let new = if begins { self.overhangs.pop_front() } else { None };
-        let new = new.unwrap_or_default();
+        let new = new.map(|overhang| overhang.all).unwrap_or_default();
         let around = at.saturating_sub(gap)..(at + gap + 1).min(self.layers.len());
         // Beside the edge of a floor support would lie on nothing.
         let near = |n: usize| if n > at { &self.layers[n].near } else { &self.layers[n].inside };
@@ -119,12 +107,8 @@ impl<'a> Window<'a> {
             let rows = join_gaps(&rows.minus(&layer.near), layer, params.least);
             others.iter().fold(rows, |rows, other| rows.minus(other)).or(&low)
         };
-        let hangs = new.hangs.or(&low);
-        let under = self.under.or(&hangs).minus(&layer.grown).or(&low);
-        let wanted = cut(self.posts.rows().or(&new.all));
-        let [wanted, lost, aside] = carrying(&wanted, [&self.under, &under], params);
-        self.reach = cut(self.reach.or(&new.all)).minus(&lost);
-        self.under = under.or(&aside);
+        self.reach = cut(self.reach.or(&new));
+        let wanted = cut(self.posts.rows().or(&new));
         if let Some(above) = out.get_mut(k + 1) {
             let floors = self.layers.range(at..(at + gap + 1).min(self.layers.len()));
             above.foot = foot(&above.all.minus(&wanted), floors.map(|floor| &floor.inside), params);
@@ -133,23 +117,9 @@ impl<'a> Window<'a> {
         let all = self.posts.rows().clone();
         let beside = to_lines(&params.lines, &all).minus(&all);
         let beside = if beside.is_empty() { beside } else { cut(beside).minus(&all) };
-        let reach = self.reach.clone();
-        out[k] = Column { all, reach, hangs, lost, beside, ..Column::default() };
+        out[k] = Column { all, reach: self.reach.clone(), beside, ..Column::default() };
         self.done = at + 1;
     }
-}
-
-/// The pieces of `rows` with something in them that lies `under` an overhang, and the others. Where
-/// the part grows wider, support steps aside a little, and so does what is under the overhang: the
-/// third rows are where.
-fn carrying(rows: &Rows, [above, under]: [&Rows; 2], params: &SupportParams) -> [Rows; 3] {
-    let [carries, rest] = Pieces::new(rows).split(rows, under);
-    if rest.is_empty() {
-        return [carries, rest, Rows::default()];
-    }
-    let near = above.dilate(STEP * params.raster().pitch, params.raster().pitch);
-    let [aside, beside] = Pieces::new(&rest).split(&rest, &near);
-    [carries.or(&aside), beside, aside.and(&near)]
 }
 
 /// What of `ends`, where support ends downwards, stands on `floors`, or reaches a little beyond them.

@@ -11,8 +11,7 @@
 //! 2. `columns`: from there support goes down, layer by layer; thin posts grow on the way
 //!    (`posts`).
 //! 3. Support that stands on the part is removed if the settings allow only the bed. On the bed it
-//!    gets a brim. Specks are dropped, what stands on nothing (`stand`), and what carries nothing
-//!    (`idle`).
+//!    gets a brim. Specks are dropped, and what stands on nothing (`stand`).
 //! 4. `interface`: which places are dense. The others are the `body`, which gets a zigzag, or
 //!    lines and an `outline`; places far from any line are grown to one (`held`), or get lines
 //!    across if they are narrow (`strips`). An outline that would have nothing below it
@@ -25,7 +24,6 @@ mod body;
 mod bridges;
 mod columns;
 mod held;
-mod idle;
 mod interface;
 mod outline;
 mod overhangs;
@@ -73,7 +71,6 @@ pub fn supports(
     if params.bed_only {
         keep_to_bed(slicer, params, &mut columns);
     }
-    idle::drop_lost(&mut columns);
     let (low, high) = within;
     let corners = vec![low, Point { x: high.x, y: low.y }, high, Point { x: low.x, y: high.y }];
     let bed = Scan::new(&[corners], params.raster());
@@ -84,7 +81,6 @@ pub fn supports(
         column.beside = column.beside.and(bed.inside());
     });
     stand::stand(&mut columns, params);
-    idle::drop_idle(&mut columns, params);
     let laid = |(k, layer): (usize, Divided)| layer.lay(k, params);
     interface::divided(&columns, params).into_par_iter().enumerate().map(laid).collect()
 }

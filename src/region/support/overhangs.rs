@@ -47,7 +47,7 @@ pub(super) struct LayerView {
     /// The layer grown by the clearance.
     pub(super) near: Rows,
     /// The layer grown by a pitch.
-    pub(super) grown: Rows,
+    grown: Rows,
     /// The layer grown by a pitch and the lean: what the layer above may reach without support.
     carries: Rows,
     /// By how much it has been grown for that.
@@ -86,9 +86,7 @@ impl LayerView {
 pub(super) struct Overhang {
     /// The layer that hangs.
     pub(super) layer: usize,
-    /// What hangs of it, grown by a line's width at most: what is under it carries it.
-    pub(super) hangs: Rows,
-    /// The same, grown by the outset.
+    /// What hangs of it, grown by the outset.
     pub(super) all: Rows,
     /// The part of it that hangs on nothing at all, if that was asked for.
     pub(super) islands: Rows,
@@ -107,10 +105,7 @@ pub(super) fn overhang(layer: &LayerView, below: &LayerView, params: &SupportPar
     let wide = |rows: &Rows| rows.dilate(params.outset - pitch, pitch);
     // Only those that begin within the gap above the bed get support in another way.
     let islands = if layer.index <= params.gap { islands(layer, below) } else { Rows::default() };
-    // It stays clear of support beside the part, which stands no nearer to it than the clearance.
-    let more = (params.clearance - 3 * pitch).clamp(0, pitch);
-    let hangs = hanging.dilate(more, pitch);
-    Overhang { layer: layer.index, hangs, all: wide(&hanging), islands: wide(&islands) }
+    Overhang { layer: layer.index, all: wide(&hanging), islands: wide(&islands) }
 }
 
 /// What of `hanging` sags, and what is near that.

@@ -62,13 +62,6 @@ impl Pieces {
         out
     }
 
-    /// Of the rows that the pieces were found in, those pieces that overlap `others`, and the rest.
-    pub(super) fn split(&self, rows: &Rows, others: &Rows) -> [Rows; 2] {
-        let mut meets = vec![false; self.count];
-        self.meeting(rows, others, |piece, _| meets[piece] = true);
-        [true, false].map(|wanted| self.keep(rows, |piece| meets[piece] == wanted))
-    }
-
     /// Tells `meet` of each piece and each span of `others` that overlap on the same row. `meet`
     /// gets the piece and the index of the other span, in the order of [`Rows::iter`].
     pub(super) fn meeting(&self, rows: &Rows, others: &Rows, mut meet: impl FnMut(usize, usize)) {

@@ -29,7 +29,7 @@ const LEAST_LINES: Coord = 3;
 
 /// How far a thin piece grows on a layer, in pitches of half a line: the beads at its edge lie with
 /// half of their width on those of the wider layer below.
-pub(super) const STEP: Coord = 1;
+const STEP: Coord = 1;
 
 /// The pieces of the layer above, and the height of the top of each.
 #[derive(Default)]
