@@ -33,9 +33,9 @@ impl Area {
     pub(super) fn around(places: impl Iterator<Item = [f64; 2]>, margin: f64) -> Self {
         let mut out = Self { low: [f64::MAX; 2], high: [f64::MIN; 2] };
         for p in places {
-            for k in 0..2 {
-                out.low[k] = out.low[k].at_most(p[k]);
-                out.high[k] = out.high[k].at_least(p[k]);
+            for (k, at) in p.into_iter().enumerate() {
+                out.low[k] = out.low[k].at_most(at);
+                out.high[k] = out.high[k].at_least(at);
             }
         }
         for k in 0..2 {

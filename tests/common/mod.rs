@@ -35,6 +35,13 @@ pub(crate) struct Run {
     pub(crate) settings: Settings,
 }
 
+/// The warnings of a run but for walls that hang: the bracket has a hat.
+pub(crate) fn beside_droop(run: &Run) -> Vec<slicer::warning::Warning> {
+    let hangs =
+        |w: &&slicer::warning::Warning| matches!(w, slicer::warning::Warning::WallsHang { .. });
+    run.report.warnings.iter().filter(|w| !hangs(w)).cloned().collect()
+}
+
 impl Run {
     /// The middle of the bed in the machine's coordinates, where models are put.
     pub(crate) fn middle(&self) -> [f64; 2] {

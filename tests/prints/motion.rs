@@ -5,7 +5,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use crate::common::{Run, fixture, slice, slice_shipped};
+use crate::common::{Run, beside_droop, fixture, slice, slice_shipped};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::reader::{Firmware, OwnFilament};
@@ -268,8 +268,9 @@ fn what_the_printer_cannot_be_told_has_no_effect_and_a_warning() {
         assert!(moves(&asked) == moves(&plain), "{profile}");
         assert_eq!(asked.report.time, plain.report.time, "{profile}");
         assert_eq!(asked.report.motion, None);
-        let [Warning::NoEffect { settings, .. }] = asked.report.warnings.as_slice() else {
-            panic!("{profile}: {:?}", asked.report.warnings);
+        let warnings = beside_droop(&asked);
+        let [Warning::NoEffect { settings, .. }] = warnings.as_slice() else {
+            panic!("{profile}: {warnings:?}");
         };
         assert!(keys.iter().all(|(key, _)| settings.iter().any(|one| one == key)), "{settings:?}");
         assert_eq!(settings.len(), keys.len());

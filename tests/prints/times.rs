@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use crate::common::{Run, Solid, fixture, slice};
+use crate::common::{Run, Solid, beside_droop, fixture, slice};
 use slicer::estimate::{Options, estimate};
 use slicer::motion::Limits;
 use slicer::warning::Warning;
@@ -99,7 +99,7 @@ fn long_layers_tell_progress_every_minute() {
     assert!(minutes.len() as f64 > least, "{} of {least}", minutes.len());
     assert!(minutes.is_sorted_by(|a, b| a >= b));
     // Speeds below 2 mm/s are hardly meant.
-    let warnings: Vec<String> = run.report.warnings.iter().map(ToString::to_string).collect();
+    let warnings: Vec<String> = beside_droop(&run).iter().map(ToString::to_string).collect();
     let says = |setting| format!("{setting} = 1.667 is very slow; speeds are in mm/s");
     assert_eq!(warnings, slow.map(|(setting, _)| says(setting)));
 }
@@ -131,7 +131,7 @@ fn lines_that_the_hot_end_cannot_follow_are_slowed_down_and_told() {
     let free = slice(&fixture("bracket.stl"), "generic-marlin", &[dual]);
     let fastest = flows(&free).fold(0.0, f64::max);
     assert!((fastest / free.report.flow.largest_mm3_s - 1.0).abs() < 0.01, "{fastest}");
-    assert_eq!(free.report.warnings, []);
+    assert_eq!(beside_droop(&free), []);
 
     let set = [dual, ("machine.max_volumetric_speed", "3")];
     let held = slice(&fixture("bracket.stl"), "generic-marlin", &set);

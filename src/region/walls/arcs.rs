@@ -1,7 +1,13 @@
 //! Samples -> arcs: runs of neighbouring places of middle beads, joined where their ends meet.
 //!
-//! Words are those of [`super::middle`]. Ends meet if they are neighbours, or if between them their strip turns
-//! around one corner.
+//! Words: a *sample* is a place of a middle bead, beside the place of the contour that found it. An *arc* is a
+//! run of neighbouring samples. A *strip* is the room of a bead and the loops beside it; it *turns*
+//! at a corner of the contour around which both its sides go on alike.
+//!
+//! Algorithm: runs of samples become arcs. Arcs whose ends are neighbours are joined, the nearest first;
+//! then those between whose ends a strip turns; then arcs whose own ends meet become rings. Where a
+//! bead turns, it does so where its two sides meet: the middle of the room would cut the corner, and
+//! leave a hole on the outside.
 
 use super::Layout;
 use super::bridged::TURNED;
