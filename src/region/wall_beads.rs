@@ -25,7 +25,7 @@ use super::wall_samples::{MOST_BEADS, SHORT, WallSample, samples};
 use crate::geom::frame::Frame;
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::raster::Raster;
-use crate::geom::segment::way;
+use crate::geom::segment::{dot, way};
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
 use crate::units::Coord;
@@ -37,6 +37,9 @@ const SLACK: f64 = 0.15;
 
 /// The square of the length from which on a normal is that of a corner: rounding.
 const LONGER: f64 = 1.0 + 1e-9;
+
+/// The square of the length of the mitre at a right angle, and rounding.
+const RIGHT_ANGLE: f64 = 2.0 + 1e-6;
 
 /// A point of a bead.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,7 +56,13 @@ impl Place {
     /// How much further than the wall itself the bead runs at a corner, on each side of it. `w` is a line's width.
     fn overshoot(&self, w: f64) -> f64 {
         let [x, y] = self.normal;
-        (self.clear + SLACK * w) * (x * x + y * y - 1.0).max(0.0).sqrt()
+        let square = x * x + y * y;
+        // The mitre of a sharper corner may lie beyond the wall on the other side.
+        if square > RIGHT_ANGLE {
+            0.0
+        } else {
+            (self.clear + SLACK * w) * (square - 1.0).max(0.0).sqrt()
+        }
     }
 
     /// Whether it leads on to `next` in the direction of its side. All do beside a corner.
@@ -119,6 +128,12 @@ fn place(sample: &WallSample, index: usize, near: &Around, params: &BeadParams) 
     let away = w / 2.0 + (index as f64 + 0.5) * width;
     let [x, y] = [0, 1].map(|k| sample.at[k] + away * sample.normal[k]);
     let clear = away - SLACK * w;
+    // A mitre is long: beyond the wall on the other side is no place either.
+    let long = dot(sample.normal, sample.normal).sqrt();
+    let unit = sample.normal.map(|side| side / long);
+    if long > LONGER && near.walls.hit(sample.at, unit, away * long).is_some() {
+        return None;
+    }
     near.is_free([[x, y]], clear, width).then_some(Place {
         at: [x, y],
         width,
@@ -226,7 +241,6 @@ fn bead(arc: &[Place]) -> Polyline {
 mod tests {
     use super::*;
     use crate::geom::polygon;
-    use crate::geom::segment::dot;
     use crate::profile;
     use crate::region::RegionParams;
     use crate::region::scan::Scan;
