@@ -29,6 +29,9 @@ const TURNING: f64 = 1.2;
 /// Cosine of the sharpest turn that a bead takes on its mitre: 104°. In a sharper corner it would lie on itself.
 const SHARPEST: f64 = -0.25;
 
+/// How near to the contour the corner of a strip lies, in line widths: its sides are not quite parallel.
+const AT_CORNER: f64 = 0.1;
+
 /// Corners nearer to a sample are rounding errors: the sample is the corner (10 µm).
 const LEAST_CORNER: f64 = 100.0;
 
@@ -66,10 +69,21 @@ impl Sample {
         }
         let most = TURNING * self.room().at_least(other.room());
         let met = |from: [f64; 2], to: [f64; 2], most: f64| meet(from, before, to, after, most);
-        // A round bend has no corner where its sides would meet.
-        let corner = met(self.from.at, other.from.at, 2.0 * most)?;
-        let is_corner = !layout.outline.is_free(corner, LEAST_CORNER);
-        met(self.place.at, other.place.at, most).filter(|_| is_corner)
+        // A round bend has no corner where its sides would meet. Where walls cross, one side goes straight on.
+        let w = layout.line_width;
+        let is_free = |at: [f64; 2], far: f64| layout.outline.is_free(at, far);
+        let ends_both = |corner: [f64; 2]| {
+            let [on, back] = [along(corner, w, before), along(corner, -w, after)];
+            !is_free(corner, AT_CORNER * w) && is_free(on, w / 2.0) && is_free(back, w / 2.0)
+        };
+        let own = met(self.from.at, other.from.at, 2.0 * most)?;
+        let opposite = met(self.opposite(), other.opposite(), 2.0 * most)?;
+        met(self.place.at, other.place.at, most).filter(|_| ends_both(own) && ends_both(opposite))
+    }
+
+    /// The place of the contour on the other side of the strip.
+    fn opposite(&self) -> [f64; 2] {
+        along(self.from.at, 2.0 * self.from.deep, self.from.normal)
     }
 
     /// The way along the contour that leads on as `way` does, of length 1.
