@@ -140,9 +140,8 @@ fn lines_that_the_hot_end_cannot_follow_are_slowed_down_and_told() {
     assert!(held.report.time.total_s > free.report.time.total_s);
     // What is laid is the same, only slower.
     assert_eq!(held.print.moves.len(), free.print.moves.len());
-    let asked: Vec<_> = held
-        .report
-        .warnings
+    let warnings = beside_droop(&held);
+    let asked: Vec<_> = warnings
         .iter()
         .map(|warning| match warning {
             Warning::FlowLimited { role, setting, asked_mm_s, lowest_mm_s, limit_mm3_s } => {
@@ -159,7 +158,7 @@ fn lines_that_the_hot_end_cannot_follow_are_slowed_down_and_told() {
         ("top skin", "speed.skin", 50.0),
     ];
     assert_eq!(asked, expected);
-    let said = held.report.warnings[2].to_string();
+    let said = warnings[2].to_string();
     assert!(said.contains("from 60 to") && said.contains("speed.thick_infill"), "{said}");
 }
 
