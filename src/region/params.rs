@@ -40,6 +40,10 @@ pub(super) const NARROW_TOP: Coord = 5;
 /// between would be all there is. With a smaller value the walls of gentle slopes are gone.
 const WIDE_TOP: Coord = 6;
 
+/// Rooms wider than the limit by this (0.05 mm) still are narrow: walls of round sizes, such as 3.6 mm with two
+/// lines of 0.4 on both sides, would be solid on one facet of a circle and sparse on the next.
+const AS_NARROW: Coord = 500;
+
 /// The numbers of the whole stage.
 #[derive(Debug, Clone)]
 pub struct RegionParams {
@@ -109,7 +113,7 @@ pub struct SkinParams {
     pub line_width: Coord,
     /// The first skin above sparse infill runs across the lines below.
     pub across_infill: bool,
-    /// Rooms inside the walls narrower than this are skin.
+    /// Rooms inside the walls narrower than this are filled solid.
     pub least_room: Coord,
     /// All inside the walls is skin: infill of 100 % is closed up to the walls as skins are.
     pub everywhere: bool,
@@ -226,7 +230,11 @@ impl SkinParams {
             line_width: to_units(settings.line_width),
             across_infill: settings.skin_across_infill,
             // Without infill parts are meant to be hollow.
-            least_room: if hollow { 0 } else { to_units(settings.narrow_room) },
+            least_room: if hollow || settings.narrow_room <= 0.0 {
+                0
+            } else {
+                to_units(settings.narrow_room) + AS_NARROW
+            },
             everywhere: settings.infill >= 100.0 && !grouping.shares(DualPart::Infill),
         }
     }

@@ -178,3 +178,52 @@ proptest! {
         prop_assert!(places.is_empty(), "{} {:?}", places.len(), places[0]);
     }
 }
+
+/// A tube of 30 mm with walls of this thickness.
+fn tube(thickness: f64) -> Solid {
+    let hole = Solid::cylinder(15.0 - thickness, 2.0, 96).inside_out();
+    Solid::cylinder(15.0, 2.0, 96).and(&hole)
+}
+
+/// The lengths of the chains of beads on a layer, mm.
+fn lengths(run: &Run, layer: usize, kinds: &[Kind]) -> Vec<f64> {
+    let chains = run.print.chains_of(kinds).into_iter();
+    let here = chains.filter(|chain| chain[0].layer == Some(layer));
+    here.map(|chain| chain.iter().map(Move::length).sum()).collect()
+}
+
+/// What is measured from facet to facet of a bent strip must not change the number of its beads.
+#[test]
+fn tubes_are_closed_rings_whatever_their_walls_measure() {
+    let all = [Kind::OuterWall, Kind::InnerWall, Kind::Skin, Kind::Infill];
+    for (walls, most) in [("1", 27), ("2", 36)] {
+        for tenths in 20..=most {
+            let stl = tube(f64::from(tenths) / 10.0).stl();
+            let run = slice(&stl, "generic-marlin", &[("walls", walls)]);
+            let rings = lengths(&run, 5, &all);
+            let shortest = rings.iter().copied().fold(f64::MAX, f64::min);
+            let what = format!("{walls} walls, 0.1 mm times {tenths}");
+            assert!(rings.len() <= 10 && shortest > 20.0, "{what}: {rings:?}");
+            assert_eq!(kinds(&judge_made(&run.text, &stl)), [], "{what}");
+        }
+    }
+}
+
+/// A box with thin walls: its outer wall goes straight from corner to corner, and what lies between turns with it.
+#[test]
+fn walls_of_thin_boxes_turn_their_corners() {
+    let plate = |side: f64| Solid::cuboid([-side, -side, 0.0], [side, side, 2.0]);
+    for thickness in [1.2, 1.25, 1.3, 1.35, 1.5] {
+        let stl = plate(10.0).and(&plate(10.0 - thickness).inside_out()).stl();
+        let run = slice(&stl, "generic-marlin", &[]);
+        let outer = run.print.of(Kind::OuterWall).filter(|line| line.layer == Some(5));
+        let outer: Vec<&Move> = outer.collect();
+        let inside = lengths(&run, 5, &[Kind::InnerWall]);
+        let widths = outer.iter().map(|line| line.width);
+        let (least, most) = widths.fold((9.0_f64, 0.0_f64), |(a, b), w| (a.min(w), b.max(w)));
+        // Two squares; a seam may part one side of each.
+        assert!(outer.len() <= 10 && most - least < 0.011, "{thickness}: {least} {most}");
+        let rings = if thickness < 1.45 { 1 } else { 2 };
+        assert!(inside.len() == rings && inside[0] > 60.0, "{thickness}: {inside:?}");
+    }
+}

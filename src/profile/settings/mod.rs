@@ -169,7 +169,7 @@ pub struct Settings {
     /// Density of the sparse infill; at 100 it is laid as skin is, unless it is printed thick.
     #[schemars(range(min = 0, max = 100), extend("unit" = "%", "default" = 20))]
     pub infill: f64,
-    /// Rooms inside the walls narrower than this are filled solid.
+    /// Rooms inside the walls that are no wider than this, and 0.05 mm, are filled solid.
     #[schemars(range(min = 0, max = 100), extend("unit" = "mm", "default" = 2))]
     pub narrow_room: f64,
     /// Pattern of the sparse infill. From 90 % on grid and triangles are rectilinear: lines that cross on a
