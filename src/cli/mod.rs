@@ -153,10 +153,8 @@ fn refused(error: &clap::Error, words: &[OsString]) -> u8 {
             let plain = || usage::one_line(&text.to_string(), &command_of(words));
             // The first thing that a new user leaves out.
             let line = line.unwrap_or_else(plain);
-            wrong(
-                words,
-                line.replacen(MISSING_OUT, &format!("{MISSING_OUT}, such as -o part.gcode"), 1),
-            )
+            let hint = if command_of(words) == "slicer" { ", such as -o part.gcode" } else { "" };
+            wrong(words, line.replacen(MISSING_OUT, &format!("{MISSING_OUT}{hint}"), 1))
         }
     }
 }

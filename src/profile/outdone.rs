@@ -30,7 +30,8 @@ pub(super) fn find(
         let layers = (thickness_mm / settings.layer_height - 1e-9).ceil() as u32;
         let file = own_file(key)?;
         // Who says both means both.
-        let is_meant = own_file(by) == Some(file);
+        let is_given = origins.get(by).is_some_and(ValueOrigin::is_given);
+        let is_meant = own_file(by) == Some(file) || is_given;
         (layers > count && !is_meant).then_some(Outdone { key, by, thickness_mm, layers })
     };
     sides.into_iter().filter_map(outdone).collect()

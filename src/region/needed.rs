@@ -8,10 +8,14 @@ use super::hidden::Place;
 use super::stretches::{Smooth, stretches};
 use super::wall_samples::SHORT;
 use crate::geom::Point;
-use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::polyline::{LinePoint, Polyline, length};
 use crate::geom::segment::way;
 use crate::geom::spans::Rows;
 use crate::units::Coord;
+
+/// A way around a corner of a strip is no longer than this, in line widths: it is a room wide on both sides. A
+/// larger value keeps beads on round walls, behind which there is sparse infill.
+const TURN: f64 = 15.0;
 
 /// The stretches of the `beads` of layer `k` that lie in `areas`, or beside them by a line at most. The
 /// areas are on the two rasters of skins, whose rows are `pitch` apart. Stretches shorter than `least`,
@@ -32,16 +36,21 @@ pub fn needed(
     let [close, least] = [SHORT, least].map(|lines| lines * f64::from(pitch));
     let smooth = Smooth { close, least, ..Smooth::default() };
     let is_needed = |p: &LinePoint| near.holds(Point { x: p.u, y: p.v });
-    beads.iter().flat_map(|bead| joined(stretches(bead, pitch, smooth, is_needed))).collect()
+    let most = TURN * f64::from(pitch);
+    beads.iter().flat_map(|bead| joined(stretches(bead, pitch, smooth, is_needed), most)).collect()
 }
 
 /// The stretches of a bead that pass, joined by those between them that go around a corner of a strip: there the
 /// strip is wider than a room, but for a short way.
-fn joined(stretches: Vec<(bool, Polyline)>) -> Vec<Polyline> {
+fn joined(stretches: Vec<(bool, Polyline)>, most: f64) -> Vec<Polyline> {
+    let count = stretches.len();
     let mut out: Vec<Polyline> = Vec::new();
     let mut goes_on = false;
-    for (passes, stretch) in stretches {
-        let kept = passes || goes_on && turns_inwards(&stretch);
+    for (k, (passes, stretch)) in stretches.into_iter().enumerate() {
+        let is_short = || length(&stretch) as f64 <= most;
+        // Stretches pass in turn: the next one does.
+        let is_between = goes_on && k + 1 < count;
+        let kept = passes || is_between && is_short() && turns_inwards(&stretch);
         match out.last_mut().filter(|_| kept && goes_on) {
             Some(last) => last.extend_from_slice(&stretch[1..]),
             None if kept => out.push(stretch),

@@ -10,10 +10,10 @@
 //!
 //! Algorithm:
 //! 1. Sample the walls (`wall_samples`). A row that crosses the inner edge of the walls gives the
-//!    exact depth of the skin there, and the distance to the wall on the other side. Of the two
+//!    exact depth of the skin there, and roughly the distance to the wall on the other side. Of the two
 //!    rasters, one always crosses the wall at 45° or steeper.
 //! 2. For each lap and bead index, offset each sample to the place of that bead. Skip places too
-//!    near to another wall, split the lap where a bead ends, and drop short arcs.
+//!    near to another wall, and mitres beyond one, split the lap where a bead ends, and drop short arcs.
 //! 3. Decimate each arc to the places where the bead bends or its width changes.
 
 use super::crossed::Crossed;
@@ -129,9 +129,10 @@ fn place(sample: &WallSample, index: usize, near: &Around, params: &BeadParams) 
     let [x, y] = [0, 1].map(|k| sample.at[k] + away * sample.normal[k]);
     let clear = away - SLACK * w;
     // A mitre is long: beyond the wall on the other side is no place either.
-    let long = dot(sample.normal, sample.normal).sqrt();
+    let square = dot(sample.normal, sample.normal);
+    let long = square.sqrt();
     let unit = sample.normal.map(|side| side / long);
-    if long > LONGER && near.walls.hit(sample.at, unit, away * long).is_some() {
+    if square > LONGER && near.walls.hit(sample.at, unit, away * long).is_some() {
         return None;
     }
     near.is_free([[x, y]], clear, width).then_some(Place {

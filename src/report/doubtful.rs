@@ -54,6 +54,8 @@ fn drags(settings: &Settings) -> Option<Warning> {
         let mut words = code.split_whitespace();
         match words.next() {
             Some("G0" | "G1") => {}
+            // They lift it before they park.
+            Some("G27" | "M125" | "M600") => return None,
             // What is not numbered may be a macro, which lifts it.
             Some(word) if word.chars().nth(1).is_none_or(|second| !second.is_ascii_digit()) => {
                 return None;

@@ -12,7 +12,9 @@
 //!    the crossing, times the sine of the angle, is the depth. If little infill would remain
 //!    before the skin of the opposite wall, the sample is shared and its depth is half the room.
 //! 2. Choose the number of beads: as many as cover the depth, or 0 if it is too deep.
-//! 3. Confirm shared samples: the opposite wall must really lie there ([`WallSample::confirm`]).
+//! 3. Measure shared samples anew at right angles to the wall, confirm that the opposite wall really lies
+//!    there, and decide which of the two leads: of two walls the first, within one wall by direction
+//!    ([`WallSample::confirm`]).
 //! 4. Bridge short gaps without beads, and smooth short changes of their number.
 //! 5. Add the wall's own corners, with the interpolated depth, so that beads follow them.
 //!
@@ -58,7 +60,7 @@ const MOST_ACROSS: usize = 5;
 const SINGLE: f64 = 1.6;
 
 /// A narrower strip gets no more than two beads. A larger value makes them too wide; with a smaller one more
-/// strips get a third, which does not turn with them at corners.
+/// strips get a third, which within one wall does not turn with them.
 const PAIR: f64 = 3.2;
 
 /// Maximum depth for each bead on a short stretch where one bead more would be needed: stretching
@@ -145,7 +147,7 @@ pub(super) fn samples(
 ) -> Option<(Vec<Vec<WallSample>>, Near)> {
     let mut laps: Vec<Vec<WallSample>> =
         walls.iter().map(|w| measured::measured(w, crossed, params)).collect();
-    if laps.iter().flatten().all(|s| s.beads == 0) {
+    if laps.iter().flatten().all(|s| !s.shared && s.beads == 0) {
         return None;
     }
     let with_beads = laps.iter().flatten().filter(|s| s.shared || s.beads > 0).map(|s| s.at);

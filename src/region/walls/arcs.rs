@@ -168,14 +168,22 @@ fn close(arc: &mut Arc, layout: &Layout<'_>) {
     let w = layout.line_width;
     let ends = arc.first().zip(arc.last());
     let gap = ends.map_or(f64::MAX, |(a, b)| distance(a.place.at, b.place.at));
-    let turns = ends.is_some_and(|(a, b)| b.turning_to(a, layout).is_some());
+    let sure = sure_end(arc, false).zip(sure_end(arc, true));
+    let turns = sure.is_some_and(|(a, b)| b.turning_to(a, layout).is_some());
     let near = gap <= NEIGHBOURS * w || turns;
     if gap > 0.0 && near && length(arc) > 3.0 * NEIGHBOURS * w {
         // A corner may lie between its ends: it begins a little further on.
-        let seam = SEAM.min(arc.len());
+        let seam = (SEAM..arc.len()).find(|&k| !arc[k].turns).unwrap_or(SEAM.min(arc.len()));
         arc.rotate_left(seam);
         arc.extend(arc.first().copied());
     }
+}
+
+/// The first sample of an arc between two sides, or the last one: beside a corner what is opposite is the corner.
+fn sure_end(arc: &Arc, last: bool) -> Option<&Sample> {
+    let is_sure = |sample: &&Sample| !sample.turns;
+    let sure = if last { arc.iter().rev().find(is_sure) } else { arc.iter().find(is_sure) };
+    sure.or_else(|| end_of(arc, last))
 }
 
 /// The first sample of an arc, or the last one.
@@ -217,8 +225,8 @@ fn nearest(
             let gap = distance(here[usize::from(!turn.0)], there[usize::from(turn.1)]);
             if gap <= best.map_or(most, |(least, ..)| least)
                 && best.is_none_or(|b| gap < b.0)
-                && end_of(&arcs[k], !turn.0)
-                    .zip(end_of(&arcs[j], turn.1))
+                && sure_end(&arcs[k], !turn.0)
+                    .zip(sure_end(&arcs[j], turn.1))
                     .is_some_and(|(a, b)| fit(a, b))
             {
                 best = Some((gap, j, turn));

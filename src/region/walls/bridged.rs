@@ -24,6 +24,8 @@ pub(super) struct Sample {
     pub width: f64,
     /// The room that it shares with what is opposite, if that is a side; else 0.
     pub room: f64,
+    /// Whether a middle bead lies in it.
+    pub bead: bool,
     /// The distance to the next sample.
     pub step: f64,
     /// The direction of its side, of length 1; the solid is on its left.
@@ -45,8 +47,16 @@ pub(super) fn bridge(samples: &mut [Sample]) {
         let are_alike = (a.width - b.width).abs() <= ALIKE * a.width.max(b.width);
         let (p, q) = (a.way, b.way);
         let is_one = (from..k).all(|i| samples[i % n].way == p || samples[i % n].way == q);
+        // A bead in the corner alone has its room from the loops around it.
+        let is_shared = (from + 1..k).all(|i| !samples[i % n].bead || a.bead && b.bead);
         let turns = p[0] * q[1] - p[1] * q[0] > 0.0 && p[0] * q[0] + p[1] * q[1] < TURNED;
-        if k > from + 1 && turns && is_one && are_alike && way <= LONGEST * a.room.max(b.room) {
+        if k > from + 1
+            && turns
+            && is_one
+            && is_shared
+            && are_alike
+            && way <= LONGEST * a.room.max(b.room)
+        {
             let mut on = 0.0;
             for i in from + 1..k {
                 on += samples[(i - 1) % n].step / way;

@@ -4,7 +4,8 @@
 //! with how far the bead moves inwards there and how wide it is.
 //!
 //! Each side of the loop is sampled once for each line width. A sample asks for the share of the
-//! beads at its place. Between samples the loop goes straight; at a corner it goes where its two
+//! beads at its place. Around a corner of a strip the loop goes on between its two sides as it comes
+//! (`bridged`). Between samples the loop goes straight; at a corner it goes where its two
 //! moved sides meet. Around a small nose sides that move inwards get shorter, and vanish where they
 //! would turn back.
 
@@ -124,8 +125,14 @@ fn sample(
 ) -> Sample {
     let inset = layout.inset(depth);
     let foot = along(at, -inset, normal);
-    let plain =
-        Sample { shift: 0.0, width: layout.line_width, room: 0.0, step: 0.0, way: [0.0; 2] };
+    let plain = Sample {
+        shift: 0.0,
+        width: layout.line_width,
+        room: 0.0,
+        bead: false,
+        step: 0.0,
+        way: [0.0; 2],
+    };
     match layout.share(foot, normal, guess).filter(|(share, _)| share.loops > depth) {
         Some((share, opposite)) => {
             // What is laid decides, not what each place on its own would take.
@@ -135,7 +142,7 @@ fn sample(
             let width = share.room / count;
             let middle = (f64::from(depth) + 0.5) * width - layout.params.outside();
             let room = if opposite.corner { 0.0 } else { share.room };
-            Sample { shift: middle - inset, width, room, ..plain }
+            Sample { shift: middle - inset, width, room, bead: has_bead, ..plain }
         }
         None => plain,
     }

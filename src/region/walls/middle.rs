@@ -3,7 +3,7 @@
 //! Words: a *sample* is a place of the contour that has a middle bead opposite; a *lap* is all
 //! samples of one contour, with `None` where it has none. An *arc* is a sequence of neighbouring
 //! samples of a lap. Its places are the centres of circles inside the part, so they lie on the
-//! medial axis.
+//! medial axis, but for corners on which a bead turns.
 //!
 //! Algorithm:
 //! 1. Sample each side of the contour, and fan out at corners that stick into the part.
@@ -11,7 +11,8 @@
 //!    *leads* and lays the bead. So the arcs of all leading samples cover nearly everything once.
 //! 3. Where sides of different length look at each other, none may lead. Samples that are still
 //!    far from all arcs make arcs of their own.
-//! 4. Join arcs whose ends meet, and drop short ones. Where walls cross, their ends run on
+//! 4. Join arcs whose ends meet, or between which their strip turns (`arcs`). Where it turns, the bead
+//!    does so where its two sides meet. Drop short arcs. Where walls cross, their ends run on
 //!    (`junctions`).
 
 use super::arcs::{Arc, NEIGHBOURS, Sample, arcs, is_ring, join_ends, length, meet};

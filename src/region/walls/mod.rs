@@ -13,7 +13,7 @@
 //!    to each other ([`thin`]). The inset one further, cut in the same way, is the core.
 //! 2. Where the core is cut off, count the loops that are left. They and a middle bead, if there is
 //!    room for one, share the room evenly (`share_room`): loops are moved and widened
-//!    (`loops`), and the middle bead gets its share of the width (`middle`). Where walls meet, middle
+//!    (`loops`, `bridged`), and the middle bead gets its share of the width (`middle`). Where walls meet, middle
 //!    beads run on into the room between them (`junctions`).
 //! 3. What is still open, though a bead has room there, gets loops of its own (`patches`).
 //!
