@@ -43,7 +43,7 @@ const LEAST_SLIVER: Coord = 7;
 
 /// Lines of solid rooms that join no other and are shorter than this, tenths of a line's width, are left out.
 /// A larger value leaves small rooms open.
-const LEAST_ALONE: Coord = 15;
+const LEAST_ALONE: Coord = 10;
 
 /// Corners of skin are rounded with at most a line's width divided by this. A larger radius leaves the
 /// corners between line and wall open; a smaller one makes the nozzle stop at each.

@@ -37,19 +37,23 @@ pub fn needed(
     let smooth = Smooth { close, least, ..Smooth::default() };
     let is_needed = |p: &LinePoint| near.holds(Point { x: p.u, y: p.v });
     let most = TURN * f64::from(pitch);
-    beads.iter().flat_map(|bead| joined(stretches(bead, pitch, smooth, is_needed), most)).collect()
+    let joined = |bead: &Polyline| {
+        let closes = bead.first() == bead.last();
+        joined(stretches(bead, pitch, smooth, is_needed), (most, closes))
+    };
+    beads.iter().flat_map(joined).collect()
 }
 
 /// The stretches of a bead that pass, joined by those between them that go around a corner of a strip: there the
 /// strip is wider than a room, but for a short way.
-fn joined(stretches: Vec<(bool, Polyline)>, most: f64) -> Vec<Polyline> {
+fn joined(stretches: Vec<(bool, Polyline)>, (most, closes): (f64, bool)) -> Vec<Polyline> {
     let count = stretches.len();
     let mut out: Vec<Polyline> = Vec::new();
     let mut goes_on = false;
     for (k, (passes, stretch)) in stretches.into_iter().enumerate() {
         let is_short = || length(&stretch) as f64 <= most;
-        // Stretches pass in turn: the next one does.
-        let is_between = goes_on && k + 1 < count;
+        // Stretches pass in turn: the next one does. That after the last one of a ring is its first.
+        let is_between = goes_on && (k + 1 < count || closes);
         let kept = passes || is_between && is_short() && turns_inwards(&stretch);
         match out.last_mut().filter(|_| kept && goes_on) {
             Some(last) => last.extend_from_slice(&stretch[1..]),
