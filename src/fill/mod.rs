@@ -41,10 +41,6 @@ use variable_width::LineParams;
 /// Slivers of solid rooms that are nowhere as wide as this, tenths of a line's width, are left out.
 const LEAST_SLIVER: Coord = 7;
 
-/// Lines of solid rooms that join no other and are shorter than this, tenths of a line's width, are left out.
-/// A larger value leaves small rooms open.
-const LEAST_ALONE: Coord = 10;
-
 /// Corners of skin are rounded with at most a line's width divided by this. A larger radius leaves the
 /// corners between line and wall open; a smaller one makes the nozzle stop at each.
 const SKIN_ROUNDING: Coord = 8;
@@ -222,8 +218,8 @@ impl Maker<'_> {
         // A thread beside a skin's edge would lie on the skin's last line.
         let least = self.params.line_width * LEAST_SLIVER / 10;
         slivers.retain(|sliver| sliver.iter().any(|point| point.width >= least));
-        // A lone short line fills a notch beside a bead that turns, and lies on the wall there.
-        let least = i64::from(self.params.line_width * LEAST_ALONE / 10);
+        // A lone line shorter than wide fills a notch beside a bead that turns, and lies on the wall there.
+        let least = i64::from(self.params.line_width);
         let lines = skin::zigzags(&lines, false, &self.params.lines).into_iter();
         slivers.extend(lines.filter(|line| polyline::length(line) >= least));
         slivers

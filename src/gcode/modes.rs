@@ -15,11 +15,11 @@ pub(super) fn of_filament(machine: &Machine) -> &'static str {
 
 /// The lines before a block: G90 and the mode of E, unless it says both before its first move. G90 comes first,
 /// since it sets E, too, on some firmwares. Without a move there is nothing to be told: macros have modes of
-/// their own. Sailfish knows neither of them otherwise.
+/// their own. Sailfish has one way of each only, and needs no word.
 pub(super) fn before(block: &str, machine: &Machine) -> String {
     let is_move = |code: &String| MOVES.contains(&code.as_str());
-    let known = machine.dialect == DialectName::Makerbot;
-    let Some(first) = codes(block).position(|code| is_move(&code)).filter(|_| !known) else {
+    let has_one_way = machine.dialect == DialectName::Makerbot;
+    let Some(first) = codes(block).position(|code| is_move(&code)).filter(|_| !has_one_way) else {
         return String::new();
     };
     let says = |modes: &[&str]| codes(block).take(first).any(|code| modes.contains(&&*code));

@@ -12,6 +12,8 @@
 //! Only where no such place is found, and it would change the verdict, the contours are subtracted
 //! from each other.
 //!
+//! What droops is kept beside it ([`droop`](super::droop)), and told with it at the end.
+//!
 //! Bodies are only known at the end: two arms that begin in the air on their own may meet what
 //! stands further up. So a job is refused after its last layer, before its output is complete.
 

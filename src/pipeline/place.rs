@@ -38,8 +38,8 @@ pub fn place(
 }
 
 /// `placement` as these settings need it: models larger by what the material shrinks, clear of what the start
-/// block primes, with room for rafts or brims between them, where they are asked for. A brim that is only printed where it is needed
-/// gets none: where two meet they grow together.
+/// block primes, with room for rafts or brims between them, where they are asked for. A brim that is only
+/// printed where it is needed gets none: where two meet they grow together.
 #[must_use]
 pub fn suited(placement: &Placement, settings: &Settings) -> Placement {
     let (brims, rafts) = (2.0 * settings.brim_reach(), 2.0 * settings.raft_reach());

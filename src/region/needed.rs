@@ -72,7 +72,7 @@ fn turns_inwards(stretch: &[LinePoint]) -> bool {
     let ways: Vec<[f64; 2]> = stretch.windows(2).map(|w| way(at(&w[0]), at(&w[1]))).collect();
     let left = |w: &[[f64; 2]]| {
         let ([x, y], [u, v]) = (w[0], w[1]);
-        (x * v - y * u).atan2(x * u + y * v).max(0.0)
+        libm::atan2(x * v - y * u, x * u + y * v).max(0.0)
     };
     ways.windows(2).map(left).sum::<f64>() > std::f64::consts::FRAC_PI_4
 }

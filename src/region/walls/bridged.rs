@@ -46,6 +46,7 @@ pub(super) fn bridge(samples: &mut [Sample]) {
         let way: f64 = (from..k).map(|i| samples[i % n].step).sum();
         let are_alike = (a.width - b.width).abs() <= ALIKE * a.width.max(b.width);
         let (p, q) = (a.way, b.way);
+        // A round bend is no corner.
         let is_one = (from..k).all(|i| samples[i % n].way == p || samples[i % n].way == q);
         // A bead in the corner alone has its room from the loops around it.
         let is_shared = (from + 1..k).all(|i| !samples[i % n].bead || a.bead && b.bead);
