@@ -27,6 +27,7 @@ pub mod hidden;
 pub mod ironing;
 mod joined;
 pub mod landing;
+pub mod mitres;
 mod near;
 pub mod needed;
 pub mod one_wall;

@@ -3,7 +3,8 @@
 //! The result is two values. [`Own`] belongs to the layer and is consumed once. [`LayerRows`] is
 //! what neighbours read; it is kept as long as one of them needs it.
 
-use super::params::{Insets, RegionParams};
+use super::mitres::{self, Way};
+use super::params::RegionParams;
 use super::per_raster::PerRaster;
 use super::scan::Scan;
 use super::walls::{self, Wall, Walls, thin};
@@ -22,6 +23,8 @@ pub struct Own {
     pub walls: Vec<Wall>,
     /// The room for lines of skin and infill, where it is not all that the walls enclose.
     pub core: Option<Vec<Contour>>,
+    /// The ways along its innermost loops beside corners that reach further inwards than the rows' inset.
+    pub mitres: Vec<Way>,
     /// Area that is too thin for any bead, mm².
     pub thin_mm2: f64,
     /// What it would be without tops that have the outer wall alone; `None` if it has none.
@@ -60,23 +63,33 @@ pub fn prepare(layer: Layer, params: &RegionParams) -> (Own, LayerRows) {
     let may_be_thin = thin::may_be_thin(&layer.contours, skins.map(Scan::inside), &params.walls);
     let Walls { walls, core, lost_mm2: thin_mm2 } =
         walls::walls(&layer.contours, may_be_thin, &params.walls);
+    let mitres = mitres::mitres(&walls, &params.walls);
     let rows = |raster: Raster, scan: &Scan| PreparedRows {
-        fill: Arc::new(fill(scan, core.as_deref(), raster, &params.insets)),
+        fill: Arc::new(fill(scan, core.as_deref(), &mitres, raster, params)),
         cover: scan.inset(params.insets.cover),
     };
     let rows = PerRaster::new(&params.rasters, params.rasters.iter(), |raster| {
         scans.on(raster).map_or_else(PreparedRows::default, |scan| rows(raster, scan))
     });
-    (Own { layer: Arc::new(layer), walls, core, thin_mm2, whole: None }, rows)
+    (Own { layer: Arc::new(layer), walls, core, mitres, thin_mm2, whole: None }, rows)
 }
 
-/// Where lines of skin or infill may run on `raster`: the scanned contours inset by their walls, and
-/// within the `core` that these leave.
+/// Where lines of skin or infill may run on `raster`: the scanned contours inset by their walls, beside
+/// the `mitres` of these, and within the `core` that they leave.
 #[must_use]
-pub fn fill(scan: &Scan, core: Option<&[Contour]>, raster: Raster, insets: &Insets) -> Rows {
-    let rows = scan.inset(insets.fill);
+pub fn fill(
+    scan: &Scan,
+    core: Option<&[Contour]>,
+    mitres: &[Way],
+    raster: Raster,
+    params: &RegionParams,
+) -> Rows {
+    let mut rows = scan.inset(params.insets.fill);
+    if !mitres.is_empty() {
+        rows = rows.minus(&mitres::taken(mitres, raster, params));
+    }
     match core {
-        Some(core) => rows.and(&Scan::new(core, raster).outset(insets.core)),
+        Some(core) => rows.and(&Scan::new(core, raster).outset(params.insets.core)),
         None => rows,
     }
 }

@@ -193,7 +193,8 @@ fn lay(
     let rasters = [0.0, 90.0].map(|turn| Raster { frame: Frame::new(degrees + turn), pitch });
     let [(fill, open), (fill_across, open_across)] = rasters.map(|raster| {
         let scan = Scan::new(&pair.own.layer.contours, raster);
-        let mut fill = prepare::fill(&scan, pair.own.core.as_deref(), raster, &params.insets);
+        let mut fill =
+            prepare::fill(&scan, pair.own.core.as_deref(), &pair.own.mitres, raster, params);
         let cover = Scan::new(&pair.below.contours, raster).inset(params.insets.cover);
         if !pair.beads.is_empty() {
             fill = fill.minus(&pair.taken(raster, params));
