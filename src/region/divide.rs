@@ -22,6 +22,7 @@ use super::rooms;
 use super::scan::around;
 use super::wall_beads::{taken, wall_beads};
 use super::wall_samples::SHORT;
+use super::wedges::without_wedges;
 use crate::geom::Contour;
 use crate::geom::frame::Frame;
 use crate::geom::polyline::Polyline;
@@ -89,11 +90,12 @@ pub fn examine<'a>(
     let exposed = [0, 1].map(exposed);
     let solid = solid(own.layer.index, layers, params);
     let beads = match &solid {
-        Some([a, b]) => {
+        Some(rooms @ [a, b]) => {
             let areas = [exposed[0].or(a), exposed[1].or(b)];
             let beads = beads(own, &areas, layers, params);
             // Rooms are alike on many layers: what goes on from one to the next would make a wall.
-            needed(own.layer.index, beads, &areas, params.beads.line_width, SHORT)
+            let beads = needed(own.layer.index, beads, &areas, params.beads.line_width, SHORT);
+            without_wedges(own.layer.index, beads, rooms, params)
         }
         None => beads(own, &exposed, layers, params),
     };

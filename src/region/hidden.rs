@@ -109,7 +109,7 @@ fn nearest_row(v: Coord, pitch: Coord) -> i32 {
     nearest(f64::from(v) / f64::from(pitch)) as i32
 }
 
-fn holds(rows: &Rows, p: Point, pitch: Coord) -> bool {
+pub(super) fn holds(rows: &Rows, p: Point, pitch: Coord) -> bool {
     rows.span_at(nearest_row(p.y, pitch), p.x).is_some()
 }
 

@@ -46,6 +46,7 @@ pub mod tops;
 pub mod wall_beads;
 mod wall_samples;
 pub mod walls;
+pub mod wedges;
 pub mod window;
 
 pub use params::RegionParams;

@@ -7,6 +7,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use crate::common::damage::{judge_made, kinds};
+use crate::common::section::distance;
 use crate::common::solid::Outline;
 use crate::common::stack::stars;
 use crate::common::{Kind, Move, Run, Solid, slice};
@@ -226,4 +227,52 @@ fn walls_of_thin_boxes_turn_their_corners() {
         let rings = if thickness < 1.45 { 1 } else { 2 };
         assert!(inside.len() == rings && inside[0] > 60.0, "{thickness}: {inside:?}");
     }
+}
+
+/// A block with square holes: at the corners of a hole its walls reach further out than an arc around them.
+#[test]
+fn no_line_ends_on_the_wall_around_the_corner_of_a_window() {
+    let hole = |x: f64, y: f64| {
+        Solid::cuboid([x - 2.2, y - 2.2, 0.0], [x + 2.2, y + 2.2, 3.0]).inside_out()
+    };
+    let places = [-4.0, 0.0, 4.0].map(|x| [-4.0, 0.0, 4.0].map(|y| (1.5 * x, 1.5 * y)));
+    let block = Solid::cuboid([-10.0, -10.0, 0.0], [10.0, 10.0, 3.0]);
+    let block = places.as_flattened().iter().fold(block, |all, &(x, y)| all.and(&hole(x, y)));
+    // On its corner.
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let stl = block.map(|[x, y, z]| [half * (x - y), half * (x + y), z]).stl();
+    for walls in ["1", "2", "3"] {
+        let run = slice(&stl, "generic-marlin", &[("walls", walls)]);
+        let beads = |kinds: [Kind; 2]| -> Vec<&Move> {
+            let all = kinds.into_iter().flat_map(|kind| run.print.of(kind));
+            all.filter(|m| m.is_bead() && m.layer == Some(7)).collect()
+        };
+        let walls = beads([Kind::OuterWall, Kind::InnerWall]);
+        for line in beads([Kind::Skin, Kind::Infill]) {
+            for end in [line.a(), line.b()] {
+                let away = walls.iter().map(|wall| distance(end, wall.a(), wall.b()));
+                assert!(
+                    away.fold(f64::MAX, f64::min) > 0.2,
+                    "{} walls, line {}",
+                    walls.len(),
+                    line.line
+                );
+            }
+        }
+        assert_eq!(kinds(&judge_made(&run.text, &stl)), [], "{walls}");
+    }
+}
+
+/// Teeth taper: lines fill them in one go, where beads along the flanks would leave crumbs between them.
+#[test]
+fn teeth_of_a_rack_are_filled_by_few_pieces() {
+    let teeth = 12;
+    let stl = Solid::prism(&comb(teeth, 4.0, 6.0, 3.5, 5.0), 0.0, 4.0).stl();
+    let run = slice(&stl, "generic-marlin", &[]);
+    for layer in [8, 9] {
+        let pieces = lengths(&run, layer, &[Kind::Skin, Kind::Infill]);
+        let stubs = pieces.iter().filter(|length| **length < 1.0).count();
+        assert!(pieces.len() <= 3 * teeth && stubs <= teeth / 2, "{layer}: {pieces:?}");
+    }
+    assert_eq!(kinds(&judge_made(&run.text, &stl)), []);
 }
