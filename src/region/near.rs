@@ -169,6 +169,13 @@ impl Near {
         self.around(&places, distance).all(|edges| edges.iter().all(far))
     }
 
+    /// Whether an edge that `counts` is nearer than `distance` to `p`, which lies within the area.
+    pub(super) fn has(&self, p: [f64; 2], distance: f64, counts: impl Fn(Edge) -> bool) -> bool {
+        let square = distance * distance;
+        let mut near = self.around(&[p], distance).flatten();
+        near.any(|edge| is_nearer(p, edge, square) && counts(*edge))
+    }
+
     /// Whether an edge is nearer to `p` than the reach.
     pub(super) fn is_beside(&self, p: [f64; 2]) -> bool {
         let square = self.reach * self.reach;

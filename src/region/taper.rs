@@ -18,6 +18,9 @@ const MOST_STEP: f64 = 800.0;
 /// plastic; at 1 there are more points than the plastic tells.
 const WIDTH_TO_PLACE: f64 = 2.0;
 
+/// Cosine of the turn from which on a bead turns back: 114°. A smaller turn is that of a corner.
+const BACK: f64 = -0.4;
+
 /// A place on the centre line of a bead.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Place {
@@ -40,6 +43,27 @@ pub(super) fn tapered(places: &[Place]) -> (Contour, Vec<Coord>) {
             (Point { x: nearest(x) as Coord, y: nearest(y) as Coord }, nearest(mean) as Coord)
         })
         .unzip()
+}
+
+/// Takes away the places of a bead from which it would turn back at once, with a step shorter than `short`: beside
+/// a jagged wall places jerk to and fro by less than the bead is wide.
+pub(super) fn go_on<T: Copy>(bead: &mut Vec<T>, short: f64, at: impl Fn(&T) -> [f64; 2]) {
+    let turns_back = |[a, b, c]: [[f64; 2]; 3]| {
+        let (to, from) = (way(a, b), way(b, c));
+        let lengths = [dot(to, to), dot(from, from)];
+        dot(to, from) < BACK * (lengths[0] * lengths[1]).sqrt()
+            && lengths[0].at_most(lengths[1]) < short * short
+    };
+    let mut kept: Vec<T> = Vec::with_capacity(bead.len());
+    for place in bead.drain(..) {
+        while let [.., a, b] = kept[..]
+            && turns_back([at(&a), at(&b), at(&place)])
+        {
+            kept.pop();
+        }
+        kept.push(place);
+    }
+    *bead = kept;
 }
 
 /// The place between `a` and `b` to keep: the one that a straight bead would miss most, or the

@@ -14,18 +14,20 @@
 //!    rasters, one always crosses the wall at 45° or steeper.
 //! 2. For each lap and bead index, offset each sample to the place of that bead. Skip places too
 //!    near to another wall, and mitres beyond one, split the lap where a bead ends, and drop short arcs.
+//!    Around a small curve the sides of a bead are shorter than those of the wall: skip places that are nearer to
+//!    the wall than they should be, or further from it. There the bead would run backwards.
 //! 3. Decimate each arc to the places where the bead bends or its width changes.
 
 use super::crossed::Crossed;
-use super::near::Near;
+use super::near::{Edge, Near};
 use super::params::BeadParams;
 use super::scan::around;
-use super::taper::{self, distance, tapered};
-use super::wall_samples::{MOST_BEADS, SHORT, WallSample, samples};
+use super::taper::{self, distance, go_on, tapered};
+use super::wall_samples::{MOST_BEADS, SHORT, WallSample, facing, samples};
 use crate::geom::frame::Frame;
 use crate::geom::polyline::{LinePoint, Polyline};
 use crate::geom::raster::Raster;
-use crate::geom::segment::{dot, way};
+use crate::geom::segment::dot;
 use crate::geom::spans::Rows;
 use crate::geom::{Contour, Point};
 use crate::units::Coord;
@@ -40,6 +42,13 @@ const LONGER: f64 = 1.0 + 1e-9;
 
 /// The square of the length of the mitre at a right angle, and rounding.
 const RIGHT_ANGLE: f64 = 2.0 + 1e-6;
+
+/// Cosine of the turn between the side of a place and those that go on as it does: 50°. A bead beside sides
+/// shorter than its distance would run backwards. A larger turn takes the end of a pointed room for such a side.
+const ALIKE: f64 = 0.64;
+
+/// A place may be nearer to its wall by this much (2 µm): rounding.
+const ROUNDING: f64 = 20.0;
 
 /// A point of a bead.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,13 +72,6 @@ impl Place {
         } else {
             (self.clear + SLACK * w) * (square - 1.0).max(0.0).sqrt()
         }
-    }
-
-    /// Whether it leads on to `next` in the direction of its side. All do beside a corner.
-    fn leads_to(&self, next: &Self, turn: f64) -> bool {
-        let [x, y] = self.normal;
-        let [u, v] = way(self.at, next.at);
-        x * x + y * y > LONGER || turn * (u * y - v * x) > 0.0
     }
 }
 
@@ -135,6 +137,15 @@ fn place(sample: &WallSample, index: usize, near: &Around, params: &BeadParams) 
     if square > LONGER && near.walls.hit(sample.at, unit, away * long).is_some() {
         return None;
     }
+    let goes_on = |edge: Edge| facing(unit, edge) < -ALIKE;
+    if near.walls.has([x, y], away - ROUNDING, goes_on) {
+        return None;
+    }
+    // The two sides of a corner that sticks out may be too short to meet there.
+    let has_wall = |far: f64| near.walls.has([x, y], far, |_| true);
+    if square > LONGER && !has_wall(away + ROUNDING) && has_wall(away * long - ROUNDING) {
+        return None;
+    }
     near.is_free([[x, y]], clear, width).then_some(Place {
         at: [x, y],
         width,
@@ -147,9 +158,10 @@ fn place(sample: &WallSample, index: usize, near: &Around, params: &BeadParams) 
 /// around the wall ends where it begins.
 fn arcs(lap: &[WallSample], index: usize, near: &Around, params: &BeadParams) -> Vec<Vec<Place>> {
     let short = SHORT * f64::from(params.line_width);
-    // Start where there is no such bead, so that no arc is split. If it goes all around, close it.
+    // Start where there is no such bead, so that no arc is split. If it goes all around, close it at a place of its own.
     let bare = lap.iter().position(|s| s.beads <= index);
-    let around = lap.iter().cycle().skip(bare.unwrap_or(0));
+    let own = || lap.iter().position(|s| place(s, index, near, params).is_some());
+    let around = lap.iter().cycle().skip(bare.or_else(own).unwrap_or(0));
     let around = around.take(lap.len() + usize::from(bare.is_none()));
     let mut arcs: Vec<Vec<Place>> = Vec::new();
     let mut open = false;
@@ -172,24 +184,10 @@ fn arcs(lap: &[WallSample], index: usize, near: &Around, params: &BeadParams) ->
         }
         open = true;
     }
-    arcs.iter_mut().for_each(go_on);
+    let step = f64::from(params.line_width) / 2.0;
+    arcs.iter_mut().for_each(|arc| go_on(arc, step, |place| place.at));
     arcs.retain(|arc| length(arc) >= short);
     arcs
-}
-
-/// Takes away the places of an arc from which it would step back. Around a small curve the sides of a
-/// bead are shorter than those of the wall, and samples near their ends lie beyond its corners.
-fn go_on(arc: &mut Vec<Place>) {
-    for turn in [-1.0, 1.0] {
-        let mut kept: Vec<Place> = Vec::with_capacity(arc.len());
-        for place in arc.drain(..) {
-            if kept.last().is_none_or(|last| place.leads_to(last, turn)) {
-                kept.push(place);
-            }
-        }
-        kept.reverse();
-        *arc = kept;
-    }
 }
 
 /// Whether a bead may go straight from one place to the next: they are near, and no wall pokes in

@@ -262,7 +262,7 @@ impl WallSample {
 
 /// The cosine of the angle between a wall's normal and the outward one of another wall's edge: 1 if they
 /// face each other.
-fn facing(normal: [f64; 2], [from, to]: Edge) -> f64 {
+pub(super) fn facing(normal: [f64; 2], [from, to]: Edge) -> f64 {
     let [x, y] = way(from, to);
     (normal[0] * y - normal[1] * x) / (x * x + y * y).sqrt().at_least(1.0)
 }

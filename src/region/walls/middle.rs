@@ -21,7 +21,7 @@ use super::{Layout, Share, Wall};
 use crate::geom::segment::{along, dot, way};
 use crate::geom::{Contour, Point, edges, side};
 use crate::region::near::Near;
-use crate::region::taper::{Place, distance, tapered};
+use crate::region::taper::{Place, distance, go_on, tapered};
 use crate::units::Bounded as _;
 
 /// Distance of samples along the contour, in line widths. A larger value cuts corners; a smaller
@@ -79,6 +79,7 @@ pub(super) fn beads(layout: &Layout<'_>) -> (Vec<Arc>, Vec<Doubt>) {
     all.extend(left);
     join_ends(&mut all, layout);
     for arc in &mut all {
+        onwards(arc, w, &mut doubts);
         mitre(arc, layout);
         sharpen(arc, layout);
         if !is_ring(arc) {
@@ -101,6 +102,15 @@ pub(super) fn near(beads: &[Wall], layout: &Layout<'_>) -> Near {
     let open = beads.iter().flat_map(|b| b.path.windows(2)).map(|p| [float(p[0]), float(p[1])]);
     let all = open.chain(beads.iter().filter_map(|b| closing(b).flatten()));
     Near::of_edges(all.collect(), 2.0 * layout.line_width)
+}
+
+/// Takes away the places from which a bead would turn back. Where it would go there and back, much may be open.
+fn onwards(arc: &mut Arc, w: f64, doubts: &mut Vec<Doubt>) {
+    let whole = arc.clone();
+    go_on(arc, w, |sample| sample.place.at);
+    if arc.len() < whole.len() {
+        doubts.extend(whole.iter().map(|sample| sample.from));
+    }
 }
 
 fn is_long(arc: &Arc, w: f64) -> bool {
