@@ -21,6 +21,7 @@ mod nonplanar;
 mod printers;
 mod raft;
 mod rooms;
+mod rings;
 mod roughness;
 mod routes;
 mod seams;
