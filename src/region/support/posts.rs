@@ -20,9 +20,8 @@
 //!    what hangs;
 //! 4. a piece without any load is left out, but not below feet that are not firm: they need it.
 
-use super::params::SupportParams;
+use super::params::{LEAN, SupportParams};
 use super::pieces::Pieces;
-use super::stand::LEAN;
 use crate::geom::section::Section;
 use crate::geom::spans::{Rows, Span};
 use crate::units::{Bounded as _, Coord, to_mm};

@@ -6,13 +6,9 @@
 //! all that would stand on it.
 
 use super::columns::Column;
-use super::params::SupportParams;
+use super::params::{LEAN, SupportParams};
 use super::pieces::without_specks;
 use crate::geom::spans::Rows;
-
-/// How far a layer of support may reach beyond what carries it, in line widths: the next bead
-/// holds on to the one beside it.
-pub(super) const LEAN: i32 = 1;
 
 /// Cuts off what nothing carries, and specks.
 pub(super) fn stand(columns: &mut [Column], params: &SupportParams) {
