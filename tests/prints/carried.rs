@@ -4,10 +4,8 @@
 //! nothing printed near it on the layer below.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
-#![allow(clippy::print_stdout, reason = "a test that is skipped says so")]
 
-use crate::common::{Kind, Move, Solid, as_it_is, fixture, settings, slice, slice_file};
-use crate::common::{Print, solid::circle};
+use crate::common::{Kind, Move, Print, Solid, fixture, slice, solid::circle};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Side of a cell, mm: what touches is at most a cell apart.
@@ -187,32 +185,6 @@ fn each_island_of_support_carries_something() {
             let idle = idle(&run.print, more.parse().unwrap());
             if let Some(first) = idle.first() {
                 failures.push(format!("{name}, {more}: {} {first:?}", idle.len()));
-            }
-        }
-    }
-    assert!(failures.is_empty(), "{failures:#?}");
-}
-
-/// The same of models of others: `SLICER_MODELS` names their folder.
-#[test]
-fn each_island_of_support_of_a_model_carries_something() {
-    let Some(folder) = std::env::var_os("SLICER_MODELS") else {
-        println!("skipped: SLICER_MODELS does not name a folder of models");
-        return;
-    };
-    let mut paths: Vec<_> =
-        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|e| e == "stl"));
-    paths.sort();
-    let mut failures = Vec::new();
-    for path in paths {
-        for dual in ["off", "pair"] {
-            let set = [("support.enabled", "true"), ("dual.mode", dual)];
-            let settings = settings("generic-marlin", &set);
-            let Ok((text, _)) = slice_file(&path, &settings, &as_it_is()) else { continue };
-            let idle = idle(&Print::read(&text).unwrap(), settings.support.expansion);
-            if let Some(first) = idle.first() {
-                failures.push(format!("{} {dual}: {} {first:?}", path.display(), idle.len()));
             }
         }
     }
