@@ -86,7 +86,9 @@ impl LayerView {
 pub(super) struct Overhang {
     /// The layer that hangs.
     pub(super) layer: usize,
-    /// What hangs of it, grown by the outset.
+    /// What hangs of it.
+    pub(super) hangs: Rows,
+    /// The same, grown by the outset.
     pub(super) all: Rows,
     /// The part of it that hangs on nothing at all, if that was asked for.
     pub(super) islands: Rows,
@@ -105,7 +107,8 @@ pub(super) fn overhang(layer: &LayerView, below: &LayerView, params: &SupportPar
     let wide = |rows: &Rows| rows.dilate(params.outset - pitch, pitch);
     // Only those that begin within the gap above the bed get support in another way.
     let islands = if layer.index <= params.gap { islands(layer, below) } else { Rows::default() };
-    Overhang { layer: layer.index, all: wide(&hanging), islands: wide(&islands) }
+    let (all, islands) = (wide(&hanging), wide(&islands));
+    Overhang { layer: layer.index, hangs: hanging, all, islands }
 }
 
 /// What of `hanging` sags, and what is near that.
