@@ -23,9 +23,9 @@ use crate::units::{Coord, to_mm, to_units};
 const SLACK: Coord = 300;
 
 /// A place that hangs gets support if it, or one near it, exceeds the lean by this part of a layer's
-/// height: a sliver beyond it prints nothing that sags. More leaves slopes below 37° without support
+/// height: a sliver beyond it prints nothing that sags. More leaves slopes below 36° without support
 /// at a threshold of 45° and layers of 0.2 mm; less puts a ring under every round side that touches the threshold.
-const SAG: f64 = 0.11;
+const SAG: f64 = 0.2;
 
 /// Pieces of which less than a line's width squared, divided by this, sags get no support: that is
 /// less than half of a dot. With more, ends of bridges and tips of edges would get a post each.
