@@ -32,6 +32,11 @@ impl Section {
         self.sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += area * more);
     }
 
+    /// Adds another shape whose sums are from the same origin.
+    pub fn join(&mut self, other: &Self) {
+        self.sums.iter_mut().zip(other.sums).for_each(|(sum, more)| *sum += more);
+    }
+
     /// See the words of this file, mm; 0 of nothing.
     #[must_use]
     pub fn thickness(&self) -> f64 {

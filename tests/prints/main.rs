@@ -4,6 +4,7 @@
 mod common;
 
 mod arcs;
+mod carried;
 mod checked;
 mod contour;
 mod cooling;

@@ -108,6 +108,33 @@ fn slopes_flatter_than_the_threshold_get_support() {
     }
 }
 
+/// A bell that widens upwards gets support all around, though rows cross its sides at all angles.
+#[test]
+fn support_does_not_depend_on_the_direction_of_an_overhang() {
+    for (corners, angle) in [(48, 55.0_f64), (48, 60.0), (8, 60.0), (12, 65.0)] {
+        let rim = 2.0 + 8.0 * angle.to_radians().tan();
+        let foot = Solid::cylinder(2.0, 6.0, 48);
+        let bell = Solid::tower(&[(circle(2.0, corners), 5.0), (circle(rim, corners), 13.0)]);
+        let run = slice(&foot.and(&bell).stl(), "generic-marlin", &[("support.enabled", "true")]);
+        let [x, y] = run.middle();
+        let mut sectors = [0.0; 8];
+        for line in run.print.of(Kind::Support).filter(|line| line.is_bead()) {
+            let ([ax, ay], [bx, by]) = (line.a(), line.b());
+            // A millimetre at a time: lines cross sectors.
+            let pieces = line.length().ceil();
+            for k in 0..pieces as usize {
+                let part = (k as f64 + 0.5) / pieces;
+                let (u, v) = (ax + part * (bx - ax) - x, ay + part * (by - ay) - y);
+                let turn = v.atan2(u) / std::f64::consts::FRAC_PI_4 + 8.5;
+                sectors[turn.rem_euclid(8.0) as usize] += line.length() / pieces;
+            }
+        }
+        let (least, most) =
+            sectors.iter().fold((f64::MAX, 0.0_f64), |(a, b), s| (a.min(*s), b.max(*s)));
+        assert!(least > 0.5 * most, "{corners} corners, {angle}: {sectors:?}");
+    }
+}
+
 /// A house whose eaves hang all around it.
 #[test]
 fn support_under_eaves_is_one_folded_strip() {

@@ -11,6 +11,9 @@
 //! - gaps are compared with that room. They are looked for along rows and along columns, and only
 //!   inside the closed loops of the outer walls, so that air between two parts is none.
 //!
+//! Few places have either. A first look draws all lines of a layer coarsely, along rows and along columns, and tells
+//! the cells in doubt; only what lies near these is drawn finely and judged.
+//!
 //! Sums over a whole file hide such places: a wall that is printed twice disappears among good ones.
 
 use super::Filled;
@@ -81,6 +84,9 @@ const LANES: usize = 4;
 const COARSE: i32 = 4;
 const DOUBT: f64 = 0.5;
 
+/// What plastic over room must be by a first look to leave none: the room of thin walls is an eighth off.
+const SURE: [f64; 2] = [0.85, 1.1];
+
 /// Where lines of walls and skins are looked at.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Field {
@@ -148,19 +154,21 @@ struct Cell {
 impl Judge<'_> {
     fn layer(&self, layer: usize) -> Vec<Finding> {
         let mut cells = vec![Cell::default(); self.field.count[0] * self.field.count[1]];
-        let own = self.filled.window.moves(layer);
         let lines = self.filled.lines(layer).filter(|(step, _)| !is_thread(step, self.terms));
-        let lines: Vec<(&Step, f64)> =
+        let mut lines: Vec<(&Step, f64)> =
             lines.map(|(step, share)| (step, share * self.over(layer, step))).collect();
-        let threads = || own.iter().filter(|step| step.is_line() && is_thread(step, self.terms));
         let counts = |step: &Step| is_solid(step) || step.role == Role::Ironing;
         for &(step, share) in lines.iter().filter(|(step, _)| counts(step)) {
             self.add_plastic(step, share, &mut cells);
         }
-        let solids = || lines.iter().filter(|(step, _)| is_solid(step)).map(|(step, _)| *step);
-        let sparse =
-            || lines.iter().map(|(step, _)| *step).filter(|step| step.role == Role::Infill);
         let coarse = self.coarser();
+        let is_doubtful = coarse.doubtful(layer, &lines, &cells);
+        if !is_doubtful.contains(&true) {
+            return Vec::new();
+        }
+        let is_near = |step: &Step| self.cells_near(step).any(|k| is_doubtful[k]);
+        lines.retain(|(step, _)| is_near(step));
+        let solids = || solids_of(&lines);
         for flipped in [false, true] {
             if flipped {
                 // Few layers have gaps along columns: a first look tells most of the others.
@@ -174,13 +182,13 @@ impl Judge<'_> {
                 self.share(&solid, flipped, |k, area| cells[k].room += area);
             }
             // Most layers have too few gaps for any place to be open: no more is drawn for them.
-            let Some(open) = self.open((layer, flipped), &solid, &cells, 1.0) else { continue };
-            let all = sparse().chain(threads());
-            let open = open.minus(&self.field.lattice.draw_on(&open, capsules(all, flipped)));
+            let open = self.unfilled((layer, flipped), &solid, (&lines, &cells), 1.0);
+            let Some(open) = open else { continue };
             self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
         }
         let judged = cells.iter().enumerate().filter_map(|(k, cell)| {
-            let finding = self.judged(cell, self.filled.height(layer))?;
+            let finding =
+                is_doubtful[k].then(|| self.judged(cell, self.filled.height(layer)))??;
             let [x, y] = [k % self.field.count[0], k / self.field.count[0]];
             let middle = |low: f64, k: usize| short(low + (k as f64 + 0.5) * self.field.side);
             Some(finding.at(Place {
@@ -191,6 +199,37 @@ impl Judge<'_> {
             }))
         });
         judged.collect()
+    }
+
+    /// In which cells of a layer, of which the plastic is known, a first look leaves a doubt whether they have too
+    /// little plastic, too much, or gaps. The room is measured along rows and along columns: lines that lie between
+    /// rows cross columns.
+    fn doubtful(&self, layer: usize, lines: &[(&Step, f64)], cells: &[Cell]) -> Vec<bool> {
+        let mut cells = cells.to_vec();
+        let drawn = [false, true].map(|flipped| {
+            let solid = self.drawn(solids_of(lines), flipped);
+            self.share(&solid, flipped, |k, area| cells[k].room += area / 2.0);
+            (flipped, solid)
+        });
+        for (flipped, solid) in drawn {
+            let open = self.unfilled((layer, flipped), &solid, (lines, &cells), DOUBT);
+            let Some(open) = open else { continue };
+            let side = usize::from(flipped);
+            self.share(&open, flipped, |k, area| cells[k].open[side] += area / DOUBT);
+        }
+        let height = self.filled.height(layer);
+        cells.iter().map(|cell| is_doubtful(cell, height)).collect()
+    }
+
+    /// The cells whose gaps a line may lie in or beside.
+    fn cells_near(&self, step: &Step) -> impl Iterator<Item = usize> {
+        let (low, high) = Capsule::of(step, 1.0).extent();
+        let field = self.field;
+        let [columns, rows] = [0, 1].map(|axis| {
+            let place = |at: f64| ((at - field.low[axis]) / field.side).at_least(0.0) as usize;
+            place(low[axis] - GAP)..(place(high[axis] + GAP) + 1).min(field.count[axis])
+        });
+        rows.flat_map(move |row| columns.clone().map(move |column| column + row * field.count[0]))
     }
 
     /// The same with columns and rows further apart.
@@ -221,6 +260,22 @@ impl Judge<'_> {
         }
         let open = between.and(&self.inside(layer, flipped));
         has_open(&open).then_some(open)
+    }
+
+    /// As [`Self::open`], less what sparse infill and threads cover.
+    fn unfilled(
+        &self,
+        (layer, flipped): (usize, bool),
+        solid: &Rows,
+        (lines, cells): (&[(&Step, f64)], &[Cell]),
+        part: f64,
+    ) -> Option<Rows> {
+        let open = self.open((layer, flipped), solid, cells, part)?;
+        let sparse = lines.iter().map(|(step, _)| *step).filter(|step| step.role == Role::Infill);
+        let own = self.filled.window.moves(layer).iter();
+        let threads = own.filter(|step| step.is_line() && is_thread(step, self.terms));
+        let others = capsules(sparse.chain(threads), flipped);
+        Some(open.minus(&self.field.lattice.draw_on(&open, others)))
     }
 
     /// The layer's height over that of the room below a line: more than 1 of one that ends below the layer's
@@ -395,6 +450,23 @@ fn capsules<'s>(
 ) -> impl Iterator<Item = Capsule> {
     let capsules = lines.map(|step| Capsule::of(step, 1.0));
     capsules.map(move |one| if flipped { one.flipped() } else { one })
+}
+
+/// The lines of walls and skins.
+fn solids_of<'s>(lines: &[(&'s Step, f64)]) -> impl Iterator<Item = &'s Step> {
+    lines.iter().filter(|(step, _)| is_solid(step)).map(|(step, _)| *step)
+}
+
+/// Whether plastic and gaps of a cell are not well within their bounds.
+fn is_doubtful(cell: &Cell, height: f64) -> bool {
+    let room = cell.room * height;
+    let plastic = cell.plastic + (cell.ironed - IRONING * room).max(0.0);
+    let fills = plastic / room;
+    let excess = (plastic - room) / height;
+    let [least, most] = SURE;
+    let is_more = fills > most && excess > DOUBT * DOUBT * LEAST_EXCESS;
+    let is_less = fills < least && cell.room > DOUBT * LEAST_ROOM[0];
+    is_more || is_less || is_open(cell.open[0].max(cell.open[1]), cell.room)
 }
 
 /// Whether gaps are large, in a cell of which walls and skins cover this, mm².

@@ -28,6 +28,8 @@ pub(super) struct Column {
     pub(super) reach: Rows,
     /// Where it stands on the part.
     pub(super) foot: Rows,
+    /// What hangs above and is to be carried from here on down.
+    pub(super) hangs: Rows,
     /// What may be added to the body of support, so that lines hold all of it.
     pub(super) beside: Rows,
 }
@@ -94,7 +96,7 @@ impl<'a> Window<'a> {
         // Support of the overhang of layer k + 1 + gap begins at layer k.
         let begins = self.overhangs.front().is_some_and(|o| o.layer > k + gap);
         let new = if begins { self.overhangs.pop_front() } else { None };
-        let new = new.map(|overhang| overhang.all).unwrap_or_default();
+        let new = new.unwrap_or_default();
         let around = at.saturating_sub(gap)..(at + gap + 1).min(self.layers.len());
         // Beside the edge of a floor support would lie on nothing.
         let near = |n: usize| if n > at { &self.layers[n].near } else { &self.layers[n].inside };
@@ -107,17 +109,21 @@ impl<'a> Window<'a> {
             let rows = join_gaps(&rows.minus(&layer.near), layer, params.least);
             others.iter().fold(rows, |rows, other| rows.minus(other)).or(&low)
         };
-        self.reach = cut(self.reach.or(&new));
-        let wanted = cut(self.posts.rows().or(&new));
+        self.reach = cut(self.reach.or(&new.all));
+        let wanted = cut(self.posts.rows().or(&new.all));
+        let floors = self.layers.range(at..(at + gap + 1).min(self.layers.len()));
+        let ends = self.posts.rows().minus(&wanted);
+        let foot = foot(&ends, floors.map(|floor| &floor.inside), params);
+        let (hangs, z) = (new.hangs.or(&low), self.heights.top(k));
+        let idle = self.posts.next(&wanted, [&hangs, &foot], z, params, cut);
         if let Some(above) = out.get_mut(k + 1) {
-            let floors = self.layers.range(at..(at + gap + 1).min(self.layers.len()));
-            above.foot = foot(&above.all.minus(&wanted), floors.map(|floor| &floor.inside), params);
+            above.foot = foot;
         }
-        self.posts.next(wanted, self.heights.top(k), params, cut);
+        self.reach = self.reach.minus(&idle);
         let all = self.posts.rows().clone();
         let beside = to_lines(&params.lines, &all).minus(&all);
         let beside = if beside.is_empty() { beside } else { cut(beside).minus(&all) };
-        out[k] = Column { all, reach: self.reach.clone(), beside, ..Column::default() };
+        out[k] = Column { all, reach: self.reach.clone(), hangs, beside, ..Column::default() };
         self.done = at + 1;
     }
 }

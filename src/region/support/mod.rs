@@ -8,10 +8,11 @@
 //!
 //! 1. `overhangs`: what hangs, on each layer. Only what is printed counts (`printed`); what
 //!    bridges needs no support (`bridges`).
-//! 2. `columns`: from there support goes down, layer by layer; thin posts grow on the way
-//!    (`posts`).
+//! 2. `columns`: from there support goes down, layer by layer; thin posts grow on the way, and those
+//!    whose load has landed end (`posts`).
 //! 3. Support that stands on the part is removed if the settings allow only the bed. On the bed it
-//!    gets a brim. Specks are dropped, and what stands on nothing (`stand`).
+//!    gets a brim. Specks are dropped, what stands on nothing (`stand`), and what has lost all that it
+//!    carried (`idle`).
 //! 4. `interface`: which places are dense. The others are the `body`, which gets a zigzag, or
 //!    lines and an `outline`; places far from any line are grown to one (`held`), or get lines
 //!    across if they are narrow (`strips`). An outline that would have nothing below it
@@ -24,6 +25,7 @@ mod body;
 mod bridges;
 mod columns;
 mod held;
+mod idle;
 mod interface;
 mod outline;
 mod overhangs;
@@ -74,25 +76,28 @@ pub fn supports(
     let (low, high) = within;
     let corners = vec![low, Point { x: high.x, y: low.y }, high, Point { x: low.x, y: high.y }];
     let bed = Scan::new(&[corners], params.raster());
-    add_brim(slicer, params, &mut columns);
     columns.par_iter_mut().for_each(|column| {
         column.all = column.all.and(bed.inside());
         column.reach = column.reach.and(bed.inside());
         column.beside = column.beside.and(bed.inside());
     });
     stand::stand(&mut columns, params);
+    while idle::drop_idle(&mut columns, params) {
+        stand::stand(&mut columns, params);
+    }
+    add_brim(slicer, params, &bed, &mut columns);
     let laid = |(k, layer): (usize, Divided)| layer.lay(k, params);
     interface::divided(&columns, params).into_par_iter().enumerate().map(laid).collect()
 }
 
 /// Grows the lowest layer, to hold on to the bed.
-fn add_brim(slicer: &Slicer<'_>, params: &SupportParams, columns: &mut [Column]) {
+fn add_brim(slicer: &Slicer<'_>, params: &SupportParams, bed: &Scan, columns: &mut [Column]) {
     let Some(lowest) = columns.first_mut().filter(|lowest| !lowest.all.is_empty()) else { return };
     let layers = slicer.block(0);
     let near = |layer: &Layer| scan(layer, params).outset(params.clearance);
     if let Some(near) = layers.first().map(near) {
         let grown = lowest.all.dilate(params.brim, params.raster().pitch);
-        lowest.all = lowest.all.or(&grown.minus(&near));
+        lowest.all = lowest.all.or(&grown.minus(&near).and(bed.inside()));
     }
 }
 

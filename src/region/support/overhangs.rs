@@ -23,9 +23,9 @@ use crate::units::{Coord, to_mm, to_units};
 const SLACK: Coord = 300;
 
 /// A place that hangs gets support if it, or one near it, exceeds the lean by this part of a layer's
-/// height: a sliver beyond it prints nothing that sags. More leaves slopes below 35° without support
+/// height: a sliver beyond it prints nothing that sags. More leaves slopes below 36° without support
 /// at a threshold of 45° and layers of 0.2 mm; less puts a ring under every round side that touches the threshold.
-const SAG: f64 = 0.05;
+const SAG: f64 = 0.2;
 
 /// Pieces of which less than a line's width squared, divided by this, sags get no support: that is
 /// less than half of a dot. With more, ends of bridges and tips of edges would get a post each.
@@ -86,7 +86,9 @@ impl LayerView {
 pub(super) struct Overhang {
     /// The layer that hangs.
     pub(super) layer: usize,
-    /// What hangs of it, grown by the outset.
+    /// What hangs of it.
+    pub(super) hangs: Rows,
+    /// The same, grown by the outset.
     pub(super) all: Rows,
     /// The part of it that hangs on nothing at all, if that was asked for.
     pub(super) islands: Rows,
@@ -105,7 +107,8 @@ pub(super) fn overhang(layer: &LayerView, below: &LayerView, params: &SupportPar
     let wide = |rows: &Rows| rows.dilate(params.outset - pitch, pitch);
     // Only those that begin within the gap above the bed get support in another way.
     let islands = if layer.index <= params.gap { islands(layer, below) } else { Rows::default() };
-    Overhang { layer: layer.index, all: wide(&hanging), islands: wide(&islands) }
+    let (all, islands) = (wide(&hanging), wide(&islands));
+    Overhang { layer: layer.index, hangs: hanging, all, islands }
 }
 
 /// What of `hanging` sags, and what is near that.
@@ -116,11 +119,13 @@ fn sagging(hanging: Rows, below: &LayerView, params: &SupportParams) -> Rows {
     let sags = hanging.minus(&below.holds_up());
     let pitch = params.raster().pitch;
     let hanging = hanging.and(&sags.dilate(NEAR_SAG * params.least, pitch));
-    let pieces = Pieces::new(&hanging);
+    // Along an edge oblique to the rows, what hangs on one row may end before it begins on the next.
+    let joined = hanging.dilate(pitch, pitch);
+    let pieces = Pieces::new(&joined);
     let mut sums = vec![0; pieces.count()];
-    pieces.shared(&hanging, &sags, &mut sums);
+    pieces.shared(&joined, &sags, &mut sums);
     let least = i64::from(params.least).pow(2) / LEAST_SAG;
-    pieces.keep(&hanging, |piece| sums[piece] * i64::from(pitch) >= least)
+    hanging.and(&pieces.keep(&joined, |piece| sums[piece] * i64::from(pitch) >= least))
 }
 
 /// The pieces of `layer` that overlap nothing of `below`.

@@ -11,6 +11,10 @@ use std::sync::Arc;
 /// Number of patterns of what is sparse.
 pub const BODIES: usize = 4;
 
+/// How far a layer of support may reach beyond what carries it, in line widths: the next bead
+/// holds on to the one beside it.
+pub(super) const LEAN: i32 = 1;
+
 /// The numbers of support, in grid units.
 #[derive(Debug, Clone, Copy)]
 pub struct SupportParams {

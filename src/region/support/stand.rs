@@ -6,41 +6,47 @@
 //! all that would stand on it.
 
 use super::columns::Column;
-use super::params::SupportParams;
+use super::params::{LEAN, SupportParams};
 use super::pieces::without_specks;
-
-/// How far a layer of support may reach beyond what carries it, in line widths: the next bead
-/// holds on to the one beside it.
-const LEAN: i32 = 1;
+use crate::geom::spans::Rows;
 
 /// Cuts off what nothing carries, and specks.
 pub(super) fn stand(columns: &mut [Column], params: &SupportParams) {
-    let (lean, pitch) = (LEAN * params.least, params.raster().pitch);
-    if let Some(lowest) = columns.first_mut() {
+    // The brim makes pieces on the bed wide enough.
+    if let Some(lowest) = columns.first_mut().filter(|_| params.brim <= 0) {
         lowest.all = without_specks(&lowest.all, params);
     }
     for k in 1..columns.len() {
         let [below, here] = &mut columns[k - 1..=k] else { continue };
         here.all = without_specks(&here.all, params);
-        let hanging = here.all.minus(&below.all).minus(&here.foot);
-        if hanging.is_empty() {
-            continue;
-        }
-        // Only what is near counts, and there is little of it.
-        let around = hanging.dilate(lean, pitch);
-        let carriers = below.all.or(&here.foot).and(&around).dilate(lean, pitch);
-        let falls = hanging.minus(&carriers);
+        let falls = falls(&here.all, [&below.all, &here.foot], params);
         if !falls.is_empty() {
             here.all = without_specks(&here.all.minus(&falls), params);
             here.reach = here.reach.minus(&falls);
         }
+        let carriers = below.all.or(&below.beside);
+        here.beside =
+            here.beside.minus(&self::falls(&here.beside, [&carriers, &here.foot], params));
     }
+}
+
+/// What of `rows` lies too far from what carries it.
+fn falls(rows: &Rows, carriers: [&Rows; 2], params: &SupportParams) -> Rows {
+    let (lean, pitch) = (LEAN * params.least, params.raster().pitch);
+    let hanging = rows.minus(carriers[0]).minus(carriers[1]);
+    if hanging.is_empty() {
+        return hanging;
+    }
+    // Only what is near counts, and there is little of it.
+    let around = hanging.dilate(lean, pitch);
+    let carriers = carriers[0].or(carriers[1]).and(&around).dilate(lean, pitch);
+    hanging.minus(&carriers)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geom::spans::{Rows, Span, merge};
+    use crate::geom::spans::{Span, merge};
     use crate::profile;
     use proptest::prelude::*;
 
