@@ -333,7 +333,7 @@ mod tests {
 
         #[test]
         fn rings_are_narrow_all_around_or_nowhere(
-            inner in 4.0..15.0_f64, width in 1.7..2.6_f64, turn in 0.0..1.0_f64, corners in 24..96_usize
+            inner in 6.0..20.0_f64, width in 1.7..2.6_f64, turn in 0.0..1.0_f64, corners in 24..96_usize
         ) {
             let circle = |radius: f64, way: f64| -> Contour {
                 let at = |k: usize| {

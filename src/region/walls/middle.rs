@@ -107,7 +107,7 @@ pub(super) fn near(beads: &[Wall], layout: &Layout<'_>) -> Near {
 /// Takes away the places from which a bead would turn back. Where it would go there and back, much may be open.
 fn onwards(arc: &mut Arc, w: f64, doubts: &mut Vec<Doubt>) {
     let whole = arc.clone();
-    go_on(arc, w, |sample| sample.place.at);
+    go_on(arc, w / 2.0, |sample| sample.place.at);
     if arc.len() < whole.len() {
         doubts.extend(whole.iter().map(|sample| sample.from));
     }
