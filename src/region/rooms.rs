@@ -333,11 +333,13 @@ mod tests {
 
         #[test]
         fn rings_are_narrow_all_around_or_nowhere(
-            inner in 6.0..20.0_f64, width in 1.7..2.6_f64, turn in 0.0..1.0_f64, corners in 24..96_usize
+            inner in 6.0..20.0_f64, width in 1.7..2.6_f64, quarter in 6..24_usize
         ) {
+            // Its four quarters are judged one by one, so that they have to be alike.
+            let corners = 4 * quarter;
             let circle = |radius: f64, way: f64| -> Contour {
                 let at = |k: usize| {
-                    let (sin, cos) = sin_cos(way * 360.0 * (k as f64 + turn) / corners as f64);
+                    let (sin, cos) = sin_cos(way * 360.0 * k as f64 / corners as f64);
                     Point { x: to_units(radius * cos), y: to_units(radius * sin) }
                 };
                 (0..corners).map(at).collect()

@@ -79,7 +79,9 @@ pub(super) fn beads(layout: &Layout<'_>) -> (Vec<Arc>, Vec<Doubt>) {
     all.extend(left);
     join_ends(&mut all, layout);
     for arc in &mut all {
-        onwards(arc, w, &mut doubts);
+        if !is_ring(arc) {
+            onwards(arc, w, &mut doubts);
+        }
         mitre(arc, layout);
         sharpen(arc, layout);
         if !is_ring(arc) {
