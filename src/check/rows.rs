@@ -244,22 +244,39 @@ type Join = fn(&[Span], &[Span], &mut Vec<Span>);
 
 /// Each row joined with those around it, `window` rows in all, an odd number; `beyond` says whether
 /// something is left where some of them are beyond the rows there are.
+///
+/// A window is the end of a block of as many rows and the beginning of the next one. What lies between each row
+/// and either end of its block is found from row to row: three joins a row, however large the window.
 fn stacked(rows: &Rows, window: i32, (join, beyond): (Join, bool)) -> Rows {
-    let mut out = rows.clone();
-    let mut done = 1;
-    while done < window {
-        // What `done` rows from each row on gave, joined with the same some rows further.
-        let step = done.min(window - done);
-        let range = out.range();
-        let start = if beyond { range.start - step } else { range.start };
-        // The last time it is moved to the middle of the window.
-        let moved = if done + step == window { window / 2 } else { 0 };
-        let mut next = Rows::with_room_of(&out, start + moved);
-        for j in start..range.end {
-            next.push_row(|spans| join(out.row(j), out.row(j + step), spans));
+    let Range { start, end } = rows.range();
+    let start = if beyond { start - window + 1 } else { start };
+    let place = |j: i32| (j - start) % window;
+    let (mut last, mut both) = (Vec::new(), Vec::new());
+    let mut add = |out: &mut Rows, row: &[Span], begins: bool| {
+        both.clear();
+        if begins {
+            both.extend_from_slice(row);
+        } else {
+            join(row, &last, &mut both);
         }
-        out = next;
-        done += step;
+        std::mem::swap(&mut last, &mut both);
+        out.push_row(|spans| spans.extend_from_slice(&last));
+    };
+    // From the last row to the first: row `j` is row `-j` here.
+    let mut to_end = Rows::with_room_of(rows, -(end + window - 1));
+    for j in (start..end + window).rev() {
+        add(&mut to_end, rows.row(j), place(j) == window - 1);
+    }
+    let mut to_begin = Rows::with_room_of(rows, start);
+    for j in start..end + window {
+        add(&mut to_begin, rows.row(j), place(j) == 0);
+    }
+    let mut out = Rows::with_room_of(rows, start + window / 2);
+    for j in start..end {
+        out.push_row(|spans| match place(j) {
+            0 => spans.extend_from_slice(to_end.row(-j)),
+            _ => join(to_end.row(-j), to_begin.row(j + window - 1), spans),
+        });
     }
     out
 }

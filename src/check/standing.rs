@@ -8,12 +8,13 @@
 //! that many lines take no memory they are drawn when there are [`MOST_KEPT`] of them.
 
 use crate::reader::print::Step;
+use crate::units::Bounded as _;
 use std::collections::BTreeMap;
 
 /// Side of a cell, mm.
 pub(super) const CELL: f64 = 0.5;
 
-/// Cells along the side of a tile.
+/// Cells along the side of a tile, a power of two.
 const SIDE: usize = 32;
 
 /// Lines that are kept until they are drawn.
@@ -96,7 +97,10 @@ impl Standing {
     fn draw_line(&mut self, [from, to]: Kept) {
         let ([x, y, z], [to_x, to_y, to_z]) = (from.map(f64::from), to.map(f64::from));
         let way = [to_x - x, to_y - y, to_z - z];
-        let count = (way[0].abs().max(way[1].abs()) / CELL).ceil().max(1.0) as usize;
+        let longest = way[0].abs().at_least(way[1].abs()) / CELL;
+        // Rounded up, which `f64::ceil` does by a call on some processors.
+        let whole = longest as usize;
+        let count = (whole + usize::from(longest > whole as f64)).max(1);
         let mut known: Option<([i32; 2], usize)> = None;
         for k in 0..=count {
             let part = k as f64 / count as f64;
@@ -109,8 +113,10 @@ impl Standing {
                 },
             };
             known = Some((at, tile));
-            let cell = &mut self.tiles[tile][index];
-            *cell = cell.max((z + part * way[2]) as f32);
+            let (cell, top) = (&mut self.tiles[tile][index], (z + part * way[2]) as f32);
+            if top > *cell {
+                *cell = top;
+            }
         }
     }
 
@@ -139,7 +145,7 @@ fn cell(at: f64) -> i32 {
 fn place(cell: [i32; 2]) -> ([i32; 2], usize) {
     let side = SIDE as i32;
     let [column, row] = cell;
-    let (x, y) = (column.rem_euclid(side) as usize, row.rem_euclid(side) as usize);
+    let (x, y) = ((column & (side - 1)) as usize, (row & (side - 1)) as usize);
     ([column.div_euclid(side), row.div_euclid(side)], y * SIDE + x)
 }
 

@@ -40,6 +40,9 @@ pub(super) fn missing(code: Code, words: Words<'_>, computes: bool) -> Option<u8
         (b'G', 4) => Some(&(&[4][..], &b"PS"[..])),
         _ => None,
     };
+    if need.is_none() && !words.has_brackets() {
+        return None;
+    }
     let needs = |letter: u8| need.is_some_and(|(_, letters)| letters.contains(&letter));
     let mut words = words;
     while let Some((letter, number)) = words.next() {

@@ -69,6 +69,13 @@ pub(super) fn command(code: &[u8]) -> Option<(Code, Words<'_>)> {
     ))
 }
 
+impl Words<'_> {
+    /// Whether brackets stand among them, in which no number may stand.
+    pub(super) fn has_brackets(&self) -> bool {
+        memchr::memchr2(b'{', b'[', self.rest).is_some()
+    }
+}
+
 impl Iterator for Words<'_> {
     /// An upper-case letter, and its number if there is a usable one.
     type Item = (u8, Option<f64>);
@@ -126,49 +133,46 @@ pub(super) fn number(text: &[u8]) -> (Option<f64>, &[u8]) {
         _ => (false, text),
     };
     let whole = digits(text, 0);
-    let rest = &text[whole.count..];
-    let (part, rest) = match rest.split_first() {
-        Some((b'.', after)) => {
-            let part = digits(after, whole.value);
-            (part, &after[part.count..])
-        }
-        _ => (Digits { value: whole.value, kept: 0, count: 0 }, rest),
+    let part = match whole.rest.split_first() {
+        Some((b'.', after)) => digits(after, whole.value),
+        _ => Digits { kept: 0, count: 0, ..whole },
     };
     // Of a whole number digits are dropped only where it is too large for any use.
     let size = part.value as f64 / POWERS[part.kept.min(19)];
     if whole.count + part.count == 0 || size > LARGEST {
-        return (None, rest);
+        return (None, part.rest);
     }
-    (Some(if negative { -size } else { size }), rest)
+    (Some(if negative { -size } else { size }), part.rest)
 }
 
 /// Digits one after the other.
 #[derive(Clone, Copy)]
-struct Digits {
+struct Digits<'a> {
     /// What they say, after those before.
     value: u64,
     /// How many of them the value holds, and how many there are.
     kept: usize,
     count: usize,
+    /// What follows them.
+    rest: &'a [u8],
 }
 
 /// The digits that `text` begins with, after others of this value.
 #[inline]
-fn digits(text: &[u8], mut value: u64) -> Digits {
-    let mut kept = 0;
-    let mut count = 0;
-    for byte in text {
-        let digit = byte.wrapping_sub(b'0');
-        if digit > 9 {
-            break;
-        }
-        count += 1;
-        if value < 10_u64.pow(17) {
-            value = 10 * value + u64::from(digit);
-            kept += 1;
-        }
+fn digits(text: &[u8], mut value: u64) -> Digits<'_> {
+    const FULL: u64 = 10_u64.pow(17);
+    let mut rest = text;
+    while let [byte @ b'0'..=b'9', after @ ..] = rest
+        && value < FULL
+    {
+        value = 10 * value + u64::from(byte - b'0');
+        rest = after;
     }
-    Digits { value, kept, count }
+    let kept = text.len() - rest.len();
+    while let [b'0'..=b'9', after @ ..] = rest {
+        rest = after;
+    }
+    Digits { value, kept, count: text.len() - rest.len(), rest }
 }
 
 #[cfg(test)]

@@ -161,6 +161,9 @@ impl Judge<'_> {
         let sparse =
             || lines.iter().map(|(step, _)| *step).filter(|step| step.role == Role::Infill);
         let coarse = self.coarser();
+        if !coarse.doubts(layer, solids, &cells) {
+            return Vec::new();
+        }
         for flipped in [false, true] {
             if flipped {
                 // Few layers have gaps along columns: a first look tells most of the others.
@@ -191,6 +194,28 @@ impl Judge<'_> {
             }))
         });
         judged.collect()
+    }
+
+    /// Whether a first look at a layer, of which the plastic is known, leaves a doubt: whether some place has too
+    /// little plastic, too much, or gaps. The room is measured along rows and along columns: lines that lie between
+    /// rows cross columns.
+    fn doubts<'s, L: Iterator<Item = &'s Step>>(
+        &self,
+        layer: usize,
+        solids: impl Fn() -> L,
+        cells: &[Cell],
+    ) -> bool {
+        let mut cells = cells.to_vec();
+        let drawn = [false, true].map(|flipped| {
+            let solid = self.drawn(solids(), flipped);
+            self.share(&solid, flipped, |k, area| cells[k].room += area / 2.0);
+            (flipped, solid)
+        });
+        let height = self.filled.height(layer);
+        cells.iter().any(|cell| is_doubtful(cell, height))
+            || drawn.iter().any(|(flipped, solid)| {
+                self.open((layer, *flipped), solid, &cells, DOUBT).is_some()
+            })
     }
 
     /// The same with columns and rows further apart.
@@ -395,6 +420,17 @@ fn capsules<'s>(
 ) -> impl Iterator<Item = Capsule> {
     let capsules = lines.map(|step| Capsule::of(step, 1.0));
     capsules.map(move |one| if flipped { one.flipped() } else { one })
+}
+
+/// Whether the plastic of a cell is not well within its bounds.
+fn is_doubtful(cell: &Cell, height: f64) -> bool {
+    let room = cell.room * height;
+    let plastic = cell.plastic + (cell.ironed - IRONING * room).max(0.0);
+    let fills = plastic / room;
+    let excess = (plastic - room) / height;
+    let is_more = fills > 1.0 + DOUBT * (BOUNDS[1] - 1.0) && excess > DOUBT * LEAST_EXCESS;
+    let is_less = fills < 1.0 + DOUBT * (BOUNDS[0] - 1.0) && cell.room > DOUBT * LEAST_ROOM[0];
+    is_more || is_less
 }
 
 /// Whether gaps are large, in a cell of which walls and skins cover this, mm².

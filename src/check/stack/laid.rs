@@ -44,12 +44,10 @@ pub(crate) struct Laid {
     pub(crate) highest: f64,
 }
 
-/// Lowest and highest x and y of what a line covers, mm.
+/// Lowest x and y of what a line covers, and the highest, negative, so that all four are compared alike; mm,
+/// rounded outwards to half the bytes.
 #[derive(Debug, Clone, Copy)]
-struct Extent {
-    low: [f64; 2],
-    high: [f64; 2],
-}
+struct Extent([f32; 4]);
 
 /// Where cells lie.
 #[derive(Debug, Default, Clone, Copy)]
@@ -147,9 +145,16 @@ impl Laid {
         let Some(cells) = &self.cells else { return };
         seen.next(self.beads.len());
         for row in rows {
-            for &bead in cells.of(row) {
-                let bead = bead as usize;
-                if bead < end && self.boxes[bead].meets(&own) && seen.is_new(bead) {
+            let (among, mut count) = (cells.of(row), 0);
+            let found = seen.room(among.len());
+            for &bead in among {
+                found[count] = bead;
+                let one = bead as usize;
+                count += usize::from((one < end) & self.boxes[one].meets(&own));
+            }
+            for k in 0..count {
+                let bead = seen.found[k] as usize;
+                if seen.is_new(bead) {
                     sink(bead, &self.beads[bead]);
                 }
             }
@@ -181,6 +186,8 @@ impl Laid {
 pub(crate) struct Seen {
     last: Vec<u32>,
     line: u32,
+    /// Those of some cells that may be near a line.
+    found: Vec<u32>,
 }
 
 impl Seen {
@@ -191,6 +198,14 @@ impl Seen {
         self.line += 1;
     }
 
+    /// Room for so many beads.
+    fn room(&mut self, count: usize) -> &mut [u32] {
+        if self.found.len() < count {
+            self.found.resize(count, 0);
+        }
+        &mut self.found[..count]
+    }
+
     fn is_new(&mut self, bead: usize) -> bool {
         std::mem::replace(&mut self.last[bead], self.line) != self.line
     }
@@ -199,21 +214,32 @@ impl Seen {
 impl Extent {
     /// Of all places within `more` mm of a bead.
     fn of(bead: &Bead, more: f64) -> Self {
-        let (from, to, radius) = (bead.from, bead.place(1.0), bead.radius + more);
-        let ([x, y], [to_x, to_y]) = (from, to);
-        Self {
-            low: [x.at_most(to_x) - radius, y.at_most(to_y) - radius],
-            high: [x.at_least(to_x) + radius, y.at_least(to_y) + radius],
-        }
+        let ([x, y], [to_x, to_y]) = (bead.from, bead.place(1.0));
+        let radius = bead.radius + more;
+        let low = [x.at_most(to_x) - radius, y.at_most(to_y) - radius];
+        let high = [x.at_least(to_x) + radius, y.at_least(to_y) + radius];
+        Self([low[0], low[1], -high[0], -high[1]].map(rounded_down))
     }
 
+    /// Lowest and highest of an axis.
+    fn ends(self, axis: usize) -> [f64; 2] {
+        [f64::from(self.0[axis]), f64::from(-self.0[axis + 2])]
+    }
+
+    /// Whether it has a place in common with another. No way is taken before all is compared: which one cannot be
+    /// foreseen.
     #[inline]
     fn meets(&self, other: &Self) -> bool {
-        self.low[0] <= other.high[0]
-            && other.low[0] <= self.high[0]
-            && self.low[1] <= other.high[1]
-            && other.low[1] <= self.high[1]
+        let ([x, y, to_x, to_y], own) = (other.0, self.0);
+        let most = [-to_x, -to_y, -x, -y];
+        (0..4).fold(true, |all, k| all & (own[k] <= most[k]))
     }
+}
+
+/// The next lower number of 32 bits, or the same.
+fn rounded_down(mm: f64) -> f32 {
+    let near = mm as f32;
+    if f64::from(near) > mm { near.next_down() } else { near }
 }
 
 impl Field {
@@ -222,8 +248,9 @@ impl Field {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for one in boxes {
             for axis in 0..2 {
-                low[axis] = low[axis].at_most(one.low[axis]);
-                high[axis] = high[axis].at_least(one.high[axis]);
+                let [from, to] = one.ends(axis);
+                low[axis] = low[axis].at_most(from);
+                high[axis] = high[axis].at_least(to);
             }
         }
         if boxes.is_empty() {

@@ -11,6 +11,11 @@ const WHOLE: f64 = 0.8;
 /// Makes stretches from 0 to 1 disjoint and sorts them; those nearer to each other, or to an end,
 /// than `gap` become one.
 pub(crate) fn united(ways: &mut Vec<[f64; 2]>, gap: f64) {
+    if ways.iter().any(|[from, to]| *from <= gap && *to >= 1.0 - gap) {
+        ways.clear();
+        ways.push([0.0, 1.0]);
+        return;
+    }
     if ways.len() > 1 {
         ways.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
     }
