@@ -247,14 +247,13 @@ fn no_line_ends_on_the_wall_around_the_corner_of_a_window() {
             let all = kinds.into_iter().flat_map(|kind| run.print.of(kind));
             all.filter(|m| m.is_bead() && m.layer == Some(7)).collect()
         };
-        let walls = beads([Kind::OuterWall, Kind::InnerWall]);
+        let loops = beads([Kind::OuterWall, Kind::InnerWall]);
         for line in beads([Kind::Skin, Kind::Infill]) {
             for end in [line.a(), line.b()] {
-                let away = walls.iter().map(|wall| distance(end, wall.a(), wall.b()));
+                let away = loops.iter().map(|wall| distance(end, wall.a(), wall.b()));
                 assert!(
                     away.fold(f64::MAX, f64::min) > 0.2,
-                    "{} walls, line {}",
-                    walls.len(),
+                    "{walls} walls, line {}",
                     line.line
                 );
             }
