@@ -20,6 +20,7 @@ mod narino;
 mod nonplanar;
 mod printers;
 mod raft;
+mod roofs;
 mod rooms;
 mod roughness;
 mod routes;

@@ -251,11 +251,7 @@ fn no_line_ends_on_the_wall_around_the_corner_of_a_window() {
         for line in beads([Kind::Skin, Kind::Infill]) {
             for end in [line.a(), line.b()] {
                 let away = loops.iter().map(|wall| distance(end, wall.a(), wall.b()));
-                assert!(
-                    away.fold(f64::MAX, f64::min) > 0.2,
-                    "{walls} walls, line {}",
-                    line.line
-                );
+                assert!(away.fold(f64::MAX, f64::min) > 0.2, "{walls} walls, line {}", line.line);
             }
         }
         assert_eq!(kinds(&judge_made(&run.text, &stl)), [], "{walls}");
