@@ -7,7 +7,8 @@
 //! - the plastic of walls and skins is compared with the room that they cover: lines that lie on one
 //!   another share the room, and overfill it; thin ones leave it half empty. Of a thick line the
 //!   share counts that lies in the layer. What irons lies on the others: it counts where it takes
-//!   more than ironing does;
+//!   more than ironing does. Infill has no room there: where its lines lie side by side in that of walls and
+//!   skins they come on top. A single one may run along the edge of what it holds on to;
 //! - gaps are compared with that room. They are looked for along rows and along columns, and only
 //!   inside the closed loops of the outer walls, so that air between two parts is none.
 //!
@@ -41,6 +42,13 @@ const MOST_CELLS: f64 = 256.0;
 /// Plastic over room: neighbours of other slicers overlap by a tenth, ends of lines in walls by
 /// another; the model of a bead with round ends leaves 0.79 of the thinnest.
 const BOUNDS: [f64; 2] = [0.7, 1.3];
+
+/// Width at which lines side by side touch, and half the width from which on they are more than one, in widths.
+const TOUCHING: f64 = 1.1;
+const SEVERAL: f64 = 0.75;
+
+/// Share of a layer that infill fills at least to be looked at.
+const LEAST_FILLED: f64 = 0.5;
 
 /// What ironing may take of the room: others take 0.1 to 0.25.
 const IRONING: f64 = 0.35;
@@ -141,8 +149,19 @@ struct Cell {
     plastic: f64,
     /// Of ironing.
     ironed: f64,
+    /// What infill side by side covers of the room.
+    infill: f64,
     /// Open gaps along rows, and along columns.
     open: [f64; 2],
+}
+
+impl Cell {
+    /// The plastic in the room of a layer of this height, without infill and with it, over the room.
+    fn fills(&self, height: f64) -> [f64; 2] {
+        let room = self.room * height;
+        let own = self.plastic + (self.ironed - IRONING * room).max(0.0);
+        [own, own + self.infill * height].map(|plastic| plastic / room)
+    }
 }
 
 impl Judge<'_> {
@@ -160,8 +179,13 @@ impl Judge<'_> {
         let solids = || lines.iter().filter(|(step, _)| is_solid(step)).map(|(step, _)| *step);
         let sparse =
             || lines.iter().map(|(step, _)| *step).filter(|step| step.role == Role::Infill);
+        let height = self.filled.height(layer);
+        let fills = |(step, share): &&(&Step, f64)| {
+            step.role == Role::Infill && share * f64::from(step.height) >= LEAST_FILLED * height
+        };
+        let infill = || lines.iter().filter(fills).map(|(step, _)| *step);
         let coarse = self.coarser();
-        if !coarse.doubts(layer, solids, &cells) {
+        if !coarse.doubts(layer, (solids, infill), &cells) {
             return Vec::new();
         }
         for flipped in [false, true] {
@@ -175,6 +199,7 @@ impl Judge<'_> {
             let solid = self.drawn(solids(), flipped);
             if !flipped {
                 self.share(&solid, flipped, |k, area| cells[k].room += area);
+                self.share(&self.on(&solid, infill()), flipped, |k, area| cells[k].infill += area);
             }
             // Most layers have too few gaps for any place to be open: no more is drawn for them.
             let Some(open) = self.open((layer, flipped), &solid, &cells, 1.0) else { continue };
@@ -183,7 +208,7 @@ impl Judge<'_> {
             self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
         }
         let judged = cells.iter().enumerate().filter_map(|(k, cell)| {
-            let finding = self.judged(cell, self.filled.height(layer))?;
+            let finding = judged(cell, height)?;
             let [x, y] = [k % self.field.count[0], k / self.field.count[0]];
             let middle = |low: f64, k: usize| short(low + (k as f64 + 0.5) * self.field.side);
             Some(finding.at(Place {
@@ -199,16 +224,19 @@ impl Judge<'_> {
     /// Whether a first look at a layer, of which the plastic is known, leaves a doubt: whether some place has too
     /// little plastic, too much, or gaps. The room is measured along rows and along columns: lines that lie between
     /// rows cross columns.
-    fn doubts<'s, L: Iterator<Item = &'s Step>>(
+    fn doubts<'s, L: Iterator<Item = &'s Step>, I: Iterator<Item = &'s Step>>(
         &self,
         layer: usize,
-        solids: impl Fn() -> L,
+        (solids, infill): (impl Fn() -> L, impl Fn() -> I),
         cells: &[Cell],
     ) -> bool {
         let mut cells = cells.to_vec();
         let drawn = [false, true].map(|flipped| {
             let solid = self.drawn(solids(), flipped);
             self.share(&solid, flipped, |k, area| cells[k].room += area / 2.0);
+            if !flipped {
+                self.share(&self.on(&solid, infill()), flipped, |k, area| cells[k].infill += area);
+            }
             (flipped, solid)
         });
         let height = self.filled.height(layer);
@@ -315,6 +343,17 @@ impl Judge<'_> {
         self.field.lattice.draw(capsules(lines, flipped))
     }
 
+    /// Where lines of `infill` lie side by side on what is `solid`.
+    fn on<'s>(&self, solid: &Rows, infill: impl Iterator<Item = &'s Step>) -> Rows {
+        let mut widest = 0.0_f64;
+        let lines = infill.map(|step| {
+            widest = widest.max(f64::from(step.width));
+            Capsule::of(step, TOUCHING)
+        });
+        let both = solid.and(&self.field.lattice.draw_on(solid, lines));
+        self.field.lattice.opened(&both, SEVERAL * widest)
+    }
+
     /// The cell of a place.
     fn cell(&self, at: [f64; 2]) -> Option<usize> {
         let x = (at[0] - self.field.low[0]) / self.field.side;
@@ -386,31 +425,30 @@ impl Judge<'_> {
             .collect();
         united(&spans)
     }
+}
 
-    /// Judges a cell of a layer of this height, mm.
-    fn judged(&self, cell: &Cell, height: f64) -> Option<Finding> {
-        let room = cell.room * height;
-        let plastic = cell.plastic + (cell.ironed - IRONING * room).max(0.0);
-        let fills = plastic / room;
-        let percent = short(100.0 * fills);
-        let excess = (plastic - room) / height;
-        if cell.room >= LEAST_ROOM[1] && fills > BOUNDS[1] && excess >= LEAST_EXCESS {
-            let text =
-                format!("walls and skins take {percent} % of the plastic that they have room for");
-            return Some(Finding::warning(Code::Overfilled, percent, "%", text));
-        }
-        let open = cell.open[0].max(cell.open[1]);
-        if is_open(open, cell.room) {
-            let text = format!("{} mm² between walls or skins are open", short(open));
-            return Some(Finding::warning(Code::Underfilled, open, "mm²", text));
-        }
-        let lacks = -excess;
-        (cell.room >= LEAST_ROOM[0] && fills < BOUNDS[0]).then(|| {
-            let text =
-                format!("walls and skins take {percent} % of the plastic that they have room for");
-            Finding::warning(Code::Underfilled, lacks, "mm²", text)
-        })
+/// Judges a cell of a layer of this height, mm.
+fn judged(cell: &Cell, height: f64) -> Option<Finding> {
+    let [fills, all] = cell.fills(height);
+    if cell.room >= LEAST_ROOM[1] && all > BOUNDS[1] && (all - 1.0) * cell.room >= LEAST_EXCESS {
+        let percent = short(100.0 * all);
+        let beside = if cell.infill < LEAST_EXCESS { "" } else { " with the infill on them" };
+        let text = format!(
+            "walls and skins{beside} take {percent} % of the plastic that they have room for"
+        );
+        return Some(Finding::warning(Code::Overfilled, percent, "%", text));
     }
+    let open = cell.open[0].max(cell.open[1]);
+    if is_open(open, cell.room) {
+        let text = format!("{} mm² between walls or skins are open", short(open));
+        return Some(Finding::warning(Code::Underfilled, open, "mm²", text));
+    }
+    (cell.room >= LEAST_ROOM[0] && fills < BOUNDS[0]).then(|| {
+        let (percent, lacks) = (short(100.0 * fills), (1.0 - fills) * cell.room);
+        let text =
+            format!("walls and skins take {percent} % of the plastic that they have room for");
+        Finding::warning(Code::Underfilled, lacks, "mm²", text)
+    })
 }
 
 /// Lines from above, with x and y exchanged or not.
@@ -424,11 +462,9 @@ fn capsules<'s>(
 
 /// Whether the plastic of a cell is not well within its bounds.
 fn is_doubtful(cell: &Cell, height: f64) -> bool {
-    let room = cell.room * height;
-    let plastic = cell.plastic + (cell.ironed - IRONING * room).max(0.0);
-    let fills = plastic / room;
-    let excess = (plastic - room) / height;
-    let is_more = fills > 1.0 + DOUBT * (BOUNDS[1] - 1.0) && excess > DOUBT * LEAST_EXCESS;
+    let [fills, all] = cell.fills(height);
+    let is_more =
+        all > 1.0 + DOUBT * (BOUNDS[1] - 1.0) && (all - 1.0) * cell.room > DOUBT * LEAST_EXCESS;
     let is_less = fills < 1.0 + DOUBT * (BOUNDS[0] - 1.0) && cell.room > DOUBT * LEAST_ROOM[0];
     is_more || is_less
 }
