@@ -48,9 +48,9 @@ Findings, each with a stable code, a place and a measure:
                        plastic over 4 mm²
   double-skin          over 1.3 times the plastic that a patch has room for on what it lies on, in
                        squares of 1 mm
-  overfilled         * over 1.25 times the plastic that walls and skins have room for, on one layer
-                       within 4 by 4 mm; an error where settings ask for over 1.6 times, or where a whole
-                       patch takes over 1.3 times its plastic
+  overfilled         * over 1.3 times the plastic that walls and skins have room for, with infill lines
+                       side by side on them, on one layer within 4 by 4 mm; an error where settings
+                       ask for over 1.6 times, or where a whole patch takes over 1.3 times its plastic
   underfilled        * under 0.7 times that, or a fifth of the room between them left open; an error
                        where a whole patch takes under 0.7 times its plastic
   narrow-bead        * over 1 mm of a line narrower than 70 % of the nozzle

@@ -106,6 +106,13 @@ impl Areas {
         Self { infill: self.infill.minus(taken), ..self }
     }
 
+    /// These areas with this part of what is dense skin.
+    #[must_use]
+    pub fn with_skin_of(self, dense: &Rows) -> Self {
+        let skin = Arc::new(self.skin.or(dense));
+        Self { skin, dense: self.dense.minus(dense), ..self }
+    }
+
     /// These areas with the part of the infill in `strips` skin.
     #[must_use]
     pub fn with_skin(self, strips: &Rows) -> Self {

@@ -5,7 +5,8 @@
 //!
 //! Algorithm: first a layer is examined alone: what is exposed, which rooms it has, and which beads
 //! along walls fill the narrow parts of both. Then, with the layer below, bridges take their place, and
-//! what is left is skin or infill. Last, strips in which no sparse line has room become skin.
+//! what is left is skin or infill. Last, strips in which no sparse line has room become skin, and so does
+//! what of rooms is skin on the other of the two rasters of skins.
 
 use super::Skin;
 use super::bridge::loose::{self, Beads, Below};
@@ -25,6 +26,7 @@ use super::wall_samples::SHORT;
 use super::wedges::without_wedges;
 use crate::geom::Contour;
 use crate::geom::frame::Frame;
+use crate::geom::outline::Columns;
 use crate::geom::polyline::Polyline;
 use crate::geom::raster::Raster;
 use crate::geom::spans::Rows;
@@ -157,13 +159,33 @@ pub fn divide<'a>(
         }),
         None => areas,
     };
-    let areas = beside_skin(areas, skin_turn(k).0, both);
+    let areas = beside_skin(agreed(areas, both), skin_turn(k).0, both);
     let hanging = overhangs(k, &own.walls, layers, params);
     let filling = between_walls(k, &own.walls, layers, params);
     let (mut room_beads, beads) = hidden::beads(k, beads, solid.as_ref(), skins, params);
     let bead = |index: &usize| own.walls[*index].bead(along.frame, params.walls.line_width);
     room_beads.extend(filling.iter().map(bead));
     Divided { areas, beads, room_beads, filling, bridges, hanging }
+}
+
+/// `areas` in which the two rasters of skins agree about rooms: what is skin on one is no solid infill on
+/// the other. A strip of skin thinner than the distance of the rows, with what it reaches, is seen by the rows
+/// across it alone. Skin along these and solid infill along the others would be printed one on the other.
+fn agreed(areas: LayerAreas, both: [Raster; 2]) -> LayerAreas {
+    let taken = [0, 1].map(|r| {
+        let (dense, pitch) = (&areas.skin(r).dense, both[r].pitch);
+        let (rows, across) = (&areas.skin(1 - r).skin, both[1 - r].pitch);
+        let held = Columns { rows, pitch: across, left_turn: r == 0 }.held(dense, pitch);
+        // Both are rounded to lines: shorter bits are at borders that they share.
+        rooms::whole(dense, &held.filter(|_, s| s.len() >= i64::from(across)), across)
+    });
+    if taken.iter().all(Rows::is_empty) {
+        return areas;
+    }
+    areas.map_on(|raster, areas| match both.iter().position(|its| *its == raster) {
+        Some(r) => areas.with_skin_of(&taken[r]),
+        None => areas,
+    })
 }
 
 /// `areas` whose infill keeps off the skin, which is printed on one of `both` rasters, the one `along`.

@@ -98,7 +98,7 @@ enum Chords {
     /// Hardly wider than what is narrow.
     Doubtful,
     Narrow,
-    /// It is long, and the columns do not have its middle. Skins reach along their own lines: a strip between
+    /// It is long, and the columns do not have most of it. Skins reach along their own lines: a strip between
     /// two of them may be open on one raster and closed on the other.
     Lone,
 }
@@ -206,10 +206,16 @@ fn stacks(rows: &Rows, pitch: Coord, columns: &Columns<'_>, limit: Coord) -> Opt
 fn chords(v: Coord, span: Span, columns: &Columns<'_>, limit: Coord) -> Chords {
     let (a, limit) = (span.len() as f64, f64::from(limit));
     let middle = span.start + (span.len() / 2) as Coord;
-    let b = columns.chord((middle + columns.pitch / 2).div_euclid(columns.pitch), v);
+    let column = |u: Coord| (u + columns.pitch / 2).div_euclid(columns.pitch);
+    let b = columns.chord(column(middle), v);
     let most = HARDLY * limit;
     if a * a >= 2.0 * most * most {
-        return if b.is_some() { Chords::Wide } else { Chords::Lone };
+        if b.is_some() {
+            return Chords::Wide;
+        }
+        let all = column(span.start)..=column(span.end);
+        let lacking = all.clone().filter(|c| columns.chord(*c, v).is_none()).count();
+        return if 2 * lacking > all.count() { Chords::Lone } else { Chords::Wide };
     }
     let b = b.map_or(0, Span::len) as f64;
     let is_narrower = |limit: f64| a * a * b * b < limit * limit * (a * a + b * b);
@@ -286,6 +292,22 @@ mod tests {
         let area = |rows: &Rows| to_mm(W) * rows.total() as f64 / UNITS_PER_MM;
         let found = narrow(rows, rasters, LIMIT).unwrap_or_default();
         [0, 1].map(|r| (area(&found[r]), area(rows[r])))
+    }
+
+    /// A short skin on the columns reaches over a row that goes on far to both sides of it.
+    #[test]
+    fn a_row_that_the_columns_lack_in_its_middle_alone_stays_wide() {
+        let rasters = [0.0, 90.0].map(|a| Raster { frame: Frame::new(a), pitch: W });
+        let rect = |low: f64, high: f64| -> Contour {
+            let p = |x, y| Point { x: to_units(x), y: to_units(y) };
+            vec![p(low, -5.0), p(high, -5.0), p(high, 5.0), p(low, 5.0)]
+        };
+        let rows =
+            |contours: &[Contour], r: usize| Scan::new(contours, rasters[r]).inside().clone();
+        let on_rows = rows(&[rect(-10.0, 10.0)], 0);
+        let on_columns = rows(&[rect(-10.0, -2.0), rect(2.0, 10.0)], 1);
+        let found = narrow([&on_rows, &on_columns], rasters, 5_000);
+        assert!(found.is_none_or(|found| found[0].is_empty()));
     }
 
     /// Skins above and below a strip have reached over it on the columns alone.

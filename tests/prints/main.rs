@@ -22,6 +22,7 @@ mod nonplanar;
 mod printers;
 mod raft;
 mod rings;
+mod roofs;
 mod rooms;
 mod roughness;
 mod routes;

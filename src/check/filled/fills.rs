@@ -7,7 +7,8 @@
 //! - the plastic of walls and skins is compared with the room that they cover: lines that lie on one
 //!   another share the room, and overfill it; thin ones leave it half empty. Of a thick line the
 //!   share counts that lies in the layer. What irons lies on the others: it counts where it takes
-//!   more than ironing does;
+//!   more than ironing does. Infill has no room there: where its lines lie side by side in that of walls and
+//!   skins they come on top. A single one may run along the edge of what it holds on to;
 //! - gaps are compared with that room. They are looked for along rows and along columns, and only
 //!   inside the closed loops of the outer walls, so that air between two parts is none.
 //!
@@ -44,6 +45,13 @@ const MOST_CELLS: f64 = 256.0;
 /// Plastic over room: neighbours of other slicers overlap by a tenth, ends of lines in walls by
 /// another; the model of a bead with round ends leaves 0.79 of the thinnest.
 const BOUNDS: [f64; 2] = [0.7, 1.3];
+
+/// Width at which lines side by side touch, and half the width from which on they are more than one, in widths.
+const TOUCHING: f64 = 1.1;
+const SEVERAL: f64 = 0.75;
+
+/// Share of a layer that infill fills at least to be looked at.
+const LEAST_FILLED: f64 = 0.5;
 
 /// What ironing may take of the room: others take 0.1 to 0.25.
 const IRONING: f64 = 0.35;
@@ -147,8 +155,19 @@ struct Cell {
     plastic: f64,
     /// Of ironing.
     ironed: f64,
+    /// What infill side by side covers of the room.
+    infill: f64,
     /// Open gaps along rows, and along columns.
     open: [f64; 2],
+}
+
+impl Cell {
+    /// The plastic in the room of a layer of this height, without infill and with it, over the room.
+    fn fills(&self, height: f64) -> [f64; 2] {
+        let room = self.room * height;
+        let own = self.plastic + (self.ironed - IRONING * room).at_least(0.0);
+        [own, own + self.infill * height].map(|plastic| plastic / room)
+    }
 }
 
 impl Judge<'_> {
@@ -180,6 +199,8 @@ impl Judge<'_> {
             let solid = self.drawn(solids(), flipped);
             if !flipped {
                 self.share(&solid, flipped, |k, area| cells[k].room += area);
+                let infill = self.infill_on(layer, &solid, &lines);
+                self.share(&infill, flipped, |k, area| cells[k].infill += area);
             }
             // Most layers have too few gaps for any place to be open: no more is drawn for them.
             let open = self.unfilled((layer, flipped), &solid, (&lines, &cells), 1.0);
@@ -187,8 +208,7 @@ impl Judge<'_> {
             self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
         }
         let judged = cells.iter().enumerate().filter_map(|(k, cell)| {
-            let finding =
-                is_doubtful[k].then(|| self.judged(cell, self.filled.height(layer)))??;
+            let finding = is_doubtful[k].then(|| judged(cell, self.filled.height(layer)))??;
             let [x, y] = [k % self.field.count[0], k / self.field.count[0]];
             let middle = |low: f64, k: usize| short(low + (k as f64 + 0.5) * self.field.side);
             Some(finding.at(Place {
@@ -209,6 +229,10 @@ impl Judge<'_> {
         let drawn = [false, true].map(|flipped| {
             let solid = self.drawn(solids_of(lines), flipped);
             self.share(&solid, flipped, |k, area| cells[k].room += area / 2.0);
+            if !flipped {
+                let infill = self.infill_on(layer, &solid, lines);
+                self.share(&infill, flipped, |k, area| cells[k].infill += area);
+            }
             (flipped, solid)
         });
         for (flipped, solid) in drawn {
@@ -345,6 +369,21 @@ impl Judge<'_> {
         self.field.lattice.draw(capsules(lines, flipped))
     }
 
+    /// Where infill that fills most of a layer lies side by side on what is `solid`.
+    fn infill_on(&self, layer: usize, solid: &Rows, lines: &[(&Step, f64)]) -> Rows {
+        let least = LEAST_FILLED * self.filled.height(layer);
+        let fills = |(step, share): &&(&Step, f64)| {
+            step.role == Role::Infill && share * f64::from(step.height) >= least
+        };
+        let mut widest = 0.0_f64;
+        let infill = lines.iter().filter(fills).map(|(step, _)| {
+            widest = widest.max(f64::from(step.width));
+            Capsule::of(step, TOUCHING)
+        });
+        let both = solid.and(&self.field.lattice.draw_on(solid, infill));
+        self.field.lattice.opened(&both, SEVERAL * widest)
+    }
+
     /// The cell of a place.
     fn cell(&self, at: [f64; 2]) -> Option<usize> {
         let x = (at[0] - self.field.low[0]) / self.field.side;
@@ -416,31 +455,30 @@ impl Judge<'_> {
             .collect();
         united(&spans)
     }
+}
 
-    /// Judges a cell of a layer of this height, mm.
-    fn judged(&self, cell: &Cell, height: f64) -> Option<Finding> {
-        let room = cell.room * height;
-        let plastic = cell.plastic + (cell.ironed - IRONING * room).max(0.0);
-        let fills = plastic / room;
-        let percent = short(100.0 * fills);
-        let excess = (plastic - room) / height;
-        if cell.room >= LEAST_ROOM[1] && fills > BOUNDS[1] && excess >= LEAST_EXCESS {
-            let text =
-                format!("walls and skins take {percent} % of the plastic that they have room for");
-            return Some(Finding::warning(Code::Overfilled, percent, "%", text));
-        }
-        let open = cell.open[0].max(cell.open[1]);
-        if is_open(open, cell.room) {
-            let text = format!("{} mm² between walls or skins are open", short(open));
-            return Some(Finding::warning(Code::Underfilled, open, "mm²", text));
-        }
-        let lacks = -excess;
-        (cell.room >= LEAST_ROOM[0] && fills < BOUNDS[0]).then(|| {
-            let text =
-                format!("walls and skins take {percent} % of the plastic that they have room for");
-            Finding::warning(Code::Underfilled, lacks, "mm²", text)
-        })
+/// Judges a cell of a layer of this height, mm.
+fn judged(cell: &Cell, height: f64) -> Option<Finding> {
+    let [fills, all] = cell.fills(height);
+    if cell.room >= LEAST_ROOM[1] && all > BOUNDS[1] && (all - 1.0) * cell.room >= LEAST_EXCESS {
+        let percent = short(100.0 * all);
+        let beside = if cell.infill < LEAST_EXCESS { "" } else { " with the infill on them" };
+        let text = format!(
+            "walls and skins{beside} take {percent} % of the plastic that they have room for"
+        );
+        return Some(Finding::warning(Code::Overfilled, percent, "%", text));
     }
+    let open = cell.open[0].max(cell.open[1]);
+    if is_open(open, cell.room) {
+        let text = format!("{} mm² between walls or skins are open", short(open));
+        return Some(Finding::warning(Code::Underfilled, open, "mm²", text));
+    }
+    (cell.room >= LEAST_ROOM[0] && fills < BOUNDS[0]).then(|| {
+        let (percent, lacks) = (short(100.0 * fills), (1.0 - fills) * cell.room);
+        let text =
+            format!("walls and skins take {percent} % of the plastic that they have room for");
+        Finding::warning(Code::Underfilled, lacks, "mm²", text)
+    })
 }
 
 /// Lines from above, with x and y exchanged or not.
@@ -459,12 +497,9 @@ fn solids_of<'s>(lines: &[(&'s Step, f64)]) -> impl Iterator<Item = &'s Step> {
 
 /// Whether plastic and gaps of a cell are not well within their bounds.
 fn is_doubtful(cell: &Cell, height: f64) -> bool {
-    let room = cell.room * height;
-    let plastic = cell.plastic + (cell.ironed - IRONING * room).max(0.0);
-    let fills = plastic / room;
-    let excess = (plastic - room) / height;
+    let [fills, all] = cell.fills(height);
     let [least, most] = SURE;
-    let is_more = fills > most && excess > DOUBT * DOUBT * LEAST_EXCESS;
+    let is_more = all > most && (all - 1.0) * cell.room > DOUBT * DOUBT * LEAST_EXCESS;
     let is_less = fills < least && cell.room > DOUBT * LEAST_ROOM[0];
     is_more || is_less || is_open(cell.open[0].max(cell.open[1]), cell.room)
 }
