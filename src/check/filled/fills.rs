@@ -18,8 +18,9 @@
 //! Sums over a whole file hide such places: a wall that is printed twice disappears among good ones.
 
 use super::Filled;
+use super::cell::{Cell, DOUBT, LEAST_OPEN, is_open};
 use crate::check::capsule::Capsule;
-use crate::check::finding::{Code, Finding, Place, short};
+use crate::check::finding::{Finding, Place, short};
 use crate::check::rows::{Lattice, united};
 use crate::check::samples::Samples;
 use crate::check::survey::Survey;
@@ -42,10 +43,6 @@ const CELL: f64 = 4.0;
 /// Cells along a side at most; larger prints get larger cells.
 const MOST_CELLS: f64 = 256.0;
 
-/// Plastic over room: neighbours of other slicers overlap by a tenth, ends of lines in walls by
-/// another; the model of a bead with round ends leaves 0.79 of the thinnest.
-const BOUNDS: [f64; 2] = [0.7, 1.3];
-
 /// Width at which lines side by side touch, and half the width from which on they are more than one, in widths.
 const TOUCHING: f64 = 1.1;
 const SEVERAL: f64 = 0.75;
@@ -53,22 +50,9 @@ const SEVERAL: f64 = 0.75;
 /// Share of a layer that infill fills at least to be looked at.
 const LEAST_FILLED: f64 = 0.5;
 
-/// What ironing may take of the room: others take 0.1 to 0.25.
-const IRONING: f64 = 0.35;
-
-/// Room by which plastic is judged, mm²: too little and too much of it.
-const LEAST_ROOM: [f64; 2] = [2.0, 1.2];
-
-/// What must be too much to count, mm² of a layer: three quarters of a mm of a line.
-const LEAST_EXCESS: f64 = 0.3;
-
 /// Narrower stretches between walls or skins are gaps, mm, two lines: wider rooms are left to sparse
 /// infill on purpose.
 const GAP: f64 = 0.8;
-
-/// Open part of gaps and room from which on a place is underfilled, and least area, mm².
-const OPEN: f64 = 0.2;
-const LEAST_OPEN: f64 = 0.6;
 
 /// Loops whose ends lie nearer than this are closed, mm: seams leave gaps.
 const CLOSED: f64 = 1.0;
@@ -87,13 +71,8 @@ const ROUND: f64 = 0.86;
 /// Lanes side by side in which a line's plastic is counted: it may run along a border of cells.
 const LANES: usize = 4;
 
-/// How much further apart the columns of a first look lie: a usual line still covers two. And the part of what
-/// makes a place open from which on such a look leaves a doubt.
+/// How much further apart the columns of a first look lie: a usual line still covers two.
 const COARSE: i32 = 4;
-const DOUBT: f64 = 0.5;
-
-/// What plastic over room must be by a first look to leave none: the room of thin walls is an eighth off.
-const SURE: [f64; 2] = [0.85, 1.1];
 
 /// Where lines of walls and skins are looked at.
 #[derive(Debug, Clone, Copy)]
@@ -148,28 +127,6 @@ struct Judge<'a> {
     field: Field,
 }
 
-/// What is measured in a cell: mm², and plastic in mm³.
-#[derive(Clone, Copy, Default)]
-struct Cell {
-    room: f64,
-    plastic: f64,
-    /// Of ironing.
-    ironed: f64,
-    /// What infill side by side covers of the room.
-    infill: f64,
-    /// Open gaps along rows, and along columns.
-    open: [f64; 2],
-}
-
-impl Cell {
-    /// The plastic in the room of a layer of this height, without infill and with it, over the room.
-    fn fills(&self, height: f64) -> [f64; 2] {
-        let room = self.room * height;
-        let own = self.plastic + (self.ironed - IRONING * room).at_least(0.0);
-        [own, own + self.infill * height].map(|plastic| plastic / room)
-    }
-}
-
 impl Judge<'_> {
     fn layer(&self, layer: usize) -> Vec<Finding> {
         let mut cells = vec![Cell::default(); self.field.count[0] * self.field.count[1]];
@@ -208,7 +165,7 @@ impl Judge<'_> {
             self.share(&open, flipped, |k, area| cells[k].open[usize::from(flipped)] += area);
         }
         let judged = cells.iter().enumerate().filter_map(|(k, cell)| {
-            let finding = is_doubtful[k].then(|| judged(cell, self.filled.height(layer)))??;
+            let finding = is_doubtful[k].then(|| cell.judged(self.filled.height(layer)))??;
             let [x, y] = [k % self.field.count[0], k / self.field.count[0]];
             let middle = |low: f64, k: usize| short(low + (k as f64 + 0.5) * self.field.side);
             Some(finding.at(Place {
@@ -242,7 +199,7 @@ impl Judge<'_> {
             self.share(&open, flipped, |k, area| cells[k].open[side] += area / DOUBT);
         }
         let height = self.filled.height(layer);
-        cells.iter().map(|cell| is_doubtful(cell, height)).collect()
+        cells.iter().map(|cell| cell.is_doubtful(height)).collect()
     }
 
     /// The cells whose gaps a line may lie in or beside.
@@ -457,30 +414,6 @@ impl Judge<'_> {
     }
 }
 
-/// Judges a cell of a layer of this height, mm.
-fn judged(cell: &Cell, height: f64) -> Option<Finding> {
-    let [fills, all] = cell.fills(height);
-    if cell.room >= LEAST_ROOM[1] && all > BOUNDS[1] && (all - 1.0) * cell.room >= LEAST_EXCESS {
-        let percent = short(100.0 * all);
-        let beside = if cell.infill < LEAST_EXCESS { "" } else { " with the infill on them" };
-        let text = format!(
-            "walls and skins{beside} take {percent} % of the plastic that they have room for"
-        );
-        return Some(Finding::warning(Code::Overfilled, percent, "%", text));
-    }
-    let open = cell.open[0].max(cell.open[1]);
-    if is_open(open, cell.room) {
-        let text = format!("{} mm² between walls or skins are open", short(open));
-        return Some(Finding::warning(Code::Underfilled, open, "mm²", text));
-    }
-    (cell.room >= LEAST_ROOM[0] && fills < BOUNDS[0]).then(|| {
-        let (percent, lacks) = (short(100.0 * fills), (1.0 - fills) * cell.room);
-        let text =
-            format!("walls and skins take {percent} % of the plastic that they have room for");
-        Finding::warning(Code::Underfilled, lacks, "mm²", text)
-    })
-}
-
 /// Lines from above, with x and y exchanged or not.
 fn capsules<'s>(
     lines: impl Iterator<Item = &'s Step>,
@@ -493,20 +426,6 @@ fn capsules<'s>(
 /// The lines of walls and skins.
 fn solids_of<'s>(lines: &[(&'s Step, f64)]) -> impl Iterator<Item = &'s Step> {
     lines.iter().filter(|(step, _)| is_solid(step)).map(|(step, _)| *step)
-}
-
-/// Whether plastic and gaps of a cell are not well within their bounds.
-fn is_doubtful(cell: &Cell, height: f64) -> bool {
-    let [fills, all] = cell.fills(height);
-    let [least, most] = SURE;
-    let is_more = all > most && (all - 1.0) * cell.room > DOUBT * DOUBT * LEAST_EXCESS;
-    let is_less = fills < least && cell.room > DOUBT * LEAST_ROOM[0];
-    is_more || is_less || is_open(cell.open[0].max(cell.open[1]), cell.room)
-}
-
-/// Whether gaps are large, in a cell of which walls and skins cover this, mm².
-fn is_open(gaps: f64, room: f64) -> bool {
-    gaps >= LEAST_OPEN && gaps > OPEN * (gaps + room)
 }
 
 /// The gaps of each row.

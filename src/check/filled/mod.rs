@@ -1,5 +1,6 @@
 //! Window -> Filled: the lines that fill each layer: its own, and thick ones that reach down into it.
 
+mod cell;
 pub(crate) mod contact;
 pub(crate) mod fills;
 pub(crate) mod posts;
