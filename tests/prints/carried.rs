@@ -14,6 +14,9 @@ const CELL: f64 = 0.4;
 /// Layers between support and what it carries: the gap, and two that are too small to print.
 const GAP: usize = 3;
 
+/// Smaller islands are bits of a line between the outlines of its piece, in cells: no post is as thin.
+const BIT: usize = 10;
+
 /// Points by the cell that they lie in.
 #[derive(Default)]
 struct Cells(BTreeMap<(i32, i32), Vec<[f64; 2]>>);
@@ -87,7 +90,7 @@ fn idle(print: &Print, outset: f64) -> Vec<(usize, [f64; 2])> {
     let (mut found, mut above) = (Vec::new(), Cells::default());
     for k in (0..count).rev() {
         let mut carries = Cells::default();
-        for island in support[k].islands() {
+        for island in support[k].islands().into_iter().filter(|island| island.0.len() > BIT) {
             // Within the outset and a line of the edge of what hangs, which lies half a line outside, and
             // the distance of rows.
             let hangs = &hangs[(k + 1).min(count)..(k + 2 + GAP).min(count)];
