@@ -83,11 +83,7 @@ impl Lattice {
 
     /// What capsules cover of an area and beside it: less than all of it, where only that is asked for.
     pub(super) fn draw_on(self, area: &Rows, capsules: impl Iterator<Item = Capsule>) -> Rows {
-        self.draw_where(capsules, |j, span| {
-            let row = area.row(j);
-            let next = row.partition_point(|one| one.end <= span.start);
-            row.get(next).is_some_and(|one| one.start < span.end)
-        })
+        self.draw_where(capsules, |j, span| area.overlapping(j, span).is_some())
     }
 
     fn draw_where(

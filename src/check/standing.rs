@@ -16,6 +16,7 @@ pub(super) const CELL: f64 = 0.5;
 
 /// Cells along the side of a tile, a power of two.
 const SIDE: usize = 32;
+const _: () = assert!(SIDE.is_power_of_two());
 
 /// Lines that are kept until they are drawn.
 const MOST_KEPT: usize = 200_000;

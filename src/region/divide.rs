@@ -175,6 +175,9 @@ fn agreed(areas: LayerAreas, both: [Raster; 2]) -> LayerAreas {
     let taken = [0, 1].map(|r| {
         let (dense, pitch) = (&areas.skin(r).dense, both[r].pitch);
         let (rows, across) = (&areas.skin(1 - r).skin, both[1 - r].pitch);
+        if dense.is_empty() || rows.is_empty() {
+            return Rows::default();
+        }
         let held = Columns { rows, pitch: across, left_turn: r == 0 }.held(dense, pitch);
         // Both are rounded to lines: shorter bits are at borders that they share.
         rooms::whole(dense, &held.filter(|_, s| s.len() >= i64::from(across)), across)

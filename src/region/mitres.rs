@@ -46,11 +46,11 @@ fn beside([before, corner, next]: [Point; 3], params: &WallParams, ways: &mut Ve
     let real = |p: Point| [f64::from(p.x), f64::from(p.y)];
     let (from, to) = (way(real(corner), real(before)), way(real(corner), real(next)));
     let (far, near) = (dot(from, from).sqrt(), dot(to, to).sqrt());
-    // Half the turn of the loop: the contour has the same.
+    // Of half the turn; the contour turns by the same.
     let cosine = -dot(from, to) / (far * near);
-    let half = f64::midpoint(1.0, cosine).at_least(0.0).sqrt();
+    let cosine_of_half = f64::midpoint(1.0, cosine).at_least(0.0).sqrt();
     let inset = f64::from(params.inset_of(params.count));
-    if inset * (1.0 - half) <= BEYOND * f64::from(params.line_width) * half {
+    if inset * (1.0 - cosine_of_half) <= BEYOND * f64::from(params.line_width) * cosine_of_half {
         return;
     }
     let reach = FAR * inset;
@@ -103,6 +103,7 @@ mod tests {
             let (own, rows) = prepare(layer, &params);
             let real = |p: Point| [f64::from(p.x), f64::from(p.y)];
             let loops: Vec<_> = own.walls.iter().filter(|w| w.depth + 1 == walls).collect();
+            prop_assert!(!loops.is_empty());
             // 20 µm for what is left to arcs, and rounding.
             let least = f64::from(params.beads.wall_to_fill) - 210.0;
             for r in 0..2 {

@@ -7,11 +7,11 @@
 //! between skin and a wall. Both are filled with skin instead, the same on every layer.
 //!
 //! Algorithm: in a straight room of any direction, with chords `a` and `b` across each other, the
-//! width is `ab / √(a² + b²)`. Only spans shorter than √2 times the limit can be narrow, so that
-//! wide regions cost one look at the columns per span. Narrow spans on neighbouring rows form a stack, and
-//! those hardly wider go on with it: a ring about as wide as the limit is filled all around or nowhere. A
-//! low stack beside a wide place is a tip, and stays as it is. What the columns do not have at all is
-//! narrow as well. What is narrow on the columns is brought to the rows cell by cell, and the reverse, so
+//! width is `ab / √(a² + b²)`. Only spans shorter than √2 · [`HARDLY`] times the limit can be
+//! narrow or hardly wider, so that most wide spans cost one look at the columns. Narrow spans on
+//! neighbouring rows form a stack, and those hardly wider go on with it: a ring about as wide as the limit
+//! is filled all around or nowhere. A low stack beside a wide place is a tip, and stays as it is. A long
+//! span of which the columns lack most is narrow as well. What is narrow on the columns is brought to the rows cell by cell, and the reverse, so
 //! that both rasters agree.
 
 use super::scan::around;

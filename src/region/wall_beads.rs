@@ -142,7 +142,7 @@ fn place(sample: &WallSample, index: usize, near: &Around, params: &BeadParams) 
         return None;
     }
     // The two sides of a corner that sticks out may be too short to meet there.
-    let has_wall = |far: f64| near.walls.has([x, y], far, |_| true);
+    let has_wall = |far: f64| !near.walls.is_free([[x, y]], far);
     if square > LONGER && !has_wall(away + ROUNDING) && has_wall(away * long - ROUNDING) {
         return None;
     }

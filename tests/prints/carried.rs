@@ -5,7 +5,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+use crate::common::damage::judge_made;
 use crate::common::{Kind, Move, Print, Solid, fixture, slice, solid::circle};
+use slicer::check::finding::Code;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Side of a cell, mm: what touches is at most a cell apart.
@@ -192,4 +194,39 @@ fn each_island_of_support_carries_something() {
         }
     }
     assert!(failures.is_empty(), "{failures:#?}");
+}
+
+/// How much support a plate on a column over a floor gets where it reaches out by so much, mm of lines, and
+/// whether any of it hangs all the same.
+fn beyond_a_floor(out: f64, low: f64, set: &[(&str, &str)]) -> (f64, bool) {
+    let far = 10.0 + out;
+    let part = Solid::cuboid([-10.0, -10.0, 0.0], [10.0, 10.0, 4.0])
+        .and(&Solid::cuboid([-3.0, -3.0, 0.0], [3.0, 3.0, low + 2.0]))
+        .and(&Solid::cuboid([-far, -far, low], [far, far, low + 2.0]));
+    let set: Vec<(&str, &str)> = [&[("support.enabled", "true")], set].concat();
+    let stl = part.stl();
+    let run = slice(&stl, "generic-marlin", &set);
+    let counts = judge_made(&run.text, &stl).counts;
+    let hangs = counts.iter().any(|count| count.code == Code::Unanchored);
+    let support = run.print.beads().filter(|line| line.kind.is_support());
+    (support.map(Move::length).sum(), hangs)
+}
+
+#[test]
+fn support_beside_a_floor_that_may_not_carry_it_stands_on_the_bed() {
+    for out in [1.0, 1.5] {
+        // The middle of the plate has to hang.
+        let (length, _) = beyond_a_floor(out, 12.0, &[("support.stands_on", "bed")]);
+        assert!(length > 1000.0, "{out}: {length}");
+    }
+}
+
+/// From a floor right below, support can not reach out again to where it is needed beside the floor.
+#[test]
+fn support_beside_a_floor_right_below_stands_on_the_bed() {
+    for out in ["2.5", "3"] {
+        let set = [("support.xy_distance", "2"), ("layer_height", "0.3")];
+        let (length, hangs) = beyond_a_floor(out.parse().unwrap(), 6.0, &set);
+        assert!(length > 3000.0 && !hangs, "{out}: {length}");
+    }
 }

@@ -25,7 +25,7 @@ pub(super) const LEAST_OPEN: f64 = 0.6;
 /// The part of what makes a place open, or too much of it, from which on a first look leaves a doubt.
 pub(super) const DOUBT: f64 = 0.5;
 
-/// What plastic over room must be by a first look to leave none: the room of thin walls is an eighth off.
+/// What plastic over room must be by a first look to leave no doubt: the room of thin walls is an eighth off.
 const SURE: [f64; 2] = [0.85, 1.1];
 
 /// What is measured in a cell: mm², and plastic in mm³.

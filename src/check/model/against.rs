@@ -31,7 +31,7 @@ use crate::check::survey::Survey;
 use crate::check::terms::Terms;
 use crate::check::window::Window;
 use crate::geom::segment::distance2;
-use crate::geom::spans::{Rows, Span};
+use crate::geom::spans::Rows;
 use crate::reader::Role;
 use crate::reader::print::Step;
 
@@ -268,7 +268,7 @@ impl Judge<'_> {
     fn add_islands(&self, index: usize, cut: &Section, printed: &Rows, verdict: &mut Verdict) {
         let (lattice, here) = (self.lattice, &cut.inside);
         // Such an island has no span with something printed: few layers have others.
-        let all_bare = here.filter(|j, span| !touches(printed.row(j), span));
+        let all_bare = here.filter(|j, span| printed.overlapping(j, span).is_none());
         if lattice.area(&all_bare) < LEAST_ISLAND / 2.0 {
             return;
         }
@@ -382,12 +382,6 @@ fn near_outline<'s>(
         pieces.extend(ways.iter().map(piece));
     }
     pieces
-}
-
-/// Whether a span has something of a row.
-fn touches(row: &[Span], span: Span) -> bool {
-    let next = row.partition_point(|one| one.end <= span.start);
-    row.get(next).is_some_and(|one| one.start < span.end)
 }
 
 /// What part of a line lies in an area.

@@ -11,7 +11,7 @@ pub struct Support {
     /// Whether support is printed.
     #[schemars(extend("default" = false))]
     pub enabled: bool,
-    /// Overhangs flatter than this, measured from the bed, are supported; 90 supports all.
+    /// Overhangs flatter than this, measured from the bed, are supported; 90 supports all. Slopes up to about 10° below it reach hardly further from layer to layer than is allowed, and get none.
     #[schemars(range(min = 0, max = 90), extend("unit" = "degrees", "default" = 45))]
     pub threshold_angle: f64,
     /// Distance between support lines.

@@ -2,17 +2,17 @@
 //!
 //! With the overhang `O(k)` of layer `k`, grown by the outset, the contours `L(k)` and the support
 //! `S(k)`: `S(k) = (O(k+1+gap) ∪ S(k+1)) − outset(L(k), clearance)`, less the layers within the gap,
-//! those below with their clearance as well.
+//! those below with their clearance as well, and less what carries nothing any more ([`mod@super::posts`]).
 //! So support goes down until it reaches the bed or the part. A window keeps only the layers within
 //! the gap.
 //!
-//! Two versions go down side by side: the *reach*, which is just that, and the support itself, in
+//! Two versions go down side by side: the *reach*, which is this alone, and the support itself, in
 //! which thin posts grow ([`mod@super::posts`]). Where the reach ends on a layer it carries an
 //! overhang; where a grown post ends it carries nothing.
 
 use super::held::to_lines;
 use super::overhangs::{LayerView, Overhang, overhang};
-use super::params::SupportParams;
+use super::params::{LEAN, SupportParams};
 use super::posts::Posts;
 use crate::geom::spans::{Rows, Span, subtract};
 use crate::slice::Heights;
@@ -113,7 +113,12 @@ impl<'a> Window<'a> {
         let wanted = cut(self.posts.rows().or(&new.all));
         let floors = self.layers.range(at..(at + gap + 1).min(self.layers.len()));
         let ends = self.posts.rows().minus(&wanted);
-        let foot = foot(&ends, floors.map(|floor| &floor.inside), params);
+        // What stands on the part is cut off later where only the bed may carry.
+        let foot = if params.bed_only {
+            Rows::default()
+        } else {
+            foot(&ends, floors.map(|floor| &floor.inside), params)
+        };
         let (hangs, z) = (new.hangs.or(&low), self.heights.top(k));
         let idle = self.posts.next(&wanted, [&hangs, &foot], z, params, cut);
         if let Some(above) = out.get_mut(k + 1) {
@@ -133,7 +138,7 @@ fn foot<'a>(ends: &Rows, floors: impl Iterator<Item = &'a Rows>, params: &Suppor
     if ends.is_empty() {
         return Rows::default();
     }
-    let (lean, pitch) = (params.least, params.raster().pitch);
+    let (lean, pitch) = (LEAN * params.least, params.raster().pitch);
     let around = ends.dilate(lean, pitch);
     let floor = floors.fold(Rows::default(), |all, floor| all.or(&floor.and(&around)));
     floor.dilate(lean, pitch).and(ends)

@@ -1,7 +1,7 @@
 //! Columns, from the top down -> Columns: posts that have lost what they carry are left out.
 //!
 //! The tops of posts may be too small to print, or would stand on nothing ([`mod@super::stand`]).
-//! Then there may be nothing left of a post above which something hangs.
+//! Then all of a post over which something hangs may be gone.
 
 use super::columns::Column;
 use super::params::SupportParams;
@@ -10,7 +10,7 @@ use super::posts::begins;
 use crate::geom::spans::Rows;
 use std::collections::VecDeque;
 
-/// So many layers at its top support may lose, and still carry what hangs there. With none, slopes near
+/// Support may lose so many layers at its top and still carry what hangs there. With none, slopes near
 /// the threshold lose their support, which is too small on its first layers.
 const LOST: usize = 2;
 

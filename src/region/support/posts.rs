@@ -1,4 +1,4 @@
-//! Support of a layer -> support of a layer: posts go down as long as they carry something, and grow until they stand.
+//! Support of a layer -> that of the next: posts go down while they carry something, and grow until they stand.
 //!
 //! Words: a *post* is a piece of support that goes down from layer to layer; its *height* is measured
 //! from its top. Its *thickness* is that of its section ([`mod@crate::geom::section`]): a bent strip
@@ -119,9 +119,10 @@ impl Posts {
         cut: impl Fn(Rows) -> Rows,
     ) -> Rows {
         let begins = begins(rows, hangs, params);
-        let landed = self.go_down(rows, foot, params);
+        let over = Pieces::new(&self.rows);
+        let landed = self.go_down((rows, foot), &over, z, params);
         let pieces = Pieces::new(rows);
-        let posts = self.of_pieces((rows, &pieces), [&landed, &begins], z, params);
+        let posts = self.of_pieces((rows, &pieces), &over, [&landed, &begins], z, params);
         let (kept, posts) = self.loaded((rows, &pieces), posts, &begins, z, params);
         let pieces = Pieces::new(&kept);
         let thin = thin(&kept, &pieces, |piece| posts[piece].top - z, params);
@@ -142,7 +143,13 @@ impl Posts {
     }
 
     /// Takes the load down to the layer whose support is `rows`. Returns what of it lands.
-    fn go_down(&mut self, rows: &Rows, foot: &Rows, params: &SupportParams) -> Rows {
+    fn go_down(
+        &mut self,
+        (rows, foot): (&Rows, &Rows),
+        over: &Pieces,
+        z: Coord,
+        params: &SupportParams,
+    ) -> Rows {
         let ends = self.load.minus(rows);
         if ends.is_empty() {
             return ends;
@@ -152,8 +159,11 @@ impl Posts {
         let landed = ends.and(&foot.dilate(params.clearance, pitch));
         let aside = ends.minus(&landed).dilate(LEAN * params.least, pitch);
         self.load = self.load.or(&aside).and(rows);
+        // Only far below what hangs support reaches out again above a foot: a layer is no higher than a line is wide.
+        let rise = 2 * params.clearance + params.least;
+        let high = over.keep(&self.rows, |piece| self.posts[piece].last - z >= rise);
         // Where there is support again, there is no foot.
-        self.feet = self.feet.or(&landed).minus(rows);
+        self.feet = self.feet.or(&landed.and(&high)).minus(rows);
         landed
     }
 
@@ -162,11 +172,12 @@ impl Posts {
     fn of_pieces(
         &self,
         (rows, pieces): (&Rows, &Pieces),
+        over: &Pieces,
         [landed, begins]: [&Rows; 2],
         z: Coord,
         params: &SupportParams,
     ) -> Vec<Option<Post>> {
-        let (pitch, over) = (params.raster().pitch, Pieces::new(&self.rows));
+        let pitch = params.raster().pitch;
         let mut old = self.posts.clone();
         let spans: Vec<(i32, Span)> =
             landed.iter().flat_map(|(j, row)| row.iter().map(move |&span| (j, span))).collect();
@@ -175,7 +186,7 @@ impl Posts {
             old[piece].feet.add(span, to_mm(j * pitch), to_mm(pitch));
         });
         let mut posts = vec![None; pieces.count()];
-        for (piece, from) in meets((rows, pieces), (&self.rows, &over)) {
+        for (piece, from) in meets((rows, pieces), (&self.rows, over)) {
             posts[piece].get_or_insert(Post::new(z)).join(&old[from]);
         }
         pieces.meeting(rows, begins, |piece, _| {
