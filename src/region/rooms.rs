@@ -7,7 +7,7 @@
 //! between skin and a wall. Both are filled with skin instead, the same on every layer.
 //!
 //! Algorithm: in a straight room of any direction, with chords `a` and `b` across each other, the
-//! width is `ab / √(a² + b²)`. Only spans shorter than √2 · [`HARDLY`] times the limit can be
+//! width is `ab / √(a² + b²)`. Only spans shorter than √2 · `HARDLY` times the limit can be
 //! narrow or hardly wider, so that most wide spans cost one look at the columns. Narrow spans on
 //! neighbouring rows form a stack, and those hardly wider go on with it: a ring about as wide as the limit
 //! is filled all around or nowhere. A low stack beside a wide place is a tip, and stays as it is. A long
