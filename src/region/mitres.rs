@@ -5,7 +5,7 @@
 //! a whole line. Without this, lines would end on the loop.
 
 use super::params::{RegionParams, WallParams};
-use super::scan::around;
+use super::scan::around_in_part;
 use super::walls::Wall;
 use crate::geom::raster::Raster;
 use crate::geom::segment::{along, dot, way};
@@ -64,8 +64,7 @@ fn beside([before, corner, next]: [Point; 3], params: &WallParams, ways: &mut Ve
 #[must_use]
 pub fn taken(mitres: &[Way], raster: Raster, params: &RegionParams) -> Rows {
     let radius = params.beads.wall_to_fill;
-    let edges = mitres.iter().map(|&(p, q)| (raster.frame.enter(p), raster.frame.enter(q), radius));
-    around(&edges.collect::<Vec<_>>(), raster)
+    around_in_part(mitres.iter().map(|&(p, q)| (p, q, radius)), raster)
 }
 
 #[cfg(test)]

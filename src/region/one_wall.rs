@@ -18,7 +18,7 @@
 
 use super::params::{OneWall, RegionParams};
 use super::prepare::{LayerRows, Own, PreparedRows, Whole};
-use super::scan::{Scan, around};
+use super::scan::{Scan, around_in_part};
 use super::walls::Wall;
 use crate::geom::Point;
 use crate::geom::raster::Raster;
@@ -113,8 +113,7 @@ impl Opened {
         let Self { walls, freed, kept, whole } = self;
         let Some(one) = params.one_wall else { return (own, rows) };
         let rows = rows.map_on(|raster, PreparedRows { fill, cover }| {
-            let enter = |&(p, q, r): &Edge| (raster.frame.enter(p), raster.frame.enter(q), r);
-            let near = |all: &[Edge]| around(&all.iter().map(enter).collect::<Vec<_>>(), raster);
+            let near = |all: &[Edge]| around_in_part(all.iter().copied(), raster);
             let room = Scan::new(&own.layer.contours, raster).inset(one.fill);
             let freed = room.and(&near(&freed)).minus(&near(&kept));
             PreparedRows { fill: Arc::new(fill.or(&freed)), cover }
@@ -143,11 +142,10 @@ fn tops(scan: &Scan, cover: Option<&Rows>, raster: Raster, one: OneWall) -> Rows
 fn thin(walls: &[Wall], raster: Raster, params: &RegionParams) -> Rows {
     let w = params.walls.line_width;
     let shared = walls.iter().filter(|wall| !wall.widths.is_empty() || !wall.closed);
-    let edges: Vec<Edge> = shared
+    let edges = shared
         .flat_map(|wall| edges(wall, w).filter(|(.., width)| !wall.closed || *width != w))
-        .map(|(p, q, _)| (raster.frame.enter(p), raster.frame.enter(q), BESIDE_THIN * w))
-        .collect();
-    around(&edges, raster)
+        .map(|(p, q, _)| (p, q, BESIDE_THIN * w));
+    around_in_part(edges, raster)
 }
 
 /// The edges of a wall with the width of each.

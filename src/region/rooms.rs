@@ -11,8 +11,8 @@
 //! narrow or hardly wider, so that most wide spans cost one look at the columns. Narrow spans on
 //! neighbouring rows form a stack, and those hardly wider go on with it: a ring about as wide as the limit
 //! is filled all around or nowhere. A low stack beside a wide place is a tip, and stays as it is. A long
-//! span of which the columns lack most is narrow as well. What is narrow on the columns is brought to the rows cell by cell, and the reverse, so
-//! that both rasters agree.
+//! span of which the columns lack most is narrow as well. What is narrow on the columns is brought to the
+//! rows cell by cell, and the reverse, so that both rasters agree.
 
 use super::scan::around;
 use crate::geom::Point;

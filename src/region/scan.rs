@@ -104,6 +104,13 @@ pub fn around(edges: &[(Point, Point, Coord)], raster: Raster) -> Rows {
     around_on(i32::MIN..i32::MAX, edges, raster)
 }
 
+/// As [`around`], of edges that are given in the frame of the part.
+#[must_use]
+pub fn around_in_part(edges: impl Iterator<Item = (Point, Point, Coord)>, raster: Raster) -> Rows {
+    let enter = |(p, q, r)| (raster.frame.enter(p), raster.frame.enter(q), r);
+    around(&edges.map(enter).collect::<Vec<_>>(), raster)
+}
+
 /// As [`around`], on the rows `wanted` only.
 #[must_use]
 pub fn around_on(wanted: Range<i32>, edges: &[(Point, Point, Coord)], raster: Raster) -> Rows {

@@ -21,7 +21,7 @@
 use super::crossed::Crossed;
 use super::near::{Edge, Near};
 use super::params::BeadParams;
-use super::scan::around;
+use super::scan::around_in_part;
 use super::taper::{self, distance, go_on, tapered};
 use super::wall_samples::{MOST_BEADS, SHORT, WallSample, facing, samples};
 use crate::geom::frame::Frame;
@@ -218,10 +218,9 @@ pub fn beside(
     raster: Raster,
     radius: impl Fn(Coord) -> Coord,
 ) -> Rows {
-    let enter = |p: &LinePoint| raster.frame.enter(frame.leave(Point { x: p.u, y: p.v }));
+    let leave = |p: &LinePoint| frame.leave(Point { x: p.u, y: p.v });
     let ways = beads.iter().flat_map(|b| b.windows(2));
-    let edges = ways.map(|w| (enter(&w[0]), enter(&w[1]), radius(w[1].width)));
-    around(&edges.collect::<Vec<_>>(), raster)
+    around_in_part(ways.map(|w| (leave(&w[0]), leave(&w[1]), radius(w[1].width))), raster)
 }
 
 fn length(arc: &[Place]) -> f64 {

@@ -49,6 +49,11 @@ impl Cell {
         [own, own + self.infill * height].map(|plastic| plastic / room)
     }
 
+    /// Its open gaps, in the direction that shows more of them.
+    fn gaps(&self) -> f64 {
+        self.open[0].max(self.open[1])
+    }
+
     /// Judges it on a layer of this height, mm.
     pub(super) fn judged(&self, height: f64) -> Option<Finding> {
         let [fills, all] = self.fills(height);
@@ -61,10 +66,10 @@ impl Cell {
             );
             return Some(Finding::warning(Code::Overfilled, percent, "%", text));
         }
-        let open = self.open[0].max(self.open[1]);
-        if is_open(open, self.room) {
-            let text = format!("{} mm² between walls or skins are open", short(open));
-            return Some(Finding::warning(Code::Underfilled, open, "mm²", text));
+        let gaps = self.gaps();
+        if is_open(gaps, self.room) {
+            let text = format!("{} mm² between walls or skins are open", short(gaps));
+            return Some(Finding::warning(Code::Underfilled, gaps, "mm²", text));
         }
         (self.room >= LEAST_ROOM[0] && fills < BOUNDS[0]).then(|| {
             let (percent, lacks) = (short(100.0 * fills), (1.0 - fills) * self.room);
@@ -78,9 +83,10 @@ impl Cell {
     pub(super) fn is_doubtful(&self, height: f64) -> bool {
         let [fills, all] = self.fills(height);
         let [least, most] = SURE;
+        // A room that is drawn coarsely may hide most of an excess: a quarter of what counts leaves a doubt.
         let is_more = all > most && (all - 1.0) * self.room > DOUBT * DOUBT * LEAST_EXCESS;
         let is_less = fills < least && self.room > DOUBT * LEAST_ROOM[0];
-        is_more || is_less || is_open(self.open[0].max(self.open[1]), self.room)
+        is_more || is_less || is_open(self.gaps(), self.room)
     }
 }
 

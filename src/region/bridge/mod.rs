@@ -22,7 +22,7 @@ mod tests;
 use super::params::RegionParams;
 use super::per_raster::skin_turn;
 use super::prepare::{self, LayerRows, Own};
-use super::scan::{Scan, around};
+use super::scan::{Scan, around_in_part};
 use super::wall_beads;
 use super::{Skin, SkinRows};
 use crate::geom::Point;
@@ -113,7 +113,7 @@ pub fn taken(bridges: &[Skin], raster: Raster, params: &RegionParams) -> Rows {
     let mut edges = Vec::new();
     for bridge in bridges {
         let Raster { frame, pitch } = bridge.raster;
-        let at = |u: Coord, v: Coord| raster.frame.enter(frame.leave(Point { x: u, y: v }));
+        let at = |u: Coord, v: Coord| frame.leave(Point { x: u, y: v });
         for (j, row) in bridge.rows.skin.iter() {
             let end = |u: Coord| at(u, j * pitch);
             edges.extend(row.iter().map(|s| (end(s.start), end(s.end), pitch / 2 + more)));
@@ -124,7 +124,7 @@ pub fn taken(bridges: &[Skin], raster: Raster, params: &RegionParams) -> Rows {
             }
         }
     }
-    around(&edges, raster)
+    around_in_part(edges.into_iter(), raster)
 }
 
 /// The strips beside the last lines of a bridge, which are widened up to the walls: column by column,

@@ -108,10 +108,11 @@ pub(super) fn near(beads: &[Wall], layout: &Layout<'_>) -> Near {
 
 /// Takes away the places from which a bead would turn back. Where it would go there and back, much may be open.
 fn onwards(arc: &mut Arc, w: f64, doubts: &mut Vec<Doubt>) {
-    let whole = arc.clone();
+    let (all, known) = (arc.len(), doubts.len());
+    doubts.extend(arc.iter().map(|sample| sample.from));
     go_on(arc, w / 2.0, |sample| sample.place.at);
-    if arc.len() < whole.len() {
-        doubts.extend(whole.iter().map(|sample| sample.from));
+    if arc.len() == all {
+        doubts.truncate(known);
     }
 }
 
