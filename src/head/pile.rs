@@ -298,9 +298,13 @@ impl Pile {
         while let Some((level, square)) = open.pop() {
             let height = mm(self.levels[level].at(square));
             let [from, to] = self.bounds(level, square);
-            let by = [[from[0] - high[0], from[1] - high[1]], [to[0] - low[0], to[1] - low[1]]];
-            let by = [by[0].map(|v| v - self.wider), by[1].map(|v| v + self.wider)];
-            if height - low[2] - shape.lowest(by[0], by[1]).0 <= LEAST_TOUCH {
+            let (near, far) =
+                ([from[0] - high[0], from[1] - high[1]], [to[0] - low[0], to[1] - low[1]]);
+            let (near, far) = (
+                [near[0] - self.wider, near[1] - self.wider],
+                [far[0] + self.wider, far[1] + self.wider],
+            );
+            if height - low[2] - shape.lowest(near, far).0 <= LEAST_TOUCH {
                 continue;
             }
             if level == 0 {
@@ -317,11 +321,19 @@ impl Pile {
     }
 
     /// The low corner of a cell.
-    fn corner(&self, cell: [usize; 2]) -> [f64; 2] {
-        [0, 1].map(|axis| self.low[axis] + cell[axis] as f64 * self.cell)
+    #[inline]
+    fn corner(&self, [column, row]: [usize; 2]) -> [f64; 2] {
+        [self.side_at(column, 0), self.side_at(row, 1)]
+    }
+
+    /// Where a column begins along x, or a row along y.
+    #[inline]
+    fn side_at(&self, cell: usize, axis: usize) -> f64 {
+        self.low[axis] + f64::from(cell as u32) * self.cell
     }
 
     /// The corners of a square of the pyramid.
+    #[inline]
     fn bounds(&self, level: usize, [column, row]: [usize; 2]) -> [[f64; 2]; 2] {
         let corner = |by: usize| self.corner([(column + by) << level, (row + by) << level]);
         [corner(0), corner(1)]
@@ -404,7 +416,8 @@ impl Search<'_> {
         }
     }
 
-    /// How deep a square may be touched; `None` if it is not, or only pressed.
+    /// How deep a square may be touched; `None` if it is not, or only pressed. Nothing is mapped here: that is
+    /// a call for each square.
     fn depth(&self, level: usize, square: [usize; 2]) -> Option<f64> {
         let height = self.pile.levels[level].at(square);
         // Most of what is looked at lies below the tip, or is empty: EMPTY is lower than any tip.
@@ -423,7 +436,8 @@ impl Search<'_> {
 
     /// The corners of a square, seen from the tip.
     fn beside(&self, level: usize, square: [usize; 2]) -> [[f64; 2]; 2] {
-        self.pile.bounds(level, square).map(|[x, y]| [x - self.tip[0], y - self.tip[1]])
+        let ([low, high], [x, y, _]) = (self.pile.bounds(level, square), self.tip);
+        [[low[0] - x, low[1] - y], [high[0] - x, high[1] - y]]
     }
 
     /// The same, wider by what may stand beside its cells. Where all of a square is near enough for press, its
@@ -434,7 +448,7 @@ impl Search<'_> {
         if wider <= 0.0 || furthest2(low, high) <= near * near {
             return [low, high];
         }
-        [low.map(|v| v - wider), high.map(|v| v + wider)]
+        [[low[0] - wider, low[1] - wider], [high[0] + wider, high[1] + wider]]
     }
 
     /// A cell that is touched deeper than any other so far.
@@ -457,12 +471,12 @@ impl Search<'_> {
 
 /// The squared distance of a square's nearest place from the tip.
 fn nearest2(low: [f64; 2], high: [f64; 2]) -> f64 {
-    let nearest = [0, 1].map(|axis| low[axis].at_least(-high[axis]).at_least(0.0));
-    nearest[0] * nearest[0] + nearest[1] * nearest[1]
+    let nearest = |axis: usize| low[axis].at_least(-high[axis]).at_least(0.0);
+    nearest(0) * nearest(0) + nearest(1) * nearest(1)
 }
 
 /// The squared distance of a square's furthest corner from the tip.
 fn furthest2(low: [f64; 2], high: [f64; 2]) -> f64 {
-    let furthest = [0, 1].map(|axis| low[axis].abs().at_least(high[axis].abs()));
-    furthest[0] * furthest[0] + furthest[1] * furthest[1]
+    let furthest = |axis: usize| low[axis].abs().at_least(high[axis].abs());
+    furthest(0) * furthest(0) + furthest(1) * furthest(1)
 }

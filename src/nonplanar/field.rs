@@ -107,26 +107,35 @@ impl Field {
     /// How high it lies over a cell and those to the left and right, below and above, if it lies over all of
     /// them: nearly everywhere.
     fn around(&self, [x, y]: Spot) -> Option<[f32; 5]> {
-        let [x, y] = [x.wrapping_sub(self.low[0]), y.wrapping_sub(self.low[1])];
-        let [x, y] = [x, y].map(|v| v as u32 as usize);
+        let [x, y] = self.from_first([x, y]);
         let [columns, rows] = self.size;
         if x == 0 || y == 0 || x + 1 >= columns || y + 1 >= rows {
             return None;
         }
         let at = y * columns + x;
-        let all = [at, at - 1, at + 1, at - columns, at + columns].map(|at| self.heights[at]);
-        all.iter().all(|z| !z.is_nan()).then_some(all)
+        let z = |at: usize| self.heights[at];
+        let all = [z(at), z(at - 1), z(at + 1), z(at - columns), z(at + columns)];
+        // A sum with one that is no number is none.
+        let sum = all[0] + all[1] + all[2] + all[3] + all[4];
+        (!sum.is_nan()).then_some(all)
     }
 
     /// How high the surface lies over a cell; not a number beside it.
+    #[inline]
     fn known(&self, cell: Spot) -> f32 {
-        // What lies before the first one is far beyond the last one as a number without sign.
-        let [x, y] = [0, 1].map(|axis| cell[axis].wrapping_sub(self.low[axis]) as u32 as usize);
+        let [x, y] = self.from_first(cell);
         if x < self.size[0] && y < self.size[1] {
             self.heights[y * self.size[0] + x]
         } else {
             f32::NAN
         }
+    }
+
+    /// The column and the row of a cell, from the first ones. What lies before these is far beyond the last ones
+    /// as a number without sign.
+    #[inline]
+    fn from_first(&self, [x, y]: Spot) -> [usize; 2] {
+        [x.wrapping_sub(self.low[0]) as u32 as usize, y.wrapping_sub(self.low[1]) as u32 as usize]
     }
 }
 

@@ -51,14 +51,15 @@ struct Under<'a> {
 
 impl Base for Under<'_> {
     fn height(&self, at: Point) -> f64 {
-        let [x, y] = [at.x, at.y].map(|v| (v + CELL / 2).div_euclid(CELL));
+        let column = |v: Coord| (v + CELL / 2).div_euclid(CELL);
+        let (x, y) = (column(at.x), column(at.y));
         let holds = |(rows, _): &&(Rows, f64)| {
             rows.row(y).iter().any(|span| span.start <= x * CELL && x * CELL < span.end)
         };
         let below = self.below.as_ref().filter(holds);
         let plane = below.and_then(|(_, lowered)| Some((lowered, self.field.plane([x, y])?)));
         if let Some((lowered, (z, [along, across]))) = plane {
-            let [dx, dy] = [at.x - x * CELL, at.y - y * CELL].map(f64::from);
+            let (dx, dy) = (f64::from(at.x - x * CELL), f64::from(at.y - y * CELL));
             return z + along * dx + across * dy - lowered;
         }
         let surface = self.field.at([x, y]);
@@ -146,7 +147,8 @@ impl Swept<'_> {
         let steps = (length / SAMPLE).ceil().max(1.0);
         (0..=steps as usize).all(|k| {
             let share = k as f64 / steps;
-            let [x, y, z] = [0, 1, 2].map(|axis| a[axis] + share * (b[axis] - a[axis]));
+            let on = |axis: usize| a[axis] + share * (b[axis] - a[axis]);
+            let (x, y, z) = (on(0), on(1), on(2));
             self.trial.is_clear(cell_at([x, y]), z)
         })
     }

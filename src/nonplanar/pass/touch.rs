@@ -29,7 +29,8 @@ pub(super) struct Touch<'a> {
 
 /// The cell around a place, mm.
 pub(super) fn cell_at(at: [f64; 2]) -> Spot {
-    at.map(|v| (v / to_mm(CELL)).round() as i32)
+    let along = |v: f64| (v / to_mm(CELL)).round() as i32;
+    [along(at[0]), along(at[1])]
 }
 
 impl Touch<'_> {

@@ -20,7 +20,7 @@ use crate::geom::{Point, polygon};
 use crate::mesh::Mesh;
 use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::mesh::geometry::measure::corners_of;
-use crate::mesh::geometry::vector::{Corner, distance2, length, normal};
+use crate::mesh::geometry::vector::{Corner, length, normal};
 use crate::nonplanar::params::NonPlanarParams;
 use crate::units::Coord;
 use rayon::prelude::*;
@@ -128,9 +128,11 @@ pub(super) fn lies(mesh: &Mesh, adjacency: &Adjacency) -> Vec<Lie> {
         let corners = corners_of(&mesh.vertices, triangle);
         let across = normal(corners);
         let twice = length(across);
-        let longest = sides_of(&corners).into_iter().fold(0.0, f64::max);
+        let [a, b, c] = sides2_of(&corners);
+        let longest = (a.max(b).max(c) as f64).sqrt();
         let is_sliver = twice <= SLIVER * longest;
-        let normal = across.map(|v| if is_sliver { 0.0 } else { v as f64 / twice });
+        let part = |v: i64| if is_sliver { 0.0 } else { v as f64 / twice };
+        let normal = [part(across[0]), part(across[1]), part(across[2])];
         (Lie { normal, area: twice / 2.0, plan: across[2] as f64 / 2.0 }, is_sliver)
     };
     let (mut lies, slivers): (Vec<Lie>, Vec<bool>) = mesh.triangles.par_iter().map(lie).unzip();
@@ -173,7 +175,17 @@ fn beside(mesh: &Mesh, adjacency: &Adjacency, lies: &[Lie], t: usize) -> Option<
 
 /// The lengths of a triangle's sides, grid units.
 fn sides_of(corners: &[Corner; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| (distance2(corners[k], corners[(k + 1) % 3]) as f64).sqrt())
+    sides2_of(corners).map(|square| (square as f64).sqrt())
+}
+
+/// Their squares.
+fn sides2_of(corners: &[Corner; 3]) -> [i64; 3] {
+    let square = |k: usize, axis: usize| {
+        let by = i64::from(corners[k][axis]) - i64::from(corners[(k + 1) % 3][axis]);
+        by * by
+    };
+    let side = |k: usize| square(k, 0) + square(k, 1) + square(k, 2);
+    [side(0), side(1), side(2)]
 }
 
 /// Makes narrow level groups part of the slopes around them.

@@ -68,6 +68,13 @@ impl Index {
         found.dedup();
         found
     }
+
+    /// Whether something holds for all of [`Self::near`]; asked more than once for some.
+    #[must_use]
+    pub(super) fn all_near(&self, polygon: &[Point], holds: impl Fn(u32) -> bool) -> bool {
+        let mut cells = self.grid.under(polygon);
+        cells.all(|cell| self.cells.of(cell..cell + 1).iter().all(|&k| holds(k)))
+    }
 }
 
 impl Grid {
@@ -141,7 +148,7 @@ fn span(polygon: &[Point], low: f64, high: f64) -> Option<(f64, f64)> {
     };
     for (k, p) in polygon.iter().enumerate() {
         let q = polygon[(k + 1) % polygon.len()];
-        let [px, py, qx, qy] = [p.x, p.y, q.x, q.y].map(f64::from);
+        let (px, py, qx, qy) = (f64::from(p.x), f64::from(p.y), f64::from(q.x), f64::from(q.y));
         if low <= py && py <= high {
             meet(px);
         }

@@ -56,7 +56,7 @@ impl Levels {
 }
 
 /// The lowest and the highest corner of a facet.
-fn bounds(facet: &[[Coord; 3]; 3]) -> [Coord; 2] {
-    let [a, b, c] = facet.map(|corner| corner[2]);
+pub(super) fn bounds(facet: &[[Coord; 3]; 3]) -> [Coord; 2] {
+    let [[.., a], [.., b], [.., c]] = *facet;
     [a.min(b).min(c), a.max(b).max(c)]
 }

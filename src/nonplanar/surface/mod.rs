@@ -141,9 +141,9 @@ impl Surface {
         let near = self.index.at(at);
         let highest = |least: &dyn Fn(Point, Point) -> f64| {
             let holds = |facet: &[[Coord; 3]; 3]| {
-                let plan = plan(facet);
-                side(plan[0], plan[1], plan[2]) > 0
-                    && edges(&plan).all(|(a, b)| side(a, b, at) as f64 >= least(a, b))
+                let [a, b, c] = plan(facet);
+                let is_left = |a: Point, b: Point| side(a, b, at) as f64 >= least(a, b);
+                is_left(a, b) && is_left(b, c) && is_left(c, a) && side(a, b, c) > 0
             };
             let mut best: Option<(u32, f64)> = None;
             for &k in near.iter().filter(|&&k| holds(&self.facets[k as usize])) {
@@ -221,7 +221,7 @@ impl Surface {
             if across(facet)[2] <= 0.0 {
                 continue;
             }
-            let [a, b, c] = facet.map(|corner| corner[1]);
+            let [[_, a, _], [_, b, _], [_, c, _]] = *facet;
             let (low, high) = (a.min(b).min(c), a.max(b).max(c));
             let rows = crossed(low, high, pitch);
             let rows = rows.start.max(first)..rows.end;
@@ -249,8 +249,16 @@ impl Surface {
             bounds = Some([low.min(z), high.max(z)]);
             bounds
         };
-        let mut known = None;
+        let mut known: Option<[f64; 2]> = None;
         for (a, b) in area.iter().flat_map(|contour| edges(contour)) {
+            // Along most sides it is neither lower nor higher than what is known.
+            let is_within = |k: u32| {
+                let [lowest, highest] = levels::bounds(&self.facets[k as usize]).map(f64::from);
+                known.is_some_and(|[low, high]| low <= lowest && highest <= high)
+            };
+            if self.index.all_near(&[a, b], is_within) {
+                continue;
+            }
             for (_, z) in self.profile(a, b) {
                 known = meet(z);
             }
@@ -260,7 +268,7 @@ impl Surface {
         for &[x, y, z] in self.facets.as_flattened() {
             let z = f64::from(z);
             let in_box = low.x <= x && x <= high.x && low.y <= y && y <= high.y;
-            let is_new = known.is_none_or(|[low, high]: [f64; 2]| z < low || z > high);
+            let is_new = known.is_none_or(|[low, high]| z < low || z > high);
             let all = || area.iter().flat_map(|contour| edges(contour));
             if in_box && is_new && encloses(all(), Point { x, y }) {
                 known = meet(z);
@@ -344,14 +352,16 @@ fn in_order(mut found: Vec<(f64, f64)>, length: f64) -> Vec<(f64, f64)> {
 
 /// The corners of a facet in plan.
 fn plan(facet: &[[Coord; 3]; 3]) -> [Point; 3] {
-    facet.map(|[x, y, _]| Point { x, y })
+    let corner = |[x, y, _]: [Coord; 3]| Point { x, y };
+    [corner(facet[0]), corner(facet[1]), corner(facet[2])]
 }
 
 /// The normal of a facet, as long as twice its area. Exact: its parts are products of coordinates.
 fn across([a, b, c]: &[[Coord; 3]; 3]) -> [f64; 3] {
-    let by = |to: &[Coord; 3]| [0, 1, 2].map(|axis| i64::from(to[axis]) - i64::from(a[axis]));
-    let (u, v) = (by(b), by(c));
-    [(1, 2), (2, 0), (0, 1)].map(|(j, k)| (u[j] * v[k] - u[k] * v[j]) as f64)
+    let by = |to: &[Coord; 3], axis: usize| i64::from(to[axis]) - i64::from(a[axis]);
+    let (u, v) = ([by(b, 0), by(b, 1), by(b, 2)], [by(c, 0), by(c, 1), by(c, 2)]);
+    let part = |j: usize, k: usize| (u[j] * v[k] - u[k] * v[j]) as f64;
+    [part(1, 2), part(2, 0), part(0, 1)]
 }
 
 /// Whether a facet with this doubled area in plan is narrower than 0.01 mm: rounding turns it anyhow.
@@ -413,7 +423,7 @@ fn band(
 /// Where a straight way crosses the sides of a facet: the share of the way and the height.
 fn crossings(facet: &[[Coord; 3]; 3], (a, b): (Point, Point), found: &mut Vec<(f64, f64)>) {
     let plan = plan(facet);
-    let asides = plan.map(|p| side(a, b, p));
+    let asides = [side(a, b, plan[0]), side(a, b, plan[1]), side(a, b, plan[2])];
     let way = [f64::from(b.x) - f64::from(a.x), f64::from(b.y) - f64::from(a.y)];
     let length2 = way[0] * way[0] + way[1] * way[1];
     let share =
@@ -427,7 +437,8 @@ fn crossings(facet: &[[Coord; 3]; 3], (a, b): (Point, Point), found: &mut Vec<(f
     for k in 0..3 {
         let next = (k + 1) % 3;
         if asides[k] == 0 {
-            add(facet[k].map(f64::from));
+            let [x, y, z] = facet[k];
+            add([f64::from(x), f64::from(y), f64::from(z)]);
         }
         if (asides[k] < 0 && asides[next] > 0) || (asides[k] > 0 && asides[next] < 0) {
             // From the lesser corner, so that both facets of an edge get the same numbers.
@@ -449,7 +460,8 @@ fn level_crossings(
     ([left, right], y): ([Coord; 2], Coord),
     found: &mut Vec<(f64, f64)>,
 ) {
-    let asides = facet.map(|corner| i64::from(corner[1]) - i64::from(y));
+    let aside = |k: usize| i64::from(facet[k][1]) - i64::from(y);
+    let asides = [aside(0), aside(1), aside(2)];
     let (left, way) = (f64::from(left), f64::from(right) - f64::from(left));
     let mut add = |x: f64, z: f64| {
         let t = (x - left) * way / (way * way);
