@@ -301,7 +301,8 @@ fn in_surfaces(tops: &Tops) -> f64 {
 
 /// The cell around a place.
 fn cell_at(at: Point) -> grid::Spot {
-    [at.x, at.y].map(|v| (v + CELL / 2).div_euclid(CELL))
+    let along = |v: Coord| (v + CELL / 2).div_euclid(CELL);
+    [along(at.x), along(at.y)]
 }
 
 /// The place after a share of the way, to the nearest grid unit.

@@ -119,8 +119,8 @@ impl Glance {
 
     /// Whether a tip so high, mm, over a cell certainly touches nothing.
     pub(super) fn is_clear(&self, cell: Spot, z: f64) -> bool {
-        let at = [0, 1].map(|axis| usize::try_from(cell[axis] - self.low[axis]).ok());
-        let [Some(x), Some(y)] = at else { return false };
+        let at = |axis: usize| usize::try_from(cell[axis] - self.low[axis]);
+        let (Ok(x), Ok(y)) = (at(0), at(1)) else { return false };
         let known = if x < self.columns { self.tips.get(y * self.columns + x) } else { None };
         known.is_some_and(|&tip| f64::from(tip) <= z + ROUNDING)
     }

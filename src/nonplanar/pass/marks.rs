@@ -50,9 +50,9 @@ impl Marks {
     }
 
     fn index(&self, place: Spot) -> Option<usize> {
-        let [x, y] = [0, 1].map(|axis| usize::try_from(place[axis] - self.low[axis]).ok());
-        let (x, y) = (x.filter(|x| *x < self.size[0])?, y.filter(|y| *y < self.size[1])?);
-        Some(y * self.size[0] + x)
+        let at = |axis: usize| usize::try_from(place[axis] - self.low[axis]).ok();
+        let (x, y) = (at(0)?, at(1)?);
+        (x < self.size[0] && y < self.size[1]).then_some(y * self.size[0] + x)
     }
 
     /// The part ends upright along this way.

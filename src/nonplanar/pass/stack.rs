@@ -240,11 +240,10 @@ impl Cut {
         from: usize,
     ) -> Self {
         // The base ends where a part lowered by the skins would; see `base`.
-        let mut ends =
-            [-f64::from(depth), ABOVE * f64::from(height)].map(|by| Planes::new(heights, by));
+        let mut lower = Planes::new(heights, -f64::from(depth));
+        let mut upper = Planes::new(heights, ABOVE * f64::from(height));
         let mut reach = |z: f64| -> Range<usize> {
-            let [first, last] = ends.each_mut().map(|end| end.up_to(z));
-            let first = first.max(from);
+            let (first, last) = (lower.up_to(z).max(from), upper.up_to(z));
             first..last.max(first)
         };
         let rows = cells(area);

@@ -71,6 +71,15 @@ struct Fresh {
     blocks: BTreeSet<Spot>,
     /// What stands higher now; all else was no hindrance to what passed.
     risen: Option<Pile>,
+    /// Where it leaves room for the head, at a glance.
+    glance: Option<Glance>,
+}
+
+impl Fresh {
+    /// Whether the head touches nothing of what stands higher now, at a glance, with its tip so high, mm.
+    fn is_clear(&self, cell: Spot, tip: f64) -> bool {
+        self.glance.as_ref().is_some_and(|glance| glance.is_clear(cell, tip))
+    }
 }
 
 /// The tips of later lines.
@@ -240,6 +249,7 @@ impl<'a> Trial<'a> {
         let tip = [x, y, mm(z - f64::from(self.scene.lowered(i)))];
         let (head, touch) = (&self.scene.params.head, self.touch());
         let hit = match &self.fresh {
+            Some(fresh) if fresh.is_clear(cell, tip[2]) => return None,
             Some(fresh) => fresh.risen.as_ref()?.hit_printing(head, tip, touch.layer)?,
             None if self.is_clear(cell, tip[2]) => return None,
             None => {
@@ -324,7 +334,32 @@ impl<'a> Trial<'a> {
         }
         // Where nothing was raised in reach, nothing can fail that passed.
         let blocks = self.in_reach(&raised);
-        self.fresh = Some(Fresh { blocks, risen: stack.alone(&risen) });
+        let glance = self.past(&risen, stack);
+        self.fresh = Some(Fresh { blocks, risen: stack.alone(&risen), glance });
+    }
+
+    /// Where some cells leave room for the head, at a glance, as far as they are in reach.
+    fn past(&self, risen: &[Spot], stack: &Stack<'_>) -> Option<Glance> {
+        let (head, piece) = (&self.scene.params.head, self.piece);
+        let heights = || risen.iter().map(|&cell| stack.height(cell) as f32);
+        let highest = f64::from(heights().reduce(f32::max)?);
+        let most = highest - mm(piece.bounds[0] - f64::from(self.scene.lowered(0)));
+        let reach = (head.reach_below(most) / to_mm(CELL)).ceil() as i32 + 2;
+        let (from, to) = extent(piece.area.iter().flatten())?;
+        let ends = |axis: usize, from: Coord, to: Coord| {
+            let all = || risen.iter().map(|cell| cell[axis]);
+            let (first, last) = (all().min()?, all().max()?);
+            let low = (first - reach).max(from.div_euclid(CELL)).min(first);
+            Some([low, (last + reach).min(to.div_euclid(CELL) + 1).max(last)])
+        };
+        let ([left, right], [low, high]) = (ends(0, from.x, to.x)?, ends(1, from.y, to.y)?);
+        let columns = usize::try_from(right - left + 1).ok()?;
+        let mut around = vec![f32::NEG_INFINITY; columns * usize::try_from(high - low + 1).ok()?];
+        for ([x, y], height) in risen.iter().zip(heights()) {
+            let at = (y - low) as usize * columns + (x - left) as usize;
+            around[at] = around[at].max(height);
+        }
+        Some(Glance::new([left, low], columns, around, Under::of(head, most)))
     }
 
     /// The blocks of places from which the head may touch something in some blocks.

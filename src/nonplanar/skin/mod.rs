@@ -127,7 +127,8 @@ impl Layer<'_> {
             shortest: f64::from(params.shortest),
             cell: f64::from(params.line_width),
         };
-        let room = Room::new(leg, |s| heights.at(s) - lowered, self.base, params.height);
+        let mut along = heights.in_order();
+        let room = Room::new(leg, |s| along(s) - lowered, self.base, params.height);
         let length = leg.from.distance(leg.to);
         let cuts = points::cuts(length, &heights, &room, &limits);
         let point = |s: f64, width: f64, height: f64| PathPoint {

@@ -67,14 +67,31 @@ impl Heights {
 
     /// The height after the way `s`.
     pub(super) fn at(&self, s: f64) -> f64 {
-        let k = self.0.partition_point(|(at, _)| *at <= s).clamp(1, self.0.len() - 1);
+        self.between(self.0.partition_point(|(at, _)| *at <= s), s)
+    }
+
+    /// The same, of ways that are asked for in order.
+    pub(super) fn in_order(&self) -> impl FnMut(f64) -> f64 + '_ {
+        let mut next = 0;
+        move |s| {
+            while self.0.get(next).is_some_and(|(at, _)| *at <= s) {
+                next += 1;
+            }
+            self.between(next, s)
+        }
+    }
+
+    /// The height after a way `s`, before the place `k` and after the one before it.
+    fn between(&self, k: usize, s: f64) -> f64 {
+        let k = k.clamp(1, self.0.len() - 1);
         let ((a, low), (b, high)) = (self.0[k - 1], self.0[k]);
         if b > a { low + (high - low) * ((s - a) / (b - a)).clamp(0.0, 1.0) } else { low }
     }
 
     /// The heights at both ends of a part and where it bends between them.
     fn within(&self, [start, end]: [f64; 2]) -> Vec<(f64, f64)> {
-        let inner = self.0.iter().copied().filter(|(s, _)| start + 0.5 < *s && *s < end - 0.5);
+        let first = self.0.partition_point(|(s, _)| *s <= start + 0.5);
+        let inner = self.0[first..].iter().copied().take_while(|(s, _)| *s < end - 0.5);
         let ends = [start, end].map(|s| (s, self.at(s)));
         std::iter::once(ends[0]).chain(inner).chain([ends[1]]).collect()
     }

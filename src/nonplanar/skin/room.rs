@@ -39,8 +39,14 @@ pub(super) struct Room {
 }
 
 impl Room {
-    /// Over `base`, of a leg whose top is at `z` after a way along it, in a skin of this height.
-    pub(super) fn new(leg: &Leg, z: impl Fn(f64) -> f64, base: &dyn Base, skin: Coord) -> Self {
+    /// Over `base`, of a leg whose top is at `z` after a way along it, in a skin of this height. Ways are asked
+    /// for in order.
+    pub(super) fn new(
+        leg: &Leg,
+        mut z: impl FnMut(f64) -> f64,
+        base: &dyn Base,
+        skin: Coord,
+    ) -> Self {
         let cliff = CLIFF * f64::from(skin);
         let length = leg.from.distance(leg.to);
         let count = (length / STEP).ceil().max(1.0);
@@ -88,7 +94,7 @@ impl Room {
 fn mean(height: impl Fn(f64) -> f64, width: f64, cliff: f64) -> f64 {
     let middle = height(0.0);
     let beside = |off: f64| Some(height(off)).filter(|h| *h > middle - cliff).unwrap_or(middle);
-    let [left, right] = [-SIDE, SIDE].map(|side| beside(side * width));
+    let (left, right) = (beside(-SIDE * width), beside(SIDE * width));
     if (left + right - 2.0 * middle).abs() <= PLANE {
         return middle;
     }
