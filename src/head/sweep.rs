@@ -35,20 +35,8 @@ pub fn sweep_printing(
     deepest(pile, head, [from, to], &|tip| pile.hit_printing(head, tip, layer_height))
 }
 
-/// As [`sweep`], of what comes as near to the tip as this, seen from above, mm.
-#[must_use]
-pub fn sweep_within(
-    pile: &Pile,
-    head: &Head,
-    from: [f64; 3],
-    to: [f64; 3],
-    radius: f64,
-    spare: &dyn Fn(&Hit) -> bool,
-) -> Option<Hit> {
-    deepest(pile, head, [from, to], &|tip| pile.hit_within(head, tip, radius, spare))
-}
-
-fn deepest(
+/// As [`sweep`], of the touches that `hit` tells; it tells none where the head touches nothing of the pile.
+pub fn deepest(
     pile: &Pile,
     head: &Head,
     [from, to]: [[f64; 3]; 2],

@@ -117,6 +117,21 @@ impl Glance {
         Self { low, columns, tips: heights }
     }
 
+    /// The same with more that stands, which reaches no further than `other` does.
+    pub(super) fn add(&mut self, other: &Self) {
+        let first = [other.low[0] - self.low[0], other.low[1] - self.low[1]];
+        for (line, tips) in (first[1]..).zip(other.tips.chunks(other.columns)) {
+            for (column, &tip) in (first[0]..).zip(tips) {
+                let at = (usize::try_from(column), usize::try_from(line));
+                let (Ok(column), Ok(line)) = at else { continue };
+                let own = self.tips.get_mut(line * self.columns + column);
+                if let Some(own) = own.filter(|_| column < self.columns) {
+                    *own = own.max(tip);
+                }
+            }
+        }
+    }
+
     /// Whether a tip so high, mm, over a cell certainly touches nothing.
     pub(super) fn is_clear(&self, cell: Spot, z: f64) -> bool {
         let at = |axis: usize| usize::try_from(cell[axis] - self.low[axis]);

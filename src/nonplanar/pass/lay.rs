@@ -18,7 +18,7 @@ use crate::fill::{Path, PathPoint};
 use crate::geom::Point;
 use crate::geom::spans::Rows;
 use crate::head::pile::{Hit, Pile};
-use crate::head::sweep::{SAMPLE, sweep, sweep_printing, sweep_within};
+use crate::head::sweep::{SAMPLE, deepest, sweep};
 use crate::nonplanar::field::Field;
 use crate::nonplanar::grid::{self, CELL, Spot, cell_of, place_at};
 use crate::nonplanar::patch::Stroke;
@@ -169,8 +169,15 @@ impl Swept<'_> {
             // What the skins are to themselves is known: they lie on the surface within the tolerance.
             // Beyond the ring where a touch may be press, nothing is touched by then.
             let radius = head.press_radius();
-            let pressed = || sweep_within(&self.trial.others, head, a, b, radius, &press);
-            let hit = sweep_printing(&self.stack.pile, head, a, b, layer).or_else(pressed);
+            let (all, others) = (&self.stack.pile, &self.trial.others);
+            let is_open = |[x, y, z]: [f64; 3]| !self.trial.is_clear(cell_at([x, y]), z);
+            let printing =
+                |tip| if is_open(tip) { all.hit_printing(head, tip, layer) } else { None };
+            let within = |tip| {
+                if is_open(tip) { others.hit_within(head, tip, radius, &press) } else { None }
+            };
+            let pressed = || deepest(others, head, [a, b], &within);
+            let hit = deepest(all, head, [a, b], &printing).or_else(pressed);
             let Some(hit) = hit else { continue };
             let reason = touch.reason(&hit, |cell| self.stack.is_supported(cell));
             let middle = [0, 1, 2].map(|axis| f64::midpoint(a[axis], b[axis]));

@@ -18,6 +18,7 @@
 mod beads;
 mod candidate;
 mod excess;
+mod fresh;
 mod glance;
 mod homes;
 mod lay;

@@ -20,6 +20,7 @@
 
 use super::candidate::{Ground, Piece};
 use super::excess::OfLines;
+use super::fresh::{Fresh, block_of};
 use super::glance::{Glance, Under};
 use super::shrink::{Refused, most, nearest, refuse, shrink_all, widened};
 use super::stack::{Stack, WIDER, heights_over};
@@ -37,9 +38,6 @@ use crate::units::{Coord, to_mm, to_units};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Places are kept in blocks of so many by so many.
-const BLOCK: i32 = 8;
-
 /// Rounding of heights, mm.
 const ROUNDING: f64 = 2e-4;
 
@@ -56,30 +54,13 @@ pub(super) struct Trial<'a> {
     pub areas: Vec<Vec<Contour>>,
     /// What stands around the piece that is neither its surface nor its base.
     pub others: Pile,
-    /// Where what stands leaves room for the head, at a glance; `None` while that changes.
+    /// Where what stands leaves room for the head, at a glance; `None` until it is asked for.
     glance: Option<Glance>,
     /// Where lines on the surface leave room for it, at a glance; once it is asked for.
     pub of_lines: OfLines,
     later: Option<Later>,
     /// What may fail now, if all places were tried before.
     fresh: Option<Fresh>,
-}
-
-/// What was cut out since places were tried.
-struct Fresh {
-    /// Blocks of places that may fail for it.
-    blocks: BTreeSet<Spot>,
-    /// What stands higher now; all else was no hindrance to what passed.
-    risen: Option<Pile>,
-    /// Where it leaves room for the head, at a glance.
-    glance: Option<Glance>,
-}
-
-impl Fresh {
-    /// Whether the head touches nothing of what stands higher now, at a glance, with its tip so high, mm.
-    fn is_clear(&self, cell: Spot, tip: f64) -> bool {
-        self.glance.as_ref().is_some_and(|glance| glance.is_clear(cell, tip))
-    }
 }
 
 /// The tips of later lines.
@@ -218,7 +199,7 @@ impl<'a> Trial<'a> {
             };
             let tried = |k: usize| {
                 let place = places[k];
-                if !self.is_fresh(place) {
+                if !self.is_fresh(&place) {
                     return (true, None);
                 }
                 let hit = if is_known(k) { None } else { self.touches(place, i, stack) };
@@ -236,9 +217,8 @@ impl<'a> Trial<'a> {
     }
 
     /// Whether something was raised in reach of a place since it passed.
-    fn is_fresh(&self, place: Spot) -> bool {
-        let block = place.map(|v| v.div_euclid(BLOCK));
-        self.fresh.as_ref().is_none_or(|fresh| fresh.blocks.contains(&block))
+    fn is_fresh(&self, place: &Spot) -> bool {
+        self.fresh.as_ref().is_none_or(|fresh| fresh.is_near(place))
     }
 
     /// What the head touches that lays skin `i` at a place.
@@ -287,7 +267,7 @@ impl<'a> Trial<'a> {
             (!room.contains(&(top - stack.height(cell)))).then_some(*place)
         };
         let places = grid::places(&self.areas[lowest], inset);
-        let asked = places.par_iter().filter(|place| self.is_fresh(**place));
+        let asked = places.par_iter().filter(|place| self.is_fresh(place));
         let lacking: Vec<Spot> = asked.filter_map(lacks).collect();
         // What the head touches there has the better reason.
         for place in lacking {
@@ -312,6 +292,7 @@ impl<'a> Trial<'a> {
         let most = to_mm(heights.top(self.piece.home));
         let mut raised: BTreeSet<Spot> = BTreeSet::new();
         let mut risen: Vec<Spot> = Vec::new();
+        let mut last_block = None;
         for (i, old) in old.iter().enumerate() {
             let lost = old.minus(&grid::cells(&self.areas[i]));
             let last = i + 1 == self.areas.len();
@@ -323,56 +304,21 @@ impl<'a> Trial<'a> {
                 if stack.raise(cell, self.flat_end(z + further, below).min(most)) {
                     risen.push(cell);
                 }
-                raised.insert(cell.map(|v| v.div_euclid(2 * BLOCK)));
+                let block = block_of(cell);
+                // Most cells lie in the block of the one before.
+                if last_block.replace(block) != Some(block) {
+                    raised.insert(block);
+                }
                 if let Some(later) = self.later.as_mut().filter(|_| last) {
                     later.add(cell, z);
                 }
             }
         }
-        if !raised.is_empty() {
-            self.glance = None;
+        let fresh = Fresh::new(self, (&raised, &risen), stack);
+        if let (Some(all), Some(glance)) = (self.glance.as_mut(), &fresh.glance) {
+            all.add(glance);
         }
-        // Where nothing was raised in reach, nothing can fail that passed.
-        let blocks = self.in_reach(&raised);
-        let glance = self.past(&risen, stack);
-        self.fresh = Some(Fresh { blocks, risen: stack.alone(&risen), glance });
-    }
-
-    /// Where some cells leave room for the head, at a glance, as far as they are in reach.
-    fn past(&self, risen: &[Spot], stack: &Stack<'_>) -> Option<Glance> {
-        let (head, piece) = (&self.scene.params.head, self.piece);
-        let heights = || risen.iter().map(|&cell| stack.height(cell) as f32);
-        let highest = f64::from(heights().reduce(f32::max)?);
-        let most = highest - mm(piece.bounds[0] - f64::from(self.scene.lowered(0)));
-        let reach = (head.reach_below(most) / to_mm(CELL)).ceil() as i32 + 2;
-        let (from, to) = extent(piece.area.iter().flatten())?;
-        let ends = |axis: usize, from: Coord, to: Coord| {
-            let all = || risen.iter().map(|cell| cell[axis]);
-            let (first, last) = (all().min()?, all().max()?);
-            let low = (first - reach).max(from.div_euclid(CELL)).min(first);
-            Some([low, (last + reach).min(to.div_euclid(CELL) + 1).max(last)])
-        };
-        let ([left, right], [low, high]) = (ends(0, from.x, to.x)?, ends(1, from.y, to.y)?);
-        let columns = usize::try_from(right - left + 1).ok()?;
-        let mut around = vec![f32::NEG_INFINITY; columns * usize::try_from(high - low + 1).ok()?];
-        for ([x, y], height) in risen.iter().zip(heights()) {
-            let at = (y - low) as usize * columns + (x - left) as usize;
-            around[at] = around[at].max(height);
-        }
-        Some(Glance::new([left, low], columns, around, Under::of(head, most)))
-    }
-
-    /// The blocks of places from which the head may touch something in some blocks.
-    fn in_reach(&self, raised: &BTreeSet<Spot>) -> BTreeSet<Spot> {
-        let (piece, heights) = (self.piece, self.scene.slicer.heights());
-        let high = piece.bounds[1].max(f64::from(heights.top(piece.home)));
-        let low = piece.bounds[0] - f64::from(self.scene.depth());
-        let reach = self.scene.params.head.reach_below(mm(high - low)) + to_mm(grid::STEP);
-        let by = (reach / (f64::from(BLOCK) * to_mm(grid::STEP))).ceil() as i32;
-        let around = |&[x, y]: &Spot| {
-            (-by..=by).flat_map(move |dx| (-by..=by).map(move |dy| [x + dx, y + dy]))
-        };
-        raised.iter().flat_map(around).collect()
+        self.fresh = Some(fresh);
     }
 }
 

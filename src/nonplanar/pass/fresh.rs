@@ -1,0 +1,90 @@
+//! What was cut out of a piece -> the places that may fail for it, and what the head may touch there.
+//!
+//! What is printed flat instead stands higher than before. Where nothing rose in reach, nothing can fail that
+//! passed; elsewhere only what rose has to be looked at.
+
+use super::glance::{Glance, Under};
+use super::stack::Stack;
+use super::touch::mm;
+use super::trial::Trial;
+use crate::geom::boxes::extent;
+use crate::head::pile::Pile;
+use crate::nonplanar::grid::{CELL, STEP, Spot};
+use crate::units::{Coord, to_mm};
+use std::collections::BTreeSet;
+
+/// Places are kept in blocks of so many by so many.
+const BLOCK: i32 = 8;
+
+/// What was cut out since places were tried.
+pub(super) struct Fresh {
+    /// Blocks of places that may fail for it.
+    blocks: BTreeSet<Spot>,
+    /// What stands higher now; all else was no hindrance to what passed.
+    pub risen: Option<Pile>,
+    /// Where it leaves room for the head, at a glance.
+    pub glance: Option<Glance>,
+}
+
+/// The block of places that a cell lies in.
+pub(super) fn block_of([x, y]: Spot) -> Spot {
+    [x.div_euclid(2 * BLOCK), y.div_euclid(2 * BLOCK)]
+}
+
+impl Fresh {
+    /// Of a piece, where some cells have risen; `raised` are the blocks of all that were raised.
+    pub(super) fn new(
+        trial: &Trial<'_>,
+        (raised, risen): (&BTreeSet<Spot>, &[Spot]),
+        stack: &Stack<'_>,
+    ) -> Self {
+        let (blocks, glance) = (in_reach(trial, raised), past(trial, risen, stack));
+        Self { blocks, risen: stack.alone(risen), glance }
+    }
+
+    /// Whether a place may fail for it.
+    pub(super) fn is_near(&self, [x, y]: &Spot) -> bool {
+        self.blocks.contains(&[x.div_euclid(BLOCK), y.div_euclid(BLOCK)])
+    }
+
+    /// Whether the head touches nothing of what stands higher now, at a glance, with its tip so high, mm.
+    pub(super) fn is_clear(&self, cell: Spot, tip: f64) -> bool {
+        self.glance.as_ref().is_some_and(|glance| glance.is_clear(cell, tip))
+    }
+}
+
+/// Where some cells leave room for the head, at a glance, as far as they are in reach.
+fn past(trial: &Trial<'_>, risen: &[Spot], stack: &Stack<'_>) -> Option<Glance> {
+    let (head, piece) = (&trial.scene.params.head, trial.piece);
+    let heights = || risen.iter().map(|&cell| stack.height(cell) as f32);
+    let highest = f64::from(heights().reduce(f32::max)?);
+    let most = highest - mm(piece.bounds[0] - f64::from(trial.scene.lowered(0)));
+    let reach = (head.reach_below(most) / to_mm(CELL)).ceil() as i32 + 2;
+    let (from, to) = extent(piece.area.iter().flatten())?;
+    let ends = |axis: usize, from: Coord, to: Coord| {
+        let all = || risen.iter().map(|cell| cell[axis]);
+        let (first, last) = (all().min()?, all().max()?);
+        let low = (first - reach).max(from.div_euclid(CELL)).min(first);
+        Some([low, (last + reach).min(to.div_euclid(CELL) + 1).max(last)])
+    };
+    let ([left, right], [low, high]) = (ends(0, from.x, to.x)?, ends(1, from.y, to.y)?);
+    let columns = usize::try_from(right - left + 1).ok()?;
+    let mut around = vec![f32::NEG_INFINITY; columns * usize::try_from(high - low + 1).ok()?];
+    for ([x, y], height) in risen.iter().zip(heights()) {
+        let at = (y - low) as usize * columns + (x - left) as usize;
+        around[at] = around[at].max(height);
+    }
+    Some(Glance::new([left, low], columns, around, Under::of(head, most)))
+}
+
+/// The blocks of places from which the head may touch something in some blocks.
+fn in_reach(trial: &Trial<'_>, raised: &BTreeSet<Spot>) -> BTreeSet<Spot> {
+    let (piece, heights) = (trial.piece, trial.scene.slicer.heights());
+    let high = piece.bounds[1].max(f64::from(heights.top(piece.home)));
+    let low = piece.bounds[0] - f64::from(trial.scene.depth());
+    let reach = trial.scene.params.head.reach_below(mm(high - low)) + to_mm(STEP);
+    let by = (reach / (f64::from(BLOCK) * to_mm(STEP))).ceil() as i32;
+    let around =
+        |&[x, y]: &Spot| (-by..=by).flat_map(move |dx| (-by..=by).map(move |dy| [x + dx, y + dy]));
+    raised.iter().flat_map(around).collect()
+}
