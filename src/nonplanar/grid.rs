@@ -56,11 +56,13 @@ pub(super) fn columns(span: Span, pitch: Coord) -> Range<i32> {
 
 /// The cells or places in rows.
 pub(super) fn spots(rows: &Rows, pitch: Coord) -> Vec<Spot> {
-    let row = |(j, spans): (i32, &[Span])| {
-        let all = spans.iter().flat_map(|&span| columns(span, pitch));
-        all.map(|column| [column, j]).collect::<Vec<Spot>>()
-    };
-    rows.iter().flat_map(row).collect()
+    let mut out = Vec::new();
+    for (j, row) in rows.iter() {
+        for &span in row {
+            out.extend(columns(span, pitch).map(|column| [column, j]));
+        }
+    }
+    out
 }
 
 /// The cell in the middle of a place.

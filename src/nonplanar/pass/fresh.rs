@@ -19,11 +19,19 @@ const BLOCK: i32 = 8;
 /// What was cut out since places were tried.
 pub(super) struct Fresh {
     /// Blocks of places that may fail for it.
-    blocks: BTreeSet<Spot>,
+    blocks: Blocks,
     /// What stands higher now; all else was no hindrance to what passed.
     pub risen: Option<Pile>,
     /// Where it leaves room for the head, at a glance.
     pub glance: Option<Glance>,
+}
+
+/// Some blocks of places.
+struct Blocks {
+    low: Spot,
+    columns: usize,
+    /// Row by row, whether it is one of them.
+    are: Vec<bool>,
 }
 
 /// The block of places that a cell lies in.
@@ -44,7 +52,12 @@ impl Fresh {
 
     /// Whether a place may fail for it.
     pub(super) fn is_near(&self, [x, y]: &Spot) -> bool {
-        self.blocks.contains(&[x.div_euclid(BLOCK), y.div_euclid(BLOCK)])
+        let [x, y] = [x.div_euclid(BLOCK), y.div_euclid(BLOCK)];
+        let Blocks { low, columns, are } = &self.blocks;
+        match (usize::try_from(x - low[0]), usize::try_from(y - low[1])) {
+            (Ok(x), Ok(y)) if x < *columns => are.get(y * columns + x).is_some_and(|is| *is),
+            _ => false,
+        }
     }
 
     /// Whether the head touches nothing of what stands higher now, at a glance, with its tip so high, mm.
@@ -78,13 +91,26 @@ fn past(trial: &Trial<'_>, risen: &[Spot], stack: &Stack<'_>) -> Option<Glance> 
 }
 
 /// The blocks of places from which the head may touch something in some blocks.
-fn in_reach(trial: &Trial<'_>, raised: &BTreeSet<Spot>) -> BTreeSet<Spot> {
+fn in_reach(trial: &Trial<'_>, raised: &BTreeSet<Spot>) -> Blocks {
     let (piece, heights) = (trial.piece, trial.scene.slicer.heights());
     let high = piece.bounds[1].max(f64::from(heights.top(piece.home)));
     let low = piece.bounds[0] - f64::from(trial.scene.depth());
     let reach = trial.scene.params.head.reach_below(mm(high - low)) + to_mm(STEP);
     let by = (reach / (f64::from(BLOCK) * to_mm(STEP))).ceil() as i32;
-    let around =
-        |&[x, y]: &Spot| (-by..=by).flat_map(move |dx| (-by..=by).map(move |dy| [x + dx, y + dy]));
-    raised.iter().flat_map(around).collect()
+    let ends = |axis: usize| {
+        let all = || raised.iter().map(|block| block[axis]);
+        [all().min().unwrap_or(0) - by, all().max().unwrap_or(0) + by]
+    };
+    let ([left, right], [low, high]) = (ends(0), ends(1));
+    let [columns, rows] =
+        [right - left, high - low].map(|last| usize::try_from(last + 1).unwrap_or(0));
+    let mut are = vec![false; if raised.is_empty() { 0 } else { columns * rows }];
+    let side = usize::try_from(2 * by + 1).unwrap_or(0);
+    for [x, y] in raised {
+        let [x, y] = [x - by - left, y - by - low].map(|v| usize::try_from(v).unwrap_or(0));
+        for row in y..y + side {
+            are[row * columns + x..][..side].fill(true);
+        }
+    }
+    Blocks { low: [left, low], columns, are }
 }
