@@ -107,7 +107,7 @@ impl Field {
     /// How high it lies over a cell and those to the left and right, below and above, if it lies over all of
     /// them: nearly everywhere.
     fn around(&self, [x, y]: Spot) -> Option<[f32; 5]> {
-        let [x, y] = self.from_first([x, y]);
+        let [x, y] = self.counted([x, y]);
         let [columns, rows] = self.size;
         if x == 0 || y == 0 || x + 1 >= columns || y + 1 >= rows {
             return None;
@@ -123,7 +123,7 @@ impl Field {
     /// How high the surface lies over a cell; not a number beside it.
     #[inline]
     fn known(&self, cell: Spot) -> f32 {
-        let [x, y] = self.from_first(cell);
+        let [x, y] = self.counted(cell);
         if x < self.size[0] && y < self.size[1] {
             self.heights[y * self.size[0] + x]
         } else {
@@ -134,7 +134,7 @@ impl Field {
     /// The column and the row of a cell, from the first ones. What lies before these is far beyond the last ones
     /// as a number without sign.
     #[inline]
-    fn from_first(&self, [x, y]: Spot) -> [usize; 2] {
+    fn counted(&self, [x, y]: Spot) -> [usize; 2] {
         [x.wrapping_sub(self.low[0]) as u32 as usize, y.wrapping_sub(self.low[1]) as u32 as usize]
     }
 }

@@ -217,6 +217,35 @@ mod tests {
             }
         }
 
+        /// The same where more stands than at first.
+        #[test]
+        fn what_is_clear_of_more_is_clear(
+            cells in prop::collection::vec((0..SIDE, 0..SIDE, 0.0..4.0), 1..30),
+            more in prop::collection::vec((20..SIDE, 10..SIDE, 0.0..4.0), 1..30),
+            tips in prop::collection::vec((0..SIDE, 0..SIDE, 0.0..6.0), 1..40),
+            which in 0..3_usize,
+        ) {
+            let head = named(names().nth(which).unwrap()).unwrap();
+            let (mut pile, heights) = pile(&cells);
+            let under = Under::of(&head, 4.0);
+            let mut glance = Glance::new([0, 0], SIDE, heights, under);
+            // Beyond the first cells, too: what lies there is left out.
+            let (low, columns) = ([-5, -3], SIDE + 9);
+            let mut heights = vec![f32::NEG_INFINITY; columns * (SIDE + 8)];
+            for (x, y, z) in more {
+                pile.raise([x, y], z);
+                let at = (y + 3) * columns + x + 5;
+                heights[at] = heights[at].max(z as f32);
+            }
+            glance.add(&Glance::new(low, columns, heights, under));
+            for (x, y, z) in tips {
+                if glance.is_clear([x as i32, y as i32], z) {
+                    let at = [x as f64 * 0.1 + 0.04, y as f64 * 0.1 - 0.04];
+                    prop_assert_eq!(pile.hit(&head, [at[0], at[1], z], &|_| false), None);
+                }
+            }
+        }
+
         /// The same on a rough surface of which the tip is part, where press is allowed.
         #[test]
         fn a_surface_that_is_clear_at_a_glance_is_only_pressed(
