@@ -3,13 +3,14 @@
 //! What is printed flat instead stands higher than before. Where nothing rose in reach, nothing can fail that
 //! passed; elsewhere only what rose has to be looked at.
 
+use super::candidate::Piece;
 use super::glance::{Glance, Under};
 use super::stack::Stack;
 use super::touch::mm;
-use super::trial::Trial;
 use crate::geom::boxes::extent;
 use crate::head::pile::Pile;
 use crate::nonplanar::grid::{CELL, STEP, Spot};
+use crate::nonplanar::scene::Scene;
 use crate::units::{Coord, to_mm};
 use std::collections::BTreeSet;
 
@@ -42,11 +43,12 @@ pub(super) fn block_of([x, y]: Spot) -> Spot {
 impl Fresh {
     /// Of a piece, where some cells have risen; `raised` are the blocks of all that were raised.
     pub(super) fn new(
-        trial: &Trial<'_>,
+        (scene, piece): (&Scene<'_>, &Piece),
         (raised, risen): (&BTreeSet<Spot>, &[Spot]),
         stack: &Stack<'_>,
     ) -> Self {
-        let (blocks, glance) = (in_reach(trial, raised), past(trial, risen, stack));
+        let (blocks, glance) =
+            (in_reach((scene, piece), raised), past((scene, piece), risen, stack));
         Self { blocks, risen: stack.alone(risen), glance }
     }
 
@@ -67,11 +69,11 @@ impl Fresh {
 }
 
 /// Where some cells leave room for the head, at a glance, as far as they are in reach.
-fn past(trial: &Trial<'_>, risen: &[Spot], stack: &Stack<'_>) -> Option<Glance> {
-    let (head, piece) = (&trial.scene.params.head, trial.piece);
+fn past((scene, piece): (&Scene<'_>, &Piece), risen: &[Spot], stack: &Stack<'_>) -> Option<Glance> {
+    let head = &scene.params.head;
     let heights = || risen.iter().map(|&cell| stack.height(cell) as f32);
     let highest = f64::from(heights().reduce(f32::max)?);
-    let most = highest - mm(piece.bounds[0] - f64::from(trial.scene.lowered(0)));
+    let most = highest - mm(piece.bounds[0] - f64::from(scene.lowered(0)));
     let reach = (head.reach_below(most) / to_mm(CELL)).ceil() as i32 + 2;
     let (from, to) = extent(piece.area.iter().flatten())?;
     let ends = |axis: usize, from: Coord, to: Coord| {
@@ -91,11 +93,11 @@ fn past(trial: &Trial<'_>, risen: &[Spot], stack: &Stack<'_>) -> Option<Glance> 
 }
 
 /// The blocks of places from which the head may touch something in some blocks.
-fn in_reach(trial: &Trial<'_>, raised: &BTreeSet<Spot>) -> Blocks {
-    let (piece, heights) = (trial.piece, trial.scene.slicer.heights());
+fn in_reach((scene, piece): (&Scene<'_>, &Piece), raised: &BTreeSet<Spot>) -> Blocks {
+    let heights = scene.slicer.heights();
     let high = piece.bounds[1].max(f64::from(heights.top(piece.home)));
-    let low = piece.bounds[0] - f64::from(trial.scene.depth());
-    let reach = trial.scene.params.head.reach_below(mm(high - low)) + to_mm(STEP);
+    let low = piece.bounds[0] - f64::from(scene.depth());
+    let reach = scene.params.head.reach_below(mm(high - low)) + to_mm(STEP);
     let by = (reach / (f64::from(BLOCK) * to_mm(STEP))).ceil() as i32;
     let ends = |axis: usize| {
         let all = || raised.iter().map(|block| block[axis]);

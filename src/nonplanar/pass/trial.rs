@@ -314,7 +314,7 @@ impl<'a> Trial<'a> {
                 }
             }
         }
-        let fresh = Fresh::new(self, (&raised, &risen), stack);
+        let fresh = Fresh::new((self.scene, self.piece), (&raised, &risen), stack);
         if let (Some(all), Some(glance)) = (self.glance.as_mut(), &fresh.glance) {
             all.add(glance);
         }
