@@ -23,19 +23,8 @@ pub fn sweep(
     deepest(pile, head, [from, to], &|tip| pile.hit(head, tip, spare))
 }
 
-/// As [`sweep`], while a layer of this height is printed, mm: what [`Head::presses`] allows is no touch.
-#[must_use]
-pub fn sweep_printing(
-    pile: &Pile,
-    head: &Head,
-    from: [f64; 3],
-    to: [f64; 3],
-    layer_height: f64,
-) -> Option<Hit> {
-    deepest(pile, head, [from, to], &|tip| pile.hit_printing(head, tip, layer_height))
-}
-
 /// As [`sweep`], of the touches that `hit` tells; it tells none where the head touches nothing of the pile.
+#[must_use]
 pub fn deepest(
     pile: &Pile,
     head: &Head,

@@ -70,6 +70,18 @@ pub(super) fn cell_of([column, row]: Spot) -> Spot {
     [2 * column, 2 * row]
 }
 
+/// The cell around a point.
+pub(super) fn cell_around(at: Point) -> Spot {
+    let along = |v: Coord| (v + CELL / 2).div_euclid(CELL);
+    [along(at.x), along(at.y)]
+}
+
+/// The column and the row of a cell or a place, counted from the lowest ones; `None` before these.
+#[inline]
+pub(super) fn counted([x, y]: Spot, low: Spot) -> Option<[usize; 2]> {
+    Some([usize::try_from(x - low[0]).ok()?, usize::try_from(y - low[1]).ok()?])
+}
+
 /// The place nearest to a point, mm.
 pub(super) fn place_at(at: [f64; 2]) -> Spot {
     at.map(|v| (v / to_mm(STEP)).round() as i32)

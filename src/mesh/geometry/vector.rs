@@ -8,7 +8,8 @@ pub(crate) type Corner = [i32; 3];
 
 /// `a` − `b`; exact.
 pub(crate) fn minus<T: Copy + Into<i64>>(a: [T; 3], b: [T; 3]) -> [i64; 3] {
-    std::array::from_fn(|axis| a[axis].into() - b[axis].into())
+    let side = |axis: usize| a[axis].into() - b[axis].into();
+    [side(0), side(1), side(2)]
 }
 
 /// The cross product of two differences of corners; exact below 2³¹ units a side.
@@ -24,7 +25,8 @@ pub(crate) fn dot(a: [i64; 3], b: [i64; 3]) -> i128 {
 
 /// The square of the distance between two corners, grid units²; exact.
 pub(crate) fn distance2(a: Corner, b: Corner) -> i64 {
-    minus(a, b).map(|side| side * side).iter().sum()
+    let by = minus(a, b);
+    by[0] * by[0] + by[1] * by[1] + by[2] * by[2]
 }
 
 /// Normal of a triangle, as long as twice its area, grid units².

@@ -12,8 +12,9 @@
 //!
 //! The way in plan stays the same: every point of the path remains, and new ones lie on its segments.
 
+use super::super::grid::cell_around;
 use super::zones::Zones;
-use super::{Limits, Tread, between, cell_at};
+use super::{Limits, Tread, between};
 use crate::fill::{Path, PathPoint, Role, Shape};
 use crate::geom::Point;
 use crate::geom::decimate::{decimate, most_missed};
@@ -82,7 +83,7 @@ fn places(
     [lowest, highest]: [f64; 2],
 ) -> (Vec<Place>, Vec<usize>) {
     let place = |at: Point, along: f64, hangs: bool| {
-        let cell = cell_at(at);
+        let cell = cell_around(at);
         // Above the middle of the layer above, there is that layer.
         let bare = tread.above(at).filter(|_| !hangs);
         let up = match bare {

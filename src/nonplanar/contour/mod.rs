@@ -26,7 +26,7 @@ mod zones;
 
 use super::Patches;
 use super::field::{Field, Fields};
-use super::grid::{self, CELL};
+use super::grid::{self, CELL, cell_around};
 use super::params::NonPlanarParams;
 use super::surface::Surface;
 use super::surface::find::{Surfaces, Tops};
@@ -243,7 +243,7 @@ impl Tread<'_> {
     /// How high the surface lies above the layer's top; `None` where there is none, or a skin.
     fn above(&self, at: Point) -> Option<f64> {
         let z = self.surface(at)?;
-        let cell = cell_at(at);
+        let cell = cell_around(at);
         let near = |skin: &&Skinned| {
             let [low, high] = skin.bounds;
             low - self.reach < z && z < high + self.reach
@@ -254,7 +254,7 @@ impl Tread<'_> {
 
     /// The surface over a place, if it is that of the layer's tread, grid units.
     fn surface(&self, at: Point) -> Option<f64> {
-        let cell = cell_at(at);
+        let cell = cell_around(at);
         let top = f64::from(self.layer.z);
         let over = |ground: &&Ground| {
             let (z, [along, across]) = ground.field.plane(cell)?;
@@ -297,12 +297,6 @@ fn may_bend(path: &Path) -> bool {
 /// What of the tops is in surfaces, mm².
 fn in_surfaces(tops: &Tops) -> f64 {
     tops.all - tops.level - tops.slope - tops.press - tops.small
-}
-
-/// The cell around a place.
-fn cell_at(at: Point) -> grid::Spot {
-    let along = |v: Coord| (v + CELL / 2).div_euclid(CELL);
-    [along(at.x), along(at.y)]
 }
 
 /// The place after a share of the way, to the nearest grid unit.

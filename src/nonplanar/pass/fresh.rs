@@ -9,7 +9,7 @@ use super::stack::Stack;
 use super::touch::mm;
 use crate::geom::boxes::extent;
 use crate::head::pile::Pile;
-use crate::nonplanar::grid::{CELL, STEP, Spot};
+use crate::nonplanar::grid::{CELL, STEP, Spot, counted};
 use crate::nonplanar::scene::Scene;
 use crate::units::{Coord, to_mm};
 use std::collections::BTreeSet;
@@ -53,13 +53,10 @@ impl Fresh {
     }
 
     /// Whether a place may fail for it.
-    pub(super) fn is_near(&self, [x, y]: &Spot) -> bool {
-        let [x, y] = [x.div_euclid(BLOCK), y.div_euclid(BLOCK)];
+    pub(super) fn is_near(&self, [x, y]: Spot) -> bool {
         let Blocks { low, columns, are } = &self.blocks;
-        match (usize::try_from(x - low[0]), usize::try_from(y - low[1])) {
-            (Ok(x), Ok(y)) if x < *columns => are.get(y * columns + x).is_some_and(|is| *is),
-            _ => false,
-        }
+        let block = counted([x.div_euclid(BLOCK), y.div_euclid(BLOCK)], *low);
+        block.is_some_and(|[x, y]| x < *columns && are.get(y * columns + x) == Some(&true))
     }
 
     /// Whether the head touches nothing of what stands higher now, at a glance, with its tip so high, mm.

@@ -15,7 +15,7 @@
 
 use super::stack::WIDER;
 use crate::head::{DEEPEST_PRESS, Head};
-use crate::nonplanar::grid::{CELL, Spot};
+use crate::nonplanar::grid::{CELL, Spot, counted};
 use crate::units::to_mm;
 
 /// A way along rows, columns and diagonals is at most so many times as long as the straight one.
@@ -119,13 +119,11 @@ impl Glance {
 
     /// The same with more that stands, which reaches no further than `other` does.
     pub(super) fn add(&mut self, other: &Self) {
-        let first = [other.low[0] - self.low[0], other.low[1] - self.low[1]];
-        for (line, tips) in (first[1]..).zip(other.tips.chunks(other.columns)) {
-            for (column, &tip) in (first[0]..).zip(tips) {
-                let at = (usize::try_from(column), usize::try_from(line));
-                let (Ok(column), Ok(line)) = at else { continue };
-                let own = self.tips.get_mut(line * self.columns + column);
-                if let Some(own) = own.filter(|_| column < self.columns) {
+        for (line, tips) in (other.low[1]..).zip(other.tips.chunks(other.columns)) {
+            for (column, &tip) in (other.low[0]..).zip(tips) {
+                let Some([x, y]) = counted([column, line], self.low) else { continue };
+                let own = self.tips.get_mut(y * self.columns + x);
+                if let Some(own) = own.filter(|_| x < self.columns) {
                     *own = own.max(tip);
                 }
             }
@@ -134,8 +132,7 @@ impl Glance {
 
     /// Whether a tip so high, mm, over a cell certainly touches nothing.
     pub(super) fn is_clear(&self, cell: Spot, z: f64) -> bool {
-        let at = |axis: usize| usize::try_from(cell[axis] - self.low[axis]);
-        let (Ok(x), Ok(y)) = (at(0), at(1)) else { return false };
+        let Some([x, y]) = counted(cell, self.low) else { return false };
         let known = if x < self.columns { self.tips.get(y * self.columns + x) } else { None };
         known.is_some_and(|&tip| f64::from(tip) <= z + ROUNDING)
     }

@@ -20,7 +20,7 @@ use crate::geom::spans::Rows;
 use crate::head::pile::{Hit, Pile};
 use crate::head::sweep::{SAMPLE, deepest, sweep};
 use crate::nonplanar::field::Field;
-use crate::nonplanar::grid::{self, CELL, Spot, cell_of, place_at};
+use crate::nonplanar::grid::{self, CELL, Spot, cell_around, cell_of, place_at};
 use crate::nonplanar::patch::Stroke;
 use crate::nonplanar::skin::{self, Base, Laid, Outside, Skin};
 use crate::nonplanar::surface::Surface;
@@ -51,8 +51,7 @@ struct Under<'a> {
 
 impl Base for Under<'_> {
     fn height(&self, at: Point) -> f64 {
-        let column = |v: Coord| (v + CELL / 2).div_euclid(CELL);
-        let (x, y) = (column(at.x), column(at.y));
+        let [x, y] = cell_around(at);
         let holds = |(rows, _): &&(Rows, f64)| {
             rows.row(y).iter().any(|span| span.start <= x * CELL && x * CELL < span.end)
         };

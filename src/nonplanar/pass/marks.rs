@@ -3,7 +3,7 @@
 use crate::geom::Point;
 use crate::geom::spans::Rows;
 use crate::nonplanar::field::Field;
-use crate::nonplanar::grid::{self, STEP, Spot, cell_of, place_at};
+use crate::nonplanar::grid::{self, STEP, Spot, cell_of, counted, place_at};
 use crate::nonplanar::surface::Surface;
 use crate::nonplanar::tally::Reason;
 use crate::units::{Coord, nearest, to_mm};
@@ -50,8 +50,7 @@ impl Marks {
     }
 
     fn index(&self, place: Spot) -> Option<usize> {
-        let at = |axis: usize| usize::try_from(place[axis] - self.low[axis]).ok();
-        let (x, y) = (at(0)?, at(1)?);
+        let [x, y] = counted(place, self.low)?;
         (x < self.size[0] && y < self.size[1]).then_some(y * self.size[0] + x)
     }
 

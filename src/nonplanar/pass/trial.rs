@@ -199,7 +199,7 @@ impl<'a> Trial<'a> {
             };
             let tried = |k: usize| {
                 let place = places[k];
-                if !self.is_fresh(&place) {
+                if !self.is_fresh(place) {
                     return (true, None);
                 }
                 let hit = if is_known(k) { None } else { self.touches(place, i, stack) };
@@ -217,7 +217,7 @@ impl<'a> Trial<'a> {
     }
 
     /// Whether something was raised in reach of a place since it passed.
-    fn is_fresh(&self, place: &Spot) -> bool {
+    fn is_fresh(&self, place: Spot) -> bool {
         self.fresh.as_ref().is_none_or(|fresh| fresh.is_near(place))
     }
 
@@ -267,7 +267,7 @@ impl<'a> Trial<'a> {
             (!room.contains(&(top - stack.height(cell)))).then_some(*place)
         };
         let places = grid::places(&self.areas[lowest], inset);
-        let asked = places.par_iter().filter(|place| self.is_fresh(place));
+        let asked = places.par_iter().filter(|place| self.is_fresh(**place));
         let lacking: Vec<Spot> = asked.filter_map(lacks).collect();
         // What the head touches there has the better reason.
         for place in lacking {
@@ -413,9 +413,8 @@ impl Later {
     }
 
     fn raise(&mut self, cell: Spot, z: f64) {
-        let at = |axis: usize| usize::try_from(cell[axis] - self.low[axis]);
-        if let (Ok(x), Ok(y)) = (at(0), at(1)) {
-            self.pile.raise([x, y], z);
+        if let Some(cell) = grid::counted(cell, self.low) {
+            self.pile.raise(cell, z);
         }
     }
 

@@ -20,7 +20,7 @@ use crate::geom::{Point, polygon};
 use crate::mesh::Mesh;
 use crate::mesh::edges::{Adjacency, NONE, parts};
 use crate::mesh::geometry::measure::corners_of;
-use crate::mesh::geometry::vector::{Corner, length, normal};
+use crate::mesh::geometry::vector::{Corner, distance2, length, normal};
 use crate::nonplanar::params::NonPlanarParams;
 use crate::units::Coord;
 use rayon::prelude::*;
@@ -179,13 +179,8 @@ fn sides_of(corners: &[Corner; 3]) -> [f64; 3] {
 }
 
 /// Their squares.
-fn sides2_of(corners: &[Corner; 3]) -> [i64; 3] {
-    let square = |k: usize, axis: usize| {
-        let by = i64::from(corners[k][axis]) - i64::from(corners[(k + 1) % 3][axis]);
-        by * by
-    };
-    let side = |k: usize| square(k, 0) + square(k, 1) + square(k, 2);
-    [side(0), side(1), side(2)]
+fn sides2_of([a, b, c]: &[Corner; 3]) -> [i64; 3] {
+    [distance2(*a, *b), distance2(*b, *c), distance2(*c, *a)]
 }
 
 /// Makes narrow level groups part of the slopes around them.

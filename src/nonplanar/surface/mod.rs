@@ -25,6 +25,7 @@ mod upright;
 use crate::geom::boxes::extent;
 use crate::geom::raster::crossed;
 use crate::geom::{Contour, Point, edges, encloses, side};
+use crate::mesh::geometry::vector::normal;
 use crate::units::{Coord, UNITS_PER_MM, between};
 use index::{Index, NEAR};
 use levels::Levels;
@@ -357,11 +358,9 @@ fn plan(facet: &[[Coord; 3]; 3]) -> [Point; 3] {
 }
 
 /// The normal of a facet, as long as twice its area. Exact: its parts are products of coordinates.
-fn across([a, b, c]: &[[Coord; 3]; 3]) -> [f64; 3] {
-    let by = |to: &[Coord; 3], axis: usize| i64::from(to[axis]) - i64::from(a[axis]);
-    let (u, v) = ([by(b, 0), by(b, 1), by(b, 2)], [by(c, 0), by(c, 1), by(c, 2)]);
-    let part = |j: usize, k: usize| (u[j] * v[k] - u[k] * v[j]) as f64;
-    [part(1, 2), part(2, 0), part(0, 1)]
+fn across(facet: &[[Coord; 3]; 3]) -> [f64; 3] {
+    let [x, y, z] = normal(*facet);
+    [x as f64, y as f64, z as f64]
 }
 
 /// Whether a facet with this doubled area in plan is narrower than 0.01 mm: rounding turns it anyhow.
