@@ -37,6 +37,10 @@ const LEAST_STRIP: Coord = 200;
 /// length. 3, the first value, left slivers with two columns open.
 const LEAST_COLUMNS: usize = 2;
 
+/// Least width of a bead along a sliver, in line widths: a nozzle lays no thinner one evenly. At a smaller value it
+/// tears; a larger one presses more than there is room for into slivers.
+const THINNEST: f64 = 0.72;
+
 /// The two rasters tell the same edge apart by at most this, grid units: rounding.
 const ROUNDING: Coord = 2;
 
@@ -284,10 +288,11 @@ fn add_end(
 fn slivers(thin: Vec<Extent>, params: &LineParams) -> Vec<Polyline> {
     let mut beads: Vec<(Extent, Polyline)> = Vec::new();
     let w = params.line_width;
+    let thinnest = (THINNEST * f64::from(w)) as Coord;
     for extent in thin {
         let height = extent.high - extent.low;
         let width =
-            (height + w - 2 * params.overlap).clamp(w / 2, (WIDEST * f64::from(w)) as Coord);
+            (height + w - 2 * params.overlap).clamp(thinnest, (WIDEST * f64::from(w)) as Coord);
         let point = LinePoint { u: extent.u, v: extent.low + height / 2, width };
         let joins = |last: &Extent| {
             extent.u - last.u == w && extent.low <= last.high && last.low <= extent.high

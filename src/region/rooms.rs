@@ -12,11 +12,13 @@
 //! neighbouring rows form a stack, and those hardly wider go on with it: a ring about as wide as the limit
 //! is filled all around or nowhere. A low stack beside a wide place is a tip, and stays as it is. A long
 //! span of which the columns lack most is narrow as well. What is narrow on the columns is brought to the
-//! rows cell by cell, and the reverse, so that both rasters agree.
+//! rows cell by cell, and the reverse, so that both rasters agree. Last, small spots between narrow places
+//! are narrow, too: where two narrow rooms cross, both chords run on along them.
 
 use super::scan::around;
 use crate::geom::Point;
 use crate::geom::cells::Cells;
+use crate::geom::islands::Islands;
 use crate::geom::outline::Columns;
 use crate::geom::raster::{Raster, crossed};
 use crate::geom::sets::Sets;
@@ -36,6 +38,10 @@ const FINGER: f64 = 0.375;
 /// more of rooms that taper.
 const HARDLY: f64 = 1.25;
 
+/// Most of a stack that may be hardly wider than the limit. With a larger value a bar is filled because the corners
+/// at its ends are narrow; with a smaller one a ring in places.
+const MOST_DOUBTFUL: f64 = 0.8;
+
 /// The narrow places of a region on the two rasters of skins, of which the second is turned by
 /// +90°; `None` if there are none.
 #[must_use]
@@ -49,12 +55,36 @@ pub fn narrow(region: [&Rows; 2], rasters: [Raster; 2], limit: Coord) -> Option<
     if own.iter().all(Option::is_none) {
         return None;
     }
-    let own = own.map(Option::unwrap_or_default);
-    let both = |r: usize| {
+    let narrow = on_both(region, own.map(Option::unwrap_or_default), rasters);
+    let spots = [0, 1].map(|r| spots(region[r], &narrow[r], rasters[r].pitch, limit));
+    if spots.iter().all(Rows::is_empty) {
+        return Some(narrow);
+    }
+    let all = [0, 1].map(|r| narrow[r].or(&spots[r]));
+    Some(on_both(region, all, rasters))
+}
+
+/// What is narrow on either of the two rasters, on both.
+fn on_both(region: [&Rows; 2], own: [Rows; 2], rasters: [Raster; 2]) -> [Rows; 2] {
+    [0, 1].map(|r| {
         let brought = brought(&columns([&own[0], &own[1]], rasters, r), rasters[r].pitch);
         whole(region[r], &own[r].or(&brought), rasters[1 - r].pitch)
-    };
-    Some([both(0), both(1)])
+    })
+}
+
+/// The islands of what is not `narrow` that are smaller than a square as wide as the limit, and a row more: rows
+/// and columns tell widths in steps.
+fn spots(region: &Rows, narrow: &Rows, pitch: Coord, limit: Coord) -> Rows {
+    let rest = region.minus(narrow);
+    let islands = Islands::new(&rest);
+    let mut areas = vec![0; islands.count()];
+    for (j, row) in rest.iter() {
+        for (span, island) in row.iter().zip(islands.row(j)) {
+            areas[*island] += span.len() * i64::from(pitch);
+        }
+    }
+    let most = i64::from(limit + pitch);
+    islands.select(|island| areas[island] < most * most)
 }
 
 /// The part of `region`, on `raster`, that is narrow on the two rasters of skins.
@@ -107,12 +137,14 @@ enum Chords {
 const NONE: (i32, i32) = (i32::MAX, i32::MIN);
 
 /// A stack of narrow spans: the lowest and highest row and the longest span of those that are beyond doubt,
-/// and whether it lies beside a wide place.
+/// whether it lies beside a wide place, and the length of all spans and of those that are in doubt.
 #[derive(Clone, Copy)]
 struct Stack {
     rows: (i32, i32),
     widest: i64,
     tip: bool,
+    length: i64,
+    doubtful: i64,
 }
 
 impl Stack {
@@ -121,7 +153,8 @@ impl Stack {
         let (low, high) = self.rows;
         let height = (i64::from(high) - i64::from(low) + 1) * i64::from(pitch);
         let least = if height > self.widest { FINGER } else { TIP };
-        low <= high && (!self.tip || height >= (f64::from(limit) * least) as i64)
+        let is_narrow = (self.doubtful as f64) <= MOST_DOUBTFUL * self.length as f64;
+        low <= high && is_narrow && (!self.tip || height >= (f64::from(limit) * least) as i64)
     }
 }
 
@@ -146,7 +179,13 @@ impl Stacks {
         let Some((root, joined)) = self.sets.join(a, b) else { return };
         let (x, y) = (self.of[root], self.of[joined]);
         let rows = (x.rows.0.min(y.rows.0), x.rows.1.max(y.rows.1));
-        self.of[root] = Stack { rows, widest: x.widest.max(y.widest), tip: x.tip || y.tip };
+        self.of[root] = Stack {
+            rows,
+            widest: x.widest.max(y.widest),
+            tip: x.tip || y.tip,
+            length: x.length + y.length,
+            doubtful: x.doubtful + y.doubtful,
+        };
     }
 }
 
@@ -178,7 +217,9 @@ fn stacks(rows: &Rows, pitch: Coord, columns: &Columns<'_>, limit: Coord) -> Opt
                 Chords::Doubtful => (NONE, 0),
                 _ => ((row, row), span.len()),
             };
-            stacks.add(Stack { rows, widest, tip });
+            let length = span.len();
+            let doubtful = if chords == Chords::Doubtful { length } else { 0 };
+            stacks.add(Stack { rows, widest, tip, length, doubtful });
             if !alone {
                 below.for_each(|k| stacks.join(k, spans.len()));
             }
@@ -350,6 +391,31 @@ mod tests {
                 } else {
                     prop_assert!(share < 0.12, "{}", share);
                 }
+            }
+        }
+
+        /// However its ends lie to the rows: their corners are narrow.
+        #[test]
+        fn a_bar_hardly_wider_than_the_limit_is_not_filled_from_its_ends(
+            width in 2.2..3.0_f64, length in 15.0..40.0_f64, degrees in 0.0..180.0_f64
+        ) {
+            for share in share((length, width), degrees) {
+                prop_assert!(share < 0.2, "{}", share);
+            }
+        }
+
+        #[test]
+        fn narrow_rooms_are_narrow_where_they_cross(
+            width in 0.6..1.7_f64, ends in prop::array::uniform4(5.0..9.0_f64), degrees in 0.0..90.0_f64
+        ) {
+            let h = width / 2.0;
+            let [right, top, left, bottom] = ends;
+            let cross = [
+                (right, -h), (right, h), (h, h), (h, top), (-h, top), (-h, h),
+                (-left, h), (-left, -h), (-h, -h), (-h, -bottom), (h, -bottom), (h, -h),
+            ];
+            for (narrow, all) in areas(&cross, degrees) {
+                prop_assert!(narrow > 0.97 * all, "{} of {}", narrow, all);
             }
         }
 

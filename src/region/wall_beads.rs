@@ -247,14 +247,23 @@ mod tests {
     /// The beads of a part with one wall and lines along x, whose skin is exposed up to `covered`
     /// from its contour.
     fn beads(part: &[Contour], covered: Coord) -> (Vec<Polyline>, BeadParams) {
+        exposed(part, |scan, _| scan.inset(covered))
+    }
+
+    /// The same, whose skin is exposed but for what `covered` gives of its scan on a raster.
+    fn exposed(
+        part: &[Contour],
+        covered: impl Fn(&Scan, Raster) -> Rows,
+    ) -> (Vec<Polyline>, BeadParams) {
         let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
         settings.angle = profile::Angle::Degrees(0.0);
         settings.walls = 1;
         let params = RegionParams::new(&settings);
         let rows = |r: usize| {
-            let scan = Scan::new(part, params.rasters.skin(r));
+            let raster = params.rasters.skin(r);
+            let scan = Scan::new(part, raster);
             let fill = scan.inset(params.insets.fill);
-            (fill.minus(&scan.inset(covered)), fill)
+            (fill.minus(&covered(&scan, raster)), fill)
         };
         let ((skin, fill), (columns, fill_columns)) = (rows(0), rows(1));
         let crossed = Crossed {
@@ -290,6 +299,23 @@ mod tests {
     fn deeper_skin_takes_more_beads_and_wide_skin_none() {
         let lay = |covered: Coord| beads(&block(200_000, 150_000), covered).0.len();
         assert_eq!([lay(14_000), lay(20_000), lay(26_000), lay(60_000)], [2, 3, 0, 0]);
+    }
+
+    /// What covers the rest comes near to a wall that goes on beside deep skin.
+    #[test]
+    fn a_strip_that_is_short_for_its_depth_is_left_to_lines() {
+        let p = |x, y| Point { x, y };
+        let lay = |length: Coord| {
+            let cover = [vec![
+                p(60_000, 12_000),
+                p(60_000 + length, 12_000),
+                p(60_000 + length, 90_000),
+                p(60_000, 90_000),
+            ]];
+            let covered = |_: &Scan, raster| Scan::new(&cover, raster).inside().clone();
+            exposed(&block(300_000, 150_000), covered).0.len()
+        };
+        assert_eq!([lay(30_000), lay(60_000), lay(120_000)], [0, 0, 2]);
     }
 
     #[test]

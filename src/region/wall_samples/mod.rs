@@ -15,7 +15,8 @@
 //! 3. Measure shared samples anew at right angles to the wall, confirm that the opposite wall really lies
 //!    there, and decide which of the two leads: of two walls the first, within one wall by direction
 //!    ([`WallSample::confirm`]).
-//! 4. Bridge short gaps without beads, and smooth short changes of their number.
+//! 4. Bridge short gaps without beads, leave short stretches beside deep skin to lines, and smooth short changes
+//!    of the number of beads.
 //! 5. Add the wall's own corners, with the interpolated depth, so that beads follow them.
 //!
 //! The constants are in line widths unless they say otherwise. Most are as old as this file, and
@@ -98,6 +99,10 @@ const SLOPE: f64 = 0.1;
 /// cover: 2 · (0.5 + 4.6) = 10.2, and samples are a line apart. It was 8 first, which broke rings
 /// of three beads at corners. A larger value lays beads over skin that is really deep.
 const CORNER: f64 = 11.0;
+
+/// Minimum length of a stretch beside skin that is too deep for beads, in depths. A smaller value leaves patches
+/// of beads among lines; a larger one leaves strips to zigzags that are nearly all turns.
+const STRIP: f64 = 12.0;
 
 /// Where a strip ends or turns a corner, the wall seems deep for up to twice the strip's width, and for this
 /// much more: the wall itself on both sides, and the way to the next samples. A larger value takes a room for
@@ -194,6 +199,7 @@ fn finished(wall: &Contour, mut found: Vec<WallSample>, params: &BeadParams) -> 
     let perimeter = edges(wall).map(|(p, q)| p.distance(q)).sum::<f64>();
     leave_corners(&mut found, perimeter, params);
     bridge(&mut found, perimeter, params);
+    leave_patches(&mut found, perimeter);
     smooth(&mut found, perimeter, params);
     corners::with_corners(wall, &found, perimeter, params)
 }
@@ -327,6 +333,24 @@ fn leave_corners(samples: &mut [WallSample], perimeter: f64, params: &BeadParams
     let is_wide = |s: &WallSample| s.shared && s.beads > 1;
     for (from, to) in stretches(samples, is_wide) {
         if is_wide(&samples[from % n]) && span(samples, (from, to), perimeter) < CORNER * w {
+            (from..to).for_each(|k| samples[k % n].beads = 0);
+        }
+    }
+}
+
+/// Takes the beads from short stretches beside skin that is too deep for them. Lines run there anyway, and go on
+/// over what is narrow for a short way, as behind the corner of a letter; beads would be a patch in them.
+fn leave_patches(samples: &mut [WallSample], perimeter: f64) {
+    let n = samples.len();
+    let is_narrow = |s: &WallSample| s.beads > 0 && !s.shared;
+    let is_deep = |s: &WallSample| s.beads == 0 && s.skin;
+    for (from, to) in stretches(samples, is_narrow) {
+        let ends = [samples[(from + n - 1) % n], samples[to % n]];
+        if !is_narrow(&samples[from % n]) || !ends.iter().any(is_deep) {
+            continue;
+        }
+        let depth = (from..to).map(|k| samples[k % n].depth).sum::<f64>() / (to - from) as f64;
+        if span(samples, (from, to), perimeter) < STRIP * depth {
             (from..to).for_each(|k| samples[k % n].beads = 0);
         }
     }
