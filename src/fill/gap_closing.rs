@@ -44,10 +44,10 @@ const THINNEST: f64 = 0.72;
 /// The two rasters tell the same edge apart by at most this, grid units: rounding.
 const ROUNDING: Coord = 2;
 
-/// At a wall that moves on by less than this part of the pitch from row to row, lines run straight up to it:
-/// their round ends cover what is open. A larger number presses plastic for a strip where there is none; a
-/// smaller one leaves notches at slanted walls.
-const STEEPEST: i64 = 8;
+/// At a wall that moves on by less than this from row to row, in pitches, lines run straight up to it: their round
+/// ends and turns ([`skin`](super::skin)) cover what is open. A smaller value gives every second line of a slanted or
+/// round wall a hook; a larger one leaves notches.
+pub(super) const STEEPEST: f64 = 1.1;
 
 /// Without walls, strips beside each other that differ by more than this part of a line lie along an edge that is
 /// too slanted to be followed by wide beads: 6°. A larger value lets beads reach out of the part.
@@ -57,9 +57,14 @@ const EVEN: f64 = 0.1;
 /// once to avoid reallocation; a wrong value costs time only.
 const AT_ENDS: usize = 6;
 
-/// Returns the lines of a skin and the beads along its slivers.
+/// Returns the lines of a skin and the beads along its slivers, without those that have nowhere room for a bead
+/// as wide as `least`.
 #[must_use]
-pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Polyline>) {
+pub fn close(
+    crossed: &Crossed<'_>,
+    least: Coord,
+    params: &LineParams,
+) -> (Vec<Line>, Vec<Polyline>) {
     let mut strips = Strips::new(crossed.skin.range(), params);
     let mut thin = Vec::new();
     for extent in extents(crossed, params) {
@@ -71,12 +76,15 @@ pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Poly
     let mut lines = Vec::new();
     for (row, spans) in crossed.skin.iter() {
         for &span in spans {
-            let mut line = Line { row, span, above: Vec::new(), below: Vec::new(), beside: 0.0 };
-            (line.above, line.below) = strips.beside(row, span);
+            let (above, below) = strips.beside(row, span);
+            let at_wall = [false; 2];
+            let mut line = Line { row, span, above, below, beside: 0.0, at_wall };
             if params.walled {
+                line.at_wall = at_walls(span, crossed.fill.row(row));
                 line.beside = strips.room_beside(row, span);
-                add_ends(&mut line.above, span, crossed, (row, row + 1), params);
-                add_ends(&mut line.below, span, crossed, (row, row - 1), params);
+                let Line { above, below, at_wall, .. } = &mut line;
+                add_ends(above, (span, *at_wall), crossed.fill.row(row + 1), params);
+                add_ends(below, (span, *at_wall), crossed.fill.row(row - 1), params);
             } else {
                 // The skin ends at the outside of the part, and no bead may reach out of it.
                 keep_even(&mut line.above, params.line_width);
@@ -85,7 +93,7 @@ pub fn close(crossed: &Crossed<'_>, params: &LineParams) -> (Vec<Line>, Vec<Poly
             lines.push(line);
         }
     }
-    (lines, slivers(thin, params))
+    (lines, slivers(thin, least, params))
 }
 
 /// A span of a column, in the frame of the lines, and which of its ends are at a wall.
@@ -233,23 +241,26 @@ fn keep_even(strips: &mut Vec<Strip>, pitch: Coord) {
     *strips = (0..all.len()).filter(|&k| even(k)).map(|k| all[k]).collect();
 }
 
-/// Adds the strips at the ends of a line of `row`, on the side of row `other`. Where the wall
-/// cuts row `other` a little before it cuts `row`, the strip between is one pitch wide at the
-/// end of `other` and tapers to nothing at the end of the line.
+/// Whether `span` begins and ends where one between `walls` does.
+fn at_walls(span: Span, walls: &[Span]) -> [bool; 2] {
+    [walls.iter().any(|w| w.start == span.start), walls.iter().any(|w| w.end == span.end)]
+}
+
+/// Adds the strips at those ends of a line that are `at_wall`, on the side of a row that has `others` between
+/// walls. Where the wall cuts this row a little before it cuts the line's, the strip between is one pitch wide
+/// at the end of the other and tapers to nothing at the end of the line.
 fn add_ends(
     strips: &mut Vec<Strip>,
-    span: Span,
-    crossed: &Crossed<'_>,
-    (row, other): (i32, i32),
+    (span, at_wall): (Span, [bool; 2]),
+    others: &[Span],
     params: &LineParams,
 ) {
-    let (walls, others) = (crossed.fill.row(row), crossed.fill.row(other));
     let beside = |u: Coord| others.iter().any(|o| o.start <= u && u <= o.end);
-    if walls.iter().any(|w| w.end == span.end) && !beside(span.end) {
+    if at_wall[1] && !beside(span.end) {
         let edge = others.iter().map(|o| o.end).filter(|&u| u < span.end).max();
         add_end(strips, span, (edge, span.end), params);
     }
-    if walls.iter().any(|w| w.start == span.start) && !beside(span.start) {
+    if at_wall[0] && !beside(span.start) {
         let edge = others.iter().map(|o| o.start).filter(|&u| u > span.start).min();
         add_end(strips, span, (edge, span.start), params);
     }
@@ -269,11 +280,11 @@ fn add_end(
     let inside = |u: Coord| span.start < u && u < span.end;
     let near = |u: Coord| (u - end).abs() <= SHORT_STRIP * pitch;
     let Some(edge) = edge.filter(|&u| inside(u) && near(u)) else { return };
+    strips.retain(|s| (s.u - end).abs() > (edge - end).abs());
     let run = i64::from(end) - i64::from(edge);
-    if run.abs() < i64::from(pitch) / STEEPEST {
+    if (run.abs() as f64) < STEEPEST * f64::from(pitch) {
         return;
     }
-    strips.retain(|s| (s.u - end).abs() > (edge - end).abs());
     // Both lines reach `overlap` into the wall, so the taper ends before the line.
     let taper = end - (run * i64::from(params.overlap) / i64::from(pitch)) as Coord;
     // Behind the edge the other row's line fills the room, so the strip ends abruptly.
@@ -284,33 +295,41 @@ fn add_end(
     strips.extend(ends.into_iter().filter(|e| inside(e.0)).map(|(u, open)| Strip { u, open }));
 }
 
-/// Beads along the middle of slivers: extents that overlap on neighbouring columns are joined.
-fn slivers(thin: Vec<Extent>, params: &LineParams) -> Vec<Polyline> {
-    let mut beads: Vec<(Extent, Polyline)> = Vec::new();
+/// Beads along the middle of slivers, of which the widest place has room for `least`: extents that overlap on
+/// neighbouring columns are joined.
+fn slivers(thin: Vec<Extent>, least: Coord, params: &LineParams) -> Vec<Polyline> {
+    let mut beads: Vec<Sliver> = Vec::new();
     let w = params.line_width;
     let thinnest = (THINNEST * f64::from(w)) as Coord;
     for extent in thin {
         let height = extent.high - extent.low;
-        let width =
-            (height + w - 2 * params.overlap).clamp(thinnest, (WIDEST * f64::from(w)) as Coord);
+        let room = height + w - 2 * params.overlap;
+        let width = room.clamp(thinnest, (WIDEST * f64::from(w)) as Coord);
         let point = LinePoint { u: extent.u, v: extent.low + height / 2, width };
         let joins = |last: &Extent| {
             extent.u - last.u == w && extent.low <= last.high && last.low <= extent.high
         };
-        match beads
-            .iter_mut()
-            .rev()
-            .take_while(|(e, _)| extent.u - e.u <= w)
-            .find(|(e, _)| joins(e))
-        {
-            Some((last, bead)) => {
-                *last = extent;
-                bead.push(point);
+        let mut near = beads.iter_mut().rev().take_while(|sliver| extent.u - sliver.last.u <= w);
+        match near.find(|sliver| joins(&sliver.last)) {
+            Some(sliver) => {
+                sliver.last = extent;
+                sliver.room = sliver.room.max(room);
+                sliver.bead.push(point);
             }
-            None => beads.push((extent, vec![point])),
+            None => beads.push(Sliver { last: extent, room, bead: vec![point] }),
         }
     }
-    beads.into_iter().map(|(_, bead)| bead).filter(|bead| bead.len() >= LEAST_COLUMNS).collect()
+    let is_kept = |sliver: &Sliver| sliver.room >= least && sliver.bead.len() >= LEAST_COLUMNS;
+    beads.into_iter().filter(is_kept).map(|sliver| sliver.bead).collect()
+}
+
+/// A bead along the middle of a sliver.
+struct Sliver {
+    /// The extent of its last point.
+    last: Extent,
+    /// The width of a bead that fills its widest place.
+    room: Coord,
+    bead: Polyline,
 }
 
 #[cfg(test)]
@@ -337,7 +356,7 @@ mod tests {
             left_turn: true,
         };
         let params = LineParams::new(&settings);
-        let (lines, slivers) = close(&crossed, &params);
+        let (lines, slivers) = close(&crossed, 0, &params);
         (lines, slivers, params)
     }
 
@@ -380,6 +399,22 @@ mod tests {
         let middle = lines.iter().find(|l| l.row == 5).unwrap();
         let points = points(middle, Joined::default(), &params);
         assert!(points.iter().all(|p| p.width == params.line_width && p.v == 20_000));
+    }
+
+    #[test]
+    fn lines_run_straight_up_to_a_slanted_wall() {
+        // By so much the sides move on from row to row: 45° and steeper.
+        for run in [500, 1_000, 2_500, 4_000] {
+            let p = |x: Coord, row: Coord| Point { x: x + row * run, y: row * 4_000 };
+            let slanted = vec![p(0, 0), p(100_000, 0), p(100_000, 20), p(0, 20)];
+            let (lines, _, params) = closed(slanted);
+            let inner = lines.iter().filter(|line| (2..18).contains(&line.row));
+            for line in inner {
+                let points = points(line, Joined::default(), &params);
+                assert_eq!(points.len(), 2, "{run}: {points:?}");
+                assert!(points.iter().all(|p| p.width == params.line_width), "{run}: {points:?}");
+            }
+        }
     }
 
     #[test]

@@ -38,7 +38,7 @@ use rounding::Rounding;
 use std::borrow::Cow;
 use variable_width::LineParams;
 
-/// Slivers of solid rooms that are nowhere as wide as this, tenths of a line's width, are left out.
+/// Slivers of solid rooms that have nowhere room for a bead as wide as this, tenths of a line's width, are left out.
 const LEAST_SLIVER: Coord = 7;
 
 /// Corners of skin are rounded with at most a line's width divided by this. A larger radius leaves the
@@ -143,7 +143,7 @@ impl Maker<'_> {
     fn skin(&mut self, skin: &Skin) {
         let (frame, rounding) = (skin.raster.frame, self.params.skin_rounding);
         let params = LineParams { line_width: skin.raster.pitch, ..self.params.lines };
-        let (lines, slivers) = gap_closing::close(&skin.crossed(), &params);
+        let (lines, slivers) = gap_closing::close(&skin.crossed(), 0, &params);
         let in_turn = skin.top && self.params.monotonic;
         let lines = skin::zigzags(&lines, in_turn, &params);
         let role = match skin {
@@ -214,10 +214,9 @@ impl Maker<'_> {
             fill_columns,
             left_turn: border.left_turn,
         };
-        let (lines, mut slivers) = gap_closing::close(&crossed, &self.params.lines);
         // A thread beside a skin's edge would lie on the skin's last line.
         let least = self.params.line_width * LEAST_SLIVER / 10;
-        slivers.retain(|sliver| sliver.iter().any(|point| point.width >= least));
+        let (lines, mut slivers) = gap_closing::close(&crossed, least, &self.params.lines);
         // A lone line shorter than wide fills a notch beside a bead that turns, and lies on the wall there.
         let least = i64::from(self.params.line_width);
         let lines = skin::zigzags(&lines, false, &self.params.lines).into_iter();

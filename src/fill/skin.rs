@@ -1,9 +1,9 @@
 //! Lines of a skin -> zigzags: neighbouring solid lines joined end to end, straight across.
 
+use super::gap_closing::STEEPEST;
 use super::monotonic::in_order;
 use super::variable_width::{self, Joined, Line, LineParams};
-use crate::geom::Point;
-use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::polyline::{LinePoint, Polyline, area};
 use crate::pattern::zigzag::{Side, link};
 use crate::units::{Coord, nearest};
 
@@ -14,6 +14,18 @@ const LONGEST_JOIN: Coord = 2;
 /// Share of the overlap by which joins are moved back from the wall. At 1 their plastic fills the room
 /// exactly, but their round corners leave notches at the wall; at 0 the whole join lies in the wall.
 const MOVED_BACK: f64 = 0.75;
+
+/// So much less at a slanted wall, for each line width that the gap between two turns there is wide: the pointed corners
+/// of turns would leave notches at the wall.
+const SLANTED: f64 = 0.6;
+
+/// Share of the gap between two turns along a slanted wall that they close: the ends of each turn move apart along the
+/// wall. At 1 the notch between their round corners stays open; at 2 lines beside them are pressed together.
+const APART: f64 = 1.2;
+
+/// Length of the piece at the end of a line that bends towards the gap, in line widths. A larger value opens wedges
+/// between lines; a smaller one makes sharp bends.
+const END_PIECE: Coord = 1;
 
 /// Shorter lines are skipped (50 µm): the ends of their neighbours cover them.
 const LEAST: i64 = 500;
@@ -31,6 +43,7 @@ const LEAST_SHARE: f64 = 0.85;
 /// A join is a bead of full width along the wall. Lines reach into the wall with their round ends, so
 /// that a join between two ends would lie in it. Both ends are moved back by most of the
 /// overlap, measured at right angles to the join: then its edge lies near the wall's.
+/// Along a slanted wall both ends also move apart, up to the next turn.
 ///
 /// `monotonic` zigzags are to be printed one after the other as they come, each in its direction.
 #[must_use]
@@ -50,26 +63,30 @@ pub fn zigzags(lines: &[Line], monotonic: bool, params: &LineParams) -> Vec<Poly
         .into_iter()
         .map(|zigzag| {
             let mut polyline = Vec::with_capacity(2 * zigzag.len());
-            let mut back = 0;
+            let mut turn = Turn::default();
             for (k, link) in zigzag.iter().enumerate() {
                 let mut joined = Joined::default();
                 if k > 0 {
                     joined.below(link.from == Side::Left);
                 }
-                let mut next_back = 0;
+                let mut next_turn = Turn::default();
                 if let Some(next) = zigzag.get(k + 1) {
                     joined.above(link.from == Side::Right);
-                    let run = link.from.other().of(link.span) - next.from.of(next.span);
-                    next_back = moved_back(run, params);
+                    let ends = [(link, link.from.other()), (next, next.from)];
+                    let [from, to] = ends.map(|(link, side)| side.of(link.span));
+                    let at_wall = ends.map(|(link, side)| {
+                        line(link.row, link.index).at_wall[usize::from(side == Side::Right)]
+                    });
+                    next_turn = Turn::new(to - from, at_wall == [true; 2], params);
                 }
                 let line = line(link.row, link.index);
                 let mut points = variable_width::points(line, joined, params);
                 if link.from == Side::Right {
                     points.reverse();
                 }
-                move_ends(&mut points, (back, next_back));
+                move_ends(&mut points, (turn, next_turn), pitch);
                 append_line(points, &mut polyline, params);
-                back = next_back;
+                turn = next_turn;
             }
             let all = zigzag.iter().map(|link| line(link.row, link.index));
             thin(&mut polyline, all.map(|line| room(line, params)).sum());
@@ -87,33 +104,69 @@ fn room(line: &Line, params: &LineParams) -> f64 {
 }
 
 /// Takes from a zigzag what is more than its `room` takes.
-fn thin(polyline: &mut Polyline, room: f64) {
-    let at = |p: &LinePoint| Point { x: p.u, y: p.v };
-    let area = |w: &[LinePoint]| at(&w[0]).distance(at(&w[1])) * f64::from(w[1].width);
-    let area: f64 = polyline.windows(2).map(area).sum();
+fn thin(bead: &mut Polyline, room: f64) {
+    let area = area(bead);
     if area <= (1.0 + MOST_OVER) * room {
         return;
     }
     let share = ((1.0 + MOST_OVER) * room / area).max(LEAST_SHARE);
-    for point in polyline {
+    for point in bead {
         point.width = nearest(share * f64::from(point.width)) as Coord;
     }
 }
 
-/// How far two ends, `run` apart along their lines, are moved back from the wall.
-fn moved_back(run: Coord, params: &LineParams) -> Coord {
-    let (run, rise) = (f64::from(run), f64::from(params.line_width));
-    nearest(MOVED_BACK * f64::from(params.overlap) * (run * run + rise * rise).sqrt() / rise)
-        as Coord
+/// How the two ends of a turn are moved.
+#[derive(Debug, Clone, Copy, Default)]
+struct Turn {
+    /// Both, back from the wall.
+    back: Coord,
+    /// The second one along the wall, on the row and across; the first one as far the other way.
+    apart: [Coord; 2],
 }
 
-/// Moves the first and the last point of a line inwards, at most to a third of its length.
-fn move_ends(points: &mut [LinePoint], (first_back, last_back): (Coord, Coord)) {
-    if let [first, .., last] = points {
+impl Turn {
+    /// Between two ends, the second one `run` further along the rows, both `at_wall` or not.
+    fn new(run: Coord, at_wall: bool, params: &LineParams) -> Self {
+        let (run, rise) = (f64::from(run), f64::from(params.line_width));
+        let far = (run * run + rise * rise).sqrt();
+        let gap = if at_wall { far - rise } else { 0.0 };
+        let moved_back = (MOVED_BACK - SLANTED * gap / rise).max(0.0);
+        let back = moved_back * f64::from(params.overlap) * far / rise;
+        // At flatter walls the lines themselves close what is open.
+        let is_steep = run.abs() < STEEPEST * rise;
+        let gap = if is_steep { gap } else { 0.0 };
+        let apart = [run, rise].map(|way| nearest(APART / 2.0 * gap * way / far) as Coord);
+        Self { back: nearest(back) as Coord, apart }
+    }
+}
+
+/// Moves the first and the last point of a line as the turns there ask, inwards at most to a third of its length.
+fn move_ends(points: &mut Vec<LinePoint>, (first_turn, last_turn): (Turn, Turn), pitch: Coord) {
+    if let [first, .., last] = points.as_mut_slice() {
         let way = last.u - first.u;
         let back = |by: Coord| by.min(way.abs() / 3) * way.signum();
-        (first.u, last.u) = (first.u + back(first_back), last.u - back(last_back));
+        first.u += back(first_turn.back);
+        last.u -= back(last_turn.back);
     }
+    move_apart(points, last_turn.apart.map(|by| -by), pitch);
+    points.reverse();
+    move_apart(points, first_turn.apart, pitch);
+    points.reverse();
+}
+
+/// Moves the last point of a line by `apart`. The line runs straight up to its end piece, if it is long enough.
+fn move_apart(points: &mut Vec<LinePoint>, apart: [Coord; 2], pitch: Coord) {
+    let [.., before, mut last] = points[..] else { return };
+    if apart == [0; 2] {
+        return;
+    }
+    let (way, piece) = (last.u - before.u, END_PIECE * pitch);
+    points.pop();
+    if way.abs() > 2 * piece {
+        points.push(LinePoint { u: last.u - piece * way.signum(), ..last });
+    }
+    (last.u, last.v) = (last.u + apart[0], last.v + apart[1]);
+    points.push(last);
 }
 
 /// Appends a line to a polyline. The line has the widths at its points; those of the polyline

@@ -84,6 +84,8 @@ pub struct Line {
     pub below: Vec<Strip>,
     /// The area of the strips, less that by which it lies deeper in walls beside it than lines shall.
     pub beside: f64,
+    /// Whether its left and its right end are at a wall.
+    pub at_wall: [bool; 2],
 }
 
 /// How wide an open strip beside a line is at one place, grid units.

@@ -23,3 +23,10 @@ pub fn length(polyline: &[LinePoint]) -> i64 {
     let at = |p: &LinePoint| Point { x: p.u, y: p.v };
     polyline.windows(2).map(|w| at(&w[0]).distance(at(&w[1])) as i64).sum()
 }
+
+/// The area that a polyline covers, grid units squared: each segment has the width at its end.
+#[must_use]
+pub fn area(polyline: &[LinePoint]) -> f64 {
+    let at = |p: &LinePoint| Point { x: p.u, y: p.v };
+    polyline.windows(2).map(|w| at(&w[0]).distance(at(&w[1])) * f64::from(w[1].width)).sum()
+}
