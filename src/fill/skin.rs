@@ -1,11 +1,19 @@
 //! Lines of a skin -> zigzags: neighbouring solid lines joined end to end, straight across.
+//!
+//! Words: a *join* is the piece between the ends of two lines. A *turn* is a join with what it does to these
+//! ends. A *room* is the area that a zigzag has between walls.
+//!
+//! Algorithm: link the lines row by row. At each turn move both ends back from the wall, so that the edge of the
+//! join lies near that of the wall, and apart along a slanted wall, so that turns close the gaps between them.
+//! Then lines take the widths that [`gap_closing`](super::gap_closing) gives them. Last, compare the plastic of
+//! the zigzag with its room, and make thinner what is too much: joins before lines.
 
 use super::gap_closing::STEEPEST;
 use super::monotonic::in_order;
 use super::variable_width::{self, Joined, Line, LineParams};
 use crate::geom::polyline::{LinePoint, Polyline, area};
-use crate::pattern::zigzag::{Side, link};
-use crate::units::{Coord, nearest};
+use crate::pattern::zigzag::{Link, Side, link};
+use crate::units::{Bounded as _, Coord, nearest};
 
 /// Maximum distance that a join runs along its lines, in line widths. A longer join would lie on
 /// the ends of neighbouring lines; a smaller limit cuts zigzags at slanted walls.
@@ -35,8 +43,16 @@ const LEAST: i64 = 500;
 /// value presses more into the walls of narrow rooms.
 const MOST_OVER: f64 = 0.04;
 
-/// It gets at least this share: narrower lines no longer lie side by side.
+/// Lines with at least this share of their width leave slots that nobody sees: of 20 µm with
+/// lines of 0.4 mm.
+/// A larger value changes the flow at the turns of nearly all zigzags; a smaller one leaves slots.
+const UNSEEN: f64 = 0.95;
+
+/// Lines keep at least this share of their width: narrower ones no longer lie side by side.
 const LEAST_SHARE: f64 = 0.85;
+
+/// Joins keep at least this share of theirs. A smaller one gives flow jumps, a larger one leaves slots between lines.
+const LEAST_JOIN: f64 = 0.7;
 
 /// Joins the lines of a skin, already closed up to the walls, to zigzags.
 ///
@@ -56,43 +72,42 @@ pub fn zigzags(lines: &[Line], monotonic: bool, params: &LineParams) -> Vec<Poly
         ((from.0 - to.0).abs() <= LONGEST_JOIN * pitch).then(Vec::new)
     };
     // Rows are sorted, but rows without skin are missing.
-    let line = |row: i32, index: usize| &rows[rows.partition_point(|r| r[0].row < row)][index];
+    let line = |link: &Link| &rows[rows.partition_point(|r| r[0].row < link.row)][link.index];
     let zigzags = link(spans, 1, pitch, join);
     let zigzags = if monotonic { in_order(zigzags, pitch) } else { zigzags };
-    zigzags
-        .into_iter()
-        .map(|zigzag| {
-            let mut polyline = Vec::with_capacity(2 * zigzag.len());
-            let mut turn = Turn::default();
-            for (k, link) in zigzag.iter().enumerate() {
-                let mut joined = Joined::default();
-                if k > 0 {
-                    joined.below(link.from == Side::Left);
-                }
-                let mut next_turn = Turn::default();
-                if let Some(next) = zigzag.get(k + 1) {
-                    joined.above(link.from == Side::Right);
-                    let ends = [(link, link.from.other()), (next, next.from)];
-                    let [from, to] = ends.map(|(link, side)| side.of(link.span));
-                    let at_wall = ends.map(|(link, side)| {
-                        line(link.row, link.index).at_wall[usize::from(side == Side::Right)]
-                    });
-                    next_turn = Turn::new(to - from, at_wall == [true; 2], params);
-                }
-                let line = line(link.row, link.index);
-                let mut points = variable_width::points(line, joined, params);
-                if link.from == Side::Right {
-                    points.reverse();
-                }
-                move_ends(&mut points, (turn, next_turn), pitch);
-                append_line(points, &mut polyline, params);
-                turn = next_turn;
-            }
-            let all = zigzag.iter().map(|link| line(link.row, link.index));
-            thin(&mut polyline, all.map(|line| room(line, params)).sum());
-            polyline
-        })
-        .collect()
+    zigzags.into_iter().map(|links| bead(&links, line, params)).collect()
+}
+
+/// The bead along the lines of a zigzag.
+fn bead<'a>(links: &[Link], line: impl Fn(&Link) -> &'a Line, params: &LineParams) -> Polyline {
+    let mut bead = Vec::with_capacity(2 * links.len());
+    let mut joins = Vec::with_capacity(links.len());
+    let mut turn = Turn::default();
+    for (k, link) in links.iter().enumerate() {
+        let mut joined = Joined::default();
+        if k > 0 {
+            joined.below(link.from == Side::Left);
+            joins.push(bead.len());
+        }
+        let mut next_turn = Turn::default();
+        if let Some(next) = links.get(k + 1) {
+            joined.above(link.from == Side::Right);
+            let ends = [(link, link.from.other()), (next, next.from)];
+            let [from, to] = ends.map(|(link, side)| side.of(link.span));
+            let at_wall =
+                ends.map(|(link, side)| line(link).at_wall[usize::from(side == Side::Right)]);
+            next_turn = Turn::new(to - from, at_wall == [true; 2], params);
+        }
+        let mut points = variable_width::points(line(link), joined, params);
+        if link.from == Side::Right {
+            points.reverse();
+        }
+        move_ends(&mut points, (turn, next_turn), params.line_width);
+        append_line(points, &mut bead, params);
+        turn = next_turn;
+    }
+    thin(&mut bead, &joins, links.iter().map(|link| room(line(link), params)).sum());
+    bead
 }
 
 /// The area that a line and half the turns at its ends have between walls.
@@ -103,14 +118,22 @@ fn room(line: &Line, params: &LineParams) -> f64 {
     w * (line.span.len() as f64 + ends) + line.beside
 }
 
-/// Takes from a zigzag what is more than its `room` takes.
-fn thin(bead: &mut Polyline, room: f64) {
-    let area = area(bead);
-    if area <= (1.0 + MOST_OVER) * room {
+/// Takes from a zigzag what is more than its `room` takes. If lines would leave slots between them, it is taken from
+/// the `joins` first, which lie on walls: they are given by the points that they lead to.
+fn thin(bead: &mut Polyline, joins: &[usize], room: f64) {
+    let (all, most) = (area(bead), (1.0 + MOST_OVER) * room);
+    if all <= most {
         return;
     }
-    let share = ((1.0 + MOST_OVER) * room / area).max(LEAST_SHARE);
-    for point in bead {
+    let in_joins: f64 = joins.iter().map(|&k| area(&bead[k - 1..=k])).sum();
+    let even = most / all;
+    let joins_alone = (1.0 - (all - most) / in_joins.at_least(1.0)).at_least(LEAST_JOIN);
+    let of_joins = if even < UNSEEN { joins_alone } else { even };
+    let in_lines = (all - in_joins).at_least(1.0);
+    let of_lines = ((most - of_joins * in_joins) / in_lines).clamp(LEAST_SHARE, 1.0);
+    let mut joins = joins.iter().peekable();
+    for (k, point) in bead.iter_mut().enumerate() {
+        let share = if joins.next_if_eq(&&k).is_some() { of_joins } else { of_lines };
         point.width = nearest(share * f64::from(point.width)) as Coord;
     }
 }

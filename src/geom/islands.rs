@@ -64,6 +64,15 @@ impl<'a> Islands<'a> {
         row.get(k).filter(|s| s.start <= u).map(|_| self.row(j)[k])
     }
 
+    /// The length of each island's spans: its area, divided by the distance of the rows.
+    #[must_use]
+    pub fn lengths(&self) -> Vec<i64> {
+        let mut lengths = vec![0; self.count];
+        let spans = self.rows.iter().flat_map(|(_, row)| row);
+        self.labels.iter().zip(spans).for_each(|(island, span)| lengths[*island] += span.len());
+        lengths
+    }
+
     /// The rows of the islands that `keep` accepts.
     #[must_use]
     pub fn select(&self, keep: impl Fn(usize) -> bool) -> Rows {

@@ -115,7 +115,7 @@ pub(super) fn holds(rows: &Rows, p: Point, pitch: Coord) -> bool {
 }
 
 /// Places on `line`, at most `step` apart.
-fn places(line: &[Point], step: Coord) -> impl Iterator<Item = Point> {
+pub(super) fn places(line: &[Point], step: Coord) -> impl Iterator<Item = Point> {
     line.windows(2).flat_map(move |w| {
         let (from, to) = (w[0], w[1]);
         let steps = (from.distance(to) / f64::from(step)).ceil().at_least(1.0) as i64;

@@ -77,14 +77,9 @@ fn on_both(region: [&Rows; 2], own: [Rows; 2], rasters: [Raster; 2]) -> [Rows; 2
 fn spots(region: &Rows, narrow: &Rows, pitch: Coord, limit: Coord) -> Rows {
     let rest = region.minus(narrow);
     let islands = Islands::new(&rest);
-    let mut areas = vec![0; islands.count()];
-    for (j, row) in rest.iter() {
-        for (span, island) in row.iter().zip(islands.row(j)) {
-            areas[*island] += span.len() * i64::from(pitch);
-        }
-    }
+    let lengths = islands.lengths();
     let most = i64::from(limit + pitch);
-    islands.select(|island| areas[island] < most * most)
+    islands.select(|island| lengths[island] * i64::from(pitch) < most * most)
 }
 
 /// The part of `region`, on `raster`, that is narrow on the two rasters of skins.

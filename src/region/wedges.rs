@@ -4,18 +4,23 @@
 //! rack, they end where it gets narrower, and the rest is crumbs of lines, each with a travel. There lines alone
 //! fill the room in one go.
 
-use super::hidden::holds;
+use super::hidden::places;
 use super::params::RegionParams;
 use super::per_raster::skin_turn;
 use super::wall_beads::taken;
 use crate::geom::Point;
 use crate::geom::islands::Islands;
-use crate::geom::polyline::{LinePoint, Polyline};
-use crate::geom::spans::{Rows, intersect, total};
+use crate::geom::polyline::{LinePoint, Polyline, area};
+use crate::geom::spans::Rows;
+use crate::units::Coord;
 
-/// The least part of a room that beads have to fill. A larger value fills bent strips with lines that are all
-/// turns; a smaller one leaves crumbs in rooms that taper.
+/// The least part of a room that beads have to fill, of what they and the lines beside them would fill. A larger
+/// value fills bent strips with lines that are all turns; a smaller one leaves crumbs in rooms that taper.
 const LEAST: f64 = 0.75;
+
+/// A piece that beads leave is a crumb if it is smaller than so many squares as wide as a line. With a larger value
+/// the hub of a wheel takes the beads of its spokes; with a smaller one crumbs pass.
+const LARGEST: i64 = 25;
 
 /// The `beads` of layer `k`, in the frame of its skin's raster, without those of the `rooms` that they leave in
 /// crumbs.
@@ -31,25 +36,50 @@ pub fn without_wedges(
     }
     let along = skin_turn(k).0;
     let (rows, raster) = (&rooms[along], params.rasters.skin(along));
-    let wedges = wedges(rows, &taken(&beads, raster.frame, raster, &params.beads));
-    let is_there = |p: &&LinePoint| holds(&wedges, Point { x: p.u, y: p.v }, raster.pitch);
-    let lies_there = |bead: &Polyline| 2 * bead.iter().filter(is_there).count() > bead.len();
-    beads.into_iter().filter(|bead| !lies_there(bead)).collect()
-}
-
-/// The rooms of which less than [`LEAST`] is `filled`.
-fn wedges(rooms: &Rows, filled: &Rows) -> Rows {
-    let islands = Islands::new(rooms);
-    let mut sums = vec![[0; 2]; islands.count()];
-    let mut inside = Vec::new();
-    for (j, row) in rooms.iter() {
-        for (span, island) in row.iter().zip(islands.row(j)) {
-            inside.clear();
-            intersect(&[*span], filled.row(j), &mut inside);
-            sums[*island][0] += span.len();
-            sums[*island][1] += total(&inside);
+    let islands = Islands::new(rows);
+    let left = rows.minus(&taken(&beads, raster.frame, raster, &params.beads));
+    let crumbs = crumbs(&left, &islands, raster.pitch);
+    // Rows tell the length of narrow rooms, not their width: what beads fill is what they hold.
+    let rooms: Vec<Option<usize>> =
+        beads.iter().map(|bead| room(bead, &islands, raster.pitch)).collect();
+    let mut filled = vec![0.0; islands.count()];
+    for (bead, room) in beads.iter().zip(&rooms) {
+        if let Some(room) = room {
+            filled[*room] += area(bead);
         }
     }
-    let is_wedge = |[all, filled]: [i64; 2]| (filled as f64) < LEAST * all as f64;
-    islands.select(|island| is_wedge(sums[island]))
+    let is_wedge = |room: usize| filled[room] < LEAST * (filled[room] + crumbs[room]);
+    let kept = beads.into_iter().zip(rooms).filter(|(_, room)| !room.is_some_and(is_wedge));
+    kept.map(|(bead, _)| bead).collect()
+}
+
+/// The area of what is `left` of each room in small pieces.
+fn crumbs(left: &Rows, rooms: &Islands<'_>, pitch: Coord) -> Vec<f64> {
+    let mut crumbs = vec![0.0; rooms.count()];
+    let pieces = Islands::new(left);
+    let lengths = pieces.lengths();
+    let most = LARGEST * i64::from(pitch);
+    for (j, row) in left.iter() {
+        let small = row.iter().zip(pieces.row(j)).filter(|(_, piece)| lengths[**piece] < most);
+        for (span, _) in small {
+            if let Some(room) = rooms.at(j, span.start) {
+                crumbs[room] += span.len() as f64 * f64::from(pitch);
+            }
+        }
+    }
+    crumbs
+}
+
+/// The room that holds most of a bead; `None` if most of it lies in none.
+fn room(bead: &[LinePoint], islands: &Islands<'_>, pitch: Coord) -> Option<usize> {
+    let line: Vec<Point> = bead.iter().map(|p| Point { x: p.u, y: p.v }).collect();
+    let at = |p: Point| {
+        let row = p.y.div_euclid(pitch);
+        islands.at(row, p.x).or_else(|| islands.at(row + 1, p.x))
+    };
+    let mut found: Vec<Option<usize>> = places(&line, pitch).map(at).collect();
+    let all = found.len();
+    found.sort_unstable();
+    let most = found.chunk_by(|a, b| a == b).max_by_key(|same| same.len())?;
+    most[0].filter(|_| 2 * most.len() > all)
 }

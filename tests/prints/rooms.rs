@@ -271,3 +271,32 @@ fn teeth_of_a_rack_are_filled_by_few_pieces() {
     }
     assert_eq!(kinds(&judge_made(&run.text, &stl)), []);
 }
+
+/// A wheel with a small hub: the window between two spokes, `wide` each.
+fn window([from, to]: [f64; 2], wide: f64) -> Solid {
+    let (hub, rim) = (3.2, 16.0);
+    let at = |r: f64, angle: f64| [r * angle.cos(), r * angle.sin()];
+    let beside = |r: f64| (wide / 2.0 / r).asin();
+    let [first, last] = [from + beside(rim), to - beside(rim)];
+    let arc = (0..=8).map(|k| at(rim, first + (last - first) * f64::from(k) / 8.0));
+    let ends = [at(hub, to - beside(hub)), at(hub, from + beside(hub))];
+    Solid::prism(&arc.chain(ends).collect(), 0.0, 4.0).inside_out()
+}
+
+/// What is left in the hub is no reason to fill the spokes with lines.
+#[test]
+fn each_spoke_of_a_wheel_has_a_bead_all_along() {
+    let spokes = 6;
+    for (degrees, wide) in [(0.0, 2.0), (15.0, 2.0), (15.0, 2.3), (40.0, 2.1)] {
+        let angle = |k: usize| f64::to_radians(degrees + 360.0 / spokes as f64 * k as f64);
+        let windows = (0..spokes).map(|k| window([angle(k), angle(k + 1)], wide));
+        let wheel = Solid::cylinder(19.0, 4.0, 72);
+        let stl = windows.fold(wheel, |all, window| all.and(&window)).stl();
+        let run = slice(&stl, "generic-marlin", &[]);
+        for layer in [8, 9] {
+            let pieces = lengths(&run, layer, &[Kind::Infill]);
+            let whole = pieces.iter().filter(|length| **length > 9.0).count();
+            assert!(whole >= spokes, "{degrees} {wide} {layer}: {pieces:?}");
+        }
+    }
+}
