@@ -10,7 +10,7 @@
 
 use super::Skin;
 use super::bridge::loose::{self, Beads, Below};
-use super::bridge::{self, Pair};
+use super::bridge::{self, Pair, ledges};
 use super::classify::{Areas, areas, areas_beside, exposed};
 use super::crossed::Crossed;
 use super::hidden::{self, between_walls};
@@ -126,7 +126,7 @@ pub fn divide<'a>(
         None => rooms::on_raster(narrow, both, raster, region),
     };
     let solid = &examined.solid;
-    let Beads { kept: beads, cut } = held(k, examined, layers, below, params);
+    let Beads { kept: beads, cut } = resting(own, examined, layers, below, params);
     let pair = below.map(|below| Pair { own, below: below.layer, beads: &beads });
     let bridges = pair.map(|pair| bridge::bridges(pair, layers, params)).unwrap_or_default();
     let along = params.rasters.skin(skin_turn(k).0);
@@ -244,6 +244,22 @@ fn solid<'a>(
     let rows = layers(k)?;
     let fill = [0, 1].map(|r| &*rows.skin(r).fill);
     rooms::narrow(fill, [0, 1].map(|r| params.rasters.skin(r)), params.skins.least_room)
+}
+
+/// The beads of a layer that lie on something; cut out is what would hang in the air.
+fn resting<'a>(
+    own: &Own,
+    examined: &Examined,
+    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+    below: Option<&Lower<'_>>,
+    params: &RegionParams,
+) -> Beads {
+    let held = held(own.layer.index, examined, layers, below, params);
+    let Some(below) = below else { return held };
+    let pair = Pair { own, below: below.layer, beads: &held.kept };
+    let mut resting = ledges::held(pair, layers, params);
+    resting.cut.extend(held.cut);
+    resting
 }
 
 /// The beads of layer `k`; cut out is what would lie along the sparse lines below.

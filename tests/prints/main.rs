@@ -4,6 +4,7 @@
 mod common;
 
 mod arcs;
+mod bridges;
 mod carried;
 mod checked;
 mod contour;

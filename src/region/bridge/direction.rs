@@ -4,21 +4,21 @@
 //! end *holds* if the carrier, or a wall on it, begins there.
 //!
 //! Algorithm: draw the island and the carrier around it into a small grid of cells. For each of
-//! the directions walk over the grid along parallel lines. Count what part of the runs' ends does
-//! not hold, weighted by length, and how long the runs are: the mean of their lengths' eighth
-//! powers, weighted by length, so that the longest count most. Of the directions with nearly the fewest free ends, the shortest runs win. So a
+//! the directions, those of sides beside it and some that lie evenly around, walk over the grid along
+//! parallel lines. Count what part of the runs' ends does not hold, weighted by length, and how long
+//! the runs are: the mean of their lengths' eighth powers, weighted by length, so that the longest
+//! count most. Of the directions with nearly the fewest free ends, the shortest runs win. So a
 //! bridge is laid across its gap, and a ledge that is held on one side only is laid outwards
 //! from there, in lines that each begin on the carrier.
 
+use super::sides::{COUNT, STEP, Sides};
+use crate::geom::Point;
 use crate::geom::islands::Islands;
 use crate::geom::spans::Rows;
 use crate::units::{Bounded as _, Coord, sin_cos};
 
-/// Number of directions that are tried. They begin with that of the layer's skin.
-pub const COUNT: usize = 24;
-
-/// From one direction to the next, degrees. The directions make half a turn.
-pub const STEP: f64 = 180.0 / COUNT as f64;
+/// One in so many directions is tried, and those of sides.
+const EVERY: usize = COUNT / 24;
 
 /// Share of free ends that makes no difference by itself: lines that graze an island's edge are free
 /// in any direction. At 0.05 bridges were laid one step askew, so that the lines at their sides
@@ -29,11 +29,17 @@ const ALIKE: f64 = 0.02;
 /// twice, small bridges were laid a step askew, since cells tell lengths only roughly.
 const FREE_COST: f64 = 8.0;
 
-/// Along or across the rows a bridge may have this share of free ends more than in the best direction,
-/// and lines longer by this share, as those a step and a half askew are: cells and the lines that are
-/// tried tell both only roughly. Such bridges keep their edges along the walls. Larger values lay
-/// bridges askew that are turned against the rows; smaller ones those that are not.
-const NEAT: [f64; 2] = [0.04, 0.019];
+/// Along or across a side a bridge may have this share of free ends more than in the best direction, and lines
+/// longer by this share: cells and the lines that are tried tell both only roughly. Such bridges keep their
+/// edges along the walls. Larger values lay bridges along sides that do not carry them; smaller ones askew.
+const NEAT: [f64; 2] = [0.08, 0.03];
+
+/// The same along or across the rows. At [`NEAT`] openings without straight sides would get longer lines.
+const NEAT_ROWS: [f64; 2] = [0.04, 0.019];
+
+/// So many lines at each edge may graze a side that they are parallel to: they leave and enter the cells of the
+/// island, and seem free.
+const GRAZING: usize = 2;
 
 /// Most lines of one direction. The lines of a large island lie further apart: the choice is the
 /// same, and its time stays bounded.
@@ -52,27 +58,53 @@ pub struct Site<'a> {
     pub pitch: Coord,
 }
 
-/// The best direction for the lines of an island, as a number of [`STEP`]s from the rows. Walls
-/// lie within `walls` beyond its edge.
+/// A direction for the lines of an island.
+#[derive(Debug, Clone, Copy)]
+pub struct Direction {
+    /// Number of [`STEP`]s from the rows.
+    pub turn: usize,
+    /// Share of the lines' ends that do not hold, by length: 0 to 1. Where the island goes on from what carries
+    /// it to an edge of the part it is a half or more. Cells do not tell it of strips at most two rows wide: there
+    /// it is 1.
+    pub free: f64,
+}
+
+/// The best direction for the lines of an island. Walls lie within `walls` beyond its edge, `sides` beside them.
 #[must_use]
-pub fn best(site: &Site<'_>, walls: Coord) -> usize {
-    let Some(grid) = Grid::new(site, walls) else { return 0 };
-    // Along and across the rows first: of equal directions they give the neatest edges.
-    let half = COUNT / 2;
-    let others = (1..COUNT).filter(|turn| *turn != half);
-    let tried: Vec<(usize, Hold)> =
-        [0, half].into_iter().chain(others).map(|turn| (turn, grid.hold(turn))).collect();
-    let fewest = tried.iter().map(|(_, hold)| hold.free).fold(f64::MAX, f64::at_most);
-    let good = tried.iter().filter(|(_, hold)| hold.free <= fewest + ALIKE);
-    let cost = |hold: &Hold| hold.length * (1.0 + FREE_COST * (hold.free - fewest));
-    let Some((turn, best)) = good.min_by(|a, b| cost(&a.1).total_cmp(&cost(&b.1))) else {
-        return 0;
+pub fn best(site: &Site<'_>, walls: Coord, sides: &Sides) -> Direction {
+    let Some(grid) = Grid::new(site, walls) else { return Direction { turn: 0, free: 1.0 } };
+    let thin = grid.is_thin();
+    let along = if thin { Vec::new() } else { sides.directions(grid.corners(walls)) };
+    let of = |turn: usize| (turn, grid.hold(turn, along.contains(&turn)));
+    // A side that is nearly parallel to the rows, or square to them, is what counts there.
+    let rows = [0, COUNT / 2].into_iter().filter(|row| !along.iter().any(|to| is_near(*row, *to)));
+    let rows: Vec<(usize, Hold)> = rows.map(of).collect();
+    let sides: Vec<(usize, Hold)> = along.iter().copied().map(of).collect();
+    let others: Vec<(usize, Hold)> = (0..COUNT).step_by(EVERY).map(of).collect();
+    let tried = || sides.iter().chain(&rows).chain(&others).copied();
+    let fewest = tried().map(|(_, hold)| hold.free).fold(f64::MAX, f64::at_most);
+    let cost = |hold: Hold| hold.length * (1.0 + FREE_COST * (hold.free - fewest));
+    let good = tried().filter(|(_, hold)| hold.free <= fewest + ALIKE);
+    let Some(best) = good.min_by(|a, b| cost(a.1).total_cmp(&cost(b.1))) else {
+        return Direction { turn: 0, free: 1.0 };
     };
-    // Of both the rows' own direction first: the skin above then crosses the bridge.
-    let mut neat = tried[..2].iter().filter(|(_, hold)| {
-        hold.free <= fewest + NEAT[0] && hold.length <= best.length * (1.0 + NEAT[1])
-    });
-    neat.next().map_or(*turn, |(turn, _)| *turn)
+    // Along and across the rows first, then along sides: of equal directions they give the neatest edges. Of both
+    // the rows' own direction first: the skin above then crosses the bridge.
+    let neat = |tried: &[(usize, Hold)], [free, longer]: [f64; 2]| {
+        let is_neat = |(_, hold): &&(usize, Hold)| {
+            hold.free <= fewest + free && hold.length <= best.1.length * (1.0 + longer)
+        };
+        tried.iter().find(is_neat).copied()
+    };
+    let (turn, Hold { free, .. }) =
+        neat(&rows, NEAT_ROWS).or_else(|| neat(&sides, NEAT)).unwrap_or(best);
+    Direction { turn, free: if thin { 1.0 } else { free } }
+}
+
+/// Whether two directions are different, but nearer to each other than those that lie evenly around.
+fn is_near(a: usize, b: usize) -> bool {
+    let off = a.abs_diff(b);
+    a != b && off.min(COUNT - off) < EVERY
 }
 
 /// How well an island holds in one direction.
@@ -94,6 +126,8 @@ enum Cell {
 
 /// The island and what is around it, in square cells.
 struct Grid {
+    /// The island's first row and its least place along the rows, and the greatest ones.
+    ends: [Point; 2],
     cells: Vec<Cell>,
     width: usize,
     height: usize,
@@ -125,7 +159,25 @@ impl Grid {
                 }
             }
         }
-        Some(Self { cells, width, height, reach })
+        let ends = [(low, first), (high, last)].map(|(x, j)| Point { x, y: j * pitch });
+        Some(Self { ends, cells, width, height, reach })
+    }
+
+    /// The corners of a box around the island and `walls`.
+    fn corners(&self, walls: Coord) -> [Point; 2] {
+        let [low, high] = self.ends;
+        let out = |p: Point, by: Coord| Point { x: p.x + by, y: p.y + by };
+        [out(low, -walls), out(high, walls)]
+    }
+
+    /// Whether the island is nowhere wider than two cells.
+    fn is_thin(&self) -> bool {
+        let is_open = |k: usize| self.cells[k] == Cell::Open;
+        // The outermost cells are not open.
+        let is_inner = |k: usize| {
+            is_open(k) && [k - 1, k + 1, k - self.width, k + self.width].into_iter().all(is_open)
+        };
+        !(0..self.cells.len()).any(is_inner)
     }
 
     fn at(&self, [x, y]: [f64; 2]) -> Cell {
@@ -153,15 +205,15 @@ impl Grid {
         on
     }
 
-    /// How the island holds in direction `turn`.
-    fn hold(&self, turn: usize) -> Hold {
+    /// How the island holds in direction `turn`. Along `sides` ends of the outermost lines do not count.
+    fn hold(&self, turn: usize, sides: bool) -> Hold {
         let (sin, cos) = sin_cos(STEP * turn as f64);
         let middle = [self.width as f64 / 2.0, self.height as f64 / 2.0];
         let radius = (middle[0] * middle[0] + middle[1] * middle[1]).sqrt();
         let lines = (2.0 * radius).at_most(MOST_LINES as f64) as usize;
         // Two steps a cell, so that no cell is jumped over.
         let steps = (4.0 * radius) as usize;
-        let (mut free, mut sum, mut powers) = (0.0, 0.0, 0.0);
+        let mut sums: Vec<[f64; 3]> = Vec::with_capacity(lines);
         let mut line = Vec::with_capacity(steps);
         for n in 0..lines {
             let aside = (2.0 * n as f64 + 1.0 - lines as f64) * radius / lines as f64;
@@ -175,16 +227,23 @@ impl Grid {
                 self.at([middle[0] + on * cos - aside * sin, middle[1] + on * sin + aside * cos])
             }));
             mend(&mut line, 2 * self.reach);
-            for (length, ends) in runs(&line, 2 * self.reach) {
+            let of = |(length, ends): (usize, usize)| {
                 let length = length as f64 / 2.0;
-                free += length * ends as f64 / 2.0;
-                sum += length;
-                powers += length * length.powi(8);
-            }
+                [length * ends as f64 / 2.0, length, length * length.powi(8)]
+            };
+            sums.extend(runs(&line, 2 * self.reach).into_iter().map(of).reduce(plus));
         }
-        let sum = sum.at_least(1.0);
-        Hold { free: free / sum, length: (powers / sum).sqrt().sqrt().sqrt() }
+        let left_out = if sides { GRAZING.min(sums.len() / 4) } else { 0 };
+        let within = &sums[left_out..sums.len() - left_out];
+        let [free, inner, _] = within.iter().copied().fold([0.0; 3], plus);
+        let [_, all, powers] = sums.iter().copied().fold([0.0; 3], plus);
+        let length = (powers / all.at_least(1.0)).sqrt().sqrt().sqrt();
+        Hold { free: free / inner.at_least(1.0), length }
     }
+}
+
+fn plus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| a[k] + b[k])
 }
 
 /// Closes gaps of up to `reach` cells between open cells. A line that grazes an island's edge leaves
@@ -247,10 +306,12 @@ mod tests {
 
     /// The best direction over an opening, in degrees from that of the opening.
     fn direction(open: &[Contour], carrier: &[Contour], degrees: f64) -> f64 {
+        let all = [open, carrier].concat();
         let (open, carrier) = (rows(open, degrees), rows(carrier, degrees));
         let islands = Islands::new(&open);
         let site = Site { island: 0, islands: &islands, carrier: &carrier, pitch: W };
-        let off = STEP * best(&site, 2 * W) as f64 - degrees;
+        let sides = Sides::new(all.iter(), Frame::new(-degrees));
+        let off = STEP * best(&site, 2 * W, &sides).turn as f64 - degrees;
         (off + 90.0).rem_euclid(180.0) - 90.0
     }
 
@@ -268,7 +329,7 @@ mod tests {
                 rectangle([x[0].min(x[1]), x[0].max(x[1])], [-width / 2, width / 2])
             };
             let off = direction(&[open], &[pillar(-1), pillar(1)], degrees);
-            prop_assert!(off.abs() <= 1.5 * STEP, "{off}");
+            prop_assert!(off.abs() <= STEP, "{off}");
         }
 
         /// A ledge is laid outwards from where it is held.
@@ -306,7 +367,7 @@ mod tests {
         for degrees in [0.0, 20.0, 75.0, 130.0] {
             let rest = [around.clone(), hole.iter().rev().copied().collect()];
             let off = direction(std::slice::from_ref(&hole), &rest, degrees);
-            assert!(off.abs() > 90.0 - 2.0 * STEP, "{degrees}: {off}");
+            assert!(off.abs() > 90.0 - STEP, "{degrees}: {off}");
         }
     }
 }

@@ -7,15 +7,19 @@
 //! Algorithm, for each layer:
 //! 1. Find the open places on the raster of the layer's skin. On most layers there are none, or
 //!    only short ones along walls: then this is all.
-//! 2. Divide them into islands. For each bridge choose the direction of its lines ([`direction`]).
+//! 2. Divide them into islands. For each bridge choose the direction of its lines ([`direction`]), of which the
+//!    sides beside it are the first to be tried ([`sides`]).
 //! 3. For each direction, scan the contours of both layers with a raster of that direction, and
 //!    find the open places of its bridges again: exactly, at the lines' own ends.
 //! 4. Lengthen each line by the anchor at both ends, and add a line on both sides.
 //!
-//! The lines of a bridge take their place from the layer's skin and infill, like wall beads.
+//! The lines of a bridge take their place from the layer's skin and infill, like wall beads. Beads that would hang
+//! where a bridge holds are left out before ([`ledges`]).
 
 pub mod direction;
+pub mod ledges;
 pub mod loose;
+pub mod sides;
 #[cfg(test)]
 mod tests;
 
@@ -25,15 +29,17 @@ use super::prepare::{self, LayerRows, Own};
 use super::scan::{Scan, around_in_part};
 use super::wall_beads;
 use super::{Skin, SkinRows};
-use crate::geom::Point;
 use crate::geom::frame::Frame;
 use crate::geom::islands::Islands;
 use crate::geom::polyline::Polyline;
 use crate::geom::raster::{Raster, crossed};
 use crate::geom::spans::{Rows, Span, merge};
+use crate::geom::{Contour, Point};
 use crate::slice::Layer;
 use crate::units::{Coord, nearest};
-use direction::{STEP, Site};
+use direction::{Direction, Site};
+use sides::{STEP, Sides};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Shorter open spans are dropped as noise of the contours (50 µm), as `LEAST_SKIN` in `classify`.
@@ -62,47 +68,83 @@ pub fn bridges<'a>(
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
     params: &RegionParams,
 ) -> Vec<Skin> {
-    let k = pair.own.layer.index;
-    let along = skin_turn(k).0;
-    let raster = params.rasters.skin(along);
-    let rows = |k: usize| layers(k)?.on(raster);
-    let (Some(anchor), Some(here), Some(below)) =
-        (params.bridges.anchor, rows(k), k.checked_sub(1).and_then(rows))
+    let (Some(anchor), Some(open)) =
+        (params.bridges.anchor, Open::new(pair, pair.beads, layers, params))
     else {
         return Vec::new();
     };
-    let is_long = |span: Span| span.len() > i64::from(MOST_FREE);
-    let mut open = here.fill.minus(&below.cover);
-    if params.skins.bottom == 0 || !open.iter().any(|(_, row)| row.iter().any(|s| is_long(*s))) {
+    if !open.rows.iter().any(|(_, row)| row.iter().any(is_long)) {
         return Vec::new();
     }
-    if !pair.beads.is_empty() {
-        open = open.minus(&pair.taken(raster, params));
-    }
-    let open = open.filter(|_, span| span.len() >= i64::from(LEAST_OPEN));
-    let islands = Islands::new(&open);
+    let islands = Islands::new(&open.rows);
     let mut long = vec![false; islands.count()];
-    for (j, row) in open.iter() {
+    for (j, row) in open.rows.iter() {
         for (span, island) in row.iter().zip(islands.row(j)) {
-            long[*island] |= is_long(*span);
+            long[*island] |= is_long(span);
         }
     }
-    // The direction of each bridge, and each direction once, in the order of the islands.
-    let direction = |island: usize| {
-        let site = Site { island, islands: &islands, carrier: &below.cover, pitch: raster.pitch };
-        long[island].then(|| direction::best(&site, params.insets.fill))
-    };
-    let directions: Vec<Option<usize>> = (0..islands.count()).map(direction).collect();
+    let found = open.directions(pair, &islands, |island| long[island], params);
+    let each: BTreeSet<usize> = found.iter().flatten().map(|found| found.turn).collect();
+    let along = skin_turn(pair.own.layer.index).0;
     let mut out = Vec::new();
-    for turn in 0..direction::COUNT {
-        if directions.contains(&Some(turn)) {
-            let is_open = |island: usize| directions[island] == Some(turn);
-            let holds = Holds { islands: &islands, raster, is_open };
-            let degrees = params.bridges.angle + 90.0 * along as f64 + STEP * turn as f64;
-            out.push(lay(pair, degrees, anchor, &holds, &out, params));
-        }
+    for turn in each {
+        let is_open = |island: usize| found[island].is_some_and(|found| found.turn == turn);
+        let holds = Holds { islands: &islands, raster: open.raster, is_open };
+        let degrees = params.bridges.angle + 90.0 * along as f64 + STEP * turn as f64;
+        out.push(lay(pair, degrees, anchor, &holds, &out, params));
     }
     out
+}
+
+/// The open places of a layer, on the raster of its skin.
+struct Open<'a> {
+    raster: Raster,
+    rows: Rows,
+    /// What the layer below covers.
+    carrier: &'a Rows,
+}
+
+impl<'a> Open<'a> {
+    /// Those that `beads` do not take.
+    fn new(
+        pair: Pair<'_>,
+        beads: &[Polyline],
+        layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+        params: &RegionParams,
+    ) -> Option<Self> {
+        let k = pair.own.layer.index;
+        let raster = params.rasters.skin(skin_turn(k).0);
+        let rows = |k: usize| layers(k)?.on(raster);
+        let (here, below) = (rows(k)?, rows(k.checked_sub(1)?)?);
+        if params.skins.bottom == 0 {
+            return None;
+        }
+        let open = here.fill.minus(&below.cover);
+        let taken = || wall_beads::taken(beads, raster.frame, raster, &params.beads);
+        let open = if beads.is_empty() { open } else { open.minus(&taken()) };
+        let rows = open.filter(|_, span| span.len() >= i64::from(LEAST_OPEN));
+        Some(Self { raster, rows, carrier: &below.cover })
+    }
+
+    /// The direction of each of the `islands` in which something `sags`.
+    fn directions(
+        &self,
+        pair: Pair<'_>,
+        islands: &Islands<'_>,
+        sags: impl Fn(usize) -> bool,
+        params: &RegionParams,
+    ) -> Vec<Option<Direction>> {
+        let sides = Sides::new(pair.contours(), self.raster.frame);
+        let direction = |island: usize| {
+            let site = Site { island, islands, carrier: self.carrier, pitch: self.raster.pitch };
+            sags(island).then(|| direction::best(&site, params.insets.fill, &sides))
+        };
+        (0..islands.count()).map(direction).collect()
+    }
+}
+
+fn is_long(span: &Span) -> bool {
+    span.len() > i64::from(MOST_FREE)
 }
 
 /// What the lines of `bridges` take of a layer, on `raster`: no other line may end in it.
@@ -149,6 +191,10 @@ fn strips(bridge: &Skin) -> Vec<((Coord, Coord), (Coord, Coord))> {
 }
 
 impl Pair<'_> {
+    fn contours(&self) -> impl Iterator<Item = &Contour> {
+        self.own.layer.contours.iter().chain(&self.below.contours)
+    }
+
     /// What the wall beads take, on `raster`.
     fn taken(&self, raster: Raster, params: &RegionParams) -> Rows {
         let along = params.rasters.skin(skin_turn(self.own.layer.index).0);

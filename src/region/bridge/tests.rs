@@ -7,12 +7,12 @@ use crate::region::prepare::prepare;
 use crate::units::{to_mm, to_units};
 use proptest::prelude::*;
 
-fn rectangle(x: [f64; 2], y: [f64; 2]) -> Contour {
+pub(super) fn rectangle(x: [f64; 2], y: [f64; 2]) -> Contour {
     let corners = [(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])];
     corners.map(|(x, y)| Point { x: to_units(x), y: to_units(y) }).into()
 }
 
-fn params() -> RegionParams {
+pub(super) fn params() -> RegionParams {
     let mut settings = profile::load(["generic-marlin"], &[]).unwrap().settings;
     settings.angle = profile::Angle::Degrees(0.0);
     RegionParams::new(&settings)

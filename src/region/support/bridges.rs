@@ -13,7 +13,8 @@ use super::pieces::{Pieces, turned};
 use super::strips::upright;
 use crate::geom::islands::Islands;
 use crate::geom::spans::{Rows, Span, intersect};
-use crate::region::bridge::direction::{self, COUNT, Site};
+use crate::region::bridge::direction::{self, Site};
+use crate::region::bridge::sides::{COUNT, Sides};
 use crate::units::Coord;
 
 /// How far the layer must reach over what carries it, in line widths. Less does not hold a line.
@@ -26,8 +27,8 @@ const ROUNDING: i64 = 200;
 /// Per cent of a piece's length that must bridge: corners are round, and rows touch them.
 const MOSTLY: i64 = 95;
 
-/// Lines of a bridge that are askew by no more than so many steps still cross the piers.
-const ASKEW: usize = 2;
+/// Lines of a bridge that are askew by no more than so many steps, 15°, still cross the piers.
+const ASKEW: usize = 150;
 
 /// `hanging` without the pieces that bridge from place to place of `below`, and without what bridges
 /// from pier to pier. Lines of skin run along the rows if `turn` is 0, else across.
@@ -91,7 +92,7 @@ fn way(piece: &Rows, below: [&Rows; 2], turn: usize, params: &SupportParams) -> 
     let open = if turn == 0 { piece.clone() } else { turned(piece, pitch) };
     let islands = Islands::new(&open);
     let site = Site { island: 0, islands: &islands, carrier: below[turn], pitch };
-    let best = direction::best(&site, 2 * params.least);
+    let best = direction::best(&site, 2 * params.least, &Sides::default()).turn;
     let off = best % COUNT;
     let is_near = |to: usize| off.abs_diff(to) <= ASKEW;
     if is_near(0) || is_near(COUNT) { Some(turn) } else { is_near(COUNT / 2).then_some(1 - turn) }
