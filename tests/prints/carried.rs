@@ -212,6 +212,74 @@ fn beyond_a_floor(out: f64, low: f64, set: &[(&str, &str)]) -> (f64, bool) {
     (support.map(Move::length).sum(), hangs)
 }
 
+/// Islands of support of a layer with neither support nor the part below any of it: the layer, and a place of each.
+fn hanging(print: &Print) -> Vec<(usize, [f64; 2])> {
+    let count = print.layers.len();
+    let layers = |is: &dyn Fn(Kind) -> bool| -> Vec<Cells> {
+        let mut lists: Vec<Vec<&Move>> = vec![Vec::new(); count];
+        print.beads().filter(|bead| is(bead.kind)).for_each(|b| lists[b.layer.unwrap()].push(b));
+        lists.into_iter().map(|list| Cells::of(list.into_iter())).collect()
+    };
+    let support = layers(&Kind::is_support);
+    let part = layers(&|kind| !kind.is_support());
+    let mut found = Vec::new();
+    for k in 1..count {
+        // Beside the part as far as support may lean.
+        let floors = &part[k.saturating_sub(2)..k];
+        let lies =
+            |p| support[k - 1].near(p, 0.45) || floors.iter().any(|floor| floor.near(p, 0.8));
+        let islands = support[k].islands().into_iter().filter(|island| island.0.len() > BIT);
+        let islands = islands.filter(|island| !island.points().any(lies));
+        found.extend(islands.map(|island| (k, island.points().next().unwrap())));
+    }
+    found
+}
+
+/// Steps with a slab on a column above: support stands on the steps, and goes down beside the lowest.
+fn temple(low: f64, out: f64) -> Solid {
+    let step = |k: i32| {
+        let (k, half) = (f64::from(k), 16.0 - 2.34 * f64::from(k));
+        Solid::cuboid([-half, -half, k], [half, half, k + 1.0])
+    };
+    let steps = (0..5).fold(Solid::default(), |all, k| all.and(&step(k)));
+    steps
+        .and(&Solid::cuboid([-1.3, -1.3, 4.9], [1.3, 1.3, low + 2.0]))
+        .and(&Solid::cuboid([-16.0 - out, -16.0 - out, low], [16.0 + out, 16.0 + out, low + 2.0]))
+}
+
+/// A square tower whose roofs have flat undersides and steep flanks.
+fn pagoda(flank: f64) -> Solid {
+    let square = |half: f64| vec![[-half, -half], [half, -half], [half, half], [-half, half]];
+    let floor = |k: i32| {
+        let (z, half) = (11.0 * f64::from(k), 9.0 - 0.6 * f64::from(k));
+        let wall = Solid::cuboid([-half, -half, z], [half, half, z + 7.0]);
+        let roof = [(half - 0.01, 6.0), (half + 5.0, 7.5), (half + 5.0, 8.2), (half - 0.8, flank)];
+        let roof: Vec<_> = roof.iter().map(|&(half, up)| (square(half), z + up)).collect();
+        wall.and(&Solid::tower(&roof))
+    };
+    (0..5).fold(Solid::default(), |all, k| all.and(&floor(k)))
+}
+
+#[test]
+fn each_island_of_support_lies_on_something() {
+    let mut failures = Vec::new();
+    let parts = parts().into_iter().map(|(name, part)| (name.to_owned(), part));
+    let temples = [(6.5, 1.0), (8.0, -2.0), (9.5, 3.0), (11.6, 2.0)];
+    let temples = temples.map(|(low, out)| (format!("temple {low} {out}"), temple(low, out)));
+    let pagodas = [11.5, 12.0, 13.0].map(|flank| (format!("pagoda {flank}"), pagoda(flank)));
+    for (name, part) in parts.chain(temples).chain(pagodas) {
+        for angle in ["0", "45", "75"] {
+            let set = [("support.enabled", "true"), ("angle", angle)];
+            let run = slice(&part.stl(), "generic-marlin", &set);
+            let found = hanging(&run.print);
+            if let Some(first) = found.first() {
+                failures.push(format!("{name}, {angle}: {} {first:?}", found.len()));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
 #[test]
 fn support_beside_a_floor_that_may_not_carry_it_stands_on_the_bed() {
     for out in [1.0, 1.5] {

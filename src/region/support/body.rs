@@ -17,7 +17,7 @@ use super::held::{loose, reach};
 use super::outline::outlines;
 use super::params::{BODIES, SupportParams};
 use super::pieces::{Pieces, turned};
-use super::strips::upright;
+use super::strips::{upright, whole_columns};
 use crate::geom::Contour;
 use crate::geom::polyline::{Polyline, length};
 use crate::geom::section::Section;
@@ -140,7 +140,8 @@ impl Body {
     /// The outlines of layer `k`, and where its lines run, by pattern.
     pub(super) fn lay(self, k: usize, params: &SupportParams) -> (Vec<Contour>, [Rows; BODIES]) {
         let Self { rows, strips, carries, thin, tied, lone, weak } = self;
-        let mut outlined = thin.or(&weak);
+        let always = thin.or(&weak);
+        let mut outlined = always.clone();
         if k.is_multiple_of(TIED) {
             outlined = outlined.or(if k.is_multiple_of(SELDOM_TIED) { &tied } else { &lone });
         }
@@ -154,13 +155,16 @@ impl Body {
         let zigzags = rows.minus(&outlined.dilate(inwards, raster.pitch));
         let outlines = outlines(&outlined, raster.pitch, raster.frame, 4 * params.least);
 
-        let [along, across] = apart(&lines, &strips, params);
+        // Braces reach from side to side.
+        let [along, across] = apart(&lines, &whole_columns(&lines, &strips, params), params);
         let core = outlined.erode(BESIDE * params.least, raster.pitch);
         let seldom = k.is_multiple_of(SELDOM);
         let lines = along.filter(|j, span| {
             let is_brace = span.len() <= brace(params);
             let braces = || seldom || carries.overlapping(j, span).is_some();
-            if is_brace { braces() } else { core.overlapping(j, span).is_some() }
+            // Lines of the next layer lie on those inside a tie.
+            let is_tied = || always.overlapping(j, span).is_none();
+            if is_brace { braces() } else { core.overlapping(j, span).is_some() || is_tied() }
         });
         let carries = if seldom { Rows::default() } else { turned(&carries, raster.pitch) };
         let braces = across.filter(|j, span| seldom || carries.overlapping(j, span).is_some());

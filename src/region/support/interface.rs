@@ -13,8 +13,10 @@
 
 use super::body::Body;
 use super::columns::Column;
+use super::held::to_lines;
 use super::params::{SupportLayer, SupportParams};
 use super::pieces::{Pieces, across, without_specks};
+use super::stand::stand_beside;
 use super::strips::strips;
 use crate::geom::spans::{Rows, Span};
 use rayon::prelude::*;
@@ -36,12 +38,13 @@ impl Divided {
 }
 
 /// The support of all layers, divided.
-pub(super) fn divided(columns: &[Column], params: &SupportParams) -> Vec<Divided> {
+pub(super) fn divided(mut columns: Vec<Column>, params: &SupportParams) -> Vec<Divided> {
     let strips = |column: &Column| {
         if params.has_outline { strips(&column.all, params) } else { Rows::default() }
     };
     let strips: Vec<Rows> = columns.par_iter().map(strips).collect();
-    let divide = |k| divide((columns, &strips), k, params);
+    stand_beside(&mut columns, &strips, params);
+    let divide = |k| divide((&columns, &strips), k, params);
     let mut layers: Vec<Divided> = (0..columns.len()).into_par_iter().map(divide).collect();
     // What gets an outline on a layer, and would have nothing below it, gets one on those below.
     for k in (1..layers.len()).rev() {
@@ -76,11 +79,7 @@ fn divide(all: (&[Column], &[Rows]), k: usize, params: &SupportParams) -> Divide
         dense = parts[0].or(&parts[1]).dilate(params.least, pitch);
     }
     let [along, across] = parts;
-    let mut beside = columns[k].beside.minus(&dense);
-    if !strips.is_empty() && !beside.is_empty() {
-        beside = beside.minus(&strips.dilate(params.lines.stride * pitch, pitch));
-    }
-    let body = with_lines(&here.minus(&dense), &beside);
+    let body = with_lines(&here.minus(&dense), &columns[k].beside.minus(&dense));
     let carries = ends(columns, k + params.interface_layers);
     Divided {
         body: Body::new(body, strips.clone(), carries, params),
@@ -95,13 +94,15 @@ fn rests(body: &Rows, strips: &Rows, params: &SupportParams) -> Rows {
         |j: i32, span: Span| params.lines.prints(j) && span.len() >= i64::from(params.least);
     let pieces = Pieces::new(body);
     let mut has_line = vec![false; pieces.count()];
-    let lines = body.filter(prints).or(&body.and(strips));
+    // Lines across a strip are too short to hold where little of it is left.
+    let strips = body.and(strips).erode(2 * params.least, params.raster().pitch);
+    let lines = body.filter(prints).or(&strips);
     pieces.meeting(body, &lines, |piece, _| has_line[piece] = true);
     pieces.keep(body, |piece| !has_line[piece])
 }
 
 /// A body with what it needs to be held by lines: those pieces of both that have some of the body in them.
-fn with_lines(body: &Rows, beside: &Rows) -> Rows {
+pub(super) fn with_lines(body: &Rows, beside: &Rows) -> Rows {
     if beside.is_empty() {
         return body.clone();
     }
@@ -140,9 +141,13 @@ fn interface(
     for rank in 1..=n {
         let bottom = if rank <= k { bottom(k + 1 - rank) } else { Rows::default() };
         let first = n - rank;
+        let mut top = self::ends(columns, k + rank - 1);
+        if let Some(below) = columns[..k].last().filter(|_| first == 0 && !top.is_empty()) {
+            top = top.or(&onto_lines(&top.dilate(params.least, pitch).and(&own), below, params));
+        }
         // The body that a stack lies on, or that stands on it, is next to the layer of the highest rank.
         let next = [k.checked_sub(first + 1), Some(k + first + 1)];
-        for (ends, next) in [self::ends(columns, k + rank - 1), bottom].into_iter().zip(next) {
+        for (ends, next) in [top, bottom].into_iter().zip(next) {
             if ends.is_empty() {
                 continue;
             }
@@ -154,6 +159,12 @@ fn interface(
         }
     }
     out.map(|rows| without_specks(&rows, params))
+}
+
+/// What must be added to dense `rows` between two lines of the layer below, so that they lie on one.
+fn onto_lines(rows: &Rows, below: &Column, params: &SupportParams) -> Rows {
+    let more = to_lines(&params.lines, rows);
+    if more.is_empty() { more } else { more.and(&below.all.or(&below.beside)) }
 }
 
 impl SupportParams {

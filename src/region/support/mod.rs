@@ -87,7 +87,7 @@ pub fn supports(
     }
     add_brim(slicer, params, &bed, &mut columns);
     let laid = |(k, layer): (usize, Divided)| layer.lay(k, params);
-    interface::divided(&columns, params).into_par_iter().enumerate().map(laid).collect()
+    interface::divided(columns, params).into_par_iter().enumerate().map(laid).collect()
 }
 
 /// Grows the lowest layer, to hold on to the bed.

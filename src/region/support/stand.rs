@@ -6,6 +6,7 @@
 //! all that would stand on it.
 
 use super::columns::Column;
+use super::interface::with_lines;
 use super::params::{LEAN, SupportParams};
 use super::pieces::without_specks;
 use crate::geom::spans::Rows;
@@ -24,9 +25,24 @@ pub(super) fn stand(columns: &mut [Column], params: &SupportParams) {
             here.all = without_specks(&here.all.minus(&falls), params);
             here.reach = here.reach.minus(&falls);
         }
-        let carriers = below.all.or(&below.beside);
-        here.beside =
-            here.beside.minus(&self::falls(&here.beside, [&carriers, &here.foot], params));
+    }
+}
+
+/// Cuts off what nothing carries of what is added beside the support. There is none of it around strips,
+/// which hold themselves, nor beside a piece that has none of the support.
+pub(super) fn stand_beside(columns: &mut [Column], strips: &[Rows], params: &SupportParams) {
+    let far = params.lines.stride * params.raster().pitch;
+    for (k, strips) in strips.iter().enumerate() {
+        let (lower, here) = columns.split_at_mut(k);
+        let Some(here) = here.first_mut().filter(|here| !here.beside.is_empty()) else { continue };
+        if !strips.is_empty() {
+            here.beside = here.beside.minus(&strips.dilate(far, params.raster().pitch));
+        }
+        if let Some(below) = lower.last() {
+            let carriers = below.all.or(&below.beside);
+            let falls = falls(&here.beside, [&carriers, &here.foot], params);
+            here.beside = with_lines(&here.all, &here.beside.minus(&falls)).minus(&here.all);
+        }
     }
 }
 

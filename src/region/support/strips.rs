@@ -43,6 +43,19 @@ pub(super) fn strips(all: &Rows, params: &SupportParams) -> Rows {
     upright(&strips, params).dilate(2 * pitch, pitch).and(all)
 }
 
+/// The short columns of `rows` that have some of `strips`.
+pub(super) fn whole_columns(rows: &Rows, strips: &Rows, params: &SupportParams) -> Rows {
+    let (lines, pitch) = (&params.lines, params.raster().pitch);
+    if strips.is_empty() || rows.is_empty() {
+        return Rows::default();
+    }
+    let [columns, strips] = [rows, strips].map(|rows| turned(rows, pitch));
+    let widest = i64::from(WIDEST * lines.stride * pitch);
+    let whole =
+        columns.filter(|j, span| span.len() <= widest && strips.overlapping(j, span).is_some());
+    upright(&whole, params).dilate(2 * pitch, pitch).and(rows)
+}
+
 /// The long stretches of lines without another line on either side.
 fn alone(all: &Rows, params: &SupportParams) -> Rows {
     let stride = params.lines.stride;
