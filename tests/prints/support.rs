@@ -95,6 +95,15 @@ fn a_sliver_beyond_the_threshold_gets_no_support() {
     }
 }
 
+/// How much support a wedge gets that leans out at so many degrees to the bed, mm of lines for each mm of its
+/// height.
+fn under_wedge(degrees: f64, set: &[(&str, &str)]) -> f64 {
+    let far = 10.0 / degrees.to_radians().tan();
+    let foot = vec![[0.0, 0.0], [6.0, 0.0], [6.0, 16.0], [0.0, 16.0]];
+    let top = vec![[0.0, 0.0], [6.0 + far, 0.0], [6.0 + far, 16.0], [0.0, 16.0]];
+    length(&Solid::tower(&[(foot, 0.0), (top, 10.0)]), set) / 10.0
+}
+
 /// A cone on its tip, steeper or flatter than the threshold.
 #[test]
 fn slopes_flatter_than_the_threshold_get_support() {
@@ -104,6 +113,28 @@ fn slopes_flatter_than_the_threshold_get_support() {
             let cone = Solid::tower(&[(circle(4.0, 48), 0.0), (circle(4.0 + far, 48), 6.0)]);
             let found = length(&cone, &[("layer_height", height)]) > 0.0;
             assert_eq!(found, wanted, "{degrees} {height}");
+        }
+    }
+}
+
+/// The threshold is the angle of the surface to the bed, to a degree or two.
+#[test]
+fn the_threshold_is_that_of_the_slope() {
+    for height in ["0.1", "0.2", "0.3"] {
+        for angle in ["0", "30", "90"] {
+            for threshold in ["35", "45"] {
+                let set = [
+                    ("layer_height", height),
+                    ("angle", angle),
+                    ("support.threshold_angle", threshold),
+                ];
+                let at: f64 = threshold.parse().unwrap();
+                for off in [-15.0, -8.0, -4.0, -2.0, 1.0, 4.0, 15.0] {
+                    let found = under_wedge(at + off, &set);
+                    let is_right = if off < 0.0 { found > 100.0 } else { found <= 0.0 };
+                    assert!(is_right, "{height} {angle} {threshold} {off}: {found}");
+                }
+            }
         }
     }
 }

@@ -11,7 +11,7 @@ pub struct Support {
     /// Whether support is printed.
     #[schemars(extend("default" = false))]
     pub enabled: bool,
-    /// Overhangs flatter than this, measured from the bed, are supported; 90 supports all. Slopes up to about 10° below it reach hardly further from layer to layer than is allowed, and get none.
+    /// Overhangs flatter than this, measured from the bed, are supported; 90 supports all. It is the angle of the surface, known to a degree; a single step gets support if it reaches out by a quarter more than that allows.
     #[schemars(range(min = 0, max = 90), extend("unit" = "degrees", "default" = 45))]
     pub threshold_angle: f64,
     /// Distance between support lines.

@@ -4,7 +4,7 @@
 //! `S(k)`: `S(k) = (O(k+1+gap) ∪ S(k+1)) − outset(L(k), clearance)`, less the layers within the gap,
 //! those below with their clearance as well, and less what carries nothing any more ([`mod@super::posts`]).
 //! So support goes down until it reaches the bed or the part. A window keeps only the layers within
-//! the gap.
+//! the gap, and those further down over which the slope of the next one is judged.
 //!
 //! Two versions go down side by side: the *reach*, which is this alone, and the support itself, in
 //! which thin posts grow ([`mod@super::posts`]). Where the reach ends on a layer it carries an
@@ -38,6 +38,8 @@ pub(super) struct Column {
 pub(super) struct Window<'a> {
     params: &'a SupportParams,
     heights: &'a Heights,
+    /// Those that are still to enter it, highest first.
+    coming: VecDeque<LayerView>,
     /// Highest first.
     layers: VecDeque<LayerView>,
     /// Overhangs that wait for the layer where their support begins, highest first.
@@ -56,6 +58,7 @@ impl<'a> Window<'a> {
         Self {
             params,
             heights,
+            coming: VecDeque::new(),
             layers: VecDeque::new(),
             overhangs: VecDeque::new(),
             reach: Rows::default(),
@@ -64,11 +67,23 @@ impl<'a> Window<'a> {
         }
     }
 
-    /// Takes the next layer down and computes the support of the one `gap` layers above it.
+    /// Takes the next layer down. Its support is computed when those below it are known.
     pub(super) fn push(&mut self, layer: LayerView, out: &mut [Column]) {
+        self.coming.push_back(layer);
+        if self.coming.len() >= self.params.slope_layers {
+            self.enter(out);
+        }
+    }
+
+    /// Lets the next layer enter and computes the support of the one `gap` layers above it.
+    fn enter(&mut self, out: &mut [Column]) {
         let gap = self.params.gap;
+        let Some(layer) = self.coming.pop_front() else { return };
         if let Some(over) = self.layers.back() {
-            self.overhangs.push_back(overhang(over, &layer, self.params));
+            // Next to the bed slopes are lower, and their layers are judged one by one.
+            let far = self.params.slope_layers.checked_sub(2).and_then(|k| self.coming.get(k));
+            let far = far.unwrap_or(&layer);
+            self.overhangs.push_back(overhang(over, [&layer, far], self.params));
         }
         self.layers.push_back(layer);
         if self.layers.len() > gap {
@@ -83,6 +98,9 @@ impl<'a> Window<'a> {
 
     /// Computes the support of the lowest layers, which have fewer than `gap` below them.
     pub(super) fn flush(&mut self, out: &mut [Column]) {
+        while !self.coming.is_empty() {
+            self.enter(out);
+        }
         while self.done < self.layers.len() {
             self.support(self.done, out);
         }

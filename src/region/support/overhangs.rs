@@ -4,6 +4,9 @@
 //! exceeds the lean by more than a sliver. An *island* overlaps nothing of the layer below: it begins
 //! in the air.
 //!
+//! A slope is judged over some layers, about a millimetre: so its angle is known well. A single step
+//! is judged by itself, and may be larger.
+//!
 //! Both layers are grown by a pitch before they are compared. So a tip, a blade or a ledge between
 //! two rows is seen by both rows beside it, and an edge hangs as far as it did before.
 
@@ -17,14 +20,19 @@ use crate::region::scan::Scan;
 use crate::slice::Layer;
 use crate::units::{Coord, to_mm, to_units};
 
-/// A layer may lean out further by this (30 µm): contours are only known to a tolerance, so that a
-/// straight slope has steps. Less gives specks of support under slopes at the threshold itself; more
-/// shifts the threshold, by 5° with layers of 0.2 mm.
-const SLACK: Coord = 300;
+/// Contours are known to 10 µm, so that a straight slope has steps. A layer that leans out by less than
+/// this below the lean may still be part of a slope that is too flat.
+const ROUGH: Coord = 100;
 
-/// A place that hangs gets support if it, or one near it, exceeds the lean by this part of a layer's
-/// height: a sliver beyond it prints nothing that sags. More leaves slopes below 36° without support
-/// at a threshold of 45° and layers of 0.2 mm; less puts a ring under every round side that touches the threshold.
+/// What leans out beyond the lean over some layers, by more than this (20 µm), is too flat: the roughness
+/// of two contours. Over 1 mm it shifts a threshold of 45° by half a degree.
+const SLACK: Coord = 200;
+
+/// A single layer sags that leans out beyond the lean by more than this (30 µm) and [`SAG`], whatever is
+/// below: less puts specks under small steps. If there are more of them, it is a slope.
+const STEP: Coord = 300;
+
+/// See [`STEP`]; a part of a layer's height.
 const SAG: f64 = 0.2;
 
 /// Pieces of which less than a line's width squared, divided by this, sags get no support: that is
@@ -48,36 +56,37 @@ pub(super) struct LayerView {
     pub(super) near: Rows,
     /// The layer grown by a pitch.
     grown: Rows,
-    /// The layer grown by a pitch and the lean: what the layer above may reach without support.
+    /// The layer grown by a pitch and nearly the lean: what the layer above reaches without support.
     carries: Rows,
-    /// By how much it has been grown for that.
-    carried: Coord,
-    /// What the layer above may exceed that by, without sagging.
-    slight: Coord,
+    /// The layer grown by a pitch and the lean of [`SupportParams::slope_layers`] layers.
+    far: Rows,
+    /// How far the layer above reaches without sagging, and a pitch.
+    firm: Coord,
 }
 
 impl LayerView {
     /// `above` is the height of the layer above.
     pub(super) fn new(layer: &Layer, above: Coord, params: &SupportParams) -> Self {
-        let lean = to_units((to_mm(above) * params.lean).min(MOST_LEAN_MM)) + SLACK;
+        let lean = |layers: usize| {
+            to_units((to_mm(above) * params.lean * layers as f64).min(MOST_LEAN_MM))
+        };
         let (raster, pitch) = (params.raster(), params.raster().pitch);
-        let carried = lean.saturating_add(pitch);
         let scan = Scan::new(&printed(&layer.contours, params.printed), raster);
         Self {
             index: layer.index,
             inside: scan.inside().clone(),
             near: scan.outset(params.clearance),
             grown: scan.outset(pitch),
-            carries: scan.outset(carried),
-            carried,
-            slight: (f64::from(above) * SAG) as Coord,
+            carries: scan.outset(lean(1).saturating_add(pitch) - ROUGH),
+            far: scan.outset(lean(params.slope_layers).saturating_add(pitch + SLACK)),
+            firm: lean(1).saturating_add(pitch + STEP + (f64::from(above) * SAG) as Coord),
             scan,
         }
     }
 
     /// What the layer above may reach without sagging.
     fn holds_up(&self) -> Rows {
-        self.scan.outset(self.carried.saturating_add(self.slight))
+        self.scan.outset(self.firm)
     }
 }
 
@@ -94,10 +103,14 @@ pub(super) struct Overhang {
     pub(super) islands: Rows,
 }
 
-/// What of `layer` hangs over `below`.
-pub(super) fn overhang(layer: &LayerView, below: &LayerView, params: &SupportParams) -> Overhang {
+/// What of `layer` hangs over the one `below`, of which `far` lies some more layers further down.
+pub(super) fn overhang(
+    layer: &LayerView,
+    [below, far]: [&LayerView; 2],
+    params: &SupportParams,
+) -> Overhang {
     let pitch = params.raster().pitch;
-    let hanging = sagging(layer.grown.minus(&below.carries), below, params);
+    let hanging = sagging(layer.grown.minus(&below.carries), [below, far], params);
     let turn = skin_turn(layer.index).0;
     let hanging = without_bridges(&hanging, [&layer.inside, &below.inside], turn, params);
     if hanging.is_empty() {
@@ -112,11 +125,11 @@ pub(super) fn overhang(layer: &LayerView, below: &LayerView, params: &SupportPar
 }
 
 /// What of `hanging` sags, and what is near that.
-fn sagging(hanging: Rows, below: &LayerView, params: &SupportParams) -> Rows {
+fn sagging(hanging: Rows, [below, far]: [&LayerView; 2], params: &SupportParams) -> Rows {
     if hanging.is_empty() {
         return hanging;
     }
-    let sags = hanging.minus(&below.holds_up());
+    let sags = hanging.minus(&below.holds_up().and(&far.far));
     let pitch = params.raster().pitch;
     let hanging = hanging.and(&sags.dilate(NEAR_SAG * params.least, pitch));
     // Along an edge oblique to the rows, what hangs on one row may end before it begins on the next.

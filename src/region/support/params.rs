@@ -15,6 +15,9 @@ pub const BODIES: usize = 4;
 /// holds on to the one beside it.
 pub(super) const LEAN: i32 = 1;
 
+/// Slopes are judged over this height: more knows their angle better, and sees those of small parts later.
+const SLOPE_MM: f64 = 1.0;
+
 /// The numbers of support, in grid units.
 #[derive(Debug, Clone, Copy)]
 pub struct SupportParams {
@@ -26,6 +29,8 @@ pub struct SupportParams {
     pub(super) interface: [Lines; 2],
     /// How far a layer may reach out without support, for each unit of its height.
     pub(super) lean: f64,
+    /// The angle of a slope is judged over so many layers.
+    pub(super) slope_layers: usize,
     pub(super) outset: Coord,
     /// Distance from the part to the middle of a support line, sideways.
     pub(super) clearance: Coord,
@@ -100,6 +105,7 @@ impl SupportParams {
             crossing,
             interface,
             lean,
+            slope_layers: ((SLOPE_MM / settings.layer_height).round() as usize).max(2),
             outset: to_units(support.expansion),
             clearance: to_units(support.xy_distance) + w / 2,
             gap: (support.z_distance / settings.layer_height).round() as usize,
