@@ -51,8 +51,8 @@ const UNSEEN: f64 = 0.95;
 /// Lines keep at least this share of their width: narrower ones no longer lie side by side.
 const LEAST_SHARE: f64 = 0.85;
 
-/// Joins keep at least this share of theirs. A smaller one gives flow jumps, a larger one leaves slots between lines.
-const LEAST_JOIN: f64 = 0.7;
+/// Joins keep at least this share of theirs. A smaller one tears, a larger one leaves slots between lines.
+const LEAST_JOIN: f64 = 0.75;
 
 /// Joins the lines of a skin, already closed up to the walls, to zigzags.
 ///

@@ -15,8 +15,8 @@
 //! 3. Measure shared samples anew at right angles to the wall, confirm that the opposite wall really lies
 //!    there, and decide which of the two leads: of two walls the first, within one wall by direction
 //!    ([`WallSample::confirm`]).
-//! 4. Bridge short gaps without beads, leave to lines short stretches beside deep skin and the wide places of strips
-//!    that taper, and smooth short changes of the number of beads.
+//! 4. Bridge short gaps without beads, leave short stretches beside deep skin to lines, and smooth short changes
+//!    of the number of beads.
 //! 5. Add the wall's own corners, with the interpolated depth, so that beads follow them.
 //!
 //! The constants are in line widths unless they say otherwise. Most are as old as this file, and
@@ -55,14 +55,6 @@ const WIDEST: f64 = 1.5;
 /// value fills the walls of shells by zigzags that are nearly all turns; a larger one lays many beads
 /// beside each other that all change their width where the strip does.
 const MOST_ACROSS: usize = 5;
-
-/// Maximum number of beads across a strip that is not of one width all along. Beads begin and end where it gets
-/// wider and narrower: more of them leave the strokes of a letter as stubs with pinholes between them.
-const MOST_UNEVEN: usize = 3;
-
-/// How much wider than in its narrowest place a strip of one width may be. A larger value takes a tapering one for it;
-/// a smaller one takes the facets of a ring for changes.
-const ONE_WIDTH: f64 = 1.15;
 
 /// A narrower strip gets a single bead, of its full width. From this width on two beads of 0.8 fit.
 /// A larger value makes single beads too wide; a smaller one makes pairs that are too thin.
@@ -208,7 +200,6 @@ fn finished(wall: &Contour, mut found: Vec<WallSample>, params: &BeadParams) -> 
     leave_corners(&mut found, perimeter, params);
     bridge(&mut found, perimeter, params);
     leave_patches(&mut found, perimeter);
-    leave_uneven(&mut found, params);
     smooth(&mut found, perimeter, params);
     corners::with_corners(wall, &found, perimeter, params)
 }
@@ -361,28 +352,6 @@ fn leave_patches(samples: &mut [WallSample], perimeter: f64) {
         let depth = (from..to).map(|k| samples[k % n].depth).sum::<f64>() / (to - from) as f64;
         if span(samples, (from, to), perimeter) < STRIP * depth {
             (from..to).for_each(|k| samples[k % n].beads = 0);
-        }
-    }
-}
-
-/// Takes the beads from the wide places of strips that are not of one width.
-fn leave_uneven(samples: &mut [WallSample], params: &BeadParams) {
-    let (n, w) = (samples.len(), f64::from(params.line_width));
-    let is_strip = |s: &WallSample| s.beads > 0 && s.shared;
-    let mut strips = stretches(samples, is_strip);
-    if strips.is_empty() {
-        strips.push((0, n));
-    }
-    strips.retain(|(from, _)| is_strip(&samples[from % n]));
-    for (from, to) in strips {
-        let depths: Vec<f64> = (from..to).map(|k| samples[k % n].depth).collect();
-        let least = depths.iter().copied().fold(f64::MAX, f64::at_most);
-        let most = depths.iter().copied().fold(0.0, f64::at_least);
-        let widest = least_of(MOST_UNEVEN + 1) * w / 2.0;
-        if most >= widest && most > ONE_WIDTH * least {
-            for k in (from..to).filter(|k| depths[k - from] >= widest) {
-                samples[k % n].beads = 0;
-            }
         }
     }
 }
