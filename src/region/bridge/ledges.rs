@@ -1,10 +1,15 @@
 //! Wall beads + the layer below -> beads that do not hang where a bridge holds.
 //!
-//! A *ledge* is an open island that is held from outside, such as the roof of a counterbore around its hole. It is
-//! narrow skin, so that beads run around in it, on nothing and held by nothing. Straight lines that begin and end
-//! on what carries the ledge take their place. Where the part ends beside an open island, as at the bottom of a
+//! Words: a *ledge* is an open island that is held from outside, such as the roof of a counterbore around its hole.
+//!
+//! A ledge is narrow skin, so that beads run around in it, on nothing and held by nothing. Straight lines that begin
+//! and end on what carries the ledge take their place. Where the part ends beside an open island, as at the bottom of a
 //! ball, lines would begin or end in the air: there beads stay, each beside one that holds. Beads stay as well where
 //! they run as the lines would, such as in a narrow bar between two pillars, and in a roof hardly wider than its walls.
+//!
+//! Algorithm: divide what is open into islands, as if there were no beads. Where more of the beads hangs than may sag,
+//! ask for the best direction of lines and what part of their ends is free. Of each bead, cut out the stretches that
+//! lie in a ledge and run across its lines.
 
 use super::direction::Direction;
 use super::loose::Beads;

@@ -15,7 +15,7 @@ use super::body::Body;
 use super::columns::Column;
 use super::held::to_lines;
 use super::params::{SupportLayer, SupportParams};
-use super::pieces::{Pieces, across, without_specks};
+use super::pieces::{Pieces, across, with_lines, without_specks};
 use super::stand::stand_beside;
 use super::strips::strips;
 use crate::geom::spans::{Rows, Span};
@@ -99,18 +99,6 @@ fn rests(body: &Rows, strips: &Rows, params: &SupportParams) -> Rows {
     let lines = body.filter(prints).or(&strips);
     pieces.meeting(body, &lines, |piece, _| has_line[piece] = true);
     pieces.keep(body, |piece| !has_line[piece])
-}
-
-/// A body with what it needs to be held by lines: those pieces of both that have some of the body in them.
-pub(super) fn with_lines(body: &Rows, beside: &Rows) -> Rows {
-    if beside.is_empty() {
-        return body.clone();
-    }
-    let both = body.or(beside);
-    let pieces = Pieces::new(&both);
-    let mut has_body = vec![false; pieces.count()];
-    pieces.meeting(&both, body, |piece, _| has_body[piece] = true);
-    pieces.keep(&both, |piece| has_body[piece])
 }
 
 /// Where support of layer `k` ends below the part.

@@ -175,6 +175,18 @@ pub(super) fn across(rows: &Rows, pitch: Coord, to: Coord) -> Rows {
     out
 }
 
+/// A body with what it needs to be held by lines: those pieces of both that have some of the body in them.
+pub(super) fn with_lines(body: &Rows, beside: &Rows) -> Rows {
+    if beside.is_empty() {
+        return body.clone();
+    }
+    let both = body.or(beside);
+    let pieces = Pieces::new(&both);
+    let mut has_body = vec![false; pieces.count()];
+    pieces.meeting(&both, body, |piece, _| has_body[piece] = true);
+    pieces.keep(&both, |piece| has_body[piece])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,9 +6,8 @@
 //! all that would stand on it.
 
 use super::columns::Column;
-use super::interface::with_lines;
 use super::params::{LEAN, SupportParams};
-use super::pieces::without_specks;
+use super::pieces::{with_lines, without_specks};
 use crate::geom::spans::Rows;
 
 /// Cuts off what nothing carries, and specks.
