@@ -31,9 +31,9 @@ const SLANTED: f64 = 0.6;
 /// wall. At 1 the notch between their round corners stays open; at 2 lines beside them are pressed together.
 const APART: f64 = 1.2;
 
-/// Length of the piece at the end of a line that bends towards the gap, in line widths. A larger value opens wedges
-/// between lines; a smaller one makes sharp bends.
-const END_PIECE: Coord = 1;
+/// Length of the piece at the end of a line that bends towards the gap, in tenths of a line's width. A larger value
+/// opens wedges between lines, and their straight parts end before they lie on a wall; a smaller one makes sharp bends.
+const END_PIECE: Coord = 3;
 
 /// Shorter lines are skipped (50 µm): the ends of their neighbours cover them.
 const LEAST: i64 = 500;
@@ -183,7 +183,7 @@ fn move_apart(points: &mut Vec<LinePoint>, apart: [Coord; 2], pitch: Coord) {
     if apart == [0; 2] {
         return;
     }
-    let (way, piece) = (last.u - before.u, END_PIECE * pitch);
+    let (way, piece) = (last.u - before.u, END_PIECE * pitch / 10);
     points.pop();
     if way.abs() > 2 * piece {
         points.push(LinePoint { u: last.u - piece * way.signum(), ..last });
