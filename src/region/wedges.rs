@@ -18,9 +18,9 @@ use crate::units::Coord;
 /// value fills bent strips with lines that are all turns; a smaller one leaves crumbs in rooms that taper.
 const LEAST: f64 = 0.75;
 
-/// A piece that beads leave is a crumb if it is smaller than so many squares as wide as a line. With a larger value
-/// the hub of a wheel takes the beads of its spokes; with a smaller one crumbs pass.
-const LARGEST: i64 = 25;
+/// A piece that beads leave is a crumb if it is nowhere wider than so many lines. With a larger value the hub of a wheel
+/// takes the beads of its spokes; with a smaller one crumbs pass.
+const WIDEST: Coord = 4;
 
 /// The `beads` of layer `k`, in the frame of its skin's raster, without those of the `rooms` that they leave in
 /// crumbs.
@@ -53,14 +53,17 @@ pub fn without_wedges(
     kept.map(|(bead, _)| bead).collect()
 }
 
-/// The area of what is `left` of each room in small pieces.
+/// The area of what is `left` of each room in crumbs.
 fn crumbs(left: &Rows, rooms: &Islands<'_>, pitch: Coord) -> Vec<f64> {
-    let mut crumbs = vec![0.0; rooms.count()];
     let pieces = Islands::new(left);
-    let lengths = pieces.lengths();
-    let most = LARGEST * i64::from(pitch);
+    let mut wide = vec![false; pieces.count()];
+    for (j, row) in left.erode(WIDEST * pitch / 2, pitch).iter() {
+        let at = row.iter().filter_map(|span| pieces.at(j, span.start));
+        at.for_each(|piece| wide[piece] = true);
+    }
+    let mut crumbs = vec![0.0; rooms.count()];
     for (j, row) in left.iter() {
-        let small = row.iter().zip(pieces.row(j)).filter(|(_, piece)| lengths[**piece] < most);
+        let small = row.iter().zip(pieces.row(j)).filter(|(_, piece)| !wide[**piece]);
         for (span, _) in small {
             if let Some(room) = rooms.at(j, span.start) {
                 crumbs[room] += span.len() as f64 * f64::from(pitch);
