@@ -43,9 +43,8 @@ const LEAST: i64 = 500;
 /// value presses more into the walls of narrow rooms.
 const MOST_OVER: f64 = 0.04;
 
-/// Lines with at least this share of their width leave slots that nobody sees: of 20 µm with
-/// lines of 0.4 mm.
-/// A larger value changes the flow at the turns of nearly all zigzags; a smaller one leaves slots.
+/// Lines thinned to this share leave slots of 20 µm, with lines of 0.4 mm, which nobody sees. A larger value changes the
+/// flow at the turns of nearly all zigzags; a smaller one leaves slots.
 const UNSEEN: f64 = 0.95;
 
 /// Lines keep at least this share of their width: narrower ones no longer lie side by side.

@@ -3,6 +3,7 @@
 //! Spans of neighbouring rows belong together if they share a place along the lines. Ends that only
 //! touch count: rounding must not split an island.
 
+use super::Point;
 use super::sets::Sets;
 use super::spans::{Rows, Span};
 use crate::units::Coord;
@@ -62,6 +63,13 @@ impl<'a> Islands<'a> {
         let row = self.rows.row(j);
         let k = row.partition_point(|s| s.end < u);
         row.get(k).filter(|s| s.start <= u).map(|_| self.row(j)[k])
+    }
+
+    /// The island at a place, on rows that are `pitch` apart: that of the row below it, or else of the row above.
+    #[must_use]
+    pub fn beside(&self, p: Point, pitch: Coord) -> Option<usize> {
+        let row = p.y.div_euclid(pitch);
+        self.at(row, p.x).or_else(|| self.at(row + 1, p.x))
     }
 
     /// The length of each island's spans: its area, divided by the distance of the rows.

@@ -110,7 +110,7 @@ fn nearest_row(v: Coord, pitch: Coord) -> i32 {
 }
 
 /// Whether the row nearest to a place holds it.
-pub(super) fn holds(rows: &Rows, p: Point, pitch: Coord) -> bool {
+fn holds(rows: &Rows, p: Point, pitch: Coord) -> bool {
     rows.span_at(nearest_row(p.y, pitch), p.x).is_some()
 }
 

@@ -72,14 +72,22 @@ fn on_both(region: [&Rows; 2], own: [Rows; 2], rasters: [Raster; 2]) -> [Rows; 2
     })
 }
 
-/// The islands of what is not `narrow` that are smaller than a square as wide as the limit, and a row more: rows
+/// The islands beside what is `narrow` that are smaller than a square as wide as the limit, and a row more: rows
 /// and columns tell widths in steps.
 fn spots(region: &Rows, narrow: &Rows, pitch: Coord, limit: Coord) -> Rows {
     let rest = region.minus(narrow);
     let islands = Islands::new(&rest);
     let lengths = islands.lengths();
+    let mut meets = vec![false; islands.count()];
+    let near = narrow.dilate(pitch, pitch);
+    for (j, row) in rest.iter() {
+        for (span, island) in row.iter().zip(islands.row(j)) {
+            meets[*island] |= near.overlapping(j, *span).is_some();
+        }
+    }
     let most = i64::from(limit + pitch);
-    islands.select(|island| lengths[island] * i64::from(pitch) < most * most)
+    let is_small = |island: usize| lengths[island] * i64::from(pitch) < most * most;
+    islands.select(|island| meets[island] && is_small(island))
 }
 
 /// The part of `region`, on `raster`, that is narrow on the two rasters of skins.

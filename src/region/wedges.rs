@@ -76,10 +76,7 @@ fn crumbs(left: &Rows, rooms: &Islands<'_>, pitch: Coord) -> Vec<f64> {
 /// The room that holds most of a bead; `None` if most of it lies in none.
 fn room(bead: &[LinePoint], islands: &Islands<'_>, pitch: Coord) -> Option<usize> {
     let line: Vec<Point> = bead.iter().map(|p| Point { x: p.u, y: p.v }).collect();
-    let at = |p: Point| {
-        let row = p.y.div_euclid(pitch);
-        islands.at(row, p.x).or_else(|| islands.at(row + 1, p.x))
-    };
+    let at = |p: Point| islands.beside(p, pitch);
     let mut found: Vec<Option<usize>> = places(&line, pitch).map(at).collect();
     let all = found.len();
     found.sort_unstable();

@@ -31,7 +31,6 @@ fn a_bridge_runs_straight_from_pillar_to_pillar_at_any_angle() {
         assert!(long.len() >= 18, "{degrees}: {}", long.len());
         let most = long.iter().map(|bead| off(bead, degrees).abs()).fold(0.0, f64::max);
         assert!(most < 0.3, "{degrees}: {most}");
-        // The slab's edges beside the gap hang.
         let codes = kinds(&judge_made(&run.text, &stl));
         assert!(codes.is_empty(), "{degrees}: {codes:?}");
     }

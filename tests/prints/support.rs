@@ -139,6 +139,16 @@ fn the_threshold_is_that_of_the_slope() {
     }
 }
 
+/// Layers are cut in the middle of their height: the next one is further from a thick first layer.
+#[test]
+fn a_thick_first_layer_does_not_shift_the_threshold() {
+    for first in ["0.1", "0.2", "0.3"] {
+        let set = [("layer_height", "0.1"), ("first_layer_height", first)];
+        let [flat, steep] = [42.0, 46.5].map(|degrees| under_wedge(degrees, &set));
+        assert!(flat > 100.0 && steep <= 0.0, "{first}: {flat} {steep}");
+    }
+}
+
 /// A bell that widens upwards gets support all around, though rows cross its sides at all angles.
 #[test]
 fn support_does_not_depend_on_the_direction_of_an_overhang() {

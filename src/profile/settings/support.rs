@@ -11,7 +11,7 @@ pub struct Support {
     /// Whether support is printed.
     #[schemars(extend("default" = false))]
     pub enabled: bool,
-    /// Overhangs flatter than this, measured from the bed, are supported; 90 supports all. It is the angle of the surface, known to a degree; a single step gets support if it reaches out by a quarter more than that allows.
+    /// Overhangs flatter than this, measured from the bed, are supported; 90 supports all. It is the angle of the surface, known to a degree from a millimetre above the bed on; a single step gets support if it reaches out by 0.03 mm and a fifth of a layer more than that allows.
     #[schemars(range(min = 0, max = 90), extend("unit" = "degrees", "default" = 45))]
     pub threshold_angle: f64,
     /// Distance between support lines.

@@ -80,7 +80,8 @@ pub fn best(site: &Site<'_>, walls: Coord, sides: &Sides) -> Direction {
     let rows = [0, COUNT / 2].into_iter().filter(|row| !along.iter().any(|to| is_near(*row, *to)));
     let rows: Vec<(usize, Hold)> = rows.map(of).collect();
     let sides: Vec<(usize, Hold)> = along.iter().copied().map(of).collect();
-    let others: Vec<(usize, Hold)> = (0..COUNT).step_by(EVERY).map(of).collect();
+    let is_new = |turn: &usize| !along.contains(turn) && !rows.iter().any(|(row, _)| row == turn);
+    let others: Vec<(usize, Hold)> = (0..COUNT).step_by(EVERY).filter(is_new).map(of).collect();
     let tried = || sides.iter().chain(&rows).chain(&others).copied();
     let fewest = tried().map(|(_, hold)| hold.free).fold(f64::MAX, f64::at_most);
     let cost = |hold: Hold| hold.length * (1.0 + FREE_COST * (hold.free - fewest));

@@ -12,22 +12,20 @@
 //! lie in a ledge and run across its lines.
 
 use super::direction::Direction;
-use super::loose::Beads;
+use super::loose::{ALONG, Beads};
 use super::sides::STEP;
 use super::{MOST_FREE, Open, Pair};
+use crate::geom::Point;
 use crate::geom::islands::Islands;
-use crate::geom::polyline::{LinePoint, Polyline, length};
-use crate::geom::segment::{dot, way};
+use crate::geom::polyline::{LinePoint, Polyline};
+use crate::geom::segment::{along, dot, way};
 use crate::region::params::RegionParams;
 use crate::region::prepare::LayerRows;
 use crate::region::stretches::{Smooth, parted, stretches};
-use crate::units::sin_cos;
+use crate::units::{Bounded as _, Coord, sin_cos};
 
 /// Most ends of lines, by length, that are free in a ledge. Where one side of each line is free it is a half.
 const FREE: f64 = 0.45;
-
-/// A bead runs along the lines of a bridge within this angle: its cosine, of 30°.
-const ALONG: f64 = 0.866;
 
 /// Shorter pieces between those in a ledge, and beside them, are left out as well, in line widths: what lies between
 /// two rows of the ledge is on none.
@@ -45,11 +43,10 @@ pub fn held<'a>(
     if pair.beads.is_empty() || params.bridges.anchor.is_none() {
         return kept();
     }
-    let Some(open) = Open::new(pair, &[], layers, params).filter(|open| !open.rows.is_empty())
-    else {
+    let Some(open) = Open::new(pair, layers, params).filter(|open| !open.rows.is_empty()) else {
         return kept();
     };
-    let (islands, pitch) = (Islands::new(&open.rows), f64::from(open.raster.pitch));
+    let (islands, pitch) = (Islands::new(&open.rows), open.raster.pitch);
     let hanging = hanging(pair.beads, &islands, pitch);
     let sags = |island: usize| hanging[island] > f64::from(MOST_FREE);
     if !(0..islands.count()).any(sags) {
@@ -66,23 +63,25 @@ pub fn held<'a>(
     out
 }
 
-/// The island at a place, if there is one, by the rows below and above it.
-fn island(islands: &Islands<'_>, pitch: f64, p: &LinePoint) -> Option<usize> {
-    let row = (f64::from(p.v) / pitch).floor() as i32;
-    islands.at(row, p.u).or_else(|| islands.at(row + 1, p.u))
+/// Short ways along a line, each with its middle.
+fn ways(line: &[LinePoint], step: Coord) -> impl Iterator<Item = (Point, [f64; 2])> {
+    line.windows(2).flat_map(move |w| {
+        let at = |p: &LinePoint| [f64::from(p.u), f64::from(p.v)];
+        let (from, whole) = (at(&w[0]), way(at(&w[0]), at(&w[1])));
+        let count = (dot(whole, whole).sqrt() / f64::from(step)).ceil().at_least(1.0);
+        (0..count as usize).map(move |k| {
+            let [x, y] = along(from, (k as f64 + 0.5) / count, whole);
+            (Point { x: x as Coord, y: y as Coord }, whole.map(|side| side / count))
+        })
+    })
 }
 
 /// How much of the `beads` lies in each of the `islands`.
-fn hanging(beads: &[Polyline], islands: &Islands<'_>, pitch: f64) -> Vec<f64> {
+fn hanging(beads: &[Polyline], islands: &Islands<'_>, pitch: Coord) -> Vec<f64> {
     let mut lengths = vec![0.0; islands.count()];
-    for bead in beads {
-        let at = |p: &LinePoint| island(islands, pitch, p);
-        for (hangs, stretch) in
-            stretches(bead, pitch as i32 / 2, Smooth::default(), |p| at(p).is_some())
-        {
-            if let Some(island) = stretch.iter().find_map(at).filter(|_| hangs) {
-                lengths[island] += length(&stretch) as f64;
-            }
+    for (middle, way) in beads.iter().flat_map(|bead| ways(bead, pitch / 2)) {
+        if let Some(island) = islands.beside(middle, pitch) {
+            lengths[island] += dot(way, way).sqrt();
         }
     }
     lengths
@@ -91,21 +90,21 @@ fn hanging(beads: &[Polyline], islands: &Islands<'_>, pitch: f64) -> Vec<f64> {
 /// The ledges among the islands of a layer, and the directions of their lines.
 struct Ledges<'a> {
     islands: &'a Islands<'a>,
-    pitch: f64,
+    pitch: Coord,
     turns: Vec<Option<usize>>,
 }
 
 impl Ledges<'_> {
     /// The direction of lines at a place.
-    fn turn(&self, p: &LinePoint) -> Option<usize> {
-        self.turns[island(self.islands, self.pitch, p)?]
+    fn turn(&self, p: Point) -> Option<usize> {
+        self.turns[self.islands.beside(p, self.pitch)?]
     }
 
     fn divide(&self, bead: &[LinePoint], out: &mut Beads) {
-        let least = SHORT * self.pitch;
+        let least = SHORT * f64::from(self.pitch);
         let smooth = Smooth { least, ..Smooth::default() };
-        let is_held = |p: &LinePoint| self.turn(p).is_none();
-        let all = stretches(bead, self.pitch as i32 / 2, smooth, is_held);
+        let is_held = |p: &LinePoint| self.turn(Point { x: p.u, y: p.v }).is_none();
+        let all = stretches(bead, self.pitch / 2, smooth, is_held);
         let stays = |(held, stretch): (bool, Polyline)| (held || !self.hangs(&stretch), stretch);
         let [kept, cut] = parted(all.into_iter().map(stays));
         if cut.is_empty() {
@@ -116,17 +115,14 @@ impl Ledges<'_> {
         }
     }
 
-    /// Whether a stretch in a ledge runs across its lines for so long that it sags.
+    /// Whether a stretch runs in ledges across their lines for so long that it sags.
     fn hangs(&self, stretch: &[LinePoint]) -> bool {
-        let across = |turn: usize| {
-            let (sin, cos) = sin_cos(STEP * turn as f64);
-            let at = |p: &LinePoint| [f64::from(p.u), f64::from(p.v)];
-            let ways = stretch.windows(2).map(|w| way(at(&w[0]), at(&w[1])));
-            let lengths = ways.map(|way| (dot(way, way).sqrt(), dot(way, [cos, sin]).abs()));
-            lengths.filter(|(far, along)| *along < ALONG * far).map(|(far, _)| far).sum::<f64>()
+        let across = |(middle, way): (Point, [f64; 2])| {
+            let (sin, cos) = sin_cos(STEP * self.turn(middle)? as f64);
+            let far = dot(way, way).sqrt();
+            (dot(way, [cos, sin]).abs() < ALONG * far).then_some(far)
         };
-        let turn = stretch.iter().find_map(|p| self.turn(p));
-        turn.is_some_and(|turn| across(turn) > f64::from(MOST_FREE))
+        ways(stretch, self.pitch / 2).filter_map(across).sum::<f64>() > f64::from(MOST_FREE)
     }
 }
 
@@ -134,7 +130,7 @@ impl Ledges<'_> {
 mod tests {
     use super::super::tests::{params, rectangle};
     use super::*;
-    use crate::geom::{Contour, Point};
+    use crate::geom::Contour;
     use crate::region::per_raster::skin_turn;
     use crate::region::prepare::prepare;
     use crate::slice::Layer;
@@ -198,6 +194,25 @@ mod tests {
     fn a_ring_around_what_carries_it_stays() {
         let found = staying(&[circle(13.0)], &[circle(10.0)], &ring(11.5));
         assert_eq!((found.kept.len(), found.cut.len()), (1, 0), "{found:?}");
+    }
+
+    /// Wherever its ends lie to the steps in which it is looked at.
+    #[test]
+    fn straight_beads_along_a_channel_are_left_to_lines() {
+        let block = rectangle([-20.0, 20.0], [-10.0, 10.0]);
+        let below = |from: f64| {
+            let channel: Contour = rectangle([from, 14.0], [-0.9, 0.9]).into_iter().rev().collect();
+            [block.clone(), channel]
+        };
+        for k in 0..20 {
+            let from = -14.0 + 0.037 * f64::from(k);
+            // Its ends are held for less than what is left out with the rest, or for nothing.
+            for held in [0.0, 0.3, 1.0] {
+                let ends = [from - held, 14.0].map(|x| Point { x: to_units(x), y: 1_000 });
+                let found = staying(std::slice::from_ref(&block), &below(from), &ends);
+                assert!(found.kept.is_empty(), "{k} {held}: {found:?}");
+            }
+        }
     }
 
     #[test]

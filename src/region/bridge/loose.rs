@@ -20,7 +20,7 @@ const MOST_FREE: i64 = 20_000;
 
 /// A bead runs along the lines below within this angle: its cosine, of 30°. Steeper ones meet the
 /// next line within twice the spacing.
-const ALONG: f64 = 0.866;
+pub(super) const ALONG: f64 = 0.866;
 
 /// Pieces that are left over are dropped below this length, in line widths.
 const SHORT: i64 = 3;

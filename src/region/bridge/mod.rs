@@ -38,7 +38,7 @@ use crate::geom::{Contour, Point};
 use crate::slice::Layer;
 use crate::units::{Coord, nearest};
 use direction::{Direction, Site};
-use sides::{STEP, Sides};
+use sides::{COUNT, STEP, Sides};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -49,6 +49,13 @@ const LEAST_OPEN: Coord = 500;
 /// in any direction. A larger value leaves lines that sag; a smaller one makes bridges, with their
 /// slow lines, of every flat slope.
 const MOST_FREE: Coord = 20_000;
+
+/// Most directions of the bridges of one layer: each is scanned anew. A larger number costs time where a plate has
+/// hundreds of slots at all angles.
+const MOST_TURNS: usize = 24;
+
+/// The steps to which directions are brought where there are more: of 0.1, 0.3, 1.5 and 7.5°.
+const STEPS: [usize; 4] = [1, 3, 15, 75];
 
 /// A layer and the one below, with what is known of them.
 #[derive(Debug, Clone, Copy)]
@@ -68,14 +75,11 @@ pub fn bridges<'a>(
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
     params: &RegionParams,
 ) -> Vec<Skin> {
-    let (Some(anchor), Some(open)) =
-        (params.bridges.anchor, Open::new(pair, pair.beads, layers, params))
-    else {
-        return Vec::new();
-    };
-    if !open.rows.iter().any(|(_, row)| row.iter().any(is_long)) {
-        return Vec::new();
-    }
+    let sags = |open: &Open<'_>| open.rows.iter().any(|(_, row)| row.iter().any(is_long));
+    // On most layers nothing is open for long, and beads need not be looked at.
+    let open = Open::new(pair, layers, params).filter(sags);
+    let open = open.map(|open| open.beside(pair.beads, params)).filter(sags);
+    let (Some(anchor), Some(open)) = (params.bridges.anchor, open) else { return Vec::new() };
     let islands = Islands::new(&open.rows);
     let mut long = vec![false; islands.count()];
     for (j, row) in open.rows.iter() {
@@ -83,7 +87,8 @@ pub fn bridges<'a>(
             long[*island] |= is_long(span);
         }
     }
-    let found = open.directions(pair, &islands, |island| long[island], params);
+    let mut found = open.directions(pair, &islands, |island| long[island], params);
+    keep_few(&mut found);
     let each: BTreeSet<usize> = found.iter().flatten().map(|found| found.turn).collect();
     let along = skin_turn(pair.own.layer.index).0;
     let mut out = Vec::new();
@@ -105,10 +110,8 @@ struct Open<'a> {
 }
 
 impl<'a> Open<'a> {
-    /// Those that `beads` do not take.
     fn new(
         pair: Pair<'_>,
-        beads: &[Polyline],
         layers: &impl Fn(usize) -> Option<&'a LayerRows>,
         params: &RegionParams,
     ) -> Option<Self> {
@@ -119,11 +122,16 @@ impl<'a> Open<'a> {
         if params.skins.bottom == 0 {
             return None;
         }
-        let open = here.fill.minus(&below.cover);
-        let taken = || wall_beads::taken(beads, raster.frame, raster, &params.beads);
-        let open = if beads.is_empty() { open } else { open.minus(&taken()) };
-        let rows = open.filter(|_, span| span.len() >= i64::from(LEAST_OPEN));
-        Some(Self { raster, rows, carrier: &below.cover })
+        Some(Self { raster, rows: noticed(&here.fill.minus(&below.cover)), carrier: &below.cover })
+    }
+
+    /// What `beads` leave of them.
+    fn beside(self, beads: &[Polyline], params: &RegionParams) -> Self {
+        if beads.is_empty() {
+            return self;
+        }
+        let taken = wall_beads::taken(beads, self.raster.frame, self.raster, &params.beads);
+        Self { rows: noticed(&self.rows.minus(&taken)), ..self }
     }
 
     /// The direction of each of the `islands` in which something `sags`.
@@ -141,6 +149,22 @@ impl<'a> Open<'a> {
         };
         (0..islands.count()).map(direction).collect()
     }
+}
+
+/// `rows` without what is noise.
+fn noticed(rows: &Rows) -> Rows {
+    rows.filter(|_, span| span.len() >= i64::from(LEAST_OPEN))
+}
+
+/// Brings many different directions to fewer, by steps that grow until there are at most [`MOST_TURNS`].
+fn keep_few(found: &mut [Option<Direction>]) {
+    let snapped = |turn: usize, step: usize| (turn + step / 2) / step * step % COUNT;
+    let count = |step: usize| {
+        let turns = found.iter().flatten().map(|found| snapped(found.turn, step));
+        turns.collect::<BTreeSet<usize>>().len()
+    };
+    let step = STEPS.into_iter().find(|step| count(*step) <= MOST_TURNS).unwrap_or(STEPS[3]);
+    found.iter_mut().flatten().for_each(|found| found.turn = snapped(found.turn, step));
 }
 
 fn is_long(span: &Span) -> bool {

@@ -41,7 +41,7 @@ impl Sides {
     pub fn directions(&self, [low, high]: [Point; 2]) -> Vec<usize> {
         let mut found: Vec<(usize, f64)> = Vec::new();
         for ([p, q], length) in self.0.iter().filter(|(side, _)| meets(side, low, high)) {
-            let turn = turn(*p, *q);
+            let turn = turn(*p, *q) % (COUNT / 2);
             match found.iter_mut().find(|(other, _)| *other == turn) {
                 Some((_, sum)) => *sum += length,
                 None => found.push((turn, *length)),

@@ -163,8 +163,8 @@ impl Body {
             let is_brace = span.len() <= brace(params);
             let braces = || seldom || carries.overlapping(j, span).is_some();
             // Lines of the next layer lie on those inside a tie.
-            let is_tied = || always.overlapping(j, span).is_none();
-            if is_brace { braces() } else { core.overlapping(j, span).is_some() || is_tied() }
+            let only_tied = || always.overlapping(j, span).is_none();
+            if is_brace { braces() } else { core.overlapping(j, span).is_some() || only_tied() }
         });
         let carries = if seldom { Rows::default() } else { turned(&carries, raster.pitch) };
         let braces = across.filter(|j, span| seldom || carries.overlapping(j, span).is_some());

@@ -82,8 +82,7 @@ impl<'a> Window<'a> {
         if let Some(over) = self.layers.back() {
             // Next to the bed slopes are lower, and their layers are judged one by one.
             let far = self.params.slope_layers.checked_sub(2).and_then(|k| self.coming.get(k));
-            let far = far.unwrap_or(&layer);
-            self.overhangs.push_back(overhang(over, [&layer, far], self.params));
+            self.overhangs.push_back(overhang(over, (&layer, far), self.params));
         }
         self.layers.push_back(layer);
         if self.layers.len() > gap {

@@ -58,8 +58,8 @@ pub(super) struct LayerView {
     grown: Rows,
     /// The layer grown by a pitch and nearly the lean: what the layer above reaches without support.
     carries: Rows,
-    /// The layer grown by a pitch and the lean of [`SupportParams::slope_layers`] layers.
-    far: Rows,
+    /// The height at which the layer is cut.
+    plane: Coord,
     /// How far the layer above reaches without sagging, and a pitch.
     firm: Coord,
 }
@@ -67,9 +67,7 @@ pub(super) struct LayerView {
 impl LayerView {
     /// `above` is the height of the layer above.
     pub(super) fn new(layer: &Layer, above: Coord, params: &SupportParams) -> Self {
-        let lean = |layers: usize| {
-            to_units((to_mm(above) * params.lean * layers as f64).min(MOST_LEAN_MM))
-        };
+        let lean = lean(i64::from(above + layer.height) / 2, params);
         let (raster, pitch) = (params.raster(), params.raster().pitch);
         let scan = Scan::new(&printed(&layer.contours, params.printed), raster);
         Self {
@@ -77,9 +75,9 @@ impl LayerView {
             inside: scan.inside().clone(),
             near: scan.outset(params.clearance),
             grown: scan.outset(pitch),
-            carries: scan.outset(lean(1).saturating_add(pitch) - ROUGH),
-            far: scan.outset(lean(params.slope_layers).saturating_add(pitch + SLACK)),
-            firm: lean(1).saturating_add(pitch + STEP + (f64::from(above) * SAG) as Coord),
+            plane: layer.z - layer.height / 2,
+            carries: scan.outset(lean.saturating_add(pitch) - ROUGH),
+            firm: lean.saturating_add(pitch + STEP + (f64::from(above) * SAG) as Coord),
             scan,
         }
     }
@@ -88,6 +86,17 @@ impl LayerView {
     fn holds_up(&self) -> Rows {
         self.scan.outset(self.firm)
     }
+
+    /// What a slope may reach that goes on up to `layer`, and a pitch.
+    fn carries_slope(&self, layer: &Self, params: &SupportParams) -> Rows {
+        let lean = lean(i64::from(layer.plane - self.plane), params);
+        self.scan.outset(lean.saturating_add(params.raster().pitch + SLACK))
+    }
+}
+
+/// How far a slope may lean out over a height, grid units.
+fn lean(height: i64, params: &SupportParams) -> Coord {
+    to_units((to_mm(height as Coord) * params.lean).min(MOST_LEAN_MM))
 }
 
 /// Where support is wanted under a layer.
@@ -103,14 +112,15 @@ pub(super) struct Overhang {
     pub(super) islands: Rows,
 }
 
-/// What of `layer` hangs over the one `below`, of which `far` lies some more layers further down.
+/// What of `layer` hangs over the one `below`. A slope is judged from `far`, some layers further down, if there is
+/// such a layer.
 pub(super) fn overhang(
     layer: &LayerView,
-    [below, far]: [&LayerView; 2],
+    (below, far): (&LayerView, Option<&LayerView>),
     params: &SupportParams,
 ) -> Overhang {
     let pitch = params.raster().pitch;
-    let hanging = sagging(layer.grown.minus(&below.carries), [below, far], params);
+    let hanging = sagging(layer, (below, far), params);
     let turn = skin_turn(layer.index).0;
     let hanging = without_bridges(&hanging, [&layer.inside, &below.inside], turn, params);
     if hanging.is_empty() {
@@ -124,12 +134,19 @@ pub(super) fn overhang(
     Overhang { layer: layer.index, hangs: hanging, all, islands }
 }
 
-/// What of `hanging` sags, and what is near that.
-fn sagging(hanging: Rows, [below, far]: [&LayerView; 2], params: &SupportParams) -> Rows {
+/// What of `layer` sags, and what is near that.
+fn sagging(
+    layer: &LayerView,
+    (below, far): (&LayerView, Option<&LayerView>),
+    params: &SupportParams,
+) -> Rows {
+    let hanging = layer.grown.minus(&below.carries);
     if hanging.is_empty() {
         return hanging;
     }
-    let sags = hanging.minus(&below.holds_up().and(&far.far));
+    let held = below.holds_up();
+    let held = far.map_or_else(|| held.clone(), |far| held.and(&far.carries_slope(layer, params)));
+    let sags = hanging.minus(&held);
     let pitch = params.raster().pitch;
     let hanging = hanging.and(&sags.dilate(NEAR_SAG * params.least, pitch));
     // Along an edge oblique to the rows, what hangs on one row may end before it begins on the next.

@@ -40,8 +40,9 @@ pub(super) fn stand_beside(columns: &mut [Column], strips: &[Rows], params: &Sup
         if let Some(below) = lower.last() {
             let carriers = below.all.or(&below.beside);
             let falls = falls(&here.beside, [&carriers, &here.foot], params);
-            here.beside = with_lines(&here.all, &here.beside.minus(&falls)).minus(&here.all);
+            here.beside = here.beside.minus(&falls);
         }
+        here.beside = with_lines(&here.all, &here.beside).minus(&here.all);
     }
 }
 
