@@ -72,17 +72,19 @@ impl Cells {
     }
 }
 
+/// What the beads of some kinds cover of each layer.
+fn layers(print: &Print, is: impl Fn(Kind) -> bool) -> Vec<Cells> {
+    let mut lists: Vec<Vec<&Move>> = vec![Vec::new(); print.layers.len()];
+    print.beads().filter(|bead| is(bead.kind)).for_each(|b| lists[b.layer.unwrap()].push(b));
+    lists.into_iter().map(|list| Cells::of(list.into_iter())).collect()
+}
+
 /// Islands of support over which nothing hangs, and no island that carries something: the layer, and
 /// a place of each.
 fn idle(print: &Print, outset: f64) -> Vec<(usize, [f64; 2])> {
     let count = print.layers.len();
-    let layers = |is: &dyn Fn(Kind) -> bool| -> Vec<Cells> {
-        let mut lists: Vec<Vec<&Move>> = vec![Vec::new(); count];
-        print.beads().filter(|bead| is(bead.kind)).for_each(|b| lists[b.layer.unwrap()].push(b));
-        lists.into_iter().map(|list| Cells::of(list.into_iter())).collect()
-    };
-    let support = layers(&Kind::is_support);
-    let part = layers(&|kind| !kind.is_support() && kind != Kind::Brim);
+    let support = layers(print, Kind::is_support);
+    let part = layers(print, |kind| !kind.is_support() && kind != Kind::Brim);
     let mut hangs: Vec<Cells> = (0..count).map(|_| Cells::default()).collect();
     for k in 1..count {
         // What the threshold allows, and a little more.
@@ -215,13 +217,8 @@ fn beyond_a_floor(out: f64, low: f64, set: &[(&str, &str)]) -> (f64, bool) {
 /// Islands of support of a layer with neither support nor the part below any of it: the layer, and a place of each.
 fn hanging(print: &Print) -> Vec<(usize, [f64; 2])> {
     let count = print.layers.len();
-    let layers = |is: &dyn Fn(Kind) -> bool| -> Vec<Cells> {
-        let mut lists: Vec<Vec<&Move>> = vec![Vec::new(); count];
-        print.beads().filter(|bead| is(bead.kind)).for_each(|b| lists[b.layer.unwrap()].push(b));
-        lists.into_iter().map(|list| Cells::of(list.into_iter())).collect()
-    };
-    let support = layers(&Kind::is_support);
-    let part = layers(&|kind| !kind.is_support());
+    let support = layers(print, Kind::is_support);
+    let part = layers(print, |kind| !kind.is_support());
     let mut found = Vec::new();
     for k in 1..count {
         // Beside the part as far as support may lean.

@@ -10,7 +10,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use crate::common::damage::{Good, kinds, listed, warned};
-use crate::common::solid::{circle, rectangle};
+use crate::common::solid::{circle, rectangle, star};
 use crate::common::{Kind, Move, Run, Section, Solid, fixture, slice, slice_shipped};
 use proptest::prelude::*;
 use slicer::check::finding::Code;
@@ -377,8 +377,9 @@ fn walls_have_speeds_of_their_own() {
 
 #[test]
 fn gaps_are_told_apart_if_they_have_a_speed() {
-    // Its skin is about two lines wide: beads along the walls.
-    let solid = Solid::cuboid([0.0; 3], [20.0, 2.6, 1.0]);
+    // Its skin tapers to less than a line.
+    let radii: Vec<f64> = (0..14).map(|k| if k % 2 == 0 { 12.0 } else { 5.0 }).collect();
+    let solid = Solid::prism(&star(&radii), 0.0, 1.0);
     let run = slice(&solid.stl(), "generic-marlin", &[("speed.gap", "11"), ("angle", "45")]);
     let gaps = beads_of(&run, "Gap fill");
     assert!(!gaps.is_empty() && gaps.iter().all(|m| m.feed == 660.0));

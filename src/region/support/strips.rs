@@ -28,8 +28,7 @@ pub(super) fn strips(all: &Rows, params: &SupportParams) -> Rows {
         return seeds;
     }
     let [columns, seeds] = [all, &seeds].map(|rows| turned(rows, pitch));
-    let widest = i64::from(WIDEST * lines.stride * pitch);
-    let narrow = columns.filter(|_, span| span.len() <= widest);
+    let narrow = short(&columns, params);
     let seeds = narrow.filter(|j, span| seeds.overlapping(j, span).is_some());
     // They go on to the next line across.
     let near = seeds.dilate(params.crossing.stride * pitch, pitch);
@@ -39,21 +38,29 @@ pub(super) fn strips(all: &Rows, params: &SupportParams) -> Rows {
     let printed = strips.filter(|j, _| params.crossing.prints(j));
     pieces.meeting(&strips, &printed, |piece, _| lines[piece] += 1);
     let strips = pieces.keep(&strips, |piece| lines[piece] >= LEAST_LINES);
-    // Turned back they are short by up to a pitch at each end.
-    upright(&strips, params).dilate(2 * pitch, pitch).and(all)
+    turned_back(&strips, all, params)
 }
 
 /// The short columns of `rows` that have some of `strips`.
 pub(super) fn whole_columns(rows: &Rows, strips: &Rows, params: &SupportParams) -> Rows {
-    let (lines, pitch) = (&params.lines, params.raster().pitch);
     if strips.is_empty() || rows.is_empty() {
         return Rows::default();
     }
-    let [columns, strips] = [rows, strips].map(|rows| turned(rows, pitch));
-    let widest = i64::from(WIDEST * lines.stride * pitch);
-    let whole =
-        columns.filter(|j, span| span.len() <= widest && strips.overlapping(j, span).is_some());
-    upright(&whole, params).dilate(2 * pitch, pitch).and(rows)
+    let [columns, strips] = [rows, strips].map(|rows| turned(rows, params.raster().pitch));
+    let whole = short(&columns, params).filter(|j, span| strips.overlapping(j, span).is_some());
+    turned_back(&whole, rows, params)
+}
+
+/// The columns that are no longer than a strip is wide.
+fn short(columns: &Rows, params: &SupportParams) -> Rows {
+    let widest = i64::from(WIDEST * params.lines.stride * params.raster().pitch);
+    columns.filter(|_, span| span.len() <= widest)
+}
+
+/// Columns as rows again, grown within `rows`: turned back they are short by up to a pitch at each end.
+fn turned_back(columns: &Rows, rows: &Rows, params: &SupportParams) -> Rows {
+    let pitch = params.raster().pitch;
+    upright(columns, params).dilate(2 * pitch, pitch).and(rows)
 }
 
 /// The long stretches of lines without another line on either side.
