@@ -72,6 +72,16 @@ impl<'a> Islands<'a> {
         self.at(row, p.x).or_else(|| self.at(row + 1, p.x))
     }
 
+    /// Whether each island has a span, given with its row, that `is` accepts.
+    #[must_use]
+    pub fn any(&self, is: impl Fn(i32, Span) -> bool) -> Vec<bool> {
+        let mut any = vec![false; self.count];
+        for (j, row) in self.rows.iter() {
+            row.iter().zip(self.row(j)).for_each(|(span, island)| any[*island] |= is(j, *span));
+        }
+        any
+    }
+
     /// The length of each island's spans: its area, divided by the distance of the rows.
     #[must_use]
     pub fn lengths(&self) -> Vec<i64> {

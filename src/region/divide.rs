@@ -10,7 +10,7 @@
 
 use super::Skin;
 use super::bridge::loose::{self, Beads, Below};
-use super::bridge::{self, Pair, ledges};
+use super::bridge::{self, Open, Pair, ledges};
 use super::classify::{Areas, areas, areas_beside, exposed};
 use super::crossed::Crossed;
 use super::hidden::{self, between_walls};
@@ -126,9 +126,9 @@ pub fn divide<'a>(
         None => rooms::on_raster(narrow, both, raster, region),
     };
     let solid = &examined.solid;
-    let Beads { kept: beads, cut } = resting(own, examined, layers, below, params);
-    let pair = below.map(|below| Pair { own, below: below.layer, beads: &beads });
-    let bridges = pair.map(|pair| bridge::bridges(pair, layers, params)).unwrap_or_default();
+    let held = held(k, examined, layers, below, params);
+    let open = Open::new(k, layers, params);
+    let (Beads { kept: beads, cut }, bridges) = over_air(own, held, below.zip(open), params);
     let along = params.rasters.skin(skin_turn(k).0);
     let areas_on = |raster: Raster| {
         let Some(fill) = fill(raster) else { return Areas::default() };
@@ -246,20 +246,22 @@ fn solid<'a>(
     rooms::narrow(fill, [0, 1].map(|r| params.rasters.skin(r)), params.skins.least_room)
 }
 
-/// The beads of a layer that lie on something; cut out is what would hang in the air.
-fn resting<'a>(
+/// The beads of a layer, `held` by sparse lines below, that do not hang where it is open, and its bridges.
+fn over_air(
     own: &Own,
-    examined: &Examined,
-    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
-    below: Option<&Lower<'_>>,
+    held: Beads,
+    lower: Option<(&Lower<'_>, Open<'_>)>,
     params: &RegionParams,
-) -> Beads {
-    let held = held(own.layer.index, examined, layers, below, params);
-    let Some(below) = below else { return held };
+) -> (Beads, Vec<Skin>) {
+    let Some((below, open)) = lower else { return (held, Vec::new()) };
     let pair = Pair { own, below: below.layer, beads: &held.kept };
-    let mut resting = ledges::held(pair, layers, params);
-    resting.cut.extend(held.cut);
-    resting
+    let beads = match ledges::held(pair, &open, params) {
+        Some(Beads { kept, cut }) => Beads { kept, cut: [cut, held.cut].concat() },
+        None => held,
+    };
+    let pair = Pair { own, below: below.layer, beads: &beads.kept };
+    let bridges = bridge::bridges(pair, open, params);
+    (beads, bridges)
 }
 
 /// The beads of layer `k`; cut out is what would lie along the sparse lines below.

@@ -78,13 +78,8 @@ fn spots(region: &Rows, narrow: &Rows, pitch: Coord, limit: Coord) -> Rows {
     let rest = region.minus(narrow);
     let islands = Islands::new(&rest);
     let lengths = islands.lengths();
-    let mut meets = vec![false; islands.count()];
     let near = narrow.dilate(pitch, pitch);
-    for (j, row) in rest.iter() {
-        for (span, island) in row.iter().zip(islands.row(j)) {
-            meets[*island] |= near.overlapping(j, *span).is_some();
-        }
-    }
+    let meets = islands.any(|j, span| near.overlapping(j, span).is_some());
     let most = i64::from(limit + pitch);
     let is_small = |island: usize| lengths[island] * i64::from(pitch) < most * most;
     islands.select(|island| meets[island] && is_small(island))

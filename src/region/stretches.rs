@@ -25,16 +25,21 @@ pub(super) struct Smooth {
 }
 
 /// A short way along a bead.
-struct Piece {
+pub(super) struct Piece {
     from: Point,
     to: LinePoint,
-    length: f64,
+    pub(super) length: f64,
     /// Whether the bead has a point at its end.
     is_corner: bool,
 }
 
 impl Piece {
-    fn middle(&self) -> LinePoint {
+    /// From its one end to the other.
+    pub(super) fn way(&self) -> [f64; 2] {
+        [f64::from(self.to.u - self.from.x), f64::from(self.to.v - self.from.y)]
+    }
+
+    pub(super) fn middle(&self) -> LinePoint {
         let u = Coord::midpoint(self.from.x, self.to.u);
         LinePoint { u, v: Coord::midpoint(self.from.y, self.to.v), width: self.to.width }
     }
@@ -73,7 +78,8 @@ pub(super) fn stretches(
     }
 }
 
-fn pieces(bead: &[LinePoint], step: Coord) -> Vec<Piece> {
+/// The pieces of `bead`, at most a `step` long.
+pub(super) fn pieces(bead: &[LinePoint], step: Coord) -> Vec<Piece> {
     let mut out = Vec::new();
     for pair in bead.windows(2) {
         let at = |p: &LinePoint| Point { x: p.u, y: p.v };

@@ -56,11 +56,8 @@ pub fn without_wedges(
 /// The area of what is `left` of each room in crumbs.
 fn crumbs(left: &Rows, rooms: &Islands<'_>, pitch: Coord) -> Vec<f64> {
     let pieces = Islands::new(left);
-    let mut wide = vec![false; pieces.count()];
-    for (j, row) in left.erode(WIDEST * pitch / 2, pitch).iter() {
-        let at = row.iter().filter_map(|span| pieces.at(j, span.start));
-        at.for_each(|piece| wide[piece] = true);
-    }
+    let core = left.erode(WIDEST * pitch / 2, pitch);
+    let wide = pieces.any(|j, span| core.overlapping(j, span).is_some());
     let mut crumbs = vec![0.0; rooms.count()];
     for (j, row) in left.iter() {
         let small = row.iter().zip(pieces.row(j)).filter(|(_, piece)| !wide[**piece]);

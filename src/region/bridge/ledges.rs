@@ -18,11 +18,10 @@ use super::{MOST_FREE, Open, Pair};
 use crate::geom::Point;
 use crate::geom::islands::Islands;
 use crate::geom::polyline::{LinePoint, Polyline};
-use crate::geom::segment::{along, dot, way};
+use crate::geom::segment::dot;
 use crate::region::params::RegionParams;
-use crate::region::prepare::LayerRows;
-use crate::region::stretches::{Smooth, parted, stretches};
-use crate::units::{Bounded as _, Coord, sin_cos};
+use crate::region::stretches::{Piece, Smooth, parted, pieces, stretches};
+use crate::units::{Coord, sin_cos};
 
 /// Most ends of lines, by length, that are free in a ledge. Where one side of each line is free it is a half.
 const FREE: f64 = 0.45;
@@ -31,26 +30,17 @@ const FREE: f64 = 0.45;
 /// two rows of the ledge is on none.
 const SHORT: f64 = 3.0;
 
-/// Divides the beads of a pair into those that may stay, and what would hang in a ledge. `layers(k)` is `None`
-/// outside the part.
+/// Divides the beads of a pair into those that may stay, and what would hang in a ledge; `None` if all stay.
 #[must_use]
-pub fn held<'a>(
-    pair: Pair<'_>,
-    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
-    params: &RegionParams,
-) -> Beads {
-    let kept = || Beads { kept: pair.beads.to_vec(), cut: Vec::new() };
-    if pair.beads.is_empty() || params.bridges.anchor.is_none() {
-        return kept();
+pub fn held(pair: Pair<'_>, open: &Open<'_>, params: &RegionParams) -> Option<Beads> {
+    if pair.beads.is_empty() || open.rows.is_empty() {
+        return None;
     }
-    let Some(open) = Open::new(pair, layers, params).filter(|open| !open.rows.is_empty()) else {
-        return kept();
-    };
     let (islands, pitch) = (Islands::new(&open.rows), open.raster.pitch);
     let hanging = hanging(pair.beads, &islands, pitch);
     let sags = |island: usize| hanging[island] > f64::from(MOST_FREE);
     if !(0..islands.count()).any(sags) {
-        return kept();
+        return None;
     }
     let is_ledge = |found: &Direction| found.free < FREE;
     let found = open.directions(pair, &islands, sags, params);
@@ -60,31 +50,23 @@ pub fn held<'a>(
     for bead in pair.beads {
         ledges.divide(bead, &mut out);
     }
-    out
-}
-
-/// Short ways along a line, each with its middle.
-fn ways(line: &[LinePoint], step: Coord) -> impl Iterator<Item = (Point, [f64; 2])> {
-    line.windows(2).flat_map(move |w| {
-        let at = |p: &LinePoint| [f64::from(p.u), f64::from(p.v)];
-        let (from, whole) = (at(&w[0]), way(at(&w[0]), at(&w[1])));
-        let count = (dot(whole, whole).sqrt() / f64::from(step)).ceil().at_least(1.0);
-        (0..count as usize).map(move |k| {
-            let [x, y] = along(from, (k as f64 + 0.5) / count, whole);
-            (Point { x: x as Coord, y: y as Coord }, whole.map(|side| side / count))
-        })
-    })
+    Some(out)
 }
 
 /// How much of the `beads` lies in each of the `islands`.
 fn hanging(beads: &[Polyline], islands: &Islands<'_>, pitch: Coord) -> Vec<f64> {
     let mut lengths = vec![0.0; islands.count()];
-    for (middle, way) in beads.iter().flat_map(|bead| ways(bead, pitch / 2)) {
-        if let Some(island) = islands.beside(middle, pitch) {
-            lengths[island] += dot(way, way).sqrt();
+    for piece in beads.iter().flat_map(|bead| pieces(bead, pitch / 2)) {
+        if let Some(island) = island(islands, pitch, &piece.middle()) {
+            lengths[island] += piece.length;
         }
     }
     lengths
+}
+
+/// The island at a place.
+fn island(islands: &Islands<'_>, pitch: Coord, p: &LinePoint) -> Option<usize> {
+    islands.beside(Point { x: p.u, y: p.v }, pitch)
 }
 
 /// The ledges among the islands of a layer, and the directions of their lines.
@@ -96,14 +78,14 @@ struct Ledges<'a> {
 
 impl Ledges<'_> {
     /// The direction of lines at a place.
-    fn turn(&self, p: Point) -> Option<usize> {
-        self.turns[self.islands.beside(p, self.pitch)?]
+    fn turn(&self, p: &LinePoint) -> Option<usize> {
+        self.turns[island(self.islands, self.pitch, p)?]
     }
 
     fn divide(&self, bead: &[LinePoint], out: &mut Beads) {
         let least = SHORT * f64::from(self.pitch);
         let smooth = Smooth { least, ..Smooth::default() };
-        let is_held = |p: &LinePoint| self.turn(Point { x: p.u, y: p.v }).is_none();
+        let is_held = |p: &LinePoint| self.turn(p).is_none();
         let all = stretches(bead, self.pitch / 2, smooth, is_held);
         let stays = |(held, stretch): (bool, Polyline)| (held || !self.hangs(&stretch), stretch);
         let [kept, cut] = parted(all.into_iter().map(stays));
@@ -117,12 +99,13 @@ impl Ledges<'_> {
 
     /// Whether a stretch runs in ledges across their lines for so long that it sags.
     fn hangs(&self, stretch: &[LinePoint]) -> bool {
-        let across = |(middle, way): (Point, [f64; 2])| {
-            let (sin, cos) = sin_cos(STEP * self.turn(middle)? as f64);
-            let far = dot(way, way).sqrt();
-            (dot(way, [cos, sin]).abs() < ALONG * far).then_some(far)
+        let across = |piece: Piece| {
+            let (sin, cos) = sin_cos(STEP * self.turn(&piece.middle())? as f64);
+            let along = dot(piece.way(), [cos, sin]).abs();
+            (along < ALONG * piece.length).then_some(piece.length)
         };
-        ways(stretch, self.pitch / 2).filter_map(across).sum::<f64>() > f64::from(MOST_FREE)
+        let lengths = pieces(stretch, self.pitch / 2).into_iter().filter_map(across);
+        lengths.sum::<f64>() > f64::from(MOST_FREE)
     }
 }
 
@@ -151,7 +134,9 @@ mod tests {
             LinePoint { u: x, v: y, width: 4_000 }
         };
         let beads = [bead.iter().map(point).collect()];
-        held(Pair { own: &own, below: &below.layer, beads: &beads }, &layers, &params)
+        let open = Open::new(1, &layers, &params).unwrap();
+        let pair = Pair { own: &own, below: &below.layer, beads: &beads };
+        held(pair, &open, &params).unwrap_or_else(|| Beads { kept: beads.into(), cut: Vec::new() })
     }
 
     /// A circle with 48 corners; with a negative radius it goes around a hole.

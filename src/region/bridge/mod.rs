@@ -68,25 +68,15 @@ pub struct Pair<'a> {
     pub beads: &'a [Polyline],
 }
 
-/// The bridges of the upper layer of a pair. `layers(k)` is `None` outside the part.
+/// The bridges of the upper layer of a pair, which is `open` there.
 #[must_use]
-pub fn bridges<'a>(
-    pair: Pair<'_>,
-    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
-    params: &RegionParams,
-) -> Vec<Skin> {
+pub fn bridges(pair: Pair<'_>, open: Open<'_>, params: &RegionParams) -> Vec<Skin> {
     let sags = |open: &Open<'_>| open.rows.iter().any(|(_, row)| row.iter().any(is_long));
     // On most layers nothing is open for long, and beads need not be looked at.
-    let open = Open::new(pair, layers, params).filter(sags);
-    let open = open.map(|open| open.beside(pair.beads, params)).filter(sags);
+    let open = Some(open).filter(sags).map(|open| open.beside(pair, params)).filter(sags);
     let (Some(anchor), Some(open)) = (params.bridges.anchor, open) else { return Vec::new() };
     let islands = Islands::new(&open.rows);
-    let mut long = vec![false; islands.count()];
-    for (j, row) in open.rows.iter() {
-        for (span, island) in row.iter().zip(islands.row(j)) {
-            long[*island] |= is_long(span);
-        }
-    }
+    let long = islands.any(|_, span| is_long(&span));
     let mut found = open.directions(pair, &islands, |island| long[island], params);
     keep_few(&mut found);
     let each: BTreeSet<usize> = found.iter().flatten().map(|found| found.turn).collect();
@@ -102,7 +92,8 @@ pub fn bridges<'a>(
 }
 
 /// The open places of a layer, on the raster of its skin.
-struct Open<'a> {
+#[derive(Debug)]
+pub struct Open<'a> {
     raster: Raster,
     rows: Rows,
     /// What the layer below covers.
@@ -110,28 +101,28 @@ struct Open<'a> {
 }
 
 impl<'a> Open<'a> {
-    fn new(
-        pair: Pair<'_>,
+    /// Those of layer `k`; `None` if it is the lowest, or nothing is bridged. `layers(k)` is `None` outside the part.
+    #[must_use]
+    pub fn new(
+        k: usize,
         layers: &impl Fn(usize) -> Option<&'a LayerRows>,
         params: &RegionParams,
     ) -> Option<Self> {
-        let k = pair.own.layer.index;
+        if params.bridges.anchor.is_none() || params.skins.bottom == 0 {
+            return None;
+        }
         let raster = params.rasters.skin(skin_turn(k).0);
         let rows = |k: usize| layers(k)?.on(raster);
         let (here, below) = (rows(k)?, rows(k.checked_sub(1)?)?);
-        if params.skins.bottom == 0 {
-            return None;
-        }
         Some(Self { raster, rows: noticed(&here.fill.minus(&below.cover)), carrier: &below.cover })
     }
 
-    /// What `beads` leave of them.
-    fn beside(self, beads: &[Polyline], params: &RegionParams) -> Self {
-        if beads.is_empty() {
+    /// What the beads of `pair` leave of them.
+    fn beside(self, pair: Pair<'_>, params: &RegionParams) -> Self {
+        if pair.beads.is_empty() {
             return self;
         }
-        let taken = wall_beads::taken(beads, self.raster.frame, self.raster, &params.beads);
-        Self { rows: noticed(&self.rows.minus(&taken)), ..self }
+        Self { rows: noticed(&self.rows.minus(&pair.taken(self.raster, params))), ..self }
     }
 
     /// The direction of each of the `islands` in which something `sags`.

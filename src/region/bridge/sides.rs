@@ -4,10 +4,10 @@
 //! then end on the carrier and none runs out at a side. A few directions that lie evenly around cannot tell
 //! this, since the parts of a plate, and the pillars of a part, may stand at any angle.
 
+use crate::geom::boxes::{extent, meet};
 use crate::geom::frame::Frame;
 use crate::geom::segment::way;
 use crate::geom::{Contour, Point, edges, side};
-use crate::units::Coord;
 
 /// Number of directions that a bridge may have. They begin with that of the layer's skin.
 pub const COUNT: usize = 1800;
@@ -41,7 +41,7 @@ impl Sides {
     pub fn directions(&self, [low, high]: [Point; 2]) -> Vec<usize> {
         let mut found: Vec<(usize, f64)> = Vec::new();
         for ([p, q], length) in self.0.iter().filter(|(side, _)| meets(side, low, high)) {
-            let turn = turn(*p, *q) % (COUNT / 2);
+            let turn = turn(*p, *q);
             match found.iter_mut().find(|(other, _)| *other == turn) {
                 Some((_, sum)) => *sum += length,
                 None => found.push((turn, *length)),
@@ -49,31 +49,28 @@ impl Sides {
         }
         found.sort_by(|(a, long), (b, longer)| longer.total_cmp(long).then(a.cmp(b)));
         found.truncate(MOST);
-        let both = |(turn, _): &(usize, f64)| [*turn, (turn + COUNT / 2) % COUNT];
+        let both = |(turn, _): &(usize, f64)| [*turn, turn + COUNT / 2];
         let mut turns: Vec<usize> = found.iter().flat_map(both).collect();
         turns.sort_by_key(|turn| ((*turn).min(COUNT - turn), *turn));
-        turns.dedup();
         turns
     }
 }
 
 /// Whether a side comes into the box from `low` to `high`.
-fn meets([p, q]: &[Point; 2], low: Point, high: Point) -> bool {
-    let overlaps =
-        |a: Coord, b: Coord, low: Coord, high: Coord| a.min(b) <= high && a.max(b) >= low;
+fn meets(ends: &[Point; 2], low: Point, high: Point) -> bool {
+    let [p, q] = *ends;
     let corners = [low, Point { x: high.x, ..low }, high, Point { y: high.y, ..low }];
-    let sides = corners.map(|corner| side(*p, *q, corner).signum());
-    overlaps(p.x, q.x, low.x, high.x)
-        && overlaps(p.y, q.y, low.y, high.y)
+    let sides = corners.map(|corner| side(p, q, corner).signum());
+    extent(ends).is_some_and(|around| meet(around, (low, high)))
         && sides.iter().any(|side| *side != sides[0])
 }
 
-/// The direction of a side, which counts the same both ways.
+/// The direction of a side, which counts the same both ways, or of the one across: less than a right angle.
 fn turn(p: Point, q: Point) -> usize {
     let real = |p: Point| [f64::from(p.x), f64::from(p.y)];
     let [x, y] = way(real(p), real(q));
     let degrees = libm::atan2(y, x).to_degrees() + 360.0;
-    (degrees / STEP).round() as usize % COUNT
+    (degrees / STEP).round() as usize % (COUNT / 2)
 }
 
 #[cfg(test)]

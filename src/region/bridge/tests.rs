@@ -28,7 +28,8 @@ fn turned(upper: &[Contour], lower: &[Contour], degrees: f64, params: &RegionPar
     };
     let ((below, below_rows), (own, rows)) = (layer(0, lower), layer(1, upper));
     let layers = |k: usize| [&below_rows, &rows].get(k).copied();
-    bridges(Pair { own: &own, below: &below.layer, beads: &[] }, &layers, params)
+    let pair = Pair { own: &own, below: &below.layer, beads: &[] };
+    Open::new(1, &layers, params).map(|open| bridges(pair, open, params)).unwrap_or_default()
 }
 
 /// The spans of all lines, mm.
@@ -42,17 +43,17 @@ proptest! {
     /// wide: lines of a square one may run a step askew.
     #[test]
     fn lines_reach_onto_both_pillars(
-        turn in 0..24,
+        degrees in 0.0_f64..180.0,
         half in 8.0_f64..30.0,
         width in 8.0_f64..13.0,
     ) {
         let plate = rectangle([-half - 6.0, half + 6.0], [-width / 2.0, width / 2.0]);
         let pillar = |x: [f64; 2]| rectangle(x, [-width / 2.0, width / 2.0]);
         let pillars = [pillar([-half - 6.0, -half]), pillar([half, half + 6.0])];
-        let found = turned(&[plate], &pillars, STEP * f64::from(turn), &params());
+        let found = turned(&[plate], &pillars, degrees, &params());
         prop_assert_eq!(found.len(), 1);
         let raster = found[0].raster;
-        let back = Frame::new(STEP * f64::from(turn));
+        let back = Frame::new(degrees);
         let x = |u: Coord, j: i32| {
             let at = raster.frame.leave(Point { x: u, y: j * raster.pitch });
             to_mm(back.enter(at).x).abs()

@@ -144,9 +144,10 @@ fn sagging(
     if hanging.is_empty() {
         return hanging;
     }
-    let held = below.holds_up();
-    let held = far.map_or_else(|| held.clone(), |far| held.and(&far.carries_slope(layer, params)));
-    let sags = hanging.minus(&held);
+    let mut sags = hanging.minus(&below.holds_up());
+    if let Some(far) = far {
+        sags = sags.or(&hanging.minus(&far.carries_slope(layer, params)));
+    }
     let pitch = params.raster().pitch;
     let hanging = hanging.and(&sags.dilate(NEAR_SAG * params.least, pitch));
     // Along an edge oblique to the rows, what hangs on one row may end before it begins on the next.
