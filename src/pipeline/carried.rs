@@ -1,6 +1,7 @@
-//! Support of the layers so far -> whether it carries a place.
+//! Support of the layers so far -> whether it carries a place or an area.
 
-use crate::geom::Point;
+use crate::geom::{Contour, Point};
+use crate::region::scan::Scan;
 use crate::region::{Sparse, SupportLines};
 use std::collections::VecDeque;
 
@@ -37,6 +38,16 @@ impl Carried {
     #[must_use]
     pub fn carries_any(&self, places: impl Iterator<Item = Point> + Clone) -> bool {
         let carries = |area: &Sparse| places.clone().any(|place| is_in(area, place));
+        self.layers.iter().any(|support| support.areas().any(carries))
+    }
+
+    /// Whether support ends just below some of an area.
+    #[must_use]
+    pub fn carries_some_of(&self, contours: &[Contour]) -> bool {
+        let carries = |area: &Sparse| {
+            let inside = Scan::new(contours, area.pattern.raster());
+            !inside.inside().and(&area.rows).is_empty()
+        };
         self.layers.iter().any(|support| support.areas().any(carries))
     }
 }

@@ -195,7 +195,9 @@ impl Footing {
 
     /// Whether support ends just below an island. Its body then stands.
     fn on_support(&mut self, island: &Island) -> bool {
-        let stands = self.support.carries_any(island.corners());
+        // The corners tell nearly always. Where walls are near, support ends before them.
+        let stands = self.support.carries_any(island.corners())
+            || self.support.carries_some_of(island.contours());
         if stands {
             let root = self.bodies.root(island.number);
             self.stands[root] = true;

@@ -186,6 +186,12 @@ impl Island {
         self.low.distance2(self.high)
     }
 
+    /// Its outer contour, then its holes.
+    #[must_use]
+    pub fn contours(&self) -> &[Contour] {
+        &self.contours
+    }
+
     /// Its outer contour.
     #[must_use]
     pub fn outer(&self) -> &[Point] {

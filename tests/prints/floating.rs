@@ -183,6 +183,23 @@ fn what_keeps_support_away_is_named() {
 }
 
 #[test]
+fn a_body_with_support_under_its_middle_alone_stands_on_it() {
+    // Walls on two sides keep support away from all its corners.
+    for gap in [0.02, 0.3, 0.6, 1.0] {
+        let wall = |from: f64| block([from, -2.0, 0.0], [from + 4.0, 22.0, 8.0]);
+        let held = block([0.0, 0.0, 3.0], [10.0, 20.0, 6.0]);
+        let all = held.and(&wall(-4.0 - gap)).and(&wall(10.0 + gap));
+        for degrees in [0.0_f64, 30.0, 90.0] {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let turned = all.map(|[x, y, z]| [cos * x - sin * y, sin * x + cos * y, z]);
+            let report = sliced(&turned, &SUPPORT, 0.0);
+            let report = report.unwrap_or_else(|error| panic!("{gap}, {degrees}: {error}"));
+            assert!(!begins_in_the_air(&report), "{gap}, {degrees}");
+        }
+    }
+}
+
+#[test]
 fn an_arm_that_meets_what_stands_is_warned_of_or_refused_as_asked() {
     let arch = arch(2.0);
     assert!(begins_in_the_air(&sliced(&arch, &[], 0.0).unwrap()));
