@@ -257,6 +257,15 @@ fn pagoda(flank: f64) -> Solid {
     (0..5).fold(Solid::default(), |all, k| all.and(&floor(k)))
 }
 
+/// A figure of eight that stands upright: between its two rounds and beside the lower there is little
+/// room for support of the upper.
+fn eight(upper: f64) -> Solid {
+    let lying = |radius: f64, high: f64| {
+        Solid::prism(&circle(radius, 48), -5.0, 5.0).map(|[x, y, z]| [x, -z, y + high])
+    };
+    lying(5.0, 4.8).and(&lying(upper, 9.2 + upper))
+}
+
 #[test]
 fn each_island_of_support_lies_on_something() {
     let mut failures = Vec::new();
@@ -264,7 +273,8 @@ fn each_island_of_support_lies_on_something() {
     let temples = [(6.5, 1.0), (8.0, -2.0), (9.5, 3.0), (11.6, 2.0)];
     let temples = temples.map(|(low, out)| (format!("temple {low} {out}"), temple(low, out)));
     let pagodas = [11.5, 12.0, 13.0].map(|flank| (format!("pagoda {flank}"), pagoda(flank)));
-    for (name, part) in parts.chain(temples).chain(pagodas) {
+    let eights = [4.4, 4.9, 5.4, 5.8].map(|upper| (format!("eight {upper}"), eight(upper)));
+    for (name, part) in parts.chain(temples).chain(pagodas).chain(eights) {
         for angle in ["0", "45", "75"] {
             let set = [("support.enabled", "true"), ("angle", angle)];
             let run = slice(&part.stl(), "generic-marlin", &set);

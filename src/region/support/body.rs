@@ -16,7 +16,7 @@
 use super::held::{loose, reach};
 use super::outline::outlines;
 use super::params::{BODIES, SupportParams};
-use super::pieces::{Pieces, turned};
+use super::pieces::{Pieces, turned, without_narrow};
 use super::strips::{upright, whole_columns};
 use crate::geom::Contour;
 use crate::geom::polyline::{Polyline, length};
@@ -28,10 +28,6 @@ use crate::units::{Coord, to_mm};
 /// The ends of support lines lie this far inside the outline, in hundredths of a line's width: their
 /// round ends just reach into it. More leaves a gap, less piles up plastic there.
 const LINES_FROM_OUTLINE: Coord = 60;
-
-/// Places narrower than this are left out where there is an outline, in hundredths of a line's
-/// width: its two sides would lie on each other.
-const NARROW: Coord = 95;
 
 /// A zigzag of fewer points is a single line.
 const LEAST_POINTS: usize = 4;
@@ -84,7 +80,7 @@ impl Body {
         if !params.has_outline || rows.is_empty() {
             return Self { rows, ..Self::default() };
         }
-        let rows = opened(&rows, params);
+        let rows = without_narrow(&rows, params);
         let pieces = Pieces::new(&rows);
         let is_thin = |piece: usize| {
             let piece = pieces.keep(&rows, |other| other == piece);
@@ -129,11 +125,15 @@ impl Body {
         let falls = pieces.keep(&above.weak, |piece| !carried[piece]);
         let falls = falls.and(&self.rows);
         if !falls.is_empty() {
-            // Lines may lose what they were joined to.
-            let far = params.lines.stride * params.raster().pitch + params.least;
-            let near = falls.dilate(far, params.raster().pitch).and(&self.rows);
-            self.lone = self.lone.or(&near.minus(&self.thin));
             self.weak = self.weak.or(&falls);
+            // Lines lose what they were joined to, and so others turn at their other ends, far from here as well.
+            let pitch = params.raster().pitch;
+            let left = self.rows.minus(&self.weak.dilate(inwards(params), pitch));
+            let [along, across] = apart(&left, &self.strips, params);
+            let strands = Strands::of([&along, &across], params);
+            let alone = strands.lone.or(&strands.stubs).or(&falls);
+            let near = around(&alone, &self.rows, params.lines.stride, params);
+            self.lone = self.lone.or(&near.minus(&self.thin));
         }
     }
 
@@ -171,12 +171,6 @@ impl Body {
         let [zigzags, waves] = apart(&zigzags, &strips, params);
         (outlines, [zigzags, lines, waves, braces])
     }
-}
-
-/// `rows` without what is narrower than a bead.
-fn opened(rows: &Rows, params: &SupportParams) -> Rows {
-    let (half, pitch) = (params.least * NARROW / 200, params.raster().pitch);
-    rows.erode(half, pitch).dilate(half, pitch).and(rows)
 }
 
 /// The longest brace, grid units.

@@ -17,6 +17,10 @@ use crate::units::{Coord, to_mm};
 /// nothing, and each costs two travels.
 const LEAST_AREA: i64 = 6;
 
+/// Places narrower than this are not printed where there is an outline, in hundredths of a line's
+/// width: its two sides would lie on each other.
+const NARROW: Coord = 95;
+
 /// The piece of each span, in the order of [`Rows::iter`].
 pub(super) struct Pieces {
     labels: Vec<usize>,
@@ -140,6 +144,12 @@ pub(super) fn without_specks(rows: &Rows, params: &SupportParams) -> Rows {
     let lengths = pieces.lengths(rows);
     let (w, pitch) = (i64::from(params.least), i64::from(params.raster().pitch));
     pieces.keep(rows, |piece| lengths[piece] * pitch >= LEAST_AREA * w * w)
+}
+
+/// The rows without places that are narrower than a bead, and without small pieces between these.
+pub(super) fn without_narrow(rows: &Rows, params: &SupportParams) -> Rows {
+    let (half, pitch) = (params.least * NARROW / 200, params.raster().pitch);
+    without_specks(&rows.erode(half, pitch).dilate(half, pitch).and(rows), params)
 }
 
 /// `rows`, which are `pitch` apart, on the raster of the same pitch that is turned by 90°: its row

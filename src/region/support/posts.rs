@@ -8,7 +8,8 @@
 //! they are thick enough for it to stand on them alone.
 //!
 //! A thin piece grows to all sides on each layer further down, as far as the part leaves room, until
-//! it is no longer thin, and meets its neighbours on the way: then they are one piece.
+//! it is no longer thin, and meets its neighbours on the way: then they are one piece. So does a
+//! place that is left narrower than a bead below what is printed: that would begin in the air.
 //!
 //! So support is wider than its load: by the outset, and by what has grown. Where the load has landed,
 //! the rest would go on beside the part, down to the bed, and carry nothing. Therefore
@@ -21,7 +22,7 @@
 //! 4. a piece without any load is left out, but not below feet that are not firm: they need it.
 
 use super::params::{LEAN, SupportParams};
-use super::pieces::Pieces;
+use super::pieces::{Pieces, without_narrow};
 use crate::geom::section::Section;
 use crate::geom::spans::{Rows, Span};
 use crate::units::{Bounded as _, Coord, to_mm};
@@ -126,11 +127,14 @@ impl Posts {
         let (kept, posts) = self.loaded((rows, &pieces), posts, &begins, z, params);
         let pieces = Pieces::new(&kept);
         let thin = thin(&kept, &pieces, |piece| posts[piece].top - z, params);
-        let grown = if thin.is_empty() {
+        let pitch = params.raster().pitch;
+        // Rounded corners are not narrow.
+        let narrow = kept.minus(&without_narrow(&kept, params).dilate(pitch, pitch));
+        let grows = thin.or(&narrow.and(&without_narrow(&self.rows, params)));
+        let grown = if grows.is_empty() {
             kept.clone()
         } else {
-            let pitch = params.raster().pitch;
-            cut(kept.or(&thin.dilate(STEP * pitch, pitch)))
+            cut(kept.or(&grows.dilate(STEP * pitch, pitch)))
         };
         // Each of the grown pieces has some of those from before in it.
         let after = Pieces::new(&grown);
