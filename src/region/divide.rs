@@ -23,7 +23,7 @@ use super::rooms;
 use super::scan::around;
 use super::wall_beads::{taken, wall_beads};
 use super::wall_samples::SHORT;
-use super::wedges::without_wedges;
+use super::wedges::{without_patchwork, without_wedges};
 use crate::geom::Contour;
 use crate::geom::frame::Frame;
 use crate::geom::outline::Columns;
@@ -100,6 +100,14 @@ pub fn examine<'a>(
             without_wedges(own.layer.index, beads, rooms, params)
         }
         None => beads(own, &exposed, layers, params),
+    };
+    let along = skin_turn(own.layer.index).0;
+    let beads = match room(own, layers) {
+        Some(room) => {
+            let strips = (room[along], &exposed[along]);
+            without_patchwork(own.layer.index, beads, strips, params)
+        }
+        None => beads,
     };
     Examined { exposed, solid, beads }
 }
@@ -295,6 +303,18 @@ fn held<'a>(
     Beads { kept, cut }
 }
 
+/// What the walls of the layer `own` leave, on both rasters of skins.
+fn room<'a: 'b, 'b>(
+    own: &'b Own,
+    layers: &impl Fn(usize) -> Option<&'a LayerRows>,
+) -> Option<[&'b Rows; 2]> {
+    let rows = layers(own.layer.index)?;
+    Some([0, 1].map(|r| match &own.whole {
+        Some(whole) => &*whole.fill[r],
+        None => &*rows.skin(r).fill,
+    }))
+}
+
 /// The beads of a layer along its innermost walls, where the exposed `skins` are narrow.
 fn beads<'a>(
     own: &Own,
@@ -302,7 +322,7 @@ fn beads<'a>(
     layers: &impl Fn(usize) -> Option<&'a LayerRows>,
     params: &RegionParams,
 ) -> Vec<Polyline> {
-    let Some(rows) = layers(own.layer.index) else { return Vec::new() };
+    let Some(room) = room(own, layers) else { return Vec::new() };
     let count = params.walls.count;
     // Without walls the ends of lines form the outside of the part, so all skin stays lines.
     if count == 0 || skins.iter().all(Rows::is_empty) {
@@ -310,12 +330,12 @@ fn beads<'a>(
     }
     // Beside the outer wall of a top there are lines alone.
     let beside_tops;
-    let (room, skins) = match &own.whole {
+    let skins = match &own.whole {
         Some(Whole { fill, tops, .. }) => {
             beside_tops = [0, 1].map(|r| skins[r].and(&fill[r]).minus(&tops[r]));
-            ([0, 1].map(|r| &*fill[r]), &beside_tops)
+            &beside_tops
         }
-        None => ([0, 1].map(|r| &*rows.skin(r).fill), skins),
+        None => skins,
     };
     let (along, across) = skin_turn(own.layer.index);
     let crossed = Crossed {

@@ -300,3 +300,28 @@ fn each_spoke_of_a_wheel_has_a_bead_all_along() {
         }
     }
 }
+
+/// A plate with a rib along its edge, whose inner side is a wave: so wide on average, and by so much more and less.
+fn wavy(wide: f64, swing: f64, period: f64) -> Solid {
+    let wave = (0..=160).rev().map(|k| 0.25 * f64::from(k));
+    let wave = wave.map(|x| [x, wide + swing * (std::f64::consts::TAU * x / period).sin()]);
+    let rib = [[0.0, 0.0], [40.0, 0.0]].into_iter().chain(wave).collect();
+    Solid::cuboid([0.0, 0.0, 0.0], [40.0, 20.0, 2.0]).and(&Solid::prism(&rib, 1.9, 3.0))
+}
+
+/// As many beads as have room would begin and end in each wave, with crumbs between them.
+#[test]
+fn skin_between_a_wave_and_an_edge_is_filled_by_few_pieces() {
+    for (wide, swing, period) in
+        [(2.6, 0.6, 6.0), (2.6, 1.0, 12.0), (3.0, 1.0, 12.0), (3.4, 1.0, 12.0)]
+    {
+        let stl = wavy(wide, swing, period).stl();
+        let run = slice(&stl, "generic-marlin", &[]);
+        let waves = (40.0 / period) as usize;
+        for layer in [13, 14] {
+            let pieces = lengths(&run, layer, &[Kind::Skin]);
+            assert!(pieces.len() <= 4 * waves + 3, "{wide} {swing} {layer}: {pieces:?}");
+        }
+        assert_eq!(kinds(&judge_made(&run.text, &stl)), [], "{wide} {swing}");
+    }
+}
