@@ -78,12 +78,16 @@ pub fn without_patchwork(
     (fill, skin): (&Rows, &Rows),
     params: &RegionParams,
 ) -> Vec<Polyline> {
+    // A lone bead is no patchwork.
+    if beads.len() < 2 || skin.is_empty() {
+        return beads;
+    }
     let raster = params.rasters.skin(skin_turn(k).0);
     let pitch = raster.pitch;
     let half = STRIP * pitch / 2;
     // Rounded corners are no strips.
-    let broad = || fill.erode(half, pitch).dilate(half + pitch / 2, pitch);
-    let strips = if beads.is_empty() { Rows::default() } else { fill.minus(&broad()).and(skin) };
+    let broad = fill.erode(half, pitch).dilate(half + pitch / 2, pitch);
+    let strips = skin.and(fill).minus(&broad);
     if strips.is_empty() {
         return beads;
     }
