@@ -71,3 +71,31 @@ fn roofs_of_counterbores_are_laid_in_lines_that_hold() {
         assert!(bridge > 0.0 && others < 0.05 * bridge, "{hole} {bore}: {bridge} {others}");
     }
 }
+
+/// A box open at the bottom, with three tubes that carry its roof, turned.
+fn brick(wall: f64, degrees: f64) -> Solid {
+    let pipe = |radius: f64| Solid::prism(&circle(radius, 48), 0.0, 9.0);
+    let tube = |x: f64| {
+        pipe(3.25).and(&pipe(3.25 - wall).inside_out()).map(move |[u, v, z]| [u + x, v, z])
+    };
+    let cavity = Solid::cuboid([-14.4, -6.4, 0.0], [14.4, 6.4, 8.6]).inside_out();
+    let block = Solid::cuboid([-15.9, -7.9, 0.0], [15.9, 7.9, 9.6]).and(&cavity);
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let all = [-8.0, 0.0, 8.0].into_iter().fold(block, |all, x| all.and(&tube(x)));
+    all.map(|[x, y, z]| [cos * x - sin * y, sin * x + cos * y, z])
+}
+
+/// The walls of the tubes are too thin for the anchors of two bridges in different directions.
+#[test]
+fn bridges_on_both_sides_of_a_thin_wall_run_in_one_direction() {
+    for (wall, degrees) in [(0.85, 0.0), (0.85, 20.0), (1.2, 0.0), (1.6, 65.0)] {
+        let stl = brick(wall, degrees).stl();
+        let run = slice(&stl, "generic-marlin", &[]);
+        let long: Vec<&Move> = run.print.of(Kind::Bridge).filter(|m| m.length() > 3.0).collect();
+        assert!(long.len() > 30, "{wall} {degrees}: {}", long.len());
+        let [a, b] = [long[0].a(), long[0].b()];
+        let first = (b[1] - a[1]).atan2(b[0] - a[0]).to_degrees();
+        let most = long.iter().map(|bead| off(bead, first).abs()).fold(0.0, f64::max);
+        assert!(most < 0.3, "{wall} {degrees}: {most}");
+    }
+}

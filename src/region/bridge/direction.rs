@@ -37,6 +37,10 @@ const NEAT: [f64; 2] = [0.08, 0.03];
 /// The same along or across the rows. At [`NEAT`] openings without straight sides would get longer lines.
 const NEAT_ROWS: [f64; 2] = [0.04, 0.019];
 
+/// Beside a larger bridge lines may be longer by this factor than in the best direction, so that both lie in one.
+/// A larger value lays slots along their length; with a smaller one round holes are laid askew to what is around them.
+const LONGER: f64 = 1.25;
+
 /// So many lines at each edge may graze a side that they are parallel to: they leave and enter the cells of the
 /// island, and seem free.
 const GRAZING: usize = 2;
@@ -67,12 +71,24 @@ pub struct Direction {
     /// it to an edge of the part it is a half or more. Cells do not tell it of strips at most two rows wide: there
     /// it is 1.
     pub free: f64,
+    /// How long the lines are, in cells: the mean by which directions are compared.
+    pub length: f64,
+}
+
+/// Whether the lines of an island hold in direction `turn` nearly as well as in their `best` one.
+#[must_use]
+pub fn suits(site: &Site<'_>, turn: usize, best: &Direction, walls: Coord) -> bool {
+    let hold = Grid::new(site, walls).map(|grid| grid.hold(turn, false));
+    hold.is_some_and(|Hold { free, length }| {
+        free <= best.free + NEAT[0] && length <= LONGER * best.length
+    })
 }
 
 /// The best direction for the lines of an island. Walls lie within `walls` beyond its edge, `sides` beside them.
 #[must_use]
 pub fn best(site: &Site<'_>, walls: Coord, sides: &Sides) -> Direction {
-    let Some(grid) = Grid::new(site, walls) else { return Direction { turn: 0, free: 1.0 } };
+    let none = Direction { turn: 0, free: 1.0, length: 0.0 };
+    let Some(grid) = Grid::new(site, walls) else { return none };
     let thin = grid.is_thin();
     let along = if thin { Vec::new() } else { sides.directions(grid.corners(walls)) };
     let of = |turn: usize| (turn, grid.hold(turn, along.contains(&turn)));
@@ -86,9 +102,7 @@ pub fn best(site: &Site<'_>, walls: Coord, sides: &Sides) -> Direction {
     let fewest = tried().map(|(_, hold)| hold.free).fold(f64::MAX, f64::at_most);
     let cost = |hold: Hold| hold.length * (1.0 + FREE_COST * (hold.free - fewest));
     let good = tried().filter(|(_, hold)| hold.free <= fewest + ALIKE);
-    let Some(best) = good.min_by(|a, b| cost(a.1).total_cmp(&cost(b.1))) else {
-        return Direction { turn: 0, free: 1.0 };
-    };
+    let Some(best) = good.min_by(|a, b| cost(a.1).total_cmp(&cost(b.1))) else { return none };
     // Along and across the rows first, then along sides: of equal directions they give the neatest edges. Of both
     // the rows' own direction first: the skin above then crosses the bridge.
     let neat = |tried: &[(usize, Hold)], [free, longer]: [f64; 2]| {
@@ -97,9 +111,9 @@ pub fn best(site: &Site<'_>, walls: Coord, sides: &Sides) -> Direction {
         };
         tried.iter().find(is_neat).copied()
     };
-    let (turn, Hold { free, .. }) =
+    let (turn, Hold { free, length }) =
         neat(&rows, NEAT_ROWS).or_else(|| neat(&sides, NEAT)).unwrap_or(best);
-    Direction { turn, free: if thin { 1.0 } else { free } }
+    Direction { turn, free: if thin { 1.0 } else { free }, length }
 }
 
 /// Whether two directions are different, but nearer to each other than those that lie evenly around.

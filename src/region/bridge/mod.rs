@@ -8,7 +8,8 @@
 //! 1. Find the open places on the raster of the layer's skin. On most layers there are none, or
 //!    only short ones along walls: then this is all.
 //! 2. Divide them into islands. For each bridge choose the direction of its lines ([`direction`]), of which the
-//!    sides beside it are the first to be tried ([`sides`]).
+//!    sides beside it are the first to be tried ([`sides`]). Those on both sides of a thin carrier agree on one
+//!    ([`shared`]).
 //! 3. For each direction, scan the contours of both layers with a raster of that direction, and
 //!    find the open places of its bridges again: exactly, at the lines' own ends.
 //! 4. Lengthen each line by the anchor at both ends, and add a line on both sides.
@@ -19,6 +20,7 @@
 pub mod direction;
 pub mod ledges;
 pub mod loose;
+pub mod shared;
 pub mod sides;
 #[cfg(test)]
 mod tests;
@@ -78,6 +80,7 @@ pub fn bridges(pair: Pair<'_>, open: Open<'_>, params: &RegionParams) -> Vec<Ski
     let islands = Islands::new(&open.rows);
     let long = islands.any(|_, span| is_long(&span));
     let mut found = open.directions(pair, &islands, |island| long[island], params);
+    shared::agree(&mut found, &islands, &open, anchor, params);
     keep_few(&mut found);
     let each: BTreeSet<usize> = found.iter().flatten().map(|found| found.turn).collect();
     let along = skin_turn(pair.own.layer.index).0;
@@ -125,6 +128,10 @@ impl<'a> Open<'a> {
         Self { rows: noticed(&self.rows.minus(&pair.taken(self.raster, params))), ..self }
     }
 
+    fn site<'b>(&'b self, island: usize, islands: &'b Islands<'b>) -> Site<'b> {
+        Site { island, islands, carrier: self.carrier, pitch: self.raster.pitch }
+    }
+
     /// The direction of each of the `islands` in which something `sags`.
     fn directions(
         &self,
@@ -135,8 +142,8 @@ impl<'a> Open<'a> {
     ) -> Vec<Option<Direction>> {
         let sides = Sides::new(pair.contours(), self.raster.frame);
         let direction = |island: usize| {
-            let site = Site { island, islands, carrier: self.carrier, pitch: self.raster.pitch };
-            sags(island).then(|| direction::best(&site, params.insets.fill, &sides))
+            let best = || direction::best(&self.site(island, islands), params.insets.fill, &sides);
+            sags(island).then(best)
         };
         (0..islands.count()).map(direction).collect()
     }
